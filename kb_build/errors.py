@@ -1,0 +1,37 @@
+"""What can go wrong while a knowledge base is built.
+
+KBBuildError
+├── SourceError      a documentation source is missing, unreadable, hostile or of the wrong version
+├── RuntimeMissing   no interpreter with the Blender version asked for, and none could be made
+├── ExtractError     Blender started, but the extraction did not finish
+├── SummaryError     summaries were asked for and could not be had
+└── StoreError       the knowledge-base file cannot be written or read
+
+Every message says what was wrong, where, and what to do.
+"""
+
+from __future__ import annotations
+
+
+class KBBuildError(Exception):
+    """Base of everything that a build reports to its user instead of a traceback."""
+
+
+class SourceError(KBBuildError):
+    """A documentation source is missing, unreadable, hostile or of the wrong version."""
+
+
+class RuntimeMissing(KBBuildError):  # noqa: N818 - reads as the state it names
+    """No interpreter with the Blender version asked for was found or could be made."""
+
+
+class ExtractError(KBBuildError):
+    """Blender started, but the extraction did not finish; carries its output."""
+
+
+class SummaryError(KBBuildError):
+    """Summaries were asked for and could not be had."""
+
+
+class StoreError(KBBuildError):
+    """The knowledge-base file cannot be written or read."""

@@ -1,0 +1,206 @@
+"""The records that a knowledge base is made of.
+
+Everything the extractor and the page readers produce, and everything the server answers from, is one of
+these. A leaf module: it imports nothing of the project.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Literal
+
+Scalar = str | int | float | bool | None
+Default = Scalar | list[Any]
+
+SymbolKind = Literal[
+    "module", "class", "property", "function", "operator", "socket", "data", "context", "enum"
+]
+PageSource = Literal["manual", "guide", "template"]
+LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
+
+
+@dataclass(frozen=True, slots=True)
+class EnumItem:
+    """One value of an enumeration."""
+
+    identifier: str
+    name: str = ""
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One argument (or returned value) of a function or an operator.
+
+    ``type`` is text for people (``"float[3]"``, ``"enum"``, ``"Object"``); ``default`` is absent (None with
+    ``required``) when the caller must give the argument.
+    """
+
+    name: str
+    type: str = ""
+    description: str = ""
+    default: Default = None
+    required: bool = False
+    enum_items: tuple[EnumItem, ...] = ()
+    label: str = ""
+    hard_min: float | None = None
+    hard_max: float | None = None
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Deprecation:
+    """What Blender itself says of a property that is on its way out. Versions as ``"5.0"``."""
+
+    note: str
+    since: str = ""
+    removal: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """One public identifier of Blender's Python API.
+
+    ``path`` is the identifier as the API reference writes it; what the reference lacks (node sockets) follows
+    Python's own spelling: ``bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular IOR Level"]``.
+    Ranges are in the unit that ``unit`` names (Blender's scene units: metres, radians, frames).
+    """
+
+    path: str
+    kind: SymbolKind
+    owner: str = ""
+    label: str = ""
+    description: str = ""
+    type: str = ""
+    subtype: str = ""
+    unit: str = ""
+    target: str = ""
+    array: tuple[int, ...] = ()
+    default: Default = None
+    hard_min: float | None = None
+    hard_max: float | None = None
+    soft_min: float | None = None
+    soft_max: float | None = None
+    flags: tuple[str, ...] = ()
+    enum_items: tuple[EnumItem, ...] = ()
+    enum_computed: bool = False
+    base: str = ""
+    group: str = ""
+    signature: str = ""
+    parameters: tuple[Parameter, ...] = ()
+    returns: tuple[Parameter, ...] = ()
+    deprecation: Deprecation | None = None
+    modes: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The last part of the path: what a programmer writes after the dot (or between the brackets)."""
+        if self.kind == "socket":
+            return self.path[self.path.index('["') + 2 : -2]
+        return self.path.rpartition(".")[2]
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A titled part of a page: the unit of retrieval.
+
+    ``text`` is Markdown without the heading itself; definition lists, field lists, notes, tables and code are
+    kept, pictures become their captions. ``level`` is 1 for the page's title section.
+    """
+
+    anchor: str
+    title: str
+    level: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """One page of the manual, one guide, or one script template.
+
+    ``slug`` is the page's address without suffix (``physics/cloth/settings/collisions``,
+    ``info_gotchas_meshes``); ``version`` is the documentation's own, which may differ from Blender's.
+    ``breadcrumbs`` are the titles of the pages above it, outermost first; ``children`` the slugs below it, in
+    order; ``links`` the slugs that its text refers to.
+    """
+
+    slug: str
+    source: PageSource
+    version: str
+    title: str
+    sections: tuple[Section, ...]
+    breadcrumbs: tuple[str, ...] = ()
+    children: tuple[str, ...] = ()
+    links: tuple[str, ...] = ()
+    url: str = ""
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The whole page as Markdown, headings included."""
+        parts: list[str] = []
+        for section in self.sections:
+            parts.append(f"{'#' * max(1, section.level)} {section.title}")
+            if section.text:
+                parts.append(section.text)
+        return "\n\n".join(parts)
+
+    @property
+    def content_hash(self) -> str:
+        """SHA-256 of the text with its white space folded: equal for equal content, whatever the layout."""
+        return hashlib.sha256(" ".join(self.text.split()).encode()).hexdigest()
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A relation between two ids (symbol paths or page slugs)."""
+
+    source: str
+    target: str
+    kind: LinkKind
+
+
+def to_json(record: Symbol | Page) -> dict[str, Any]:
+    """A record as a JSON-ready dictionary, without the fields that hold their default value."""
+    defaults = {field.name: field.default for field in fields(record)}
+    return {key: value for key, value in asdict(record).items() if value != defaults.get(key, ...)}
+
+
+def _enum_items(rows: list[dict[str, Any]]) -> tuple[EnumItem, ...]:
+    return tuple(EnumItem(**row) for row in rows)
+
+
+def _parameters(rows: list[dict[str, Any]]) -> tuple[Parameter, ...]:
+    return tuple(Parameter(**{**row, "enum_items": _enum_items(row.get("enum_items", []))}) for row in rows)
+
+
+def symbol_from_json(data: dict[str, Any]) -> Symbol:
+    """The inverse of :func:`to_json` for symbols. Raises TypeError on unknown fields."""
+    deprecation = data.get("deprecation")
+    return Symbol(
+        **{
+            **data,
+            "array": tuple(data.get("array", ())),
+            "flags": tuple(data.get("flags", ())),
+            "modes": tuple(data.get("modes", ())),
+            "enum_items": _enum_items(data.get("enum_items", [])),
+            "parameters": _parameters(data.get("parameters", [])),
+            "returns": _parameters(data.get("returns", [])),
+            "deprecation": Deprecation(**deprecation) if deprecation else None,
+        }
+    )
+
+
+def page_from_json(data: dict[str, Any]) -> Page:
+    """The inverse of :func:`to_json` for pages. Raises TypeError on unknown fields."""
+    return Page(
+        **{
+            **data,
+            "sections": tuple(Section(**row) for row in data.get("sections", [])),
+            "breadcrumbs": tuple(data.get("breadcrumbs", ())),
+            "children": tuple(data.get("children", ())),
+            "links": tuple(data.get("links", ())),
+            "warnings": tuple(data.get("warnings", ())),
+        }
+    )
