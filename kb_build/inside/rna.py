@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""RNA classes with their own properties and functions, and the methods that Python or C adds to them."""
+
+import types
+
+import bpy
+from wire import limit, plain
+
+UI_BASES = (
+    "Panel", "Menu", "Header", "UIList", "AssetShelf", "KeyingSetInfo", "Gizmo", "GizmoGroup", "FileHandler",
+    "RenderEngine", "HydraRenderEngine",
+)  # fmt: skip
+# ``is_overridable`` is left out: reading it on Image.pixels crashes Blender.
+FLAGS = (
+    ("is_readonly", "readonly"), ("is_animatable", "animatable"), ("is_library_editable", "library-editable"),
+    ("is_never_none", "never-none"), ("is_enum_flag", "enum-flag"),
+    ("is_hidden", "hidden"), ("is_runtime", "runtime"), ("is_required", "required"),
+    ("is_path_supports_blend_relative", "blend-relative"),
+)  # fmt: skip
+METHOD_TYPES = (
+    types.FunctionType, types.BuiltinFunctionType, types.MethodDescriptorType, types.ClassMethodDescriptorType,
+    classmethod, staticmethod,
+)  # fmt: skip
+ATTRIBUTE_TYPES = (property, types.GetSetDescriptorType, types.MemberDescriptorType)
+
+
+def version_text(version):
+    """``(5, 0, 0)`` → ``"5.0"``; nothing for the zero that Blender keeps where it knows no version."""
+    return f"{version[0]}.{version[1]}" if version and any(version) else ""
+
+
+def read_items(items):
+    """Enum items as rows. Each is read while the iteration stands on it: computed ones are freed after it."""
+    return [
+        {"identifier": item.identifier, "name": item.name, "description": item.description}
+        for item in items
+        if item.identifier
+    ]
+
+
+def enum_items(prop):
+    """(items, computed): the static items, or the ones Blender computes for a bare context."""
+    rows = read_items(prop.enum_items_static)
+    return (rows, False) if rows else (read_items(prop.enum_items), True)
+
+
+def default_of(prop):
+    """The value a new property has, or None where RNA has no such notion (pointers, collections)."""
+    kind = prop.type
+    if kind in {"POINTER", "COLLECTION"}:
+        return None
+    if kind == "ENUM":
+        return sorted(prop.default_flag) if prop.is_enum_flag else prop.default
+    if kind in {"BOOLEAN", "INT", "FLOAT"} and prop.is_array:
+        return [plain(item) for item in prop.default_array]
+    return plain(prop.default)
+
+
+def describe(prop):
+    """Everything RNA knows of one property, in the terms of ``records.Symbol``."""
+    kind = prop.type
+    row = {
+        "label": prop.name,
+        "description": prop.description,
+        "type": kind.lower(),
+        "subtype": prop.subtype if prop.subtype != "NONE" else "",
+        "unit": prop.unit if prop.unit != "NONE" else "",
+        "flags": [text for attribute, text in FLAGS if getattr(prop, attribute, False)],
+        "default": default_of(prop),
+    }
+    if kind in {"INT", "FLOAT"}:
+        for bound in ("hard_min", "hard_max", "soft_min", "soft_max"):
+            row[bound] = limit(getattr(prop, bound))
+    if getattr(prop, "is_array", False):
+        row["array"] = [n for n in prop.array_dimensions if n] or [prop.array_length]
+    if kind == "ENUM":
+        row["enum_items"], row["enum_computed"] = enum_items(prop)
+    if kind in {"POINTER", "COLLECTION"} and prop.fixed_type:
+        row["target"] = prop.fixed_type.identifier
+    if kind == "COLLECTION" and prop.srna:
+        row["collection"] = prop.srna.identifier
+    if getattr(prop, "is_deprecated", False):
+        row["deprecation"] = {
+            "note": prop.deprecated_note,
+            "since": version_text(prop.deprecated_version),
+            "removal": version_text(prop.deprecated_removal_version),
+        }
+    return row
+
+
+def parameter(prop):
+    """One argument or result of an RNA function, in the terms of ``records.Parameter``."""
+    row = describe(prop)
+    kept = ("description", "default", "enum_items", "label", "hard_min", "hard_max", "unit")
+    result = {key: row[key] for key in kept if row.get(key) not in (None, "", [])}
+    length = "".join(f"[{n}]" for n in row.get("array", ()))
+    result.update(name=prop.identifier, type=row.get("target") or row["type"] + length)
+    if prop.type == "COLLECTION":
+        result["type"] = f"list of {row.get('target', 'items')}"
+    if prop.is_required and not prop.is_output:
+        result["required"] = True
+        result.pop("default", None)
+    return result
+
+
+def all_structs():
+    """Every RNA class by identifier: those of ``bpy.types``, and those that hang only on pointers."""
+    structs = {}
+    queue = []
+    for name in dir(bpy.types):
+        rna = getattr(getattr(bpy.types, name), "bl_rna", None)
+        if rna is not None:
+            queue.append(rna)
+    while queue:
+        rna = queue.pop()
+        if rna.identifier in structs:
+            continue
+        structs[rna.identifier] = rna
+        if rna.base is not None:
+            queue.append(rna.base)
+        for prop in rna.properties:
+            if prop.type in {"POINTER", "COLLECTION"}:
+                queue.extend(target for target in (prop.fixed_type, prop.srna) if target is not None)
+    return structs
+
+
+def group_of(rna):
+    """``data``, ``ui`` or ``operator``: whether a script works with the class or only the interface does."""
+    ancestor = rna.base
+    while ancestor is not None:
+        if ancestor.identifier in UI_BASES:
+            return "ui"
+        if ancestor.identifier in {"Operator", "Macro"}:
+            return "operator"
+        ancestor = ancestor.base
+    return "operator" if "_OT_" in rna.identifier else "data"
+
+
+def own(rna, kind):
+    """The properties or functions that a class adds to its base."""
+    inherited = set(getattr(rna.base, kind).keys()) if rna.base is not None else set()
+    return [item for item in getattr(rna, kind) if item.identifier not in inherited and item.identifier != "rna_type"]
+
+
+def write_function(write, owner, function):
+    """One RNA function with its arguments and results."""
+    parameters = list(function.parameters)
+    write(
+        "symbol",
+        path=f"{owner}.{function.identifier}",
+        kind="function",
+        owner=owner,
+        description=function.description,
+        parameters=[parameter(item) for item in parameters if not item.is_output],
+        returns=[parameter(item) for item in parameters if item.is_output],
+        flags=[] if function.use_self or getattr(function, "use_self_type", False) else ["static"],
+    )
+
+
+def write_struct(write, identifier, rna):
+    """One class, its own properties and its own functions."""
+    path = f"bpy.types.{identifier}"
+    write(
+        "symbol",
+        path=path,
+        kind="class",
+        owner="bpy.types",
+        label=rna.name,
+        description=rna.description,
+        base=f"bpy.types.{rna.base.identifier}" if rna.base is not None else "bpy.types.bpy_struct",
+        group=group_of(rna),
+    )
+    for prop in own(rna, "properties"):
+        write("symbol", path=f"{path}.{prop.identifier}", kind="property", owner=path, **describe(prop))
+    for function in own(rna, "functions"):
+        write_function(write, path, function)
+
+
+def added_members(cls, known):
+    """(name, value) of what Python or C adds to an RNA class, mix-ins up to the next RNA class included.
+
+    Properties registered by add-ons are RNA already; double underscores and RNA's own names are left out.
+    """
+    seen = set(known) | {"bl_rna", "rna_type"}
+    for ancestor in cls.__mro__:
+        if ancestor is object or (ancestor is not cls and "bl_rna" in vars(ancestor)) or ancestor is bpy.types.bpy_struct:
+            continue
+        for name, value in vars(ancestor).items():
+            if name.startswith("_") or name in seen:
+                continue
+            seen.add(name)
+            if isinstance(value, METHOD_TYPES + ATTRIBUTE_TYPES):
+                yield name, value
+
+
+def write_added(write, structs, write_member):
+    """Methods and attributes that RNA does not list, for the classes that a script works with."""
+    for identifier, rna in structs.items():
+        cls = getattr(bpy.types, identifier, None)
+        if cls is None or group_of(rna) != "data":
+            continue
+        known = set(rna.properties.keys()) | set(rna.functions.keys())
+        for name, value in added_members(cls, known):
+            write_member(write, f"bpy.types.{identifier}", name, value)
+
+
+def write_all(write, write_member):
+    """Every RNA class. Returns the classes by identifier."""
+    structs = all_structs()
+    for identifier in sorted(structs):
+        write_struct(write, identifier, structs[identifier])
+    write_added(write, structs, write_member)
+    return structs

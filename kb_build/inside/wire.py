@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""JSON Lines on a file of its own: Blender prints on stdout, so nothing else may travel there."""
+
+import json
+import math
+
+UNLIMITED_FLOAT = 3.4e38
+UNLIMITED_INT = 2**31 - 1
+
+
+def limit(value):
+    """A range's bound, or None where Blender's number only means "no bound"."""
+    if isinstance(value, float):
+        if not math.isfinite(value) or abs(value) >= UNLIMITED_FLOAT:
+            return None
+        return plain_float(value)
+    return None if abs(value) >= UNLIMITED_INT else value
+
+
+def plain_float(value):
+    """A single-precision number as a person would write it: 0.1, not 0.10000000149011612."""
+    if not math.isfinite(value):
+        return str(value)
+    short = float(f"{value:.7g}")
+    return int(short) if short.is_integer() and abs(short) < 1e15 else short
+
+
+def plain(value):
+    """Any default value in JSON's terms; what JSON cannot say becomes its Python spelling."""
+    if value is None or isinstance(value, (bool, int, str)):
+        return value
+    if isinstance(value, float):
+        return plain_float(value)
+    if isinstance(value, (set, frozenset)):
+        return sorted(plain(item) for item in value)
+    if isinstance(value, (list, tuple)) or hasattr(value, "__len__"):
+        return [plain(item) for item in value]
+    return repr(value)
+
+
+class Writer:
+    """Writes one record a line, leaving out what holds nothing."""
+
+    def __init__(self, path):
+        self._file = open(path, "w", encoding="utf-8", errors="replace")
+        self.count = 0
+
+    def __call__(self, record, **values):
+        row = {"record": record}
+        row.update((key, value) for key, value in values.items() if value is not None and value not in ("", [], ()))
+        self._file.write(json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n")
+        self.count += 1
+
+    def close(self):
+        self._file.close()
