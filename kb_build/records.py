@@ -65,6 +65,11 @@ class Symbol:
     ``path`` is the identifier as the API reference writes it; what the reference lacks (node sockets) follows
     Python's own spelling: ``bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular IOR Level"]``.
     Ranges are in the unit that ``unit`` names (Blender's scene units: metres, radians, frames).
+
+    ``target`` is the class that a pointer, a collection or a socket leads to (an operator: its ``_OT_`` class),
+    ``collection`` the class of the collection itself, which carries ``new`` and ``remove``; ``group`` of a class
+    is ``data``, ``ui`` or ``operator``; ``modes`` name the enum values under which a node shows a socket;
+    ``trees`` the node trees that take a node; ``reached`` is an expression that leads to an instance.
     """
 
     path: str
@@ -92,6 +97,9 @@ class Symbol:
     returns: tuple[Parameter, ...] = ()
     deprecation: Deprecation | None = None
     modes: tuple[str, ...] = ()
+    collection: str = ""
+    trees: tuple[str, ...] = ()
+    reached: str = ""
 
     @property
     def name(self) -> str:
@@ -184,6 +192,7 @@ def symbol_from_json(data: dict[str, Any]) -> Symbol:
             "array": tuple(data.get("array", ())),
             "flags": tuple(data.get("flags", ())),
             "modes": tuple(data.get("modes", ())),
+            "trees": tuple(data.get("trees", ())),
             "enum_items": _enum_items(data.get("enum_items", [])),
             "parameters": _parameters(data.get("parameters", [])),
             "returns": _parameters(data.get("returns", [])),

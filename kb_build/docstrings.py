@@ -1,0 +1,234 @@
+"""Docstrings of Blender's Python and C functions: reST in, description, parameters and results out."""
+
+from __future__ import annotations
+
+import ast
+import re
+import textwrap
+from dataclasses import dataclass, field, replace
+from functools import cache
+
+from docutils import nodes
+from docutils.frontend import get_default_settings
+from docutils.parsers.rst import Parser, roles
+from docutils.utils import new_document
+
+from kb_build.records import Default, Parameter
+
+_DIRECTIVE = re.compile(
+    r"\.\. (?:function|method|classmethod|staticmethod|class|data|attribute|property|exception)::[ \t]*(.*)"
+)
+_REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "ref", "exc", "const", "obj", "doc")
+_QUIET = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Docstring:
+    """What a docstring says: Markdown ``description``, call ``signature``, and types as text."""
+
+    description: str = ""
+    signature: str = ""
+    type: str = ""
+    parameters: tuple[Parameter, ...] = ()
+    returns: tuple[Parameter, ...] = ()
+
+
+@dataclass(slots=True)
+class _Fields:
+    """The field list while it is read: ``:arg x:`` and ``:type x:`` come in any order."""
+
+    texts: dict[str, str] = field(default_factory=dict)
+    types: dict[str, str] = field(default_factory=dict)
+    returns: str = ""
+    return_type: str = ""
+    own_type: str = ""
+    other: list[str] = field(default_factory=list)
+
+
+def _literal_role(
+    name: str, rawtext: str, text: str, lineno: int, inliner: object, options: object = None, content: object = None
+) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+    """A cross-reference inside a docstring is the identifier it names."""
+    shown = text.partition(" <")[0] if text.endswith(">") else text
+    return [nodes.literal(rawtext, shown.lstrip("~!"))], []
+
+
+@cache
+def _parser() -> tuple[Parser, object]:
+    for role in _REFERENCE_ROLES:
+        roles.register_local_role(role, _literal_role)
+    settings = get_default_settings(Parser)
+    settings.report_level = settings.halt_level = _QUIET
+    settings.file_insertion_enabled = settings.raw_enabled = False
+    return Parser(), settings
+
+
+def _inline(node: nodes.Node) -> str:
+    parts: list[str] = []
+    for child in node.children:
+        if isinstance(child, nodes.literal):
+            parts.append(f"`{child.astext()}`")
+        elif isinstance(child, nodes.Text):
+            parts.append(child.astext().replace("\n", " "))
+        elif not isinstance(child, nodes.system_message | nodes.problematic):
+            parts.append(_inline(child))
+        elif isinstance(child, nodes.problematic):
+            parts.append(child.astext())
+    return "".join(parts)
+
+
+def _block(node: nodes.Node) -> str:
+    """One body element as Markdown."""
+    if isinstance(node, nodes.paragraph):
+        return _inline(node)
+    if isinstance(node, nodes.literal_block | nodes.doctest_block):
+        return f"```python\n{node.astext()}\n```"
+    if isinstance(node, nodes.bullet_list | nodes.enumerated_list):
+        return "\n".join(
+            "- " + textwrap.indent(_blocks(item.children), "  ").lstrip() for item in node.children
+        )
+    if isinstance(node, nodes.definition_list):
+        return "\n".join(
+            f"**{_inline(item.children[0])}**: {_blocks(item.children[-1].children)}"
+            for item in node.children
+            if item.children
+        )
+    if isinstance(node, nodes.Admonition):
+        return f"**{type(node).__name__.title()}:** {_blocks(node.children)}"
+    if isinstance(node, nodes.section | nodes.block_quote):
+        return _blocks(node.children)
+    if isinstance(node, nodes.system_message | nodes.comment | nodes.substitution_definition | nodes.target):
+        return ""
+    return _inline(node) if node.children else node.astext()
+
+
+def _blocks(children: list[nodes.Node]) -> str:
+    return "\n\n".join(text for text in map(_block, children) if text)
+
+
+def _read_field(name: str, body: str, found: _Fields) -> None:
+    keyword, _, argument = name.partition(" ")
+    if keyword in {"arg", "param", "parameter", "argument", "key", "keyword"}:
+        kind, _, argument = argument.rpartition(" ")
+        argument = argument.lstrip("*")
+        found.texts[argument] = body
+        if kind:
+            found.types[argument] = kind
+    elif keyword == "type":
+        if argument:
+            found.types[argument.strip().lstrip("*")] = body.replace("`", "")
+        else:
+            found.own_type = body.replace("`", "")
+    elif keyword in {"return", "returns"}:
+        found.returns = body
+    elif keyword == "rtype":
+        found.return_type = body.replace("`", "")
+    else:
+        found.other.append(f"**{name}**: {body}")
+
+
+def _literal(expression: ast.expr | None) -> Default:
+    """A default's value in JSON's terms, None where it is an expression."""
+    try:
+        value = ast.literal_eval(expression) if expression else None
+    except ValueError:
+        return None
+    return list(value) if isinstance(value, tuple | set) else value
+
+
+def call_parameters(signature: str) -> list[Parameter]:
+    """The arguments in a call's text, ``(a, *, b=1)``; [] when it is not Python.
+
+    A default that is a literal is given as its value; one that is an expression stands in the signature alone.
+    """
+    try:
+        module = ast.parse(f"def _{signature[signature.index('(') :].partition(' -> ')[0]}: ...")
+    except (SyntaxError, ValueError):
+        return []
+    definition = module.body[0]
+    assert isinstance(definition, ast.FunctionDef)
+    arguments = definition.args
+    positional = [*arguments.posonlyargs, *arguments.args]
+    defaults: list[ast.expr | None] = [None] * (len(positional) - len(arguments.defaults))
+    pairs = [*zip(positional, [*defaults, *arguments.defaults], strict=True)]
+    pairs += zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+    found = [
+        Parameter(
+            name=argument.arg,
+            type=ast.unparse(argument.annotation) if argument.annotation else "",
+            default=_literal(default),
+            required=default is None,
+        )
+        for argument, default in pairs
+        if argument.arg != "self"
+    ]
+    found += [Parameter(name=extra.arg) for extra in (arguments.vararg, arguments.kwarg) if extra]
+    return found
+
+
+def _split(text: str) -> tuple[str, str]:
+    """(signature, body) of a docstring: its own directive line, or a bare call on the first line."""
+    first, _, rest = text.partition("\n")
+    match = _DIRECTIVE.match(first.strip())
+    if match:
+        return match.group(1).strip(), textwrap.dedent(rest)
+    if first.startswith("BMeshOpFunc "):
+        return first.removeprefix("BMeshOpFunc ").strip(), rest
+    return "", text
+
+
+def _parameters(signature: str, found: _Fields) -> tuple[Parameter, ...]:
+    """The call's arguments, completed by what the field list says; the order is the call's."""
+    known = {parameter.name: parameter for parameter in call_parameters(signature)}
+    for name in found.texts | found.types:
+        known.setdefault(name, Parameter(name=name))
+    return tuple(
+        replace(
+            parameter,
+            description=found.texts.get(parameter.name, ""),
+            type=found.types.get(parameter.name, "") or parameter.type,
+        )
+        for parameter in known.values()
+    )
+
+
+def _bmesh_results(body: str) -> tuple[str, tuple[Parameter, ...]]:
+    """bmesh operators end in ``-> dict(verts=[])``: the slots of the returned dictionary."""
+    head, arrow, tail = body.rpartition("-> dict(")
+    if not arrow:
+        return body, ()
+    slots = call_parameters(f"({tail.strip()}")
+    return head, tuple(Parameter(name=slot.name, default=slot.default) for slot in slots)
+
+
+@cache
+def parse_docstring(text: str, signature: str = "") -> Docstring:
+    """Reads a docstring as reST.
+
+    ``signature`` is what Python's own introspection found; a directive line in the docstring wins over it.
+    Malformed markup loses its meaning, never its text.
+    """
+    written, body = _split(text)
+    written = written or signature
+    body, slots = _bmesh_results(body) if text.startswith("BMeshOpFunc ") else (body, ())
+    parser, settings = _parser()
+    document = new_document("docstring", settings)
+    parser.parse(body, document)
+    found = _Fields()
+    described: list[nodes.Node] = []
+    for node in document.children:
+        if isinstance(node, nodes.field_list):
+            for row in node.children:
+                _read_field(row.children[0].astext(), _blocks(row.children[1].children), found)
+        else:
+            described.append(node)
+    returns = slots
+    if found.returns or found.return_type:
+        returns = (Parameter(name="", type=found.return_type, description=found.returns),)
+    return Docstring(
+        description="\n\n".join(part for part in (_blocks(described), *found.other) if part),
+        signature=written,
+        type=found.own_type or (found.return_type if not written.endswith(")") else ""),
+        parameters=_parameters(written, found),
+        returns=returns,
+    )
