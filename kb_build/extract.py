@@ -46,6 +46,14 @@ class _Raw:
     faults: list[str] = field(default_factory=list)
 
 
+def _complete_items(row: dict[str, Any] | None, identifiers: list[str]) -> None:
+    """Adds the enum items that only an instance knew to what RNA listed."""
+    if row is not None:
+        items = row.setdefault("enum_items", [])
+        known = {item["identifier"] for item in items}
+        items.extend({"identifier": name} for name in identifiers if name not in known)
+
+
 def _read(path: Path) -> _Raw:
     raw, lines, ended = _Raw(), 0, -1
     with path.open(encoding="utf-8") as file:
@@ -68,6 +76,8 @@ def _read(path: Path) -> _Raw:
                     raw.trees[row["path"]] = row["trees"]
                 case "manual":
                     raw.manual.append((row["pattern"], row["page"]))
+                case "enum_items":
+                    _complete_items(raw.symbols.get(row["path"]), row["items"])
                 case "template":
                     raw.templates.append((row["name"], row["text"]))
                 case _:

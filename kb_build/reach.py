@@ -18,7 +18,8 @@ _EVERYWHERE = frozenset({"object", "scene", "view_layer", "collection"})
 _DETOURS = frozenset(
     {
         "window_manager", "window", "screen", "workspace", "area", "region", "preferences", "space_data", "library",
-        "original", "override_library", "asset_data", "preview", "id_root", "parent", "tool_settings",
+        "original", "override_library", "asset_data", "asset", "drivers", "rigidbody_world",
+        "blend_data", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
     }
 )  # fmt: skip
 _DETOUR_COST = 6
@@ -32,6 +33,7 @@ class _Graph:
     base: dict[str, str] = field(default_factory=dict)
     derived: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
     label: dict[str, str] = field(default_factory=dict)
+    shader_nodes: set[str] = field(default_factory=set)
     named: set[str] = field(default_factory=set)
 
 
@@ -42,6 +44,8 @@ def _graph(symbols: Iterable[Symbol]) -> _Graph:
             name, base = symbol.path.removeprefix(TYPES), symbol.base.removeprefix(TYPES)
             graph.base[name] = base
             graph.label[name] = symbol.label
+            if "ShaderNodeTree" in symbol.trees:
+                graph.shader_nodes.add(name)
             if base != "bpy_struct":
                 graph.derived[base].append(name)
         elif symbol.kind == "property" and symbol.name == "name":
@@ -103,8 +107,12 @@ def reached_expressions(symbols: Iterable[Symbol]) -> dict[str, str]:
             if target not in found:
                 order += 1
                 heapq.heappush(queue, (step, order, target, here + (_key(target, graph) if many else "")))
-            for child in _descendants(target, graph):
+            # ``Object.data`` is any data-block to RNA; the collections of ``bpy.data`` say which.
+            for child in _descendants(target, graph) if target != "ID" else ():
                 if child not in found:
                     order += 1
                     heapq.heappush(queue, (step + 1, order, child, here + (_key(child, graph) if many else "")))
+    # Every tree's ``nodes`` takes every node as far as RNA knows; a shader's live in a material.
+    for cls in graph.shader_nodes:
+        found[cls] = f"{found.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"
     return found

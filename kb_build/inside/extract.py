@@ -13,6 +13,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import bpy  # noqa: E402
 import context  # noqa: E402
+import instances  # noqa: E402
 import modules  # noqa: E402
 import nodes  # noqa: E402
 import operators  # noqa: E402
@@ -65,6 +66,7 @@ STEPS = (
     ("enums", write_enum_sets),
     ("links", write_manual_links),
     ("templates", write_templates),
+    ("instances", lambda write, _found: instances.write_all(write)),
     # Last, because it changes the scene.
     ("context", lambda write, _found: context.write_all(write)),
 )
