@@ -1,0 +1,82 @@
+"""Facts about Claude's models that a request and its cost depend on, all in one place."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from kb_build.errors import SummaryError
+from kb_build.summaries.types import Price
+
+BATCH_DISCOUNT = 0.5
+"""What a token costs in a message batch, as a share of its price."""
+
+FALLBACK_CHARS_PER_TOKEN = 3.0
+"""English with identifiers, on the cautious side; used where the API does not count tokens for us."""
+
+_DATE = re.compile(r"-\d{8}$")
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFacts:
+    """One model's list price, and how it is kept from thinking at length over one page.
+
+    ``thinking``: ``"disable"`` (the request may switch it off), ``"effort"`` (it may only be told to take it
+    easy), ``"none"`` (it does not think unless asked to), ``"unknown"``.
+    """
+
+    price: Price | None
+    thinking: Literal["disable", "effort", "none", "unknown"]
+
+    @property
+    def max_tokens(self) -> int:
+        """The most output tokens that one request may use: a summary needs about 100, thinking far more."""
+        return 1024 if self.thinking in ("disable", "none") else 4096
+
+    @property
+    def expected_tokens(self) -> int:
+        """The output tokens that a request is expected to use."""
+        return 120 if self.thinking in ("disable", "none") else 500
+
+
+# As published by Anthropic in November 2026. Haiku 5.5 costs five times as much for prompts of more than
+# 100,000 tokens, which the cap on a page's length rules out.
+MODELS: dict[str, ModelFacts] = {
+    "claude-haiku-5-5": ModelFacts(Price(0.10, 0.50), "disable"),
+    "claude-haiku-4-5": ModelFacts(Price(1.00, 5.00), "none"),
+    "claude-sonnet-5-5": ModelFacts(Price(2.00, 10.00), "effort"),
+    "claude-sonnet-5": ModelFacts(Price(2.00, 10.00), "effort"),
+    "claude-sonnet-4-6": ModelFacts(Price(3.00, 15.00), "none"),
+    "claude-sonnet-4-5": ModelFacts(Price(3.00, 15.00), "none"),
+    "claude-opus-5-5": ModelFacts(Price(4.00, 20.00), "effort"),
+    "claude-opus-5": ModelFacts(Price(5.00, 25.00), "disable"),
+    "claude-opus-4-8": ModelFacts(Price(5.00, 25.00), "none"),
+    "claude-opus-4-7": ModelFacts(Price(5.00, 25.00), "none"),
+    "claude-opus-4-6": ModelFacts(Price(5.00, 25.00), "none"),
+    "claude-opus-4-5": ModelFacts(Price(5.00, 25.00), "none"),
+    "claude-fable-5-2": ModelFacts(Price(8.00, 40.00), "effort"),
+    "claude-fable-5-1": ModelFacts(Price(10.00, 50.00), "effort"),
+}
+
+
+def facts(model: str) -> ModelFacts:
+    """What is known of ``model`` (its name with or without a date)."""
+    return MODELS.get(_DATE.sub("", model), ModelFacts(None, "unknown"))
+
+
+def price_of(model: str, override: Price | None) -> Price:
+    """The price to reckon with; ``override`` wins. Raises SummaryError for a model without a known price."""
+    price = override or facts(model).price
+    if price is None:
+        raise SummaryError(
+            f"No price is known for the model {model!r}, so its cost cannot be estimated. Give its price (US "
+            f"dollars per million input and output tokens), or use one of: {', '.join(MODELS)}."
+        )
+    return price
+
+
+def batch_cost(price: Price, input_tokens: float, output_tokens: float) -> float:
+    """What so many tokens cost in a message batch, in US dollars."""
+    usd = input_tokens * price.input_usd + output_tokens * price.output_usd
+    return usd * BATCH_DISCOUNT / 1_000_000
