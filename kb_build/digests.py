@@ -1,0 +1,91 @@
+"""SHA-256 of archives and folders, remembered as long as names, sizes and times stay the same."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+
+class Digests:
+    """Digests with a memory in one JSON file; a memory that cannot be read is an empty one."""
+
+    def __init__(self, memory: Path) -> None:
+        self._memory = memory
+        self._known = _read(memory)
+        self._changed = False
+
+    def of_file(self, path: Path) -> str:
+        """SHA-256 of a file's content, in hexadecimal digits. Raises OSError."""
+
+        def compute() -> str:
+            with path.open("rb") as file:
+                return hashlib.file_digest(file, "sha256").hexdigest()
+
+        return self._recall(path, _signature(path.stat()), compute)
+
+    def of_folder(self, folder: Path, relevant: Callable[[PurePosixPath], bool]) -> str:
+        """SHA-256 over the names and contents of the ``relevant`` files below a folder. Raises OSError."""
+        files = sorted((name, path) for name, path in _files(folder) if relevant(PurePosixPath(name)))
+        listing = hashlib.sha256()
+        for name, path in files:
+            listing.update(f"{name}\0{_signature(path.stat())}\n".encode(errors="surrogateescape"))
+
+        def compute() -> str:
+            digest = hashlib.sha256()
+            for name, path in files:
+                content = hashlib.sha256(path.read_bytes()).hexdigest()
+                digest.update(f"{name}\0{content}\n".encode(errors="surrogateescape"))
+            return digest.hexdigest()
+
+        return self._recall(folder, listing.hexdigest(), compute)
+
+    def save(self) -> None:
+        """Write what was learnt; what cannot be written is computed again next time."""
+        if not self._changed:
+            return
+        try:
+            self._memory.parent.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile(
+                "w", dir=self._memory.parent, prefix=".digests-", delete=False, encoding="utf-8"
+            ) as file:
+                json.dump(self._known, file)
+            Path(file.name).replace(self._memory)
+        except OSError:
+            return
+        self._changed = False
+
+    def _recall(self, path: Path, signature: str, compute: Callable[[], str]) -> str:
+        key = os.fspath(path.absolute())
+        known = self._known.get(key)
+        if known is not None and known[0] == signature:
+            return known[1]
+        digest = compute()
+        self._known[key] = (signature, digest)
+        self._changed = True
+        return digest
+
+
+def _signature(status: os.stat_result) -> str:
+    return f"{status.st_size}:{status.st_mtime_ns}:{status.st_ino}"
+
+
+def _files(folder: Path) -> Iterator[tuple[str, Path]]:
+    for place, _, names in os.walk(folder):
+        for name in names:
+            path = Path(place, name)
+            yield path.relative_to(folder).as_posix(), path
+
+
+def _read(memory: Path) -> dict[str, tuple[str, str]]:
+    try:
+        data = json.loads(memory.read_text(encoding="utf-8"))
+        return {str(key): (str(signature), str(digest)) for key, (signature, digest) in data.items()}
+    except (OSError, ValueError, TypeError, AttributeError):
+        return {}
