@@ -345,6 +345,7 @@ class _Server(ThreadingHTTPServer):
 class _Handler(BaseHTTPRequestHandler):
     server_api: FakeMessagesAPI
     protocol_version = "HTTP/1.1"
+    wbufsize = -1  # headers and body in one packet: two would wait for the client's delayed ACK
 
     def do_GET(self) -> None:
         self._handle("GET")

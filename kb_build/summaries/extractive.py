@@ -14,7 +14,8 @@ The best one is taken, and its successor in the same paragraph where both fit in
 longer than that is cut between words. The same page always gives the same summary.
 
 A page without prose (an index page, a bare list of settings) is summarised by what it contains: the titles of
-its children, else of its sections. A script template is summarised by the text at its head.
+its children, else of its sections, else the terms that it defines. A script template is summarised by the
+text at its head.
 """
 
 from __future__ import annotations
@@ -46,8 +47,9 @@ _NOT_PROSE = re.compile(
     r"|[ \t]{2,}\S"
 )
 _FIELD = re.compile(r"\s*\*{0,2}[A-Z][\w /-]{0,30}:\*{0,2}\s")
+_TERM = re.compile(r"^\*\*([^*\n]+?):?\*\*", re.MULTILINE)
 _LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)")
-_MARKUP = re.compile(r"(\*\*|__|``|`|(?<!\w)[*_](?=\w)|(?<=\w)[*_](?!\w))")
+_MARKUP = re.compile(r"\*\*|`+|(?<![\w*])\*(?=\S)|(?<=\S)\*(?![\w*])")
 _SENTENCE_END = re.compile(r"(?<=[.!?])[\"')\]]*\s+(?=[\"'(\[]?[A-Z0-9])")
 _ABBREVIATION = re.compile(
     r"(?:\b(?:e\.g|i\.e|etc|vs|cf|approx|resp|fig|no|Dr|St)\.|\b[A-Z]\.)$", re.IGNORECASE
@@ -118,13 +120,14 @@ def _paragraphs(markdown: str) -> Iterator[str]:
         lines = block.strip("\n").split("\n")
         if not lines[0].strip() or _NOT_PROSE.match(lines[0]) or _FIELD.match(lines[0]):
             continue
-        if len(lines) > 1 and lines[1].lstrip().startswith((":", "|")):
+        if len(lines) > 1 and lines[1].startswith((" ", ":", "|")):
             continue  # a definition list's term, or a table without outer bars
         yield _plain(" ".join(lines))
 
 
 def _plain(markdown: str) -> str:
-    return " ".join(_MARKUP.sub("", _LINK.sub(r"\1", markdown)).split())
+    text = " ".join(_MARKUP.sub("", _LINK.sub(r"\1", markdown)).split())
+    return text if text.isprintable() else "".join(filter(str.isprintable, text))
 
 
 def _sentences(paragraph: str) -> list[str]:
@@ -166,6 +169,7 @@ def _from_script(page: Page) -> str:
 def _from_contents(page: Page, titles: Mapping[str, str]) -> str:
     parts = [titles[slug] for slug in page.children if slug in titles]
     parts = parts or [section.title for section in page.sections[1:] if section.title]
+    parts = parts or [term for section in page.sections for term in _TERM.findall(section.text)]
     return f"{page.title}. Contents: {', '.join(dict.fromkeys(parts))}." if parts else ""
 
 

@@ -163,7 +163,7 @@ def test_a_page_of_a_few_words_is_not_worth_a_question(store):
 
 def test_without_a_key_the_message_says_what_to_do(store, monkeypatch):
     monkeypatch.delenv("ANTHROPIC_API_KEY", raising=False)
-    with pytest.raises(SummaryError, match="ANTHROPIC_API_KEY.*extractive"):
+    with pytest.raises(SummaryError, match=r"ANTHROPIC_API_KEY.*extractive"):
         summarise(PAGES, method="claude", store=store)
 
 
@@ -178,7 +178,7 @@ def test_without_a_store_claude_is_not_asked():
 def test_a_request_that_the_api_rejects_is_explained(store, code, advice):
     with FakeMessagesAPI(good) as api:
         api.fail(CREATE, Status(code))
-        with pytest.raises(SummaryError, match=f"{code} scripted {code}.*{advice}"):
+        with pytest.raises(SummaryError, match=rf"{code} scripted {code}.*{advice}"):
             run(api, store)
 
 
@@ -222,11 +222,11 @@ def test_a_batch_whose_reply_got_lost_is_found_and_not_sent_again(store, fault):
 def test_an_api_that_stays_away_ends_the_run_and_loses_nothing(store):
     with FakeMessagesAPI(good) as api:
         api.fail(LOOK, *[Status(529, SOON)] * 50)
-        with pytest.raises(SummaryError, match="look at batch.*529.*picked up"):
+        with pytest.raises(SummaryError, match=r"look at batch.*529.*picked up"):
             run(api, store, retries=0)
     with FakeMessagesAPI(good) as nobody:
         pass
-    with pytest.raises(SummaryError, match="Could not send a batch|Could not list"):
+    with pytest.raises(SummaryError, match=r"Could not (send a batch|list)"):
         run(nobody, SummaryStore(store.path.with_name("other.sqlite")), retries=0)
 
 
@@ -353,9 +353,8 @@ def test_the_cost_is_estimated_before_and_reported_after(store):
 
 
 def test_a_run_above_the_limit_sends_nothing(store):
-    with FakeMessagesAPI(good) as api:
-        with pytest.raises(SummaryError, match="nothing was sent"):
-            run(api, store, max_cost=0.00001)
+    with FakeMessagesAPI(good) as api, pytest.raises(SummaryError, match="nothing was sent"):
+        run(api, store, max_cost=0.00001)
     assert api.batches == {}
 
 
