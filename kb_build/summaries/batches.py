@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 _CLOCK_SKEW_SECONDS = 3600.0
 _READINGS = 3
+_NOT_RECEIVED = (429, 503, 529)
+_PATIENCE_AT_FIRST = 3
 _MAX_PAUSE_SECONDS = 600.0
 
 
@@ -85,15 +87,29 @@ class ItemResult(BaseModel):
 class BatchAPI:
     """The calls that summaries need. Each raises SummaryError when the API stays out of reach or says no."""
 
-    def __init__(self, api_key: str, options: ClaudeOptions) -> None:
+    def __init__(self, api_key: str, options: ClaudeOptions, tell: Callable[[str], None]) -> None:
+        if not (api_key.isascii() and api_key.isprintable()):
+            raise SummaryError("ANTHROPIC_API_KEY holds characters that no key has. Copy the key again.")
+        try:
+            self._client = Anthropic(
+                api_key=api_key,
+                base_url=options.base_url,
+                timeout=httpx2.Timeout(options.timeout, connect=min(options.timeout, 5.0)),
+                max_retries=options.retries,
+            )
+            url = self._client.base_url
+        except httpx2.InvalidURL as error:
+            raise SummaryError(
+                f"ANTHROPIC_BASE_URL is no address ({error}). Correct it or unset it."
+            ) from error
+        self.base_url = str(url)
+        if url.scheme not in ("http", "https") or not url.host:
+            raise SummaryError(
+                f"ANTHROPIC_BASE_URL ({self.base_url}) is no web address. Correct it or unset it."
+            )
         self._options = options
-        self._client = Anthropic(
-            api_key=api_key,
-            base_url=options.base_url,
-            timeout=httpx2.Timeout(options.timeout, connect=min(options.timeout, 10.0)),
-            max_retries=options.retries,
-        )
-        self.base_url = str(self._client.base_url)
+        self._tell = tell
+        self._answered = False
 
     def close(self) -> None:
         """Close the connections."""
@@ -113,6 +129,7 @@ class BatchAPI:
             return None
         except APIStatusError as error:
             raise self._rejected("count the tokens of a page", error) from error
+        self._answered = True
         tokens = getattr(counted, "input_tokens", None)
         return tokens if isinstance(tokens, int) else None
 
@@ -129,7 +146,7 @@ class BatchAPI:
             try:
                 return _checked(create(requests=requests))
             except _PASSING as error:
-                if not isinstance(error, RateLimitError):
+                if not (isinstance(error, APIStatusError) and error.status_code in _NOT_RECEIVED):
                     found = self.find(nonce, len(requests), sent, known)
                     if found:
                         return found
@@ -209,7 +226,7 @@ class BatchAPI:
     def _patiently(self, what: str, call: Callable[[], _T]) -> _T:
         for failed in itertools.count(1):
             try:
-                return call()
+                reply = call()
             except _PASSING as error:
                 self._pause_or_give_up(what, failed, error)
             except NotFoundError as error:
@@ -218,10 +235,16 @@ class BatchAPI:
                 raise self._rejected(what, error) from error
             except AnthropicError as error:  # the client's own: an ended batch without results
                 raise BatchGoneError(str(error)) from error
+            else:
+                self._answered = True
+                return reply
         raise AssertionError("unreachable")
 
     def _pause_or_give_up(self, what: str, failed: int, error: Exception) -> None:
-        if failed > self._options.patience:
+        # Where nobody has answered yet, the address or the network is wrong rather than busy.
+        self._answered = self._answered or isinstance(error, APIStatusError)
+        patience = self._options.patience if self._answered else _PATIENCE_AT_FIRST
+        if failed > min(patience, self._options.patience):
             raise SummaryError(
                 f"Could not {what} at {self.base_url}: {_in_words(error)} ({failed} times in a row). "
                 "Check the network and try again: what was sent is remembered and picked up. Or use "
@@ -230,7 +253,9 @@ class BatchAPI:
         pause = self._options.poll_seconds * min(failed, 8)
         if isinstance(error, APIStatusError):
             pause = max(pause, _retry_after(error))
-        time.sleep(min(pause, _MAX_PAUSE_SECONDS))
+        pause = min(pause, _MAX_PAUSE_SECONDS)
+        self._tell(f"could not {what} ({_in_words(error)}); trying again in {pause:.0f} s")
+        time.sleep(pause)
 
     def _rejected(self, what: str, error: APIStatusError) -> SummaryError:
         if error.status_code in (401, 403):

@@ -105,15 +105,17 @@ class _Run:
     def __init__(
         self, pages: Mapping[str, Page], store: SummaryStore, options: ClaudeOptions, progress: Progress
     ) -> None:
-        api_key = options.api_key or os.environ.get("ANTHROPIC_API_KEY")
+        api_key = (options.api_key or os.environ.get("ANTHROPIC_API_KEY") or "").strip()
         if not api_key:
             raise SummaryError(
                 f"Summaries by Claude are missing for {len(pages)} pages, and there is no key to ask for "
                 "them. Set ANTHROPIC_API_KEY, or use the method 'extractive', which needs none."
             )
+        if options.max_cost is not None and not options.max_cost >= 0:
+            raise SummaryError(f"A spending limit of {options.max_cost} is none. Give US dollars, 0 or more.")
         self.price = price_of(options.model, options.price)
         self.facts = facts(options.model)
-        self.api = BatchAPI(api_key, options)
+        self.api = BatchAPI(api_key, options, lambda line: progress(len(self.made), len(pages), line))
         self.pages = pages
         self.store = store
         self.options = options
@@ -125,6 +127,7 @@ class _Run:
         self.output_tokens = 0
         self.estimated_cost = 0.0
         self.cost = 0.0
+        self._sizes: dict[str, int] = {}
         self._chars_per_token = FALLBACK_CHARS_PER_TOKEN
 
     def run(self) -> None:
@@ -176,9 +179,10 @@ class _Run:
         chars = tokens = 0
         for key in by_size[step // 2 :: step][:_SAMPLE]:
             counted = self.api.count_tokens(request_for(self.pages[key], self.options.model))
-            if counted:
-                chars += self._size(key)
-                tokens += counted
+            if not counted:
+                break
+            chars += self._size(key)
+            tokens += counted
         if tokens:
             self._chars_per_token = chars / tokens
         self.estimated_cost = sum(self._expected_cost(key) for key in queue)
@@ -272,7 +276,10 @@ class _Run:
         self.cost += batch_cost(price, usage.all_input, usage.output_tokens)
 
     def _size(self, key: str) -> int:
-        return len(json.dumps(request_for(self.pages[key], self.options.model), ensure_ascii=False))
+        if key not in self._sizes:
+            request = request_for(self.pages[key], self.options.model)
+            self._sizes[key] = len(json.dumps(request, ensure_ascii=False))
+        return self._sizes[key]
 
     def _expected_cost(self, key: str) -> float:
         return batch_cost(self.price, self._size(key) / self._chars_per_token, self.facts.expected_tokens)

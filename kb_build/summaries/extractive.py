@@ -50,7 +50,7 @@ _FIELD = re.compile(r"\s*\*{0,2}[A-Z][\w /-]{0,30}:\*{0,2}\s")
 _TERM = re.compile(r"^\*\*([^*\n]+?):?\*\*", re.MULTILINE)
 _LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)")
 _MARKUP = re.compile(r"\*\*|`+|(?<![\w*])\*(?=\S)|(?<=\S)\*(?![\w*])")
-_SENTENCE_END = re.compile(r"(?<=[.!?])[\"')\]]*\s+(?=[\"'(\[]?[A-Z0-9])")
+_SENTENCE_END = re.compile(r"(?:(?<=[.!?])|(?<=[.!?][\"')\]]))\s+(?=[\"'(\[]?[A-Z0-9])")
 _ABBREVIATION = re.compile(
     r"(?:\b(?:e\.g|i\.e|etc|vs|cf|approx|resp|fig|no|Dr|St)\.|\b[A-Z]\.)$", re.IGNORECASE
 )

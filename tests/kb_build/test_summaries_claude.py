@@ -230,6 +230,31 @@ def test_an_api_that_stays_away_ends_the_run_and_loses_nothing(store):
         run(nobody, SummaryStore(store.path.with_name("other.sqlite")), retries=0)
 
 
+@pytest.mark.parametrize("key", ["sk-\n-1", "schlüssel", "a\x00b"])
+def test_a_key_that_is_none_is_explained_before_anything_is_sent(store, key):
+    with FakeMessagesAPI(good) as api, pytest.raises(SummaryError, match="ANTHROPIC_API_KEY"):
+        run(api, store, api_key=key)
+    assert api.requests == []
+
+
+@pytest.mark.parametrize("url", ["not a url", "ftp://example.org", "http://", "http://[::1", "http://a:b"])
+def test_an_address_that_is_none_is_explained(store, url):
+    with pytest.raises(SummaryError, match="ANTHROPIC_BASE_URL"):
+        summarise(PAGES, method="claude", store=store, options=ClaudeOptions(api_key="key", base_url=url))
+
+
+def test_an_api_that_was_never_reached_is_not_waited_for_long(store):
+    with FakeMessagesAPI(good) as nobody:
+        pass
+    with pytest.raises(SummaryError, match=r"4 times in a row.*network"):
+        run(nobody, store, retries=0, patience=10**6)
+
+
+def test_a_limit_that_is_no_number_is_refused(store):
+    with FakeMessagesAPI(good) as api, pytest.raises(SummaryError, match="limit of nan"):
+        run(api, store, max_cost=float("nan"))
+
+
 def test_a_batch_that_never_ends_is_not_waited_for_forever(store):
     with FakeMessagesAPI(good, polls=10**9) as api:
         with pytest.raises(SummaryError, match="has not ended"):
