@@ -1,0 +1,196 @@
+"""RST sources → pages, through Sphinx."""
+
+from __future__ import annotations
+
+import gc
+import logging
+import os
+import re
+import shutil
+import tempfile
+import threading
+from contextlib import contextmanager
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sphinx.application import Sphinx
+from sphinx.util.docutils import docutils_namespace, patch_docutils
+from sphinx.util.logging import WarningLogRecordTranslator, WarningSuppressor
+
+from kb_build.errors import SourceError
+from kb_build.pages.assemble import ROOT, PageText, assemble
+from kb_build.pages.blender_markup import accept_unknown
+from kb_build.pages.docutils_speed import shared_transitions
+from kb_build.pages.sphinx_builder import PagesBuilder, drop_needless_work
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from kb_build.records import Page, PageSource
+
+    Progress = Callable[[int, int], None]
+
+_FEW = 40  # pages that one process reads before a second one has started
+_SUPPRESSED = ["image", "toc", "config", "app", "download", "epub", "index", "misc.highlighting_failure"]
+_DECORATED = re.compile(r"^\S*\.rst:\d*: [A-Z]+: |(?: \[[a-z][\w.]*\])+$")
+_LOCATION = re.compile(r"^(?P<path>.*?)(?::(?P<line>\d*))?(?::docstring.*)?$")
+
+
+def read_rst(
+    folder: Path, *, source: PageSource, version: str, jobs: int = 2, progress: Progress | None = None
+) -> list[Page]:
+    """Every ``.rst`` file below ``folder`` as a page, sorted by slug.
+
+    A ``conf.py`` there is never run, and nothing is written there. ``version`` is the documentation's own and
+    becomes part of the pages' addresses. ``jobs`` processes work at it (one, where the platform cannot fork
+    safely). ``progress`` is called with steps done and steps in all; each page counts twice, once parsed and
+    once resolved. A page with faults is kept and carries warnings. Raises SourceError when there are no
+    pages, or Sphinx cannot work with the folder at all.
+    """
+    folder = Path(folder)
+    files = {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.rst"))}
+    files = {slug: path for slug, path in files.items() if path.is_file()}
+    if not files:
+        raise SourceError(f"{folder} holds no .rst files: give the folder with the sources' index.rst")
+    with tempfile.TemporaryDirectory(prefix="simworlds-rst-") as scratch:
+        texts, repaired = _texts(folder, files)
+        root = _repaired_copy(folder, Path(scratch) / "sources", repaired) if repaired else folder
+        pages = _build(root, Path(scratch), texts, source=source, version=version, jobs=jobs, progress=progress)
+    warning = "not UTF-8: undecodable characters were replaced"
+    pages = [replace(page, warnings=(warning, *page.warnings)) if page.slug in repaired else page for page in pages]
+    return assemble(pages, source=source, version=version)
+
+
+def _texts(folder: Path, files: dict[str, Path]) -> tuple[dict[str, str], dict[str, str]]:
+    texts: dict[str, str] = {}
+    repaired: dict[str, str] = {}
+    for slug, path in files.items():
+        try:
+            data = path.read_bytes()
+        except OSError as error:
+            raise SourceError(f"{path} cannot be read ({error.strerror}): unpack the sources again") from error
+        try:
+            texts[slug] = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            texts[slug] = repaired[slug] = data.decode("utf-8", errors="replace")
+    return texts, repaired
+
+
+def _repaired_copy(folder: Path, copy: Path, repaired: dict[str, str]) -> Path:
+    """Sphinx stops at the first page that is not UTF-8, so it is given a copy in which all are."""
+    shutil.copytree(folder, copy, ignore=shutil.ignore_patterns("conf.py", ".git"))
+    for slug, text in repaired.items():
+        (copy / f"{slug}.rst").write_text(text, encoding="utf-8")
+    return copy
+
+
+def _build(
+    folder: Path, scratch: Path, texts: dict[str, str], *, source: PageSource, version: str, jobs: int, progress: Progress | None
+) -> list[PageText]:
+    # A child forked while other threads hold locks may hang.
+    alone = threading.active_count() == 1
+    parallel = max(1, jobs) if alone and len(texts) > _FEW else 1
+    with patch_docutils(), docutils_namespace(), shared_transitions(), _paused_collector():
+        try:
+            app = Sphinx(
+                srcdir=folder,
+                confdir=None,
+                outdir=scratch / "out",
+                doctreedir=scratch / "doctrees",
+                buildername=PagesBuilder.name,
+                confoverrides=_configuration(texts, source, version),
+                status=None,
+                warning=StringIO(),
+                freshenv=True,
+                # Parts of the manual are marked as meant for the HTML form only.
+                tags=["html", "format_html", "builder_html"],
+                parallel=parallel,
+            )
+            # Settings files of whoever runs this have no say, and long lines are no fault.
+            app.env.settings.update(_disable_config=True, line_length_limit=10**9)
+            accept_unknown(app, texts.values())
+            drop_needless_work(app)
+            warnings = _PageWarnings(app)
+            if progress is not None:
+                _report(app, progress, len(texts))
+            app.builder.build_all()
+        except Exception as error:
+            reason = (str(error) or type(error).__name__).splitlines()[0]
+            raise SourceError(f"Sphinx could not read {folder}: {reason}") from error
+    builder = app.builder
+    assert isinstance(builder, PagesBuilder)
+    found = warnings.by_page
+    return [replace(page, warnings=(*page.warnings, *found.get(page.slug, ()))) for page in builder.pages]
+
+
+def _configuration(texts: dict[str, str], source: PageSource, version: str) -> dict[str, Any]:
+    return {
+        "extensions": ["kb_build.pages.sphinx_builder"],
+        "project": "Blender",
+        "version": version,
+        "release": version,
+        # The guides have no front page, and Sphinx must have one.
+        "root_doc": ROOT if ROOT in texts else next(iter(texts)),
+        "source_suffix": {".rst": "restructuredtext"},
+        "exclude_patterns": [],
+        "locale_dirs": [],
+        # Plain quotes and dashes are what people type into a query.
+        "smartquotes": False,
+        # The guides refer to the API reference and to the manual, which are not in their folder.
+        "suppress_warnings": [*_SUPPRESSED, *(["ref"] if source == "guide" else [])],
+    }
+
+
+def _report(app: Sphinx, progress: Progress, pages: int) -> None:
+    done = 0
+    main = os.getpid()
+
+    def step(count: int) -> None:
+        nonlocal done
+        if os.getpid() == main:  # workers inherit this function
+            done += count
+            progress(min(done, 2 * pages), 2 * pages)
+
+    app.connect("doctree-read", lambda *_: step(1))
+    app.connect("env-merge-info", lambda _app, _env, docnames, _other: step(len(docnames)))
+    app.connect("pages-read", lambda _app, count: step(count))
+
+
+class _PageWarnings(logging.Handler):
+    """Sorts what Sphinx complains about by page."""
+
+    def __init__(self, app: Sphinx) -> None:
+        super().__init__(logging.WARNING)
+        self.by_page: dict[str, list[str]] = {}
+        self._app = app
+        self.addFilter(WarningSuppressor(app))
+        self.addFilter(WarningLogRecordTranslator(app))
+        logger = logging.getLogger("sphinx")
+        logger.addHandler(self)
+        # 40,000 debug messages would be formatted for nobody.
+        logger.setLevel(logging.WARNING)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        location = _LOCATION.match(str(getattr(record, "location", "") or ""))
+        path, line = (location["path"], location["line"]) if location else ("", "")
+        page = self._app.project.path2doc(path) if path else None
+        # What a worker sends already carries its location and type.
+        message = _DECORATED.sub("", record.getMessage().strip().partition("\n")[0])
+        text = f"line {line}: {message}" if line else message
+        self.by_page.setdefault(page or self._app.config.root_doc, []).append(text)
+
+
+@contextmanager
+def _paused_collector() -> Iterator[None]:
+    """Trees are cyclic but short-lived in the workers; looking for garbage in them costs a tenth of the time."""
+    enabled = gc.isenabled()
+    gc.disable()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
+        if enabled:
+            gc.enable()
