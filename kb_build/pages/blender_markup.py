@@ -140,6 +140,13 @@ def _icon(*_: Any, **__: Any) -> tuple[list[nodes.Node], list[nodes.system_messa
     return [nodes.Text(ICON)], []
 
 
+def _keys(
+    _: str, rawtext: str, text: str, *__: Any, **___: Any
+) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+    # Sphinx's own role takes key combinations apart, for a style sheet to frame each key.
+    return [nodes.literal(rawtext, utils.unescape(text), classes=["kbd"])], []
+
+
 def _unknown_role(
     name: str, rawtext: str, text: str, lineno: int, inliner: Any, *_: Any, **__: Any
 ) -> tuple[list[nodes.Node], list[nodes.system_message]]:
@@ -181,4 +188,5 @@ def setup(app: Sphinx) -> ExtensionMetadata:
     app.add_directive("literalinclude", InsideLiteralInclude, override=True)
     app.add_directive("csv-table", InlineTable, override=True)
     app.add_role("bl-icon", _icon)
+    app.add_role("kbd", _keys, override=True)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

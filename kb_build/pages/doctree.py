@@ -249,7 +249,7 @@ class DoctreeReader:
 
     def _inline(self, node: nodes.Node) -> str:
         if isinstance(node, nodes.Text):
-            return md.straight(str(node))
+            return md.straight(node.astext())
         if not isinstance(node, nodes.Element) or isinstance(node, nodes.raw | addnodes.index | nodes.system_message):
             return ""
         writer = _INLINES.get(type(node))
