@@ -1,21 +1,23 @@
 """Summaries out of a page's own sentences.
 
 Which sentences: only prose counts. Headings, notes and other quotes, lists, definition and field lists,
-tables, code, captions and sentences that announce what follows (``…:``) are left out. Candidates are the
-first sentences of the page, up to ``_CANDIDATES``, in the order of the sections.
+tables, code, captions, bare references (``See …``), statements that something is missing and sentences that
+announce what follows (``…:``) are left out. Candidates are the first ``_CANDIDATES`` sentences of the page's
+lead, which is the text below its title; where it has none, of the whole page.
 
 Chosen how: every candidate gets a score, the sum of
 - centrality: the mean weight of its content words, where a word weighs the logarithm of how often the page's
   prose and section titles use it;
-- the share of the title's words that it holds;
-- its place: 1 for the page's first sentence, 1/2 for the second, 1/3 for the third, …
+- half the share of the title's words that it holds;
+- its place: 1 for the first sentence, 1/2 for the second, 1/3 for the third, …
 
 The best one is taken, and its successor in the same paragraph where both fit into ``MAX_CHARS``. A sentence
 longer than that is cut between words. The same page always gives the same summary.
 
-A page without prose (an index page, a bare list of settings) is summarised by what it contains: the titles of
-its children, else of its sections, else the terms that it defines. A script template is summarised by the
-text at its head.
+A page without a lead (an index page, a bare list of settings) is summarised by what it contains: the titles
+of its children, else of its sections, else the terms that it defines; then by the sentence, where there is
+one and room for it. A script template is summarised by the text at its head. A page without any of these is
+told apart by the titles of the pages above it.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ from kb_build.summaries.types import Summary, summary_key
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kb_build.records import Page
+    from kb_build.records import Page, Section
 
 EXTRACTIVE_VERSION = "extractive-1"
 MODEL = "extractive"
@@ -54,6 +56,11 @@ _SENTENCE_END = re.compile(r"(?:(?<=[.!?])|(?<=[.!?][\"')\]]))\s+(?=[\"'(\[]?[A-
 _ABBREVIATION = re.compile(
     r"(?:\b(?:e\.g|i\.e|etc|vs|cf|approx|resp|fig|no|Dr|St)\.|\b[A-Z]\.)$", re.IGNORECASE
 )
+_EMPTY = re.compile(
+    r"(?:See|Refer to|Main article|Todo)\b"
+    r"|(?:This|The) [\w -]{1,40} (?:has no|have no|does not have any) \w+\.",
+    re.IGNORECASE,
+)
 _WORD = re.compile(r"[^\W\d_]{3,}")
 _STOP_WORDS = frozenset(
     """
@@ -73,15 +80,24 @@ def extractive_summaries(pages: Sequence[Page]) -> dict[str, Summary]:
 
 def extractive_summary(page: Page, titles: Mapping[str, str]) -> Summary:
     """The summary of one page; ``titles`` (by slug) names its children where it has no prose of its own."""
-    text = _from_prose(page) or _from_script(page) or _from_contents(page, titles) or page.title or page.slug
+    lead = _best(page, page.sections[:1])
+    if lead:
+        text = lead
+    else:
+        contents = _from_script(page) or _from_contents(page, titles)
+        rest = _best(page, page.sections[1:])
+        both = f"{contents} {rest}".strip()
+        text = both if len(both) <= MAX_CHARS or not contents else contents
     key = summary_key(page.content_hash, EXTRACTIVE_VERSION, MODEL)
-    return Summary(key, _cut(_plain(text)), "extractive", MODEL, EXTRACTIVE_VERSION)
+    text = _plain(text) or _plain(_place(page)) or page.content_hash[:12]
+    return Summary(key, _cut(text), "extractive", MODEL, EXTRACTIVE_VERSION)
 
 
-def _from_prose(page: Page) -> str:
+def _best(page: Page, sections: Sequence[Section]) -> str:
+    """The best sentence of these sections, perhaps with its successor; nothing where they have none."""
     paragraphs: list[list[str]] = []
     length = 0
-    for section in page.sections:
+    for section in sections:
         for paragraph in _paragraphs(section.text[:_PROSE_CHARS]):
             sentences = _sentences(paragraph)
             if sentences:
@@ -93,7 +109,7 @@ def _from_prose(page: Page) -> str:
         (row, column)
         for row, sentences in enumerate(paragraphs)
         for column, sentence in enumerate(sentences)
-        if not sentence.endswith(":")
+        if not sentence.endswith(":") and not _EMPTY.match(sentence)
     ][:_CANDIDATES]
     if not candidates:
         return ""
@@ -105,11 +121,11 @@ def _from_prose(page: Page) -> str:
         words = _words(paragraphs[row][column])
         centrality = sum(weights[word] for word in words) / len(words) if words else 0.0
         overlap = len(title.intersection(words)) / len(title) if title else 0.0
-        return centrality + overlap + 1 / (place + 1)
+        return centrality + overlap / 2 + 1 / (place + 1)
 
     row, column = candidates[max(range(len(candidates)), key=score)]
     chosen, *following = paragraphs[row][column:]
-    if following and not following[0].endswith(":") and len(chosen) + 1 + len(following[0]) <= MAX_CHARS:
+    if following and (row, column + 1) in candidates and len(chosen) + 1 + len(following[0]) <= MAX_CHARS:
         chosen = f"{chosen} {following[0]}"
     return chosen
 
@@ -134,7 +150,7 @@ def _sentences(paragraph: str) -> list[str]:
     """The paragraph's sentences; text that does not end like one (a caption, a label) gives none."""
     found: list[str] = []
     for part in _SENTENCE_END.split(paragraph):
-        if found and _ABBREVIATION.search(found[-1]):
+        if found and _ABBREVIATION.search(found[-1][-12:]):
             found[-1] = f"{found[-1]} {part}"
         else:
             found.append(part)
@@ -171,6 +187,11 @@ def _from_contents(page: Page, titles: Mapping[str, str]) -> str:
     parts = parts or [section.title for section in page.sections[1:] if section.title]
     parts = parts or [term for section in page.sections for term in _TERM.findall(section.text)]
     return f"{page.title}. Contents: {', '.join(dict.fromkeys(parts))}." if parts else ""
+
+
+def _place(page: Page) -> str:
+    title = page.title or page.slug
+    return f"{title} ({' > '.join(page.breadcrumbs)})" if page.breadcrumbs else title
 
 
 def _cut(text: str) -> str:

@@ -120,6 +120,29 @@ def test_a_bare_list_of_settings_names_the_settings():
     assert summary(page(text)) == "Cloth. Contents: Quality Steps, Speed Multiplier."
 
 
+def test_the_lead_goes_before_the_sections():
+    lead = Section("a", "Cloth", 1, "Fabrics are simulated by this type.")
+    below = Section("b", "Cloth Quality", 2, "Cloth quality is about the cloth and the quality of the cloth.")
+    assert summary(page("", sections=(lead, below))) == "Fabrics are simulated by this type."
+
+
+def test_without_a_lead_the_contents_come_first_and_a_sentence_where_there_is_room():
+    sections = (
+        Section("a", "Cloth", 1, ""),
+        Section("b", "Usage", 2, "Fabrics are simulated by this type."),
+        Section("c", "Speed", 2, ""),
+    )
+    assert summary(page("", sections=sections)) == (
+        "Cloth. Contents: Usage, Speed. Fabrics are simulated by this type."
+    )
+
+
+@pytest.mark.parametrize("text", ["See the other page for it all.", "This node has no properties.", ""])
+def test_a_page_that_says_nothing_is_placed_by_the_pages_above_it(text):
+    found = summary(page(text, "Blend Node", breadcrumbs=("Editors", "Texture Nodes")))
+    assert found == "Blend Node (Editors > Texture Nodes)"
+
+
 @pytest.mark.parametrize(
     "code",
     [
