@@ -104,7 +104,8 @@ class _Transfer:
     progress: Progress | None
     label: str
     events: queue.SimpleQueue[_Event] = field(default_factory=queue.SimpleQueue[_Event])
-    stop: threading.Event = field(default_factory=threading.Event)
+    writing: threading.Lock = field(default_factory=threading.Lock)
+    stopped: bool = False
 
     def run(self) -> None:
         """Bring ``part`` to its full length; raises _BrokeOffError where trying again may help."""
@@ -123,7 +124,8 @@ class _Transfer:
             self.patience.spend(time.monotonic() - started, urlsplit(self.url).netloc, str(error))
             raise SourceError(f"{self.url} could not be reached ({error})") from error
         finally:
-            self.stop.set()
+            with self.writing:  # from here on the thread leaves the file alone, whenever it wakes up
+                self.stopped = True
 
     def _next_event(self, answered: bool, started: float) -> _Event:
         wait = _STALL_SECONDS if answered else started + self.patience.seconds - time.monotonic()
@@ -188,10 +190,11 @@ class _Transfer:
             _validator_file(self.part).write_text(json.dumps(note), encoding="utf-8")
         with self.part.open("ab" if offset else "wb") as file:
             for chunk in response.iter_raw(_CHUNK):
-                if self.stop.is_set():
-                    return
-                file.write(chunk)
-                file.flush()
+                with self.writing:
+                    if self.stopped:
+                        return
+                    file.write(chunk)
+                    file.flush()
                 offset += len(chunk)
                 if offset > _LARGEST:
                     raise ValueError(f"it is longer than {_LARGEST:,} bytes, more than any documentation")

@@ -47,11 +47,10 @@ class _Raw:
 
 
 def _complete_items(row: dict[str, Any] | None, identifiers: list[str]) -> None:
-    """Adds the enum items that only an instance knew to what RNA listed."""
+    """The items that an instance listed take the place of RNA's placeholder."""
     if row is not None:
-        items = row.setdefault("enum_items", [])
-        known = {item["identifier"] for item in items}
-        items.extend({"identifier": name} for name in identifiers if name not in known)
+        known = {item["identifier"]: item for item in row.get("enum_items", ())}
+        row["enum_items"] = [known.get(name, {"identifier": name}) for name in identifiers]
 
 
 def _read(path: Path) -> _Raw:

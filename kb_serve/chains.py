@@ -1,0 +1,110 @@
+"""Code in a query → chains of steps: ``obj.modifiers["Cloth"].settings.quality`` and its like.
+
+Reads any text, Python or not; what is no code is simply not found.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+MAX_QUERY = 4_000
+_MAX_CHAINS = 12
+_IDENTIFIER = re.compile(r"[^\W\d]\w*")
+_DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
+_CLOSING = {"(": ")", "[": "]"}
+_QUOTED = re.compile(r"""^\s*[bru]?(["'])(.*)\1\s*$""", re.DOTALL)
+
+StepKind = Literal["attr", "key", "index", "call"]
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """``attr`` and ``key`` carry a name; ``index`` and ``call`` the text between their brackets."""
+
+    kind: StepKind
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed."""
+
+    root: str
+    steps: tuple[Step, ...]
+    source: str
+
+    @property
+    def dotted(self) -> str:
+        """The leading part that is names only: ``bpy.ops.object.modifier_add`` of a call."""
+        names = [self.root]
+        for step in self.steps:
+            if step.kind != "attr":
+                break
+            names.append(step.text)
+        return ".".join(names)
+
+    @property
+    def attributes(self) -> tuple[str, ...]:
+        """Every name after the root, in order."""
+        return tuple(step.text for step in self.steps if step.kind == "attr")
+
+    @property
+    def is_code(self) -> bool:
+        """Whether it can only be code: a lone word of prose is not."""
+        if self.steps:
+            return True
+        return "_" in self.root.strip("_") or bool(re.search(r"[a-z0-9][A-Z]", self.root))
+
+
+def _bracket(text: str, start: int) -> tuple[str, int]:
+    """(content, position behind the closing bracket); an unclosed one reaches to the end."""
+    depth, quote = 0, ""
+    for position in range(start, len(text)):
+        char = text[position]
+        if quote:
+            if char == quote and text[position - 1] != "\\":
+                quote = ""
+        elif char in "\"'":
+            quote = char
+        elif char in "([{":
+            depth += 1
+        elif char in ")]}":
+            depth -= 1
+            if depth == 0:
+                return text[start + 1 : position], position + 1
+    return text[start + 1 :], len(text)
+
+
+def _step(text: str, position: int) -> tuple[Step, int] | None:
+    dot = _DOT.match(text, position)
+    if dot:
+        name = _IDENTIFIER.match(text, dot.end())
+        return (Step("attr", name.group()), name.end()) if name else None
+    if position < len(text) and text[position] in _CLOSING:
+        content, end = _bracket(text, position)
+        if text[position] == "(":
+            return Step("call", content), end
+        quoted = _QUOTED.match(content)
+        return (Step("key", quoted.group(2)) if quoted else Step("index", content.strip())), end
+    return None
+
+
+def find_chains(text: str) -> list[Chain]:
+    """Every name or dotted expression in a text, in order; at most a dozen with code in them."""
+    found: list[Chain] = []
+    position, code = 0, 0
+    text = text[:MAX_QUERY]
+    while match := _IDENTIFIER.search(text, position):
+        start, position = match.span()
+        steps: list[Step] = []
+        while taken := _step(text, position):
+            step, position = taken
+            steps.append(step)
+        chain = Chain(match.group(), tuple(steps), text[start:position])
+        found.append(chain)
+        code += chain.is_code
+        if code >= _MAX_CHAINS:
+            break
+    return found

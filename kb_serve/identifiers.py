@@ -1,0 +1,286 @@
+"""What a caller typed → the symbols and pages that it names.
+
+Spellings, calls, expressions, error messages, enum values, addresses: everything that names something.
+What only describes something is left to the search.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from kb_build.analysis import STOP_WORDS, key, stem, terms, words
+from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
+from kb_serve.chains import Chain, find_chains
+from kb_serve.reader import TYPES, Entry, Reader
+from kb_serve.walk import Walked, Walker
+
+_URL = re.compile(r"https?://[\w.]*blender\.org/(?:manual|api)/[^\s'\"<>)]*")
+_HTML = re.compile(r"(?P<page>[\w./-]+?)\.html(?:#(?P<anchor>[\w.-]+))?$")
+_HAS_NO = re.compile(r"['\"](?P<owner>[\w.]+)['\"] object has no attribute ['\"](?P<name>\w+)['\"]")
+_MODULE_HAS_NO = re.compile(r"module ['\"](?P<owner>[\w.]+)['\"] has no attribute ['\"](?P<name>\w+)['\"]")
+_BAD_KEY = re.compile(r"\bkey \"(?P<name>[^\"]+)\" not found")
+_BAD_ENUM = re.compile(r"enum \"(?P<name>[^\"]*)\" not found in \((?P<items>[^)]*)\)")
+_BAD_KEYWORD = re.compile(r"keyword \"(?P<name>\w+)\" unrecognized")
+_POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
+_QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
+_CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
+_ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
+
+# Python's own names, which are nobody's API.
+_NOT_API = frozenset(
+    "NoneType AttributeError TypeError ValueError RuntimeError KeyError IndexError NameError ReferenceError".split()
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """One thing that the query names. ``sure`` is 1 for an exact spelling and less for a likely reading."""
+
+    id: str
+    sure: float
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty."""
+
+    name: str
+    owner: str = ""
+
+
+@dataclass(slots=True)
+class Identified:
+    """What was recognised: ``matches`` best first, names that do not exist, and what is left as prose."""
+
+    matches: list[Match] = field(default_factory=list)
+    missing: list[Missing] = field(default_factory=list)
+    prose: list[str] = field(default_factory=list)
+
+    def add(self, identifier: str, sure: float, why: str) -> None:
+        """Adds a match, or raises the certainty of the same one."""
+        for number, match in enumerate(self.matches):
+            if match.id == identifier:
+                if sure > match.sure:
+                    self.matches[number] = Match(identifier, sure, why)
+                return
+        self.matches.append(Match(identifier, sure, why))
+
+    @property
+    def best(self) -> Match | None:
+        """The surest match."""
+        return max(self.matches, key=lambda match: match.sure, default=None)
+
+
+class Identifier:
+    """Recognises names against one base."""
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+        self._walker = Walker(reader)
+
+    def identify(self, query: str) -> Identified:
+        """Everything that ``query`` names, surest first."""
+        found = Identified()
+        self._addresses(query, found)
+        self._whole(query, found)
+        if found.best is None or found.best.sure < 1:
+            self._errors(query, found)
+            chains = find_chains(query)
+            self._chains(chains, found)
+            self._class_with_member(chains, found)
+            self._enum_values(query, found)
+            found.prose = [chain.root for chain in chains if not chain.is_code]
+        found.matches.sort(key=lambda match: -match.sure)
+        return found
+
+    # Addresses and whole spellings
+
+    def _addresses(self, query: str, found: Identified) -> None:
+        for url in _URL.findall(query):
+            match = _HTML.search(url.split("?")[0])
+            if not match:
+                continue
+            if anchor := match["anchor"]:
+                self._symbol(anchor, found, "address")
+            page = match["page"].partition("/manual/")[2] or match["page"].partition("/api/")[2]
+            slug = "/".join(page.split("/")[2:] if "/manual/" in url else page.split("/")[1:])
+            self._symbol(slug, found, "address")
+            if self._reader.page_entry(slug):
+                found.add(slug, 1.0, "address")
+
+    def _symbol(self, path: str, found: Identified, why: str) -> None:
+        if path and self._reader.entry(path):
+            found.add(path, 1.0, why)
+
+    def _whole(self, query: str, found: Identified) -> None:
+        """The query as one spelling of one thing."""
+        text = query.strip().strip("`'\"").rstrip(".:;,?!")
+        if self._reader.entry(text):
+            found.add(text, 1.0, "exact")
+            return
+        if self._reader.page_entry(text):
+            found.add(text, 1.0, "exact")
+            return
+        called = text[: text.index("(")] if text.endswith(")") and "(" in text else text
+        rows = self._reader.by_key(key(called))
+        if rows:
+            self._spelled(called, rows, found)
+
+    def _spelled(self, text: str, rows: list[tuple[int, str]], found: Identified) -> None:
+        """Symbols and pages that share the key of what was typed; the fuller the spelling, the surer."""
+        dotted = "." in text
+        plain = " " not in text.strip()
+        for form, identifier in rows:
+            if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
+                found.add(identifier, 1.0, "exact")
+            elif form in {FORM_NAME, FORM_LABEL} and not dotted:
+                same = self._last_part(identifier) == text
+                found.add(identifier, 0.9 if same and plain and "_" in text else 0.7, "name")
+            else:
+                found.add(identifier, 0.75, "title")
+
+    @staticmethod
+    def _last_part(identifier: str) -> str:
+        return identifier.rpartition(".")[2]
+
+    # Error messages
+
+    def _errors(self, query: str, found: Identified) -> None:
+        for pattern in (_HAS_NO, _MODULE_HAS_NO):
+            for match in pattern.finditer(query):
+                owner = self._class_path(match["owner"])
+                if owner and not self._walker.member(owner, match["name"]):
+                    found.missing.append(Missing(match["name"], owner))
+                    found.add(owner, 0.6, "error message")
+        for match in _POLL.finditer(query):
+            self._symbol(match["path"], found, "error message")
+        for match in _BAD_KEY.finditer(query):
+            found.missing.append(Missing(match["name"]))
+        for match in _BAD_ENUM.finditer(query):
+            for owner, _ in self._owners_of_items(re.findall(r"'([^']+)'", match["items"])):
+                found.add(owner.partition("(")[0], 0.95, "error message")
+                break
+        for match in _BAD_KEYWORD.finditer(query):
+            found.missing.append(Missing(match["name"]))
+
+    def _class_path(self, name: str) -> str:
+        for candidate in (TYPES + name, name):
+            if self._reader.entry(candidate):
+                return candidate
+        for _, identifier in self._reader.by_key(key(name)):
+            entry = self._reader.entry(identifier)
+            if entry and entry.kind in {"class", "module"}:
+                return identifier
+        return ""
+
+    # Code
+
+    def _chains(self, chains: list[Chain], found: Identified) -> None:
+        position = 0
+        prose = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
+        for chain in chains:
+            if not chain.is_code or chain.root in _NOT_API:
+                continue
+            readings = self._walker.walk(chain)
+            if readings:
+                self._reading(chain, readings, position, found)
+            if not readings or not readings[0].complete:
+                self._loose_name(chain, prose, found)
+            position += 1
+
+    def _reading(self, chain: Chain, readings: list[Walked], position: int, found: Identified) -> None:
+        """The best reading of one chain; chains further back in the query count a little less."""
+        best = readings[0]
+        later = 0.02 * min(position, 5)
+        if best.complete:
+            for rank, walked in enumerate(reading for reading in readings[:4] if reading.complete):
+                sure = 0.97 if walked.fit >= 0.2 or len(chain.steps) > 2 else 0.85
+                found.add(walked.symbols[-1], sure - 0.04 * rank - later, "expression")
+            for step, symbol in enumerate(reversed(best.symbols[:-1])):
+                found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
+        else:
+            found.missing.append(Missing(best.missing, best.owner))
+            for step, symbol in enumerate(reversed(best.symbols)):
+                found.add(symbol, 0.45 - 0.05 * step - later, "on the way")
+
+    def _loose_name(self, chain: Chain, prose: set[str], found: Identified) -> None:
+        """A name of code without its owner (``thickness_outer``): its owners, by the words around it."""
+        names = [chain.attributes[-1]] if chain.attributes else [chain.root]
+        for name in names:
+            rows = [
+                entry
+                for form, identifier in self._reader.by_key(key(name))
+                if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
+            ]
+            scored = sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]
+            if chain.steps and len(rows) > 3:
+                continue  # a common name whose owner was given, and does not have it
+            for rank, entry in enumerate(scored):
+                sure = (0.9 if len(rows) == 1 else 0.8) if not chain.steps else 0.55
+                found.add(entry.path, sure - 0.03 * rank, "name")
+
+    def _affinity(self, entry: Entry, prose: set[str]) -> float:
+        """How many of the words around a name belong to its owner, and how usual the owner is."""
+        owner = self._reader.entry(entry.owner)
+        about = set(terms(entry.owner.replace("bpy.types.", "") + " " + (owner.label if owner else "")))
+        about |= set(terms(entry.label))
+        usual = 0.2 if entry.group != "ui" and entry.kind in {"property", "function", "operator"} else 0.0
+        return len(about & prose) - 0.05 * len(about) + usual
+
+    def _class_with_member(self, chains: list[Chain], found: Identified) -> None:
+        """``SoftBodySettings goal_spring``: a class and one of its members, side by side."""
+        classes = [
+            entry
+            for chain in chains
+            if not chain.steps and (entry := self._reader.entry(TYPES + chain.root)) and entry.kind == "class"
+        ]
+        for cls in classes:
+            for chain in chains:
+                if chain.steps or chain.root == cls.name:
+                    continue
+                member = self._walker.member(cls.path, chain.root)
+                if member and ("_" in chain.root or chain.root not in STOP_WORDS):
+                    found.add(member.path, 0.96, "class and member")
+
+    # Enumerations
+
+    def _enum_values(self, query: str, found: Identified) -> None:
+        text = _ERROR.sub(" ", query)
+        quoted = [a or b for a, b in _QUOTED.findall(text)]
+        values = list(dict.fromkeys([*quoted, *_CAPITALS.findall(text)]))
+        if not values:
+            return
+        rest = text
+        for value in values:
+            rest = rest.replace(value, " ")
+        around = set(terms(rest))
+        alone = not around
+        for rank, (owner, share) in enumerate(self._owners_of_items(values, around)):
+            if rank >= 5:
+                break
+            sure = (0.92 if alone else 0.9) * (0.6 + 0.4 * share) - 0.03 * rank
+            found.add(owner.partition("(")[0], sure, "enum item")
+
+    def _owners_of_items(self, values: Iterable[str], around: set[str] | None = None) -> Iterator[tuple[str, float]]:
+        """(owner, share of the values it has), the fullest first, then the one the other words fit."""
+        wanted = list(values)
+        held: dict[str, set[str]] = defaultdict(set)
+        for value in wanted:
+            for owner, identifier, name in self._reader.enum_owners(key(value)):
+                if value in {identifier, name}:
+                    held[owner].add(value)
+        for owner in sorted(held, key=lambda o: (-len(held[o]), -self._owner_fit(o, around or set()), len(o), o)):
+            yield owner, len(held[owner]) / max(1, len(wanted))
+
+    def _owner_fit(self, owner: str, around: set[str]) -> float:
+        path, _, parameter = owner.partition("(")
+        entry = self._reader.entry(path)
+        if entry is None:
+            return -1.0
+        about = set(terms(f"{entry.name} {entry.label} {parameter}"))
+        beyond = set(terms(entry.owner.replace("bpy.types.", "").replace("bpy.ops", "")))
+        return len(about & around) + 0.6 * len(beyond & around) - (0.3 if parameter else 0.0)

@@ -1,0 +1,173 @@
+"""Read-only access to one knowledge-base file: look-ups, no decisions."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from kb_build.records import Page, Section, Symbol, page_from_json, symbol_from_json
+from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, unpack
+from kb_serve.errors import BaseMissing, BaseUnreadable
+
+TYPES = "bpy.types."
+STRUCT = "bpy.types.bpy_struct"
+COLLECTION = "bpy.types.bpy_prop_collection"
+_REBUILD = "Build it again: simworlds kb build --force"
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """The part of a symbol that resolving needs; the whole record is read when it is answered."""
+
+    path: str
+    kind: str
+    owner: str
+    name: str
+    type: str
+    target: str
+    collection: str
+    base: str
+    group: str
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class PageEntry:
+    """A page without its text; ``parent`` is a slug."""
+
+    slug: str
+    source: str
+    version: str
+    title: str
+    parent: str
+    url: str
+    summary: str
+    summary_method: str
+
+
+_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label"
+_PAGE = "slug, source, version, title, parent, url, summary, summary_method"
+
+
+def open_file(path: Path) -> sqlite3.Connection:
+    """Opens a base read-only and checks that it is one. Raises BaseMissing or BaseUnreadable."""
+    if not path.is_file():
+        raise BaseMissing(f"{path}: no knowledge base here. Build it first: simworlds kb build")
+    uri = f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1"
+    try:
+        connection = sqlite3.connect(uri, uri=True, check_same_thread=False)
+        application = connection.execute("PRAGMA application_id").fetchone()[0]
+        version = connection.execute("PRAGMA user_version").fetchone()[0]
+    except sqlite3.Error as error:
+        raise BaseUnreadable(f"{path}: not readable as a knowledge base ({error}). {_REBUILD}") from error
+    if application != APPLICATION_ID:
+        raise BaseUnreadable(f"{path}: an SQLite file of something else, not a knowledge base. {_REBUILD}")
+    if version > SCHEMA_VERSION:
+        raise BaseUnreadable(
+            f"{path}: written by a newer SimWorlds (schema {version}, this one reads {SCHEMA_VERSION}). "
+            "Upgrade SimWorlds, or build the base again with this one: simworlds kb build --force"
+        )
+    if version < SCHEMA_VERSION:
+        raise BaseUnreadable(f"{path}: of an older layout (schema {version}, needed {SCHEMA_VERSION}). {_REBUILD}")
+    return connection
+
+
+class Reader:
+    """Look-ups in one base. Results of the hot ones are kept; the file never changes while it is open."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._connection = open_file(path)
+        self.entry = lru_cache(maxsize=20_000)(self._entry)
+        self.members = lru_cache(maxsize=2_000)(self._members)
+        self.subclasses = lru_cache(maxsize=2_000)(self._subclasses)
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._connection.close()
+
+    def rows(self, sql: str, *values: object) -> list[Any]:
+        """Runs one query. A file that turns out damaged is BaseUnreadable."""
+        try:
+            return self._connection.execute(sql, values).fetchall()
+        except sqlite3.DatabaseError as error:
+            raise BaseUnreadable(f"{self.path}: damaged ({error}). {_REBUILD}") from error
+
+    @cached_property
+    def meta(self) -> dict[str, str]:
+        """Facts about the base: version, build, fingerprint, sources, missing sources, …"""
+        return dict(self.rows("SELECT name, value FROM meta"))
+
+    def _entry(self, path: str) -> Entry | None:
+        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE path = ?", path)
+        return Entry(*rows[0]) if rows else None
+
+    def _members(self, owner: str) -> dict[str, Entry]:
+        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE owner = ? ORDER BY id", owner)
+        return {row[3] if row[1] != "socket" else row[0][len(owner) + 1 :]: Entry(*row) for row in rows}
+
+    def _subclasses(self, path: str) -> tuple[Entry, ...]:
+        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE base = ? ORDER BY path", path)
+        return tuple(Entry(*row) for row in rows)
+
+    def descendants(self, path: str) -> Iterator[Entry]:
+        """Every class below a class, nearest first."""
+        for child in self.subclasses(path):
+            yield child
+            yield from self.descendants(child.path)
+
+    def lineage(self, path: str) -> Iterator[Entry]:
+        """A class and its bases up to bpy_struct."""
+        entry = self.entry(path)
+        while entry is not None:
+            yield entry
+            entry = self.entry(entry.base) if entry.base else None
+
+    def symbol(self, path: str) -> Symbol | None:
+        """The whole record of an identifier."""
+        rows = self.rows("SELECT record FROM symbols WHERE path = ?", path)
+        return symbol_from_json(unpack(rows[0][0])) if rows else None
+
+    def by_name(self, name: str) -> list[Entry]:
+        """Every symbol whose last part is exactly ``name``."""
+        return [Entry(*row) for row in self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ?", name)]
+
+    def by_key(self, key: str) -> list[tuple[int, str]]:
+        """(form, id) of everything spelled like ``key`` (see analysis.key), preferred forms first."""
+        return self.rows("SELECT form, id FROM names WHERE key = ? ORDER BY form, id", key)
+
+    def enum_owners(self, key: str) -> list[tuple[str, str, str]]:
+        """(owner, identifier, name) for every enumeration that has the item."""
+        return self.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)
+
+    def links_from(self, source: str, kind: str) -> list[str]:
+        """Targets of a symbol's or page's links of one kind."""
+        return [row[0] for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)]
+
+    def links_to(self, target: str, kind: str) -> list[str]:
+        """Sources of the links of one kind that lead to ``target``."""
+        return [row[0] for row in self.rows("SELECT source FROM links WHERE target = ? AND kind = ?", target, kind)]
+
+    def page_entry(self, slug: str) -> PageEntry | None:
+        """A page's row, or None."""
+        rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE slug = ?", slug)
+        return PageEntry(*rows[0]) if rows else None
+
+    def page(self, slug: str) -> Page | None:
+        """A page with its sections, or None."""
+        rows = self.rows("SELECT record FROM pages WHERE slug = ?", slug)
+        if not rows:
+            return None
+        sections = self.rows("SELECT anchor, title, level, text FROM sections WHERE slug = ? ORDER BY position", slug)
+        record = unpack(rows[0][0])
+        record["sections"] = []
+        page = page_from_json(record)
+        return Page(
+            page.slug, page.source, page.version, page.title, tuple(Section(*row) for row in sections),
+            page.breadcrumbs, page.children, page.links, page.url, page.warnings,
+        )  # fmt: skip
