@@ -18,7 +18,9 @@ def main() -> None:
     parser.add_argument("html", type=Path, help="folder with the download's index.html")
     parser.add_argument("--version", default="4.4", help="the documentation's version (default: 4.4)")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default: 2)")
-    parser.add_argument("--show", type=int, default=20, help="how many pages that differ to list (default: 20)")
+    parser.add_argument(
+        "--show", type=int, default=20, help="how many pages that differ to list (default: 20)"
+    )
     options = parser.parse_args()
     began = time.perf_counter()
     sources = read_rst(options.rst, source="manual", version=options.version, jobs=options.jobs)
@@ -35,7 +37,9 @@ def report(found: Comparison, show: int) -> None:
     shared = len(found.shared)
     print(f"shared pages: {shared}; only RST: {list(found.only_first)}; only HTML: {list(found.only_second)}")
     print(f"title and section titles agree: {found.outline_share:.2%}")
-    print(f"mean token similarity: {found.similarity:.4f}; equal text: {found.identical / max(1, shared):.2%}")
+    print(
+        f"mean token similarity: {found.similarity:.4f}; equal text: {found.identical / max(1, shared):.2%}"
+    )
     for name in ("children", "breadcrumbs", "links", "anchors"):
         print(f"same {name}: {getattr(found, f'same_{name}') / max(1, shared):.2%}")
     for row in found.differences[:show]:

@@ -1,0 +1,1 @@
+"""Documentation pages: RST sources through Sphinx, or HTML, to the same records."""

@@ -42,8 +42,10 @@ def assemble(texts: Iterable[PageText], *, source: PageSource, version: str) -> 
     for slug in sorted(known):
         text = known[slug]
         first, *rest = text.sections
-        sections = text.sections if first.title else (
-            Section(anchor=first.anchor, title=titles[slug], level=first.level, text=first.text), *rest
+        sections = (
+            text.sections
+            if first.title
+            else (Section(anchor=first.anchor, title=titles[slug], level=first.level, text=first.text), *rest)
         )
         pages.append(
             Page(

@@ -26,8 +26,11 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.util.typing import ExtensionMetadata
 
-_DIRECTIVE = re.compile(r"^[ \t]*(?:\S.*[ \t])?\.\.[ \t]+(?:\|[^|\n]+\|[ \t]+)?([A-Za-z][\w:+.-]*?)[ \t]?::", re.MULTILINE)
+_DIRECTIVE = re.compile(
+    r"^[ \t]*(?:\S.*[ \t])?\.\.[ \t]+(?:\|[^|\n]+\|[ \t]+)?([A-Za-z][\w:+.-]*?)[ \t]?::", re.MULTILINE
+)
 _ROLE = re.compile(r":([A-Za-z][\w:+.-]*):`")
+_INVENTORY = re.compile(r"blender_[a-z]+")
 _TARGET = re.compile(r"^(.*?)\s*<[^<>]*>$", re.DOTALL)
 _log = logging.getLogger(__name__)
 
@@ -53,6 +56,8 @@ class _Box(Directive):
         """The box; text beside the directive's name is part of its content."""
         box = nodes.admonition("", nodes.title("", self.title))
         self.state.nested_parse(self.content, self.content_offset, box)
+        # The originals are targets: they use up a numbered anchor that a later section would get otherwise.
+        self.state.document.note_explicit_target(box)
         return [box]
 
 
@@ -92,14 +97,16 @@ class Unknown(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """The argument as a paragraph, and the content read as RST."""
         _log.warning(
-            "unknown directive %r: its content is kept as plain text", self.name, location=(self.env.docname, self.lineno)
+            "unknown directive %r: its content is kept as plain text",
+            self.name,
+            location=(self.env.docname, self.lineno),
         )
         box = nodes.container()
         if self.arguments:
             texts, messages = self.state.inline_text(self.arguments[0], self.lineno)
             box += nodes.paragraph("", "", *texts, *messages)
         self.state.nested_parse(self.content, self.content_offset, box)
-        return box.children
+        return list(box.children)
 
 
 class InsideInclude(Include):
@@ -107,7 +114,7 @@ class InsideInclude(Include):
 
     def run(self) -> list[nodes.Node]:
         """What the file holds, or a warning."""
-        return super().run() if _is_inside(self, self.arguments[0]) else []
+        return list(super().run()) if _is_inside(self, self.arguments[0]) else []
 
 
 class InsideLiteralInclude(LiteralInclude):
@@ -129,10 +136,14 @@ class InlineTable(CSVTable):
 
 def _is_inside(directive: SphinxDirective, name: str) -> bool:
     root = Path(directive.env.srcdir).resolve()
+    if name.startswith("<"):  # files that come with docutils
+        return "/" not in name and ".." not in name
     target = Path(directive.env.relfn2path(name)[1]).resolve()
     if target.is_relative_to(root):
         return True
-    _log.warning("%r is outside the sources and was not read", name, location=(directive.env.docname, directive.lineno))
+    _log.warning(
+        "%r is outside the sources and was not read", name, location=(directive.env.docname, directive.lineno)
+    )
     return False
 
 
@@ -157,6 +168,20 @@ def _unknown_role(
     return [nodes.inline(rawtext, utils.unescape(found[1] if found else text))], []
 
 
+def _elsewhere(
+    _app: Sphinx, _env: object, node: nodes.Element, content: nodes.Element
+) -> nodes.Element | None:
+    """References into documentation that is not at hand (``blender_api:bpy.ops``) lose the mark of where."""
+    where, colon, name = str(node.get("reftarget", "")).partition(":")
+    if not colon or not _INVENTORY.fullmatch(where):
+        return None
+    if node.get("refexplicit"):
+        return content
+    shown = content.copy()
+    shown += nodes.Text(name or where)
+    return shown
+
+
 def accept_unknown(app: Sphinx, texts: Iterable[str]) -> None:
     """Make every directive and role that ``texts`` use and Sphinx does not know keep its content.
 
@@ -168,7 +193,7 @@ def accept_unknown(app: Sphinx, texts: Iterable[str]) -> None:
     for text in texts:
         used_directives.update(name.lower() for name in _DIRECTIVE.findall(text))
         used_roles.update(name.lower() for name in _ROLE.findall(text))
-    language = languages.get_language("en")
+    language: Any = languages.get_language("en")
     document = utils.new_document("")
     for name in sorted(used_directives):
         if directives.directive(name, language, document)[0] is None:
@@ -189,4 +214,5 @@ def setup(app: Sphinx) -> ExtensionMetadata:
     app.add_directive("csv-table", InlineTable, override=True)
     app.add_role("bl-icon", _icon)
     app.add_role("kbd", _keys, override=True)
+    app.connect("missing-reference", _elsewhere)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

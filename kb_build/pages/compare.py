@@ -30,8 +30,8 @@ class PageDifference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two readings side by side. Shares and similarities lie between 0 and 1; they are 1 when nothing is shared,
-    so look at ``shared`` first."""
+    """Two readings side by side. Shares and similarities lie between 0 and 1; they are 1 when nothing is
+    shared, so look at ``shared`` first."""
 
     shared: tuple[str, ...]
     only_first: tuple[str, ...]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from docutils import nodes
 from sphinx import addnodes
@@ -34,6 +34,7 @@ _SILENT = (
     nodes.system_message,
     nodes.raw,
     nodes.decoration,
+    nodes.transition,
     nodes.docinfo,
     nodes.colspec,
     nodes.title,
@@ -105,7 +106,7 @@ class DoctreeReader:
         label = ADMONITIONS.get(type(node))
         if label is not None:
             return [md.quote(self._blocks(node.children), label)]
-        writer = _BLOCKS.get(type(node))
+        writer = self._BLOCKS.get(type(node))
         if writer is not None:
             return writer(self, node)
         if isinstance(node, nodes.Inline | nodes.TextElement):
@@ -124,7 +125,9 @@ class DoctreeReader:
         return [md.listing([self._blocks(_children(item)) for item in _children(node)])]
 
     def _columns(self, node: nodes.Element) -> list[str]:
-        items = [item for column in _children(node) for lists in _children(column) for item in _children(lists)]
+        items = [
+            item for column in _children(node) for lists in _children(column) for item in _children(lists)
+        ]
         return [md.listing([self._blocks(item.children) for item in items])]
 
     def _numbered(self, node: nodes.Element) -> list[str]:
@@ -132,7 +135,9 @@ class DoctreeReader:
         return [md.listing(items, start=int(node.get("start", 1)))]
 
     def _definitions(self, node: nodes.Element) -> list[str]:
-        return [self._definition(item) for item in _children(node) if isinstance(item, nodes.definition_list_item)]
+        return [
+            self._definition(item) for item in _children(node) if isinstance(item, nodes.definition_list_item)
+        ]
 
     def _definition(self, item: nodes.Element) -> str:
         terms: list[str] = []
@@ -150,7 +155,11 @@ class DoctreeReader:
         items: list[list[str]] = []
         for entry in _children(node):
             name, *rest = _children(entry) or [nodes.field_name()]
-            items.append(md.field(md.fold(self._inlines(name)), [b for part in rest for b in self._blocks(part.children)]))
+            items.append(
+                md.field(
+                    md.fold(self._inlines(name)), [b for part in rest for b in self._blocks(part.children)]
+                )
+            )
         return [md.listing(items)]
 
     def _options(self, node: nodes.Element) -> list[str]:
@@ -159,7 +168,9 @@ class DoctreeReader:
             group = item.next_node(nodes.option_group)
             description = item.next_node(nodes.description)
             names = ", ".join(option.astext() for option in _children(group)) if group else ""
-            blocks.append(md.definition([md.code(names)], self._blocks(description.children) if description else []))
+            blocks.append(
+                md.definition([md.code(names)], self._blocks(description.children) if description else [])
+            )
         return blocks
 
     def _literal(self, node: nodes.Element) -> list[str]:
@@ -217,13 +228,14 @@ class DoctreeReader:
         name = f"[{label.astext()}]" if label else ""
         return [f"{name} {body[0]}", *body[1:]] if body else [name]
 
-    def _rule(self, _: nodes.Element) -> list[str]:
-        return ["---"]
-
     def _signature(self, node: nodes.Element) -> list[str]:
         terms = [child.astext() for child in _children(node) if isinstance(child, addnodes.desc_signature)]
         bodies = [child for child in _children(node) if isinstance(child, addnodes.desc_content)]
-        return [md.definition([md.code(term) for term in terms], [b for c in bodies for b in self._blocks(c.children)])]
+        return [
+            md.definition(
+                [md.code(term) for term in terms], [b for c in bodies for b in self._blocks(c.children)]
+            )
+        ]
 
     def _table(self, node: nodes.Element) -> list[str]:
         title = next((child for child in node.children if isinstance(child, nodes.title)), None)
@@ -239,7 +251,9 @@ class DoctreeReader:
                         grid.row()
                         for entry in _children(row):
                             text = md.join(self._blocks(entry.children))
-                            grid.cell(text, 1 + int(entry.get("morecols", 0)), 1 + int(entry.get("morerows", 0)))
+                            grid.cell(
+                                text, 1 + int(entry.get("morecols", 0)), 1 + int(entry.get("morerows", 0))
+                            )
         return [md.table(grid.rows, header=header, title=md.fold(self._inlines(title)) if title else "")]
 
     # Inlines -----------------------------------------------------------------------------------------------
@@ -250,9 +264,11 @@ class DoctreeReader:
     def _inline(self, node: nodes.Node) -> str:
         if isinstance(node, nodes.Text):
             return md.straight(node.astext())
-        if not isinstance(node, nodes.Element) or isinstance(node, nodes.raw | addnodes.index | nodes.system_message):
+        if not isinstance(node, nodes.Element) or isinstance(
+            node, nodes.raw | addnodes.index | nodes.system_message
+        ):
             return ""
-        writer = _INLINES.get(type(node))
+        writer = self._INLINES.get(type(node))
         return writer(self, node) if writer else self._inlines(node)
 
     def _reference(self, node: nodes.Element) -> str:
@@ -274,48 +290,46 @@ class DoctreeReader:
     def _abbreviation(self, node: nodes.Element) -> str:
         return md.abbreviation(self._inlines(node), str(node.get("explanation", "")))
 
+    _BLOCKS: ClassVar[dict[type[nodes.Element], Callable[[DoctreeReader, nodes.Element], list[str]]]] = {
+        nodes.paragraph: _paragraph,
+        nodes.admonition: _admonition,
+        nodes.bullet_list: _bullets,
+        addnodes.hlist: _columns,
+        nodes.enumerated_list: _numbered,
+        nodes.definition_list: _definitions,
+        nodes.field_list: _fields,
+        nodes.option_list: _options,
+        nodes.literal_block: _literal,
+        nodes.doctest_block: _literal,
+        nodes.math_block: _formula,
+        nodes.line_block: _lines,
+        nodes.block_quote: _quote,
+        nodes.figure: _figure,
+        nodes.image: _image,
+        nodes.rubric: _rubric,
+        nodes.topic: _titled,
+        nodes.sidebar: _titled,
+        nodes.section: _titled,
+        nodes.footnote: _note_below,
+        nodes.citation: _note_below,
+        nodes.table: _table,
+        addnodes.desc: _signature,
+    }
+    _INLINES: ClassVar[dict[type[nodes.Element], Callable[[DoctreeReader, nodes.Element], str]]] = {
+        nodes.emphasis: lambda reader, node: md.emphasis(reader._inlines(node)),
+        nodes.title_reference: lambda reader, node: md.emphasis(reader._inlines(node)),
+        nodes.strong: lambda reader, node: md.strong(reader._inlines(node)),
+        nodes.literal: lambda _, node: md.code(node.astext()),
+        nodes.math: lambda _, node: md.formula(node.astext()),
+        nodes.superscript: lambda reader, node: f"^{reader._inlines(node)}",
+        nodes.reference: _reference,
+        nodes.problematic: _problem,
+        nodes.image: _picture,
+        nodes.abbreviation: _abbreviation,
+        nodes.footnote_reference: lambda _, node: f"[{node.astext()}]",
+        nodes.citation_reference: lambda _, node: f"[{node.astext()}]",
+    }
+
 
 def _children(node: nodes.Element) -> list[nodes.Element]:
     return [child for child in node.children if isinstance(child, nodes.Element)]
-
-
-_BLOCKS: dict[type[nodes.Element], Callable[[DoctreeReader, nodes.Element], list[str]]] = {
-    nodes.paragraph: DoctreeReader._paragraph,
-    nodes.admonition: DoctreeReader._admonition,
-    nodes.bullet_list: DoctreeReader._bullets,
-    addnodes.hlist: DoctreeReader._columns,
-    nodes.enumerated_list: DoctreeReader._numbered,
-    nodes.definition_list: DoctreeReader._definitions,
-    nodes.field_list: DoctreeReader._fields,
-    nodes.option_list: DoctreeReader._options,
-    nodes.literal_block: DoctreeReader._literal,
-    nodes.doctest_block: DoctreeReader._literal,
-    nodes.math_block: DoctreeReader._formula,
-    nodes.line_block: DoctreeReader._lines,
-    nodes.block_quote: DoctreeReader._quote,
-    nodes.figure: DoctreeReader._figure,
-    nodes.image: DoctreeReader._image,
-    nodes.rubric: DoctreeReader._rubric,
-    nodes.topic: DoctreeReader._titled,
-    nodes.sidebar: DoctreeReader._titled,
-    nodes.section: DoctreeReader._titled,
-    nodes.footnote: DoctreeReader._note_below,
-    nodes.citation: DoctreeReader._note_below,
-    nodes.transition: DoctreeReader._rule,
-    nodes.table: DoctreeReader._table,
-    addnodes.desc: DoctreeReader._signature,
-}
-_INLINES: dict[type[nodes.Element], Callable[[DoctreeReader, nodes.Element], str]] = {
-    nodes.emphasis: lambda reader, node: md.emphasis(reader._inlines(node)),
-    nodes.title_reference: lambda reader, node: md.emphasis(reader._inlines(node)),
-    nodes.strong: lambda reader, node: md.strong(reader._inlines(node)),
-    nodes.literal: lambda _, node: md.code(node.astext()),
-    nodes.math: lambda _, node: md.formula(node.astext()),
-    nodes.superscript: lambda reader, node: f"^{reader._inlines(node)}",
-    nodes.reference: DoctreeReader._reference,
-    nodes.problematic: DoctreeReader._problem,
-    nodes.image: DoctreeReader._picture,
-    nodes.abbreviation: DoctreeReader._abbreviation,
-    nodes.footnote_reference: lambda _, node: f"[{node.astext()}]",
-    nodes.citation_reference: lambda _, node: f"[{node.astext()}]",
-}

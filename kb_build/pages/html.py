@@ -6,6 +6,7 @@ import html
 import re
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -16,7 +17,8 @@ from bs4 import BeautifulSoup, Tag
 from kb_build.errors import SourceError
 from kb_build.pages import markdown as md
 from kb_build.pages.article import read_article
-from kb_build.pages.assemble import PageText, assemble
+from kb_build.pages.assemble import ROOT, PageText, assemble
+from kb_build.pages.tags import slug_of
 from kb_build.pages.workers import processes
 from kb_build.records import Section
 
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 _GENERATED = frozenset({"404", "genindex", "modindex", "py-modindex", "search"})
 _CHUNK = 40
 _ELEMENTS = ("article", "[role=main]", "main", "div.body", "body")
+_SIDEBAR = b'<div class="sidebar-tree">'
 _MARKUP = re.compile(rb"<(script|style)\b.*?</\1\s*>|<[^>]*>", re.DOTALL | re.IGNORECASE)
 
 
@@ -40,16 +43,22 @@ def read_html(
 
     Search page, index and the page for wrong addresses are left out; with ``source="guide"`` only the pages
     ``info_*.html`` are read (the API reference itself comes from Blender). ``version``, ``jobs`` and
-    ``progress`` (pages done, pages in all) as in :func:`kb_build.pages.rst.read_rst`, and the pages are the same as
-    if they had been read from their RST sources. A page that cannot be understood is kept and carries
+    ``progress`` (pages done, pages in all) as in :func:`kb_build.pages.rst.read_rst`, and the pages are the
+    same as if they had been read from their RST sources. A page that cannot be understood is kept and carries
     warnings. Raises SourceError when there are no pages, or one cannot be read from disk.
     """
     folder = Path(folder)
     pattern = "info_*.html" if source == "guide" else "*.html"
-    slugs = {path.relative_to(folder).with_suffix("").as_posix() for path in folder.rglob(pattern) if path.is_file()}
+    slugs = {
+        path.relative_to(folder).with_suffix("").as_posix()
+        for path in folder.rglob(pattern)
+        if path.is_file()
+    }
     names = sorted(slug for slug in slugs if slug not in _GENERATED and not _is_asset(slug))
     if not names:
-        raise SourceError(f"{folder} holds no pages ({pattern}): give the folder with the documentation's index.html")
+        raise SourceError(
+            f"{folder} holds no pages ({pattern}): give the folder with the documentation's index.html"
+        )
     texts: list[PageText] = []
 
     def finished(part: list[PageText]) -> None:
@@ -58,7 +67,37 @@ def read_html(
             progress(len(texts), len(names))
 
     _read_all(partial(_read_some, folder), names, processes(jobs, len(names)), finished)
+    listed = _listed(folder / f"{ROOT}.html")
+    texts = [replace(text, children=_merged(text.children, listed.get(text.slug, {}))) for text in texts]
     return assemble(texts, source=source, version=version)
+
+
+def _listed(front: Path) -> dict[str, dict[str, None]]:
+    """Who lists whom, from the front page's sidebar. It is the same on every page and slow to parse, but
+    knows the tables of contents that the pages themselves do not show."""
+    data = front.read_bytes() if front.is_file() else b""
+    start = data.find(_SIDEBAR)
+    if start < 0:
+        return {}
+    end = data.find(b"</aside>", start)
+    tree = BeautifulSoup(data[start:end].decode("utf-8", errors="replace"), "lxml")
+    children: dict[str, dict[str, None]] = {}
+    for item in tree.select("li:has(> a)"):
+        above = item.find_parent("li")
+        parent = _target(above) if above is not None else ROOT
+        if parent and (child := _target(item)):
+            children.setdefault(parent, {}).setdefault(child)
+    return children
+
+
+def _target(item: Tag) -> str:
+    anchor = item.find("a", recursive=False)
+    href = str(anchor.get("href", "")) if isinstance(anchor, Tag) else ""
+    return ROOT if href == "#" else slug_of(href, "")
+
+
+def _merged(shown: tuple[str, ...], listed: dict[str, None]) -> tuple[str, ...]:
+    return tuple(listed) if listed.keys() >= set(shown) else tuple(dict.fromkeys([*shown, *listed]))
 
 
 def _is_asset(slug: str) -> bool:
@@ -94,7 +133,9 @@ def _read_one(path: Path, slug: str) -> PageText:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise SourceError(f"{path} cannot be read ({error.strerror}): unpack the documentation again") from error
+        raise SourceError(
+            f"{path} cannot be read ({error.strerror}): unpack the documentation again"
+        ) from error
     cut = _article(data)
     warnings: list[str] = []
     try:
@@ -120,7 +161,7 @@ def _read_one(path: Path, slug: str) -> PageText:
 
 
 def _article(data: bytes) -> bytes:
-    """The bytes of the article alone: nine tenths of a page are its sidebar, and parsing is what takes time."""
+    """The bytes of the article alone: nine tenths of a page are its sidebar, and parsing takes the time."""
     start = data.find(b"<article")
     if start < 0:
         return data

@@ -17,6 +17,7 @@ INDENT = "  "
 _STRAIGHT = str.maketrans(
     {"’": "'", "‘": "'", "“": '"', "”": '"', "–": "--", "—": "---", "…": "...", "\u200b": ""}
 )
+_LANGUAGES = {"default": "", "none": "", "text": "", "python3": "python", "py": "python"}
 _LIST_MARKER = re.compile(r"(?:- |\d+\. )")
 # Stands for an icon until the line is folded: brackets that held nothing else go with it.
 ICON = "\ufffc"
@@ -99,7 +100,7 @@ def fence(text: str, language: str = "") -> str:
     marks = "```"
     while marks in text:
         marks += "`"
-    name = "" if language in {"default", "none", "text"} else language
+    name = _LANGUAGES.get(language, language)
     return f"{marks}{name}\n{text}\n{marks}"
 
 
@@ -161,7 +162,7 @@ def definition(terms: list[str], body: list[str]) -> str:
 
 
 class Grid:
-    """Rows of a table being read. A cell that spans several is written once; the rest of its span stays empty."""
+    """Rows of a table being read. A cell that spans several is written once; the rest of it stays empty."""
 
     _MOST = 200  # a span in a hostile page may be any number
 

@@ -8,9 +8,8 @@ import os
 import re
 import shutil
 import tempfile
-import threading
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,18 +23,26 @@ from kb_build.pages.assemble import ROOT, PageText, assemble
 from kb_build.pages.blender_markup import accept_unknown
 from kb_build.pages.docutils_speed import shared_transitions
 from kb_build.pages.sphinx_builder import PagesBuilder, drop_needless_work
+from kb_build.pages.workers import processes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Generator
 
     from kb_build.records import Page, PageSource
 
     Progress = Callable[[int, int], None]
 
-_FEW = 40  # pages that one process reads before a second one has started
 _SUPPRESSED = ["image", "toc", "config", "app", "download", "epub", "index", "misc.highlighting_failure"]
 _DECORATED = re.compile(r"^\S*\.rst:\d*: [A-Z]+: |(?: \[[a-z][\w.]*\])+$")
 _LOCATION = re.compile(r"^(?P<path>.*?)(?::(?P<line>\d*))?(?::docstring.*)?$")
+
+
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    source: PageSource
+    version: str
+    jobs: int
+    progress: Progress | None
 
 
 def read_rst(
@@ -50,27 +57,33 @@ def read_rst(
     pages, or Sphinx cannot work with the folder at all.
     """
     folder = Path(folder)
-    files = {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.rst"))}
+    files = {
+        path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.rst"))
+    }
     files = {slug: path for slug, path in files.items() if path.is_file()}
     if not files:
         raise SourceError(f"{folder} holds no .rst files: give the folder with the sources' index.rst")
     with tempfile.TemporaryDirectory(prefix="simworlds-rst-") as scratch:
-        texts, repaired = _texts(folder, files)
+        texts, repaired = _texts(files)
         root = _repaired_copy(folder, Path(scratch) / "sources", repaired) if repaired else folder
-        pages = _build(root, Path(scratch), texts, source=source, version=version, jobs=jobs, progress=progress)
+        pages = _build(root, Path(scratch), texts, _Wanted(source, version, jobs, progress))
     warning = "not UTF-8: undecodable characters were replaced"
-    pages = [replace(page, warnings=(warning, *page.warnings)) if page.slug in repaired else page for page in pages]
+    pages = [
+        replace(page, warnings=(warning, *page.warnings)) if page.slug in repaired else page for page in pages
+    ]
     return assemble(pages, source=source, version=version)
 
 
-def _texts(folder: Path, files: dict[str, Path]) -> tuple[dict[str, str], dict[str, str]]:
+def _texts(files: dict[str, Path]) -> tuple[dict[str, str], dict[str, str]]:
     texts: dict[str, str] = {}
     repaired: dict[str, str] = {}
     for slug, path in files.items():
         try:
             data = path.read_bytes()
         except OSError as error:
-            raise SourceError(f"{path} cannot be read ({error.strerror}): unpack the sources again") from error
+            raise SourceError(
+                f"{path} cannot be read ({error.strerror}): unpack the sources again"
+            ) from error
         try:
             texts[slug] = data.decode("utf-8-sig")
         except UnicodeDecodeError:
@@ -86,12 +99,7 @@ def _repaired_copy(folder: Path, copy: Path, repaired: dict[str, str]) -> Path:
     return copy
 
 
-def _build(
-    folder: Path, scratch: Path, texts: dict[str, str], *, source: PageSource, version: str, jobs: int, progress: Progress | None
-) -> list[PageText]:
-    # A child forked while other threads hold locks may hang.
-    alone = threading.active_count() == 1
-    parallel = max(1, jobs) if alone and len(texts) > _FEW else 1
+def _build(folder: Path, scratch: Path, texts: dict[str, str], wanted: _Wanted) -> list[PageText]:
     with patch_docutils(), docutils_namespace(), shared_transitions(), _paused_collector():
         try:
             app = Sphinx(
@@ -100,21 +108,21 @@ def _build(
                 outdir=scratch / "out",
                 doctreedir=scratch / "doctrees",
                 buildername=PagesBuilder.name,
-                confoverrides=_configuration(texts, source, version),
+                confoverrides=_configuration(texts, wanted),
                 status=None,
                 warning=StringIO(),
                 freshenv=True,
                 # Parts of the manual are marked as meant for the HTML form only.
                 tags=["html", "format_html", "builder_html"],
-                parallel=parallel,
+                parallel=processes(wanted.jobs, len(texts)),
             )
             # Settings files of whoever runs this have no say, and long lines are no fault.
             app.env.settings.update(_disable_config=True, line_length_limit=10**9)
             accept_unknown(app, texts.values())
             drop_needless_work(app)
             warnings = _PageWarnings(app)
-            if progress is not None:
-                _report(app, progress, len(texts))
+            if wanted.progress is not None:
+                _report(app, wanted.progress, len(texts))
             app.builder.build_all()
         except Exception as error:
             reason = (str(error) or type(error).__name__).splitlines()[0]
@@ -125,21 +133,23 @@ def _build(
     return [replace(page, warnings=(*page.warnings, *found.get(page.slug, ()))) for page in builder.pages]
 
 
-def _configuration(texts: dict[str, str], source: PageSource, version: str) -> dict[str, Any]:
+def _configuration(texts: dict[str, str], wanted: _Wanted) -> dict[str, Any]:
     return {
         "extensions": ["kb_build.pages.sphinx_builder"],
         "project": "Blender",
-        "version": version,
-        "release": version,
+        "version": wanted.version,
+        "release": wanted.version,
         # The guides have no front page, and Sphinx must have one.
         "root_doc": ROOT if ROOT in texts else next(iter(texts)),
         "source_suffix": {".rst": "restructuredtext"},
         "exclude_patterns": [],
         "locale_dirs": [],
+        # As both the manual and the guides have it; it names the language of unmarked code blocks.
+        "highlight_language": "python3",
         # Plain quotes and dashes are what people type into a query.
         "smartquotes": False,
         # The guides refer to the API reference and to the manual, which are not in their folder.
-        "suppress_warnings": [*_SUPPRESSED, *(["ref"] if source == "guide" else [])],
+        "suppress_warnings": [*_SUPPRESSED, *(["ref"] if wanted.source == "guide" else [])],
     }
 
 
@@ -153,9 +163,18 @@ def _report(app: Sphinx, progress: Progress, pages: int) -> None:
             done += count
             progress(min(done, 2 * pages), 2 * pages)
 
-    app.connect("doctree-read", lambda *_: step(1))
-    app.connect("env-merge-info", lambda _app, _env, docnames, _other: step(len(docnames)))
-    app.connect("pages-read", lambda _app, count: step(count))
+    def read(*_: object) -> None:
+        step(1)
+
+    def merged(_app: Sphinx, _env: object, docnames: list[str], _other: object) -> None:
+        step(len(docnames))
+
+    def resolved(_app: Sphinx, count: int) -> None:
+        step(count)
+
+    app.connect("doctree-read", read)
+    app.connect("env-merge-info", merged)
+    app.connect("pages-read", resolved)
 
 
 class _PageWarnings(logging.Handler):
@@ -183,8 +202,8 @@ class _PageWarnings(logging.Handler):
 
 
 @contextmanager
-def _paused_collector() -> Iterator[None]:
-    """Trees are cyclic but short-lived in the workers; looking for garbage in them costs a tenth of the time."""
+def _paused_collector() -> Generator[None]:
+    """Trees are cyclic, but the workers that make them are short-lived; looking for garbage costs time."""
     enabled = gc.isenabled()
     gc.disable()
     gc.freeze()

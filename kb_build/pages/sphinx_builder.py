@@ -1,4 +1,4 @@
-"""The Sphinx builder that turns resolved doctrees into page texts, and the configuration that it runs under."""
+"""The Sphinx builder that turns resolved doctrees into page texts, with the parser it needs."""
 
 from __future__ import annotations
 
@@ -74,7 +74,11 @@ class KeepingParser(RSTParser):
             section += nodes.literal_block(text, text)
             document += section
             location = document.settings.env.docname
-            _log.warning("the page could not be parsed (%s) and is kept as plain text", _reason(error), location=location)
+            _log.warning(
+                "the page could not be parsed (%s) and is kept as plain text",
+                _reason(error),
+                location=location,
+            )
 
 
 class VersionSubstitutions(SphinxTransform):
@@ -88,8 +92,8 @@ class VersionSubstitutions(SphinxTransform):
     def apply(self, **_: Any) -> None:
         """Replace the references; what the page itself defines comes first."""
         version = self.config.version
-        texts = dict.fromkeys(("BLENDER_VERSION", "BLENDER_VERSION_LABEL", "version", "release"), version)
-        texts.update(TODO="Todo", today="")
+        names = ("BLENDER_VERSION", "BLENDER_VERSION_LABEL", "version", "release")
+        texts = {**dict.fromkeys(names, str(version)), "TODO": "Todo", "today": ""}
         for reference in list(self.document.findall(nodes.substitution_reference)):
             name = reference["refname"]
             if name in texts and name not in self.document.substitution_defs:
@@ -111,11 +115,11 @@ class PagesBuilder(Builder):
         """All pages: nothing is kept from run to run."""
         return self.env.found_docs
 
-    def get_target_uri(self, docname: str, typ: str | None = None) -> str:
+    def get_target_uri(self, docname: str, typ: str | None = None) -> str:  # noqa: ARG002
         """How a page is referred to."""
         return PAGE_SCHEME + docname
 
-    def get_relative_uri(self, from_: str, to: str, typ: str | None = None) -> str:
+    def get_relative_uri(self, from_: str, to: str, typ: str | None = None) -> str:  # noqa: ARG002
         """References name the page itself, wherever they stand."""
         return self.get_target_uri(to, typ)
 
