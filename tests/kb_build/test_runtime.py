@@ -1,0 +1,297 @@
+"""The interpreter with the Blender asked for is found or made, and what runs in it is held on a leash."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import pytest
+
+from kb_build.errors import ExtractError, KBBuildError, RuntimeMissing
+from kb_build.runtime import Runtime, executable_version, find_runtime, installed_bpy, run_inside
+from kb_build.versions import release, releases
+
+REPO = Path(__file__).resolve().parents[2]
+HERE = Runtime(Path(sys.executable), "environment", "0.0.0")
+
+
+@pytest.fixture
+def bpy_version() -> str:
+    version = installed_bpy()
+    if version is None:
+        pytest.skip("this environment has no bpy")
+    return version
+
+
+@pytest.fixture
+def blender() -> Path:
+    found = shutil.which("blender")
+    if found is None:
+        pytest.skip("no blender on PATH")
+    return Path(found)
+
+
+def script(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "a script.py"
+    path.write_text(textwrap.dedent(text))
+    return path
+
+
+def fake_blender(tmp_path: Path, body: str) -> Path:
+    path = tmp_path / "blender"
+    path.write_text(f"#!/bin/sh\n{body}\n")
+    path.chmod(0o755)
+    return path
+
+
+REPORT = """
+    import json, os, sys
+    import bpy
+    output, *rest = sys.argv[sys.argv.index("--") + 1:]
+    print("Blender prints wherever it likes")
+    with open(output, "w") as file:
+        json.dump({"version": bpy.app.version_string, "rest": rest, "environment": dict(os.environ)}, file)
+"""
+
+
+def test_this_environment_is_used_when_its_bpy_fits(tmp_path: Path, bpy_version: str) -> None:
+    for asked in (bpy_version, bpy_version.rpartition(".")[0], None):
+        runtime = find_runtime(asked, home=tmp_path)
+        assert runtime == Runtime(Path(sys.executable), "environment", bpy_version)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.blender
+def test_a_script_runs_with_this_environments_bpy(tmp_path: Path, bpy_version: str) -> None:
+    runtime = find_runtime(bpy_version, home=tmp_path)
+    output, log = tmp_path / "out.json", tmp_path / "logs" / "run.log"
+    run_inside(runtime, script(tmp_path, REPORT), [str(output), "two words"], timeout=120, log=log)
+    report = json.loads(output.read_text())
+    assert report["version"].startswith(bpy_version)
+    assert report["rest"] == ["two words"]
+    assert "wherever it likes" in log.read_text()
+
+
+def test_a_named_executable_is_used_and_decides_the_version(tmp_path: Path, blender: Path) -> None:
+    real = executable_version(blender)
+    for asked in (None, real, real.rpartition(".")[0]):
+        runtime = find_runtime(asked, home=tmp_path, blender_exe=blender)
+        assert (runtime.kind, runtime.version) == ("executable", real)
+
+
+def test_a_script_runs_in_a_named_executable(tmp_path: Path, blender: Path) -> None:
+    runtime = find_runtime(None, home=tmp_path, blender_exe=blender)
+    output = tmp_path / "out.json"
+    run_inside(
+        runtime, script(tmp_path, REPORT), [str(output), "--flag"], timeout=120, log=tmp_path / "run.log"
+    )
+    report = json.loads(output.read_text())
+    assert report["version"].startswith(runtime.version)
+    assert report["rest"] == ["--flag"]
+
+
+def test_a_script_that_fails_in_a_named_executable_is_an_error(tmp_path: Path, blender: Path) -> None:
+    runtime = find_runtime(None, home=tmp_path, blender_exe=blender)
+    with pytest.raises(ExtractError, match="no such luck"):
+        run_inside(
+            runtime,
+            script(tmp_path, "raise ValueError('no such luck')"),
+            [],
+            timeout=120,
+            log=tmp_path / "run.log",
+        )
+
+
+def test_an_executable_of_another_version_is_refused(tmp_path: Path) -> None:
+    executable = fake_blender(tmp_path, "echo 'Blender 4.2.3 LTS'")
+    with pytest.raises(RuntimeMissing, match=r"is Blender 4\.2\.3, not 5\.1"):
+        find_runtime("5.1", home=tmp_path, blender_exe=executable)
+
+
+def test_a_folder_with_the_executable_in_it_will_do(tmp_path: Path) -> None:
+    executable = fake_blender(tmp_path, "echo 'Blender 4.2.3 LTS'")
+    assert find_runtime("4.2", home=tmp_path, blender_exe=tmp_path).executable == executable
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [("echo hello", "does not say that it is Blender"), ("exit 7", "does not say that it is Blender")],
+)
+def test_a_program_that_is_no_blender_is_named(tmp_path: Path, body: str, message: str) -> None:
+    with pytest.raises(RuntimeMissing, match=message):
+        find_runtime("5.1", home=tmp_path, blender_exe=fake_blender(tmp_path, body))
+
+
+def test_an_executable_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeMissing, match=r"there is no Blender executable at .*nowhere"):
+        find_runtime("5.1", home=tmp_path, blender_exe=tmp_path / "nowhere")
+
+
+def test_a_version_without_a_package_is_answered_with_those_that_have_one(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeMissing, match=r"(?s)2\.79.*4\.2.*5\.2.*BLENDER_EXE"):
+        find_runtime("2.79", home=tmp_path)
+
+
+def test_what_is_no_version_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(KBBuildError, match="is not a Blender version"):
+        find_runtime("latest; rm -rf", home=tmp_path)
+
+
+def test_every_release_names_one_wheel_and_the_python_it_is_for() -> None:
+    for entry in releases():
+        assert entry.bpy.startswith(entry.minor + ".")
+        assert entry.python.startswith("3.")
+        assert release(entry.bpy) == entry
+
+
+def test_an_environment_that_was_made_is_used_again(tmp_path: Path) -> None:
+    made = tmp_path / "runtimes" / "4.2.0"
+    made.mkdir(parents=True)
+    runtime = find_runtime("4.2.0", home=tmp_path)
+    assert runtime == Runtime(made / "bin" / "python", "managed", "4.2.0")
+
+
+def test_a_wheel_that_cannot_be_installed_is_named_with_uvs_words(tmp_path: Path) -> None:
+    code = f"""
+        import pathlib
+        from kb_build.errors import RuntimeMissing
+        from kb_build.runtime import find_runtime
+        try:
+            find_runtime("4.2.999", home=pathlib.Path({str(tmp_path)!r}))
+        except RuntimeMissing as error:
+            print(error)
+    """
+    offline = os.environ | {"UV_OFFLINE": "1", "UV_NO_CACHE": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(code)],
+        cwd=REPO,
+        env=offline,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "bpy 4.2.999 for CPython 3.11 could not be installed" in done.stdout, done.stderr
+    assert "it said:" in done.stdout
+    assert "BLENDER_EXE" in done.stdout
+    assert [path.name for path in (tmp_path / "runtimes").iterdir()] == ["4.2.999.log"]
+
+
+def test_secrets_and_python_settings_stay_outside(tmp_path: Path) -> None:
+    code = f"""
+        import pathlib, sys
+        from kb_build.runtime import Runtime, run_inside
+        runtime = Runtime(pathlib.Path(sys.executable), "environment", "0.0.0")
+        folder = pathlib.Path({str(tmp_path)!r})
+        run_inside(runtime, folder / "a script.py", [], timeout=60, log=folder / "run.log")
+    """
+    script(tmp_path, "import json, os; print(json.dumps(dict(os.environ)))")
+    outside = {
+        "ANTHROPIC_API_KEY": "secret-1",
+        "GITHUB_TOKEN": "secret-2",
+        "MY_PASSWORD": "secret-3",
+        "PYTHONSTARTUP": "/tmp/x.py",
+        "BLENDER_USER_SCRIPTS": "/home/me/scripts",
+    }
+    subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(code)], cwd=REPO, env=os.environ | outside, check=True
+    )
+    inside = json.loads((tmp_path / "run.log").read_text())
+    assert not {"secret-1", "secret-2", "secret-3"} & set(inside.values())
+    assert "PYTHONSTARTUP" not in inside
+    assert inside["BLENDER_USER_SCRIPTS"] != "/home/me/scripts"
+    assert inside["PATH"] == os.environ["PATH"]
+
+
+def test_a_failing_script_is_an_error_with_the_end_of_its_output(tmp_path: Path) -> None:
+    log = tmp_path / "run.log"
+    text = "print('first of many'); print('x\\n' * 5000); raise SystemExit('the last word')"
+    with pytest.raises(ExtractError, match=r"(?s)exit code 1.*the last word") as caught:
+        run_inside(HERE, script(tmp_path, text), [], timeout=60, log=log)
+    assert str(log) in str(caught.value)
+    assert "first of many" not in str(caught.value)
+    assert "first of many" in log.read_text()
+    assert len(str(caught.value)) < 5_000
+
+
+def test_a_crash_is_named_by_its_signal(tmp_path: Path) -> None:
+    text = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+    with pytest.raises(ExtractError, match="SIGSEGV"):
+        run_inside(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
+
+
+def test_a_missing_system_library_is_explained(tmp_path: Path) -> None:
+    text = "raise ImportError('libXi.so.6: cannot open shared object file: No such file or directory')"
+    with pytest.raises(ExtractError, match=r"libXi\.so\.6 is missing.*README"):
+        run_inside(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
+
+
+def test_output_that_is_no_text_does_no_harm(tmp_path: Path) -> None:
+    text = "import os, sys; os.write(1, bytes(range(256))); sys.exit(5)"
+    with pytest.raises(ExtractError, match="exit code 5"):
+        run_inside(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
+
+
+FAMILY = """
+    import os, pathlib, subprocess, sys
+    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+    folder = pathlib.Path(sys.argv[-1])
+    (folder / "pids.part").write_text(f"{os.getpid()} {child.pid}")
+    (folder / "pids.part").rename(folder / "pids")
+    child.wait()
+"""
+
+
+def is_alive(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+def wait_for(condition, seconds: float = 30.0) -> bool:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if condition():
+            return True
+        os.sched_yield()
+    return False
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes through /proc")
+def test_a_script_that_hangs_is_stopped_with_its_children(tmp_path: Path) -> None:
+    with pytest.raises(ExtractError, match="stopped after 3 s"):
+        run_inside(HERE, script(tmp_path, FAMILY), [str(tmp_path)], timeout=3, log=tmp_path / "run.log")
+    pids = [int(pid) for pid in (tmp_path / "pids").read_text().split()]
+    assert len(pids) == 2
+    assert wait_for(lambda: not any(is_alive(pid) for pid in pids))
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes through /proc")
+def test_an_interrupt_stops_the_script_and_its_children(tmp_path: Path) -> None:
+    script(tmp_path, FAMILY)
+    code = f"""
+        import pathlib, sys
+        from kb_build.runtime import Runtime, run_inside
+        runtime = Runtime(pathlib.Path(sys.executable), "environment", "0.0.0")
+        folder = pathlib.Path({str(tmp_path)!r})
+        run_inside(runtime, folder / "a script.py", [str(folder)], timeout=600, log=folder / "run.log")
+    """
+    caller = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(code)],
+        cwd=REPO,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    assert wait_for((tmp_path / "pids").exists)
+    caller.send_signal(signal.SIGINT)
+    assert caller.wait(30) != 0
+    pids = [int(pid) for pid in (tmp_path / "pids").read_text().split()]
+    assert wait_for(lambda: not any(is_alive(pid) for pid in pids))
