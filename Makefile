@@ -1,0 +1,79 @@
+# Needs Python 3 with pip and venv, git and make; everything else is fetched into .tools/ and .venv/.
+
+BLENDER ?= 5.1
+PYTHON_VERSION := 3.13
+PY := .venv/bin/python
+STAMP := .venv/.simworlds-installed
+UV := $(or $(shell command -v uv 2>/dev/null),.tools/uv/bin/uv)
+
+# uv passes over pyenv's shims, but takes an interpreter that stands in pyenv's folder when it is on PATH.
+PYENV_BINS := $(wildcard $(or $(PYENV_ROOT),$(HOME)/.pyenv)/versions/$(PYTHON_VERSION).*/bin)
+empty :=
+space := $(empty) $(empty)
+UV_ENV := VIRTUAL_ENV= PATH="$(PATH):$(subst $(space),:,$(strip $(PYENV_BINS)))"
+
+ifneq ($(wildcard ../shared/corpora),)
+export SIMWORLDS_CORPORA ?= $(abspath ../shared/corpora)
+endif
+
+.DEFAULT_GOAL := help
+.PHONY: help setup kb test serve bench lint docs docs-check lock clean
+
+help: ## List the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+setup: $(STAMP) ## Make .venv with the pinned dependencies
+
+kb: $(STAMP) ## Build the knowledge base of BLENDER=5.1 [MANUAL= GUIDES= BLENDER_EXE= SUMMARIES= REQUIRE=]
+	@.venv/bin/simworlds kb build "$(BLENDER)" \
+	  $(if $(MANUAL),--manual "$(MANUAL)") \
+	  $(if $(GUIDES),--guides "$(GUIDES)") \
+	  $(if $(BLENDER_EXE),--blender-exe "$(BLENDER_EXE)") \
+	  $(if $(SUMMARIES),--summaries "$(SUMMARIES)") \
+	  $(if $(REQUIRE),--require "$(REQUIRE)") $(KB_ARGS)
+
+test: $(STAMP) ## Run the tests [PYTEST_ARGS=]
+	@$(PY) -m pytest $(PYTEST_ARGS)
+
+serve: $(STAMP) ## Serve blender_docs over MCP on stdio [SERVE_ARGS=]
+	@.venv/bin/simworlds serve $(SERVE_ARGS)
+
+bench: $(STAMP) ## Measure retrieval, latency and builds, beside the peers [BENCH_ARGS=]
+	@$(PY) -m bench $(BENCH_ARGS)
+
+lint: $(STAMP) ## Check style, format and types
+	@.venv/bin/ruff check .
+	@.venv/bin/ruff format --check .
+	@.venv/bin/pyright
+
+docs: $(STAMP) ## Write the generated references
+	@$(PY) -m kb_serve.reference
+
+docs-check: $(STAMP) ## Check that the generated references are up to date
+	@$(PY) -m kb_serve.reference --check
+
+lock: $(UV) ## Pin the newest dependencies in requirements.lock
+	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --group dev --universal --python-version 3.11 --upgrade \
+	  --generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header --quiet \
+	  --output-file requirements.lock
+
+clean: ## Remove what was made here (knowledge bases live elsewhere and stay)
+	rm -rf .venv .tools build dist .pytest_cache .ruff_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# The stamp is written last: a set-up that was interrupted is done again.
+$(STAMP): requirements.lock pyproject.toml | $(UV)
+	@echo "Setting up .venv (CPython $(PYTHON_VERSION), pinned dependencies) ..."
+	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
+	@$(UV_ENV) "$(UV)" pip sync --quiet --python $(PY) --require-hashes requirements.lock
+	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
+	@touch $(STAMP)
+
+# The lock pins uv too, since the project depends on it: that very version is fetched, its hashes checked.
+.tools/uv/bin/uv:
+	@echo "Fetching uv into .tools/ ..."
+	@rm -rf .tools/uv && mkdir -p .tools
+	@awk '/^[^ ]/{uv = /^uv==/} uv' requirements.lock > .tools/uv-requirements.txt
+	@python3 -m venv .tools/uv
+	@.tools/uv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes \
+	  -r .tools/uv-requirements.txt
