@@ -197,7 +197,7 @@ def test_secrets_and_python_settings_stay_outside(tmp_path: Path) -> None:
         "GITHUB_TOKEN": "secret-2",
         "MY_PASSWORD": "secret-3",
         "PYTHONSTARTUP": "/tmp/x.py",
-        "BLENDER_USER_SCRIPTS": "/home/me/scripts",
+        "BLENDER_USER_SCRIPTS": "/nowhere/scripts",
     }
     subprocess.run(
         [sys.executable, "-c", textwrap.dedent(code)], cwd=REPO, env=os.environ | outside, check=True
@@ -205,7 +205,7 @@ def test_secrets_and_python_settings_stay_outside(tmp_path: Path) -> None:
     inside = json.loads((tmp_path / "run.log").read_text())
     assert not {"secret-1", "secret-2", "secret-3"} & set(inside.values())
     assert "PYTHONSTARTUP" not in inside
-    assert inside["BLENDER_USER_SCRIPTS"] != "/home/me/scripts"
+    assert inside["BLENDER_USER_SCRIPTS"] != "/nowhere/scripts"
     assert inside["PATH"] == os.environ["PATH"]
 
 
