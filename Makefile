@@ -16,6 +16,11 @@ ifneq ($(wildcard ../shared/corpora),)
 export SIMWORLDS_CORPORA ?= $(abspath ../shared/corpora)
 endif
 
+# uv trusts a list of its own unless told to trust the system's, where a company's proxy may be known.
+ifneq ($(wildcard /etc/ssl/certs/ca-certificates.crt),)
+export UV_SYSTEM_CERTS ?= 1
+endif
+
 .DEFAULT_GOAL := help
 .PHONY: help setup kb test serve bench lint docs docs-check lock clean
 
@@ -64,6 +69,7 @@ clean: ## Remove what was made here (knowledge bases live elsewhere and stay)
 # The stamp is written last: a set-up that was interrupted is done again.
 $(STAMP): requirements.lock pyproject.toml | $(UV)
 	@echo "Setting up .venv (CPython $(PYTHON_VERSION), pinned dependencies) ..."
+	@test ! -L .venv || rm .venv  # a link leads to somebody else's environment
 	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
 	@$(UV_ENV) "$(UV)" pip sync --quiet --python $(PY) --require-hashes requirements.lock
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .

@@ -28,7 +28,11 @@ def committed() -> list[Path]:
     done = subprocess.run(["git", "ls-files", "-z"], cwd=REPO, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         pytest.skip("this is no clone")
-    return [path for name in done.stdout.split("\0") if name and (path := REPO / name).is_file()]
+    return [
+        path
+        for name in done.stdout.split("\0")
+        if name and ((path := REPO / name).is_file() or path.is_symlink())
+    ]
 
 
 def project() -> dict[str, object]:
@@ -59,6 +63,10 @@ def test_no_committed_file_names_a_package_index() -> None:
 def test_no_committed_file_is_large() -> None:
     large = {str(path.relative_to(REPO)): path.stat().st_size for path in committed()}
     assert {name: size for name, size in large.items() if size > LARGEST} == {}
+
+
+def test_no_link_is_committed() -> None:
+    assert [str(path) for path in committed() if path.is_symlink()] == []
 
 
 def test_no_committed_file_names_a_place_on_somebodys_machine() -> None:
