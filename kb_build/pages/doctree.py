@@ -31,7 +31,6 @@ ADMONITIONS: dict[type[nodes.Element], str] = {
 }
 _SILENT = (
     nodes.Invisible,
-    nodes.system_message,
     nodes.raw,
     nodes.decoration,
     nodes.transition,
@@ -237,6 +236,10 @@ class DoctreeReader:
             )
         ]
 
+    def _unread(self, node: nodes.Element) -> list[str]:
+        """Sources that could not be parsed come as part of the complaint."""
+        return [md.fence(block.astext()) for block in node.findall(nodes.literal_block)]
+
     def _table(self, node: nodes.Element) -> list[str]:
         title = next((child for child in node.children if isinstance(child, nodes.title)), None)
         grid = md.Grid()
@@ -313,6 +316,7 @@ class DoctreeReader:
         nodes.footnote: _note_below,
         nodes.citation: _note_below,
         nodes.table: _table,
+        nodes.system_message: _unread,
         addnodes.desc: _signature,
     }
     _INLINES: ClassVar[dict[type[nodes.Element], Callable[[DoctreeReader, nodes.Element], str]]] = {

@@ -22,18 +22,22 @@ from kb_build.errors import SourceError
 from kb_build.pages.assemble import ROOT, PageText, assemble
 from kb_build.pages.blender_markup import accept_unknown
 from kb_build.pages.docutils_speed import shared_transitions
-from kb_build.pages.sphinx_builder import PagesBuilder, drop_needless_work
+from kb_build.pages.sphinx_builder import LONGEST_LINE, PagesBuilder, drop_needless_work, plain_page
 from kb_build.pages.workers import processes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
+    from sphinx.environment import BuildEnvironment
+
     from kb_build.records import Page, PageSource
 
     Progress = Callable[[int, int], None]
 
-_SUPPRESSED = ["image", "toc", "config", "app", "download", "epub", "index", "misc.highlighting_failure"]
-_DECORATED = re.compile(r"^\S*\.rst:\d*: [A-Z]+: |(?: \[[a-z][\w.]*\])+$")
+_SUPPRESSED = ["image", "toc.not_included", "config", "app", "download", "index"]
+# The guides refer to the API reference and to the manual, which are not in their folder.
+_SUPPRESSED_IN_GUIDES = ["ref", "toc"]
+_DECORATED = re.compile(r"^.*?\.rst(?::\d*)?: [A-Z]+: |(?: \[[a-z][\w.]*\])+$")
 _LOCATION = re.compile(r"^(?P<path>.*?)(?::(?P<line>\d*))?(?::docstring.*)?$")
 
 
@@ -60,7 +64,7 @@ def read_rst(
     files = {
         path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.rglob("*.rst"))
     }
-    files = {slug: path for slug, path in files.items() if path.is_file()}
+    files = {slug: path for slug, path in files.items() if path.is_file() and not path.name.startswith(".")}
     if not files:
         raise SourceError(f"{folder} holds no .rst files: give the folder with the sources' index.rst")
     with tempfile.TemporaryDirectory(prefix="simworlds-rst-") as scratch:
@@ -100,7 +104,8 @@ def _repaired_copy(folder: Path, copy: Path, repaired: dict[str, str]) -> Path:
 
 
 def _build(folder: Path, scratch: Path, texts: dict[str, str], wanted: _Wanted) -> list[PageText]:
-    with patch_docutils(), docutils_namespace(), shared_transitions(), _paused_collector():
+    jobs = processes(wanted.jobs, len(texts))
+    with patch_docutils(), docutils_namespace(), shared_transitions(), _paused_collector(when=jobs > 1):
         try:
             app = Sphinx(
                 srcdir=folder,
@@ -114,12 +119,14 @@ def _build(folder: Path, scratch: Path, texts: dict[str, str], wanted: _Wanted) 
                 freshenv=True,
                 # Parts of the manual are marked as meant for the HTML form only.
                 tags=["html", "format_html", "builder_html"],
-                parallel=processes(wanted.jobs, len(texts)),
+                parallel=jobs,
             )
-            # Settings files of whoever runs this have no say, and long lines are no fault.
-            app.env.settings.update(_disable_config=True, line_length_limit=10**9)
+            # Settings files of whoever runs this have no say. The limit is also what stops substitutions that
+            # multiply without end.
+            app.env.settings.update(_disable_config=True, line_length_limit=LONGEST_LINE)
             accept_unknown(app, texts.values())
             drop_needless_work(app)
+            app.connect("env-purge-doc", _forget_trees)
             warnings = _PageWarnings(app)
             if wanted.progress is not None:
                 _report(app, wanted.progress, len(texts))
@@ -127,10 +134,17 @@ def _build(folder: Path, scratch: Path, texts: dict[str, str], wanted: _Wanted) 
         except Exception as error:
             reason = (str(error) or type(error).__name__).splitlines()[0]
             raise SourceError(f"Sphinx could not read {folder}: {reason}") from error
+        finally:
+            logging.getLogger("sphinx").handlers.clear()  # they would keep the whole application alive
     builder = app.builder
     assert isinstance(builder, PagesBuilder)
+    pages = {page.slug: page for page in builder.pages}
+    for slug in texts.keys() - pages.keys():
+        pages[slug] = plain_page(
+            slug, texts[slug], "kept as plain text: Sphinx passes over files of this name"
+        )
     found = warnings.by_page
-    return [replace(page, warnings=(*page.warnings, *found.get(page.slug, ()))) for page in builder.pages]
+    return [replace(page, warnings=(*page.warnings, *found.get(page.slug, ()))) for page in pages.values()]
 
 
 def _configuration(texts: dict[str, str], wanted: _Wanted) -> dict[str, Any]:
@@ -142,15 +156,21 @@ def _configuration(texts: dict[str, str], wanted: _Wanted) -> dict[str, Any]:
         # The guides have no front page, and Sphinx must have one.
         "root_doc": ROOT if ROOT in texts else next(iter(texts)),
         "source_suffix": {".rst": "restructuredtext"},
-        "exclude_patterns": [],
+        "exclude_patterns": [".*", "**/.*"],
         "locale_dirs": [],
         # As both the manual and the guides have it; it names the language of unmarked code blocks.
         "highlight_language": "python3",
         # Plain quotes and dashes are what people type into a query.
         "smartquotes": False,
-        # The guides refer to the API reference and to the manual, which are not in their folder.
-        "suppress_warnings": [*_SUPPRESSED, *(["ref"] if wanted.source == "guide" else [])],
+        # What docutils cannot parse is found nowhere but in its complaints.
+        "keep_warnings": True,
+        "suppress_warnings": [*_SUPPRESSED, *(_SUPPRESSED_IN_GUIDES if wanted.source == "guide" else [])],
     }
+
+
+def _forget_trees(_app: Sphinx, env: BuildEnvironment, _docname: str) -> None:
+    """A single process would keep every tree in memory, two gigabytes of them, though all are on disk."""
+    getattr(env, "_write_doc_doctree_cache", {}).clear()
 
 
 def _report(app: Sphinx, progress: Progress, pages: int) -> None:
@@ -195,21 +215,25 @@ class _PageWarnings(logging.Handler):
         location = _LOCATION.match(str(getattr(record, "location", "") or ""))
         path, line = (location["path"], location["line"]) if location else ("", "")
         page = self._app.project.path2doc(path) if path else None
+        if page is None:  # said again, with its place, by whatever could not be resolved
+            return
         # What a worker sends already carries its location and type.
-        message = _DECORATED.sub("", record.getMessage().strip().partition("\n")[0])
+        message = _DECORATED.sub("", record.getMessage().strip().partition("\n\n")[0])
+        message = " ".join(message.replace(f"{self._app.srcdir}/", "").split())
         text = f"line {line}: {message}" if line else message
-        self.by_page.setdefault(page or self._app.config.root_doc, []).append(text)
+        self.by_page.setdefault(page, []).append(text)
 
 
 @contextmanager
-def _paused_collector() -> Generator[None]:
-    """Trees are cyclic, but the workers that make them are short-lived; looking for garbage costs time."""
-    enabled = gc.isenabled()
+def _paused_collector(*, when: bool) -> Generator[None]:
+    """Trees are cyclic garbage, but the workers that make them are short-lived: looking for it costs time."""
+    if not (when and gc.isenabled()):
+        yield
+        return
     gc.disable()
-    gc.freeze()
+    gc.freeze()  # what was here before is then not copied into every worker
     try:
         yield
     finally:
         gc.unfreeze()
-        if enabled:
-            gc.enable()
+        gc.enable()

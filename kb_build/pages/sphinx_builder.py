@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.util.typing import ExtensionMetadata
 
+LONGEST_LINE = 100_000
+"""In characters. docutils also stops substitutions that grow beyond it, which could be made to take days."""
 _log = logging.getLogger(__name__)
 _HEADING = re.compile(r"^[ ]{0,4}(\S[^\n]*)\n([^\w\s])\2{2,}[ \t]*$", re.MULTILINE)
 
@@ -63,10 +65,13 @@ class KeepingParser(RSTParser):
 
     def parse(self, inputstring: str | StringList, document: nodes.document) -> None:
         """Fill ``document`` from ``inputstring``."""
+        lines = inputstring.splitlines() if isinstance(inputstring, str) else inputstring
         try:
+            if any(len(line) > LONGEST_LINE for line in lines):
+                raise ValueError(f"a line of more than {LONGEST_LINE} characters")
             super().parse(inputstring, document)
         except Exception as error:  # a parser that gives up must not take 2,000 pages with it
-            text = inputstring if isinstance(inputstring, str) else "\n".join(inputstring)
+            text = "\n".join(lines)
             page = plain_page("", text, "")
             document.clear()
             document.ids.clear()

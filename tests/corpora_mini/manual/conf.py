@@ -1,0 +1,1 @@
+raise SystemExit("a configuration that came with the sources was run")
