@@ -1,8 +1,10 @@
-"""Folders that appear whole or not at all."""
+"""Files and folders that appear whole or not at all."""
 
 from __future__ import annotations
 
+import contextlib
 import os
+import re
 import shutil
 import tempfile
 from contextlib import contextmanager
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
 _PREFIX = ".unfinished-"
+_PART = re.compile(r"\..+\.(\d+)\.part")
 
 
 @contextmanager
@@ -35,6 +38,30 @@ def staged_folder(target: Path) -> Generator[Path]:
                 raise
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def staged_file(target: Path) -> Generator[Path]:
+    """A path beside ``target`` to write to; it becomes ``target`` when the body ends well, else it vanishes.
+
+    Raises OSError when the disk refuses.
+    """
+    target.parent.mkdir(parents=True, exist_ok=True)
+    part = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        yield part
+        part.replace(target)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def remove_unfinished_files(folder: Path) -> None:
+    """Remove what processes that no longer run left of files that they were writing in ``folder``."""
+    with contextlib.suppress(OSError):
+        for path in list(folder.iterdir()):
+            match = _PART.match(path.name)
+            if match and not _is_running(int(match[1])):
+                path.unlink(missing_ok=True)
 
 
 def _remove_leftovers(parent: Path) -> None:

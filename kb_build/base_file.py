@@ -1,0 +1,72 @@
+"""A finished base, looked at by those who build and check it."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from contextlib import closing
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+from kb_build.errors import StoreError
+from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_AGAIN = "Build it again: simworlds kb build --force"
+
+
+def open_base(path: Path) -> sqlite3.Connection:
+    """Opens a base read-only. Raises StoreError when it is absent, damaged, foreign or of another schema."""
+    if not path.is_file():
+        raise StoreError(f"{path}: no knowledge base here. Build it first: simworlds kb build")
+    try:
+        connection = sqlite3.connect(f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1", uri=True)
+    except sqlite3.Error as error:
+        raise StoreError(f"{path}: cannot be opened ({error}). {_AGAIN}") from error
+    try:
+        _check(connection, path)
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _check(connection: sqlite3.Connection, path: Path) -> None:
+    try:
+        facts = [
+            int(connection.execute(f"PRAGMA {name}").fetchone()[0])
+            for name in ("application_id", "user_version", "page_count", "page_size")
+        ]
+    except sqlite3.Error as error:
+        raise StoreError(f"{path}: not readable as a knowledge base ({error}). {_AGAIN}") from error
+    application, schema, pages, page_size = facts
+    if application != APPLICATION_ID:
+        raise StoreError(f"{path}: an SQLite file of something else, not a knowledge base. {_AGAIN}")
+    if schema != SCHEMA_VERSION:
+        raise StoreError(
+            f"{path}: its layout is number {schema}, and this SimWorlds knows {SCHEMA_VERSION}. {_AGAIN}"
+        )
+    if pages * page_size != path.stat().st_size:
+        raise StoreError(f"{path}: cut off; {pages * page_size:,} bytes were written. {_AGAIN}")
+
+
+def read_meta(path: Path) -> dict[str, str]:
+    """The facts that a base carries about itself. Raises StoreError as :func:`open_base`."""
+    with closing(open_base(path)) as connection:
+        try:
+            return dict(connection.execute("SELECT name, value FROM meta"))
+        except sqlite3.Error as error:
+            raise StoreError(f"{path}: damaged ({error}). {_AGAIN}") from error
+
+
+def described(meta: dict[str, str]) -> dict[str, Any]:
+    """Meta with its structured values read: sources, missing, options, counts, faults, …"""
+    found: dict[str, Any] = {}
+    for name, value in meta.items():
+        try:
+            found[name] = json.loads(value) if value[:1] in {"{", "["} else value
+        except ValueError:
+            found[name] = value
+    return found

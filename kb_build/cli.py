@@ -1,0 +1,179 @@
+"""The commands ``simworlds kb …``: build, look into, check and compare knowledge bases."""
+
+from __future__ import annotations
+
+import functools
+import json
+import signal
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
+
+import click
+
+from kb_build.errors import KBBuildError
+from kb_build.settings import base_path, built_bases, corpora_folder, home_folder, summaries_path
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kb_build.pipeline import BuildReport
+
+_ROLES = ("manual", "guides")
+_INTERRUPTED = 130
+_PATH = click.Path(path_type=Path)
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
+
+
+def reports_errors(command: Callable[_P, _T]) -> Callable[_P, _T]:
+    """What goes wrong is one message and an exit code: 2, or 130 after Ctrl-C."""
+
+    @functools.wraps(command)
+    def run(*args: _P.args, **kwargs: _P.kwargs) -> _T:
+        try:
+            return command(*args, **kwargs)
+        except KBBuildError as error:
+            click.echo(f"Error: {error}", err=True)
+            sys.exit(2)
+        except KeyboardInterrupt:
+            click.echo("Interrupted. What was there before still stands.", err=True)
+            sys.exit(_INTERRUPTED)
+
+    return run
+
+
+@click.group()
+def kb() -> None:
+    """Build, look into, check and compare knowledge bases."""
+
+
+def _roles(_context: click.Context, _parameter: click.Parameter, value: str | None) -> frozenset[str]:
+    roles = frozenset(role.strip() for role in (value or "").split(",") if role.strip())
+    if unknown := roles - set(_ROLES):
+        raise click.BadParameter(f"{', '.join(sorted(unknown))}: give manual, guides or both (manual,guides)")
+    return roles
+
+
+@kb.command()
+@click.argument("version", required=False)
+@click.option("--blender-exe", type=_PATH, help="Ask this Blender instead of a bpy package.")
+@click.option("--manual", type=_PATH, help="The manual: a folder or archive, RST or HTML.")
+@click.option("--guides", type=_PATH, help="The API guides: a folder or archive, RST or HTML.")
+@click.option("--no-pages", is_flag=True, help="Leave out manual and guides.")
+@click.option(
+    "--summaries",
+    type=click.Choice(["extractive", "claude", "none"]),
+    default="extractive",
+    show_default=True,
+    help="How pages are summarised; claude needs ANTHROPIC_API_KEY and costs money.",
+)
+@click.option(
+    "--max-cost", type=click.FloatRange(min=0), help="The most that claude may cost, in US dollars."
+)
+@click.option("--model", help="The model that claude's summaries are made with.")
+@click.option("--require", callback=_roles, metavar="ROLES", help="Fail without: manual, guides or both.")
+@click.option("--jobs", type=click.IntRange(1, 64), default=2, show_default=True, help="Processes at most.")
+@click.option("--force", is_flag=True, help="Build even if nothing has changed.")
+@click.option("--offline", is_flag=True, help="Download no documentation.")
+@click.option("--out", type=_PATH, help="Write the base to this file.")
+@reports_errors
+def build(version: str | None, **given: Any) -> None:
+    """Build the knowledge base of Blender VERSION (5.1, 5.1.2), if it is not there already.
+
+    Without VERSION: the Blender of this environment, else the newest known.
+    """
+    from kb_build import pipeline  # noqa: PLC0415 - other commands do without
+    from kb_build.progress import shown_progress  # noqa: PLC0415
+
+    signal.signal(signal.SIGTERM, _terminated)
+    options = pipeline.BuildOptions(
+        blender_exe=given["blender_exe"],
+        manual=given["manual"],
+        guides=given["guides"],
+        corpora=corpora_folder(),
+        pages=not given["no_pages"],
+        summaries=given["summaries"],
+        max_cost=given["max_cost"],
+        model=given["model"],
+        require=given["require"],
+        jobs=given["jobs"],
+        force=given["force"],
+        offline=given["offline"],
+        output=given["out"].expanduser().absolute() if given["out"] else None,
+    )
+    with shown_progress() as progress:
+        report = pipeline.build(version, options=options, home=home_folder(), progress=progress)
+    _tell(report)
+
+
+def _terminated(_number: int, _frame: object) -> NoReturn:
+    """Unwinds like Ctrl-C: no child process stays behind."""
+    raise KeyboardInterrupt
+
+
+def _tell(report: BuildReport) -> None:
+    from kb_build.report import build_lines, warning_lines  # noqa: PLC0415 - only here
+
+    click.echo("\n".join(build_lines(report)))
+    sys.stdout.flush()
+    for line in warning_lines(report):
+        click.echo(line, err=True)
+
+
+@kb.command()
+@click.argument("version", required=False)
+@click.option("--json", "as_json", is_flag=True, help="Everything that the base knows of itself, as JSON.")
+@reports_errors
+def info(version: str | None, as_json: bool) -> None:
+    """What is in the knowledge base of VERSION; without VERSION, which bases there are."""
+    from kb_build.report import base_facts, base_lines, bases_lines  # noqa: PLC0415 - only here
+
+    home = home_folder()
+    if version is None:
+        bases = [base_facts(path) for path in built_bases(home).values()]
+        click.echo(json.dumps(bases, indent=2) if as_json else "\n".join(bases_lines(bases, home)))
+        return
+    facts = base_facts(_base(version))
+    click.echo(json.dumps(facts, indent=2, ensure_ascii=False) if as_json else "\n".join(base_lines(facts)))
+    if "fault" in facts:
+        sys.exit(2)
+
+
+def _base(version: str) -> Path:
+    """The file of a version's base, or the file itself where a path is given."""
+    path = Path(version)
+    return path if path.suffix == ".sqlite" else base_path(home_folder(), version)
+
+
+@kb.command()
+@click.argument("version", required=False)
+@click.option(
+    "--reference",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="Identifiers that must resolve: a Sphinx objects.inv, or a text file with one on each line.",
+)
+@click.option("--json", "as_json", is_flag=True, help="The findings as JSON.")
+@reports_errors
+def verify(version: str | None, reference: Path | None, as_json: bool) -> None:
+    """Check the knowledge base of VERSION (default: the newest). Exit code 1 when something is wrong."""
+    from kb_build.verify import verify_base  # noqa: PLC0415 - only here
+
+    bases = list(built_bases(home_folder()).values())
+    if version is None and not bases:
+        raise KBBuildError("there is no knowledge base yet. Build one first: simworlds kb build")
+    found = verify_base(_base(version) if version else bases[-1], reference)
+    click.echo(json.dumps(found.as_json(), indent=2) if as_json else "\n".join(found.lines()))
+    sys.exit(0 if found.sound else 1)
+
+
+@kb.command("merge-summaries")
+@click.argument("file", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@reports_errors
+def merge_summaries(file: Path) -> None:
+    """Take over the summaries in a colleague's FILE, so that they are not paid for twice."""
+    from kb_build.summaries import SummaryStore  # noqa: PLC0415 - only here
+
+    store = SummaryStore(summaries_path(home_folder()))
+    new = store.merge(file)
+    click.echo(f"{new:,} summaries are new, {store.count():,} in all, in {store.path}")

@@ -1,0 +1,111 @@
+"""What a base is made of, told in a few digests: equal fingerprints, equal bases.
+
+Nothing here starts Blender or loads what reads pages: a build that has nothing to do must know so at once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from kb_build.digests import Digests
+    from kb_build.runtime import Runtime
+    from kb_build.sources import Missing, Source
+
+_PACKAGE = Path(__file__).resolve().parent
+# Packages whose versions show in the text of pages or in the index.
+_READERS = ("sphinx", "docutils", "beautifulsoup4", "lxml")
+_WRITERS = ("sqlite-utils", "snowballstemmer")
+# What is asked of a base or shown of a build leaves the base as it is.
+_ONLOOKERS = frozenset({"cli.py", "diff.py", "history.py", "progress.py", "verify.py"})
+
+
+def _digest(parts: Iterable[str | bytes]) -> str:
+    """SHA-256 over a sequence of texts, their boundaries included."""
+    total = hashlib.sha256()
+    for part in parts:
+        data = part.encode() if isinstance(part, str) else part
+        total.update(hashlib.sha256(data).digest())
+    return total.hexdigest()
+
+
+def _code(files: Iterable[Path]) -> str:
+    return _digest(
+        part for file in sorted(files) for part in (file.relative_to(_PACKAGE).as_posix(), file.read_bytes())
+    )
+
+
+def _versions(packages: Iterable[str]) -> str:
+    found: list[str] = []
+    for package in packages:
+        try:
+            found.append(f"{package}=={metadata.version(package)}")
+        except metadata.PackageNotFoundError:
+            found.append(f"{package}: absent")
+    return ", ".join(found)
+
+
+def own_version() -> str:
+    """The installed SimWorlds' version; "unknown" where it runs without being installed."""
+    try:
+        return metadata.version("simworlds")
+    except metadata.PackageNotFoundError:
+        return "unknown"
+
+
+@cache
+def extractor_digest() -> str:
+    """What is run inside Blender."""
+    return _code((_PACKAGE / "inside").glob("*.py"))
+
+
+@cache
+def reader_digest() -> str:
+    """What turns sources into pages."""
+    files = [*(_PACKAGE / "pages").rglob("*.py"), _PACKAGE / "records.py"]
+    return _digest([_code(files), _versions(_READERS)])
+
+
+@cache
+def code_digest() -> str:
+    """Everything that shapes a base."""
+    files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS]
+    return _digest([_code(files), _versions((*_READERS, *_WRITERS))])
+
+
+def runtime_digest(runtime: Runtime, digests: Digests) -> str:
+    """Which Blender it is, to the last byte, without starting it.
+
+    A wheel's list of files carries their digests; of an executable the program itself is read, once.
+    """
+    if runtime.kind == "executable":
+        return _digest([runtime.version, digests.of_file(runtime.executable.resolve())])
+    if runtime.kind == "environment":
+        return _digest([runtime.version, metadata.distribution("bpy").read_text("RECORD") or ""])
+    top = runtime.executable.parent.parent
+    lists = [
+        *top.glob("lib/python*/site-packages/bpy-*.dist-info/RECORD"),
+        *top.glob("Lib/site-packages/bpy-*.dist-info/RECORD"),
+    ]
+    return _digest([runtime.version, *(path.read_bytes() for path in sorted(lists))])
+
+
+def base_fingerprint(
+    runtime: str, sources: Sequence[Source], missing: Sequence[Missing], options: dict[str, Any]
+) -> str:
+    """The fingerprint of the base that a runtime (see :func:`runtime_digest`), sources and options give."""
+    described = {
+        "code": code_digest(),
+        "runtime": runtime,
+        "sources": [[one.role, one.form, one.version, one.sha256, one.given] for one in sources],
+        "missing": [one.role for one in missing],
+        "options": options,
+    }
+    return _digest([json.dumps(described, sort_keys=True)])

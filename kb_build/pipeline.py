@@ -1,0 +1,296 @@
+"""The steps of a build, in order; nothing is done when nothing has changed."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Literal
+
+from kb_build.base_file import read_meta
+from kb_build.digests import Digests
+from kb_build.errors import ExtractError, SourceError, StoreError
+from kb_build.extraction import extract_api
+from kb_build.fingerprint import base_fingerprint, own_version, runtime_digest
+from kb_build.progress import silent
+from kb_build.runtime import find_runtime
+from kb_build.settings import base_path, cache_folder, summaries_path
+from kb_build.sources import find_sources
+from kb_build.staging import remove_unfinished_files
+from kb_build.versions import ROLES, minor_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from kb_build.extract import Extract
+    from kb_build.page_reader import PageReader
+    from kb_build.progress import Progress
+    from kb_build.records import Page
+    from kb_build.runtime import Runtime
+    from kb_build.sources import Missing, Source
+    from kb_build.store import Contents
+    from kb_build.summaries import SummaryReport, SummaryRun
+
+SummaryMethod = Literal["extractive", "claude", "none"]
+_LOADED_AHEAD = ("kb_build.extract", "kb_build.store", "kb_build.summaries")
+
+
+@dataclass(frozen=True, slots=True)
+class BuildOptions:
+    """What to build from and how.
+
+    ``blender_exe``, ``manual``, ``guides`` and ``corpora`` are paths; ``require`` names roles whose absence
+    is an error; ``max_cost`` (US dollars) and ``model`` are for Claude's summaries, None for their defaults;
+    ``output`` is the base's file (default: in the home folder, named after the version).
+    """
+
+    blender_exe: Path | None = None
+    manual: Path | None = None
+    guides: Path | None = None
+    corpora: Path | None = None
+    pages: bool = True
+    summaries: SummaryMethod = "extractive"
+    max_cost: float | None = None
+    model: str | None = None
+    require: frozenset[str] = frozenset()
+    jobs: int = 2
+    force: bool = False
+    offline: bool = False
+    output: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BuildReport:
+    """What a build came to. ``meta`` is what the base carries; ``seconds`` is wall time."""
+
+    path: Path
+    version: str
+    built: bool
+    seconds: float
+    meta: Mapping[str, str]
+    missing: tuple[Missing, ...] = ()
+    warnings: tuple[str, ...] = ()
+    summaries: SummaryReport | None = None
+
+
+@dataclass(slots=True)
+class _Build:
+    """One build under way."""
+
+    options: BuildOptions
+    home: Path
+    progress: Progress
+    runtime: Runtime
+    sources: Sequence[Source] = ()
+    missing: Sequence[Missing] = ()
+    warnings: list[str] = field(default_factory=list[str])
+
+    @property
+    def path(self) -> Path:
+        return self.options.output or base_path(self.home, self.runtime.version)
+
+
+def build(
+    version: str | None, *, options: BuildOptions, home: Path, progress: Progress = silent
+) -> BuildReport:
+    """Builds the base of a Blender version, unless the one that is there is what would be built.
+
+    ``version`` is ``"5.1"``, ``"5.1.2"`` or None for the Blender at hand. The old base answers until the new
+    one is whole, whatever happens. Raises KBBuildError.
+    """
+    began = time.perf_counter()
+    runtime = find_runtime(version, home=home, blender_exe=options.blender_exe, progress=progress)
+    work = _Build(options, home, progress, runtime)
+    _find_sources(work)
+    fingerprint = _fingerprint(work)
+    remove_unfinished_files(work.path.parent)
+    meta = None if options.force else _present(work.path, fingerprint)
+    if meta is not None:
+        return _report(work, began, meta, built=False)
+    with _page_reader(work) as reader:
+        threading.Thread(target=_load_ahead, daemon=True).start()
+        extract = _extract(work)
+        pages = _pages(work, reader.result(), extract)
+    run = _summaries(work, pages)
+    meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
+    _write(work, extract, pages, run, meta)
+    return _report(work, began, meta, built=True, run=run)
+
+
+def _find_sources(work: _Build) -> None:
+    options = work.options
+    if not options.pages:
+        return
+    work.sources, work.missing = find_sources(
+        work.runtime.version,
+        cache=cache_folder(work.home),
+        manual=options.manual,
+        guides=options.guides,
+        corpora=options.corpora,
+        allow_download=not options.offline,
+        progress=work.progress,
+    )
+    for one in work.missing:
+        if one.role in options.require:
+            raise SourceError(f"{one.reason}. It was required (--require {one.role}); the old base stands")
+        work.warnings.append(one.reason)
+    minor = minor_of(work.runtime.version)
+    for source in work.sources:
+        if source.version != minor:
+            work.warnings.append(
+                f"the {source.role} at {source.origin} is of Blender {source.version}, not {minor}: answers "
+                "drawn from it will say so"
+            )
+
+
+def _fingerprint(work: _Build) -> str:
+    digests = Digests(cache_folder(work.home) / "digests.json")
+    runtime = runtime_digest(work.runtime, digests)
+    digests.save()
+    return base_fingerprint(runtime, work.sources, work.missing, _choices(work.options))
+
+
+def _choices(options: BuildOptions) -> dict[str, Any]:
+    """The options that shape a base."""
+    claude = options.summaries == "claude"
+    return {
+        "pages": options.pages,
+        "summaries": options.summaries,
+        "model": options.model if claude else None,
+        "max_cost": options.max_cost if claude else None,
+    }
+
+
+def _present(path: Path, fingerprint: str) -> dict[str, str] | None:
+    """The meta of the base at ``path`` if it has this fingerprint."""
+    try:
+        meta = read_meta(path)
+    except StoreError:
+        return None
+    return meta if meta.get("fingerprint") == fingerprint else None
+
+
+def _page_reader(work: _Build) -> PageReader:
+    from kb_build.page_reader import PageReader  # noqa: PLC0415 - not needed when nothing changed
+
+    return PageReader(work.sources, cache_folder(work.home), jobs=work.options.jobs, progress=work.progress)
+
+
+def _load_ahead() -> None:
+    """Loads what comes after Blender's answer while Blender works on it."""
+    for name in _LOADED_AHEAD:
+        import_module(name)
+
+
+def _extract(work: _Build) -> Extract:
+    runtime = work.runtime
+    file = extract_api(runtime, home=work.home, again=work.options.force, progress=work.progress)
+    from kb_build.extract import read_extract  # noqa: PLC0415 - loaded ahead
+
+    work.progress("Reading Blender's answer", 0, None)
+    try:
+        extract = read_extract(file)
+    except ExtractError:
+        file.unlink(missing_ok=True)
+        raise
+    kinds = {symbol.kind for symbol in extract.symbols}
+    if not {"class", "operator", "property"} <= kinds:
+        reason = extract.faults[0] if extract.faults else "it named no reason"
+        file.unlink(missing_ok=True)
+        raise ExtractError(f"Blender {runtime.version} did not describe its classes or operators: {reason}")
+    if minor_of(extract.version) != minor_of(runtime.version):
+        raise ExtractError(
+            f"{runtime.executable} is Blender {extract.version}, though it passed for {runtime.version}"
+        )
+    work.warnings += [
+        f"a part of Blender {extract.version} could not be described: {fault.strip().splitlines()[-1]} "
+        f"(step {fault.partition(':')[0]}; the whole traceback is in the base: simworlds kb info --json)"
+        for fault in extract.faults
+    ]
+    return extract
+
+
+def _pages(work: _Build, read: Mapping[str, list[Page]], extract: Extract) -> list[Page]:
+    """All pages, one for each slug; of two with the same one, the manual's stays."""
+    kept: dict[str, Page] = {}
+    for page in (*(page for role in ROLES for page in read.get(role, ())), *extract.templates):
+        if page.slug in kept:
+            work.warnings.append(f"two pages are called {page.slug}; the {page.source}'s was left out")
+        else:
+            kept[page.slug] = page
+    return list(kept.values())
+
+
+def _summaries(work: _Build, pages: Sequence[Page]) -> SummaryRun | None:
+    method = work.options.summaries
+    if method == "none":
+        return None
+    from kb_build.summaries import ClaudeOptions, SummaryStore, summarise  # noqa: PLC0415 - loaded ahead
+
+    work.progress("Summarising pages", 0, None)
+    if method == "extractive":
+        return summarise(pages)
+    given = {"model": work.options.model, "max_cost": work.options.max_cost}
+    claude = ClaudeOptions(**{name: value for name, value in given.items() if value is not None})  # pyright: ignore[reportArgumentType]
+
+    def step(done: int, total: int, message: str) -> None:
+        work.progress(message, done, total or None)
+
+    return summarise(
+        pages, method=method, store=SummaryStore(summaries_path(work.home)), options=claude, progress=step
+    )
+
+
+def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun | None) -> dict[str, str]:
+    from kb_build.facts import counts, source_facts, summary_facts  # noqa: PLC0415 - not when nothing changed
+
+    structured = {
+        "sources": [source_facts(source, pages) for source in work.sources],
+        "missing": [{"role": one.role, "reason": one.reason} for one in work.missing],
+        "options": _choices(work.options),
+        "counts": counts(extract, pages),
+        "faults": list(extract.faults),
+        "addons": list(extract.addons),
+        "summaries": summary_facts(run),
+        "page_warnings": {page.slug: list(page.warnings) for page in pages if page.warnings},
+        "runtime": {"kind": work.runtime.kind, "executable": str(work.runtime.executable)},
+    }
+    return {
+        "blender": extract.version,
+        "minor": minor_of(extract.version),
+        "build_hash": extract.build,
+        "built_at": datetime.now(UTC).isoformat(timespec="seconds"),
+        "simworlds": own_version(),
+        **{name: json.dumps(value, ensure_ascii=False) for name, value in structured.items()},
+    }
+
+
+def _write(
+    work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun | None, meta: dict[str, str]
+) -> None:
+    from kb_build.store import Contents, write_base  # noqa: PLC0415 - loaded ahead
+
+    work.progress(f"Writing {work.path.name}", 0, None)
+    by_slug = run.by_slug if run else {}
+    summaries = {slug: (summary.text, summary.method) for slug, summary in by_slug.items()}
+    contents: Contents = Contents(extract.symbols, pages, extract.links, meta, summaries)
+    write_base(work.path, contents)
+
+
+def _report(
+    work: _Build, began: float, meta: dict[str, str], *, built: bool, run: SummaryRun | None = None
+) -> BuildReport:
+    return BuildReport(
+        path=work.path,
+        version=meta["blender"],
+        built=built,
+        seconds=time.perf_counter() - began,
+        meta=meta,
+        missing=tuple(work.missing),
+        warnings=tuple(work.warnings),
+        summaries=run.report if run else None,
+    )
