@@ -16,12 +16,10 @@ APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's own place for telling whose file
 # How a key came about, in the order in which an answer prefers them.
 FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL = range(4)
 
-FTS_COLUMNS = ("name", "title", "context", "body", "related")
-
 DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 
--- One row an identifier; ``record`` is the whole Symbol, packed (see pack).
+-- One row an identifier; ``line`` tells it in one line, ``record`` is the whole Symbol, packed (see pack).
 CREATE TABLE symbols (
     id INTEGER PRIMARY KEY,
     path TEXT NOT NULL UNIQUE,
@@ -34,6 +32,7 @@ CREATE TABLE symbols (
     base TEXT NOT NULL,
     grp TEXT NOT NULL,
     label TEXT NOT NULL,
+    line TEXT NOT NULL,
     record BLOB NOT NULL
 );
 
@@ -51,7 +50,7 @@ CREATE TABLE enum_items (
 -- One row a page; ``record`` is the Page without its sections' texts.
 CREATE TABLE pages (
     slug TEXT PRIMARY KEY, source TEXT NOT NULL, version TEXT NOT NULL, title TEXT NOT NULL,
-    parent TEXT NOT NULL, url TEXT NOT NULL, content_hash TEXT NOT NULL,
+    parent TEXT NOT NULL, position INTEGER NOT NULL, url TEXT NOT NULL, content_hash TEXT NOT NULL,
     summary TEXT NOT NULL, summary_method TEXT NOT NULL, record BLOB NOT NULL
 ) WITHOUT ROWID;
 
@@ -63,22 +62,27 @@ CREATE TABLE sections (
 -- source and target are ids; a manual link's target may carry an anchor.
 CREATE TABLE links (source TEXT NOT NULL, target TEXT NOT NULL, kind TEXT NOT NULL);
 
--- The units of retrieval: sections and symbols. ``ref`` is the id they count for.
+-- Page → symbols whose manual link leads there: classes and operators only.
+CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;
+
+-- What is retrieved (kb_build.index): units (level 0) and topics (level 1), numbered from 0 within their level.
+-- ``ref`` is the id a document counts for, ``topic`` the number of its topic or -1.
 CREATE TABLE docs (
-    id INTEGER PRIMARY KEY, ref TEXT NOT NULL, kind TEXT NOT NULL, title TEXT NOT NULL,
-    anchor TEXT NOT NULL, grp TEXT NOT NULL, length INTEGER NOT NULL
-);
+    level INTEGER NOT NULL, number INTEGER NOT NULL, ref TEXT NOT NULL, kind TEXT NOT NULL,
+    title TEXT NOT NULL, anchor TEXT NOT NULL, topic INTEGER NOT NULL, PRIMARY KEY (level, number)
+) WITHOUT ROWID;
 
-CREATE VIRTUAL TABLE docs_fts USING fts5 (
-    name, title, context, body, related,
-    content='', detail='column', columnsize=1, tokenize='ascii'
-);
+-- The inverted index: df document numbers as uint32, then df weighted term frequencies as float16.
+CREATE TABLE postings (
+    level INTEGER NOT NULL, stem TEXT NOT NULL, df INTEGER NOT NULL, data BLOB NOT NULL,
+    PRIMARY KEY (level, stem)
+) WITHOUT ROWID;
 
--- Words of the corpus with the number of units that hold them, most used spelling first.
-CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, df INTEGER NOT NULL, word TEXT NOT NULL) WITHOUT ROWID;
+-- The corpus' words: stem and most used spelling.
+CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWID;
 
--- Named arrays (NumPy .npy bytes): the corpus' latent space.
-CREATE TABLE arrays (name TEXT PRIMARY KEY, data BLOB NOT NULL) WITHOUT ROWID;
+-- English words → stems of the corpus that mean nearly the same.
+CREATE TABLE near (word TEXT NOT NULL, stem TEXT NOT NULL, weight REAL NOT NULL, PRIMARY KEY (word, stem)) WITHOUT ROWID;
 """
 
 INDEXES = """
@@ -88,6 +92,7 @@ CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
 CREATE INDEX sections_slug ON sections (slug, position);
 CREATE INDEX links_source ON links (source, kind);
 CREATE INDEX links_target ON links (target, kind);
+CREATE INDEX pages_parent ON pages (parent, position);
 """
 
 

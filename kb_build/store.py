@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sqlite3
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import sqlite_utils
 
-from kb_build.analysis import STOP_WORDS, index_text, key, stem, words
+from kb_build.analysis import key
 from kb_build.errors import StoreError
+from kb_build.index import TOPIC_B, UNIT_B, Doc, make_postings, make_units, topic_docs, vocabulary
+from kb_build.lines import member_line
+from kb_build.near_words import load_near_words, near_stems
 from kb_build.records import Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
@@ -69,6 +70,7 @@ def page_names(page: Page) -> Iterator[tuple[str, int, str]]:
     """(key, form, slug) for a page: its slug, the slug's last part, its title."""
     yield key(page.slug), FORM_PATH, page.slug
     yield key(page.slug.removesuffix("/index")), FORM_SHORT, page.slug
+    yield key(page.slug.removesuffix("/index").rpartition("/")[2]), FORM_NAME, page.slug
     yield key(page.title), FORM_LABEL, page.slug
 
 
@@ -81,92 +83,6 @@ def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
     for parameter in symbol.parameters:
         for item in parameter.enum_items:
             yield key(item.identifier), f"{symbol.path}({parameter.name})", item.identifier, item.name
-
-
-@dataclass(frozen=True, slots=True)
-class Doc:
-    """One unit of retrieval: its id, what it is called, and the five texts that are indexed."""
-
-    ref: str
-    kind: str
-    title: str
-    anchor: str = ""
-    group: str = ""
-    name: tuple[str, ...] = ()
-    heading: tuple[str, ...] = ()
-    context: tuple[str, ...] = ()
-    body: tuple[str, ...] = ()
-    related: tuple[str, ...] = ()
-
-
-def _indexed(symbol: Symbol, owner: Symbol | None) -> bool:
-    if symbol.kind == "enum" or symbol.name.startswith("bl_rna_get_subclass"):
-        return False
-    return symbol.group not in {"ui", "operator"} and not (owner and owner.group in {"ui", "operator"})
-
-
-def symbol_docs(symbols: Sequence[Symbol]) -> Iterator[Doc]:
-    """A unit for every symbol that a script works with."""
-    by_path = {symbol.path: symbol for symbol in symbols}
-    sockets: dict[str, list[str]] = {}
-    for symbol in symbols:
-        if symbol.kind == "socket":
-            sockets.setdefault(symbol.owner, []).append(symbol.name)
-    for symbol in symbols:
-        owner = by_path.get(symbol.owner)
-        if not _indexed(symbol, owner):
-            continue
-        items = [f"{item.identifier} {item.name} {item.description}" for item in symbol.enum_items]
-        arguments = [f"{parameter.name} {parameter.description}" for parameter in symbol.parameters]
-        results = [f"{result.name} {result.description}" for result in symbol.returns]
-        yield Doc(
-            ref=symbol.path,
-            kind=symbol.kind,
-            title=symbol.label or symbol.name,
-            group=symbol.owner,
-            name=(symbol.name,),
-            heading=(symbol.label,),
-            context=(short_path(symbol.owner), owner.label if owner else ""),
-            body=(symbol.description, *items, *arguments, *results),
-            related=tuple(sockets.get(symbol.path, ())),
-        )
-
-
-def page_docs(pages: Sequence[Page], summaries: Mapping[str, tuple[str, str]]) -> Iterator[Doc]:
-    """A unit for every section of every page."""
-    for page in pages:
-        above = " ".join(page.breadcrumbs)
-        for section in page.sections:
-            first = section.level == 1
-            yield Doc(
-                ref=page.slug,
-                kind=page.source,
-                title=page.title if first else f"{page.title} › {section.title}",
-                anchor="" if first else section.anchor,
-                group=page.slug,
-                name=(page.slug,) if first else (),
-                heading=(section.title,),
-                context=(above,) if first else (above, page.title),
-                body=(section.text,),
-                related=(summaries.get(page.slug, ("", ""))[0],) if first else (),
-            )
-
-
-def _vocabulary(docs: Iterable[Doc]) -> Iterator[tuple[str, int, str]]:
-    """(stem, number of units, most used spelling) for the corpus' words."""
-    spellings: dict[str, Counter[str]] = {}
-    df: Counter[str] = Counter()
-    for doc in docs:
-        seen: set[str] = set()
-        for text in (*doc.name, *doc.heading, *doc.context, *doc.body, *doc.related):
-            for word in words(text):
-                if word not in STOP_WORDS:
-                    stemmed = stem(word)
-                    seen.add(stemmed)
-                    spellings.setdefault(stemmed, Counter())[word] += 1
-        df.update(seen)
-    for stemmed, count in df.items():
-        yield stemmed, count, spellings[stemmed].most_common(1)[0][0]
 
 
 def _insert(connection: sqlite3.Connection, table: str, rows: Iterable[tuple[object, ...]], width: int) -> None:
@@ -182,32 +98,40 @@ def _write_symbols(connection: sqlite3.Connection, symbols: Sequence[Symbol]) ->
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label,
-                pack(to_json(symbol)),
+                member_line(symbol), pack(to_json(symbol)),
             )
             for number, symbol in enumerate(symbols)
         ),
-        12,
+        13,
     )  # fmt: skip
     _insert(connection, "names", (row for symbol in symbols for row in symbol_names(symbol)), 3)
     _insert(connection, "enum_items", (row for symbol in symbols for row in enum_rows(symbol)), 4)
 
 
-def _parents(pages: Sequence[Page]) -> dict[str, str]:
-    return {child: page.slug for page in pages for child in page.children}
+def _places(pages: Sequence[Page]) -> dict[str, tuple[str, int]]:
+    """slug → (the page above it, its place there)."""
+    return {child: (page.slug, place) for page in pages for place, child in enumerate(page.children)}
+
+
+def _explained(symbols: Sequence[Symbol], links: Sequence[Link]) -> Iterator[tuple[str, str]]:
+    listed = {symbol.path for symbol in symbols if symbol.kind == "operator" or symbol.group == "data"}
+    for link in links:
+        if link.kind == "manual" and link.source in listed:
+            yield link.target.partition("#")[0], link.source
 
 
 def _write_pages(
     connection: sqlite3.Connection, pages: Sequence[Page], summaries: Mapping[str, tuple[str, str]]
 ) -> None:
-    parents = _parents(pages)
+    places = _places(pages)
     for page in pages:
         text, method = summaries.get(page.slug, ("", ""))
         record = pack({k: v for k, v in to_json(replace(page, sections=())).items() if k != "sections"})
         row = (
-            page.slug, page.source, page.version, page.title, parents.get(page.slug, ""), page.url,
+            page.slug, page.source, page.version, page.title, *places.get(page.slug, ("", 0)), page.url,
             page.content_hash, text, method, record,
         )  # fmt: skip
-        connection.execute("INSERT OR IGNORE INTO pages VALUES (?,?,?,?,?,?,?,?,?,?)", row)
+        connection.execute("INSERT OR IGNORE INTO pages VALUES (?,?,?,?,?,?,?,?,?,?,?)", row)
         connection.executemany(
             "INSERT INTO sections (slug, position, anchor, title, level, text) VALUES (?,?,?,?,?,?)",
             (
@@ -218,18 +142,25 @@ def _write_pages(
         _insert(connection, "names", page_names(page), 3)
 
 
-def _write_docs(connection: sqlite3.Connection, docs: Sequence[Doc]) -> None:
-    for number, doc in enumerate(docs, start=1):
-        columns = [index_text(texts) for texts in (doc.name, doc.heading, doc.context, doc.body, doc.related)]
-        length = sum(column.count(" ") + 1 for column in columns if column)
-        connection.execute(
-            "INSERT INTO docs VALUES (?,?,?,?,?,?,?)",
-            (number, doc.ref, doc.kind, doc.title, doc.anchor, doc.group, length),
-        )
-        connection.execute(
-            "INSERT INTO docs_fts (rowid, name, title, context, body, related) VALUES (?,?,?,?,?,?)",
-            (number, *columns),
-        )
+def _write_level(connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int]) -> set[str]:
+    """One level of the retrieval index; returns its stems."""
+    rows = (
+        (level, number, doc.ref, doc.kind, doc.title, doc.anchor, topics.get(doc.topic, -1))
+        for number, doc in enumerate(docs)
+    )
+    _insert(connection, "docs", rows, 7)
+    postings = make_postings(docs, TOPIC_B if level else UNIT_B)
+    _insert(connection, "postings", ((level, *row) for row in postings.packed()), 4)
+    return set(postings.numbers)
+
+
+def _write_index(connection: sqlite3.Connection, units: Sequence[Doc]) -> None:
+    topics = [*topic_docs(units)]
+    numbers = {doc.ref: number for number, doc in enumerate(topics)}
+    stems = _write_level(connection, 0, units, numbers)
+    _write_level(connection, 1, topics, numbers)
+    _insert(connection, "vocabulary", vocabulary(units), 2)
+    _insert(connection, "near", near_stems(load_near_words(), stems), 3)
 
 
 def write_base(path: Path, contents: Contents) -> None:
@@ -261,14 +192,14 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA application_id={APPLICATION_ID};"
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
-        docs = [*page_docs(contents.pages, contents.summaries), *symbol_docs(contents.symbols)]
+        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries)
         with connection:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
-            _write_docs(connection, docs)
+            _write_index(connection, units)
+            _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3)
-            _insert(connection, "vocabulary", _vocabulary(docs), 3)
             _insert(connection, "meta", contents.meta.items(), 2)
-        connection.executescript(f"{INDEXES} INSERT INTO docs_fts (docs_fts) VALUES ('optimize'); ANALYZE;")
+        connection.executescript(f"{INDEXES} ANALYZE;")
     finally:
         database.close()

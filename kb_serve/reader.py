@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from kb_build.analysis import key
 from kb_build.records import Page, Section, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, unpack
 from kb_serve.errors import BaseMissing, BaseUnreadable
@@ -22,7 +23,10 @@ _REBUILD = "Build it again: simworlds kb build --force"
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """The part of a symbol that resolving needs; the whole record is read when it is answered."""
+    """The part of a symbol that resolving needs; the whole record is read when it is answered.
+
+    ``line`` is how its owner lists it.
+    """
 
     path: str
     kind: str
@@ -34,6 +38,7 @@ class Entry:
     base: str
     group: str
     label: str
+    line: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +55,7 @@ class PageEntry:
     summary_method: str
 
 
-_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label"
+_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, line"
 _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
 
@@ -145,6 +150,10 @@ class Reader:
         """(owner, identifier, name) for every enumeration that has the item."""
         return self.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)
 
+    def near(self, word: str) -> list[tuple[str, float]]:
+        """Stems of the corpus that mean nearly what an English word means, with the similarity."""
+        return self.rows("SELECT stem, weight FROM near WHERE word = ? ORDER BY weight DESC", word)
+
     def links_from(self, source: str, kind: str) -> list[str]:
         """Targets of a symbol's or page's links of one kind."""
         return [row[0] for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)]
@@ -157,6 +166,20 @@ class Reader:
         """A page's row, or None."""
         rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE slug = ?", slug)
         return PageEntry(*rows[0]) if rows else None
+
+    def page_children(self, slug: str) -> list[PageEntry]:
+        """The pages right below a page, in the manual's order."""
+        rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE parent = ? ORDER BY position", slug)
+        return [PageEntry(*row) for row in rows]
+
+    def pages_ending_in(self, name: str) -> list[PageEntry]:
+        """Pages whose slug's last part, ``index`` left out, is ``name``."""
+        rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE slug IN (SELECT id FROM names WHERE key = ? AND form = 2)", key(name))
+        return [PageEntry(*row) for row in rows]
+
+    def symbols_of_page(self, slug: str) -> list[str]:
+        """The symbols that Blender's own table explains on a page."""
+        return [row[0] for row in self.rows("SELECT symbol FROM explained WHERE slug = ?", slug)]
 
     def page(self, slug: str) -> Page | None:
         """A page with its sections, or None."""

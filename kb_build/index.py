@@ -1,0 +1,230 @@
+"""The retrieval index: what is found, under which terms, and how strongly.
+
+Two levels are indexed alike. A *unit* is a section of a page or one symbol; a *topic* is a whole page or a whole
+class with everything it holds. A unit is ranked by its own text and its topic's: a short description alone says
+too little, a long page too much.
+
+Each level is an inverted index of BM25F term frequencies: the weighted sum over fields of tf / (1 - b + b · length
+/ average length) (Robertson & Zaragoza 2009, "The Probabilistic Relevance Framework", section 3.6). Saturation and
+idf are applied when a query is answered.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+
+import numpy as np
+
+from kb_build.analysis import STOP_WORDS, key, stem, terms, words
+from kb_build.records import Link, Page, Symbol
+
+TYPES = "bpy.types."
+PAGE_KINDS = frozenset({"manual", "guide", "template"})
+FIELDS = ("name", "heading", "context", "body", "related")
+FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.5}
+UNIT_B = 0.35  # how much a unit's length counts: most are a sentence
+TOPIC_B = 0.4
+
+
+@dataclass(frozen=True, slots=True)
+class Doc:
+    """One unit or topic: the id it counts for, what it is called, and the texts of its five fields."""
+
+    ref: str
+    kind: str
+    title: str
+    anchor: str = ""
+    topic: str = ""
+    name: tuple[str, ...] = ()
+    heading: tuple[str, ...] = ()
+    context: tuple[str, ...] = ()
+    body: tuple[str, ...] = ()
+    related: tuple[str, ...] = ()
+
+
+@dataclass(slots=True)
+class Postings:
+    """stem → (document numbers, weighted term frequencies), ascending by number."""
+
+    numbers: dict[str, list[int]] = field(default_factory=lambda: defaultdict(list))
+    weights: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
+
+    def packed(self) -> Iterator[tuple[str, int, bytes]]:
+        """(stem, document frequency, numbers as uint32 then weights as float16)."""
+        for term, numbers in self.numbers.items():
+            ids = np.asarray(numbers, np.uint32).tobytes()
+            weights = np.asarray(self.weights[term], np.float16).tobytes()
+            yield term, len(numbers), ids + weights
+
+
+def _indexed(symbol: Symbol, owner: Symbol | None) -> bool:
+    """Whether a script works with the symbol: panels, menus and RNA's own bookkeeping are left out."""
+    if symbol.kind == "enum" or symbol.name.startswith("bl_rna_get_subclass"):
+        return False
+    if symbol.name in {"input_template", "output_template", "is_registered_node_type"}:
+        return False
+    return symbol.group not in {"ui", "operator"} and not (owner and owner.group in {"ui", "operator"})
+
+
+def _topic_of(symbol: Symbol) -> str:
+    if symbol.kind == "class":
+        return symbol.path
+    if symbol.owner.startswith(TYPES) and symbol.kind in {"property", "function", "socket"}:
+        return symbol.owner
+    return ""
+
+
+def definitions(page: Page) -> Iterator[tuple[str, str]]:
+    """(key of the term, text) for every definition-list entry of a page."""
+    for section in page.sections:
+        lines = section.text.split("\n")
+        for number, line in enumerate(lines):
+            term = line.strip()
+            if not (term.startswith("**") and term.rstrip(":").endswith("**") and len(term) < 90):
+                continue
+            depth = len(line) - len(line.lstrip())
+            body: list[str] = []
+            for following in lines[number + 1 :]:
+                if following.strip() and len(following) - len(following.lstrip()) <= depth:
+                    break
+                body.append(following.strip())
+            yield key(term.strip("*:").partition("(")[0]), " ".join(body)
+
+
+def _manual_texts(
+    symbols: Sequence[Symbol], pages: Sequence[Page], links: Sequence[Link]
+) -> tuple[dict[str, tuple[str, ...]], dict[str, list[str]]]:
+    """(symbol → what the manual says of it, page → names of the symbols it explains), by Blender's own table."""
+    by_path = {symbol.path: symbol for symbol in symbols}
+    by_slug = {page.slug: page for page in pages}
+    defined: dict[str, dict[str, str]] = {}
+    said: dict[str, tuple[str, ...]] = {}
+    explains: dict[str, list[str]] = defaultdict(list)
+    for link in links:
+        slug = link.target.partition("#")[0]
+        page, symbol = by_slug.get(slug), by_path.get(link.source)
+        if link.kind != "manual" or page is None or symbol is None:
+            continue
+        if slug not in defined:
+            defined[slug] = dict(reversed([*definitions(page)]))
+        said[symbol.path] = (page.title, defined[slug].get(key(symbol.label), ""))
+        if symbol.kind != "class":
+            explains[slug].append(f"{symbol.label} {symbol.name}")
+    return said, explains
+
+
+def symbol_docs(symbols: Sequence[Symbol], said: Mapping[str, tuple[str, ...]]) -> Iterator[Doc]:
+    """A unit for every symbol that a script works with."""
+    by_path = {symbol.path: symbol for symbol in symbols}
+    sockets: dict[str, list[str]] = defaultdict(list)
+    for symbol in symbols:
+        if symbol.kind == "socket":
+            sockets[symbol.owner].append(symbol.name)
+    for symbol in symbols:
+        owner = by_path.get(symbol.owner)
+        if not _indexed(symbol, owner):
+            continue
+        items = [f"{item.identifier} {item.name} {item.description}" for item in symbol.enum_items]
+        arguments = [f"{parameter.name} {parameter.description}" for parameter in symbol.parameters]
+        results = [f"{result.name} {result.description}" for result in symbol.returns]
+        yield Doc(
+            ref=symbol.path,
+            kind=symbol.kind,
+            title=symbol.label or symbol.name,
+            topic=_topic_of(symbol),
+            name=(symbol.name,),
+            heading=(symbol.label,),
+            context=(symbol.owner.removeprefix(TYPES).removeprefix("bpy."), owner.label if owner else ""),
+            body=(symbol.description, *items, *arguments, *results),
+            related=(*sockets.get(symbol.path, ()), *said.get(symbol.path, ())),
+        )
+
+
+def page_docs(
+    pages: Sequence[Page], summaries: Mapping[str, tuple[str, str]], explains: Mapping[str, list[str]]
+) -> Iterator[Doc]:
+    """A unit for every section of every page."""
+    for page in pages:
+        above = " ".join(page.breadcrumbs)
+        for section in page.sections:
+            first = section.level == 1
+            summary = summaries.get(page.slug, ("", ""))[0] if first else ""
+            yield Doc(
+                ref=page.slug,
+                kind=page.source,
+                title=page.title if first else f"{page.title} › {section.title}",
+                anchor="" if first else section.anchor,
+                topic=page.slug,
+                name=(page.slug,) if first else (),
+                heading=(section.title,),
+                context=(above,) if first else (above, page.title),
+                body=(section.text,),
+                related=(summary, *explains.get(page.slug, ())) if first else (),
+            )
+
+
+def topic_docs(units: Sequence[Doc]) -> Iterator[Doc]:
+    """A document for every page and every class, holding the texts of all its units."""
+    members: dict[str, list[Doc]] = defaultdict(list)
+    for unit in units:
+        if unit.topic:
+            members[unit.topic].append(unit)
+    for topic, parts in members.items():
+        head = next((part for part in parts if part.ref == topic and not part.anchor), parts[0])
+        rest = [part for part in parts if part is not head]
+        texts = [text for part in rest for text in (*part.heading, *part.heading, *part.body)]
+        yield replace(head, ref=topic, body=(*head.body, *texts))
+
+
+def make_units(
+    symbols: Sequence[Symbol],
+    pages: Sequence[Page],
+    links: Sequence[Link],
+    summaries: Mapping[str, tuple[str, str]],
+) -> list[Doc]:
+    """Every unit of retrieval, pages first."""
+    said, explains = _manual_texts(symbols, pages, links)
+    return [*page_docs(pages, summaries, explains), *symbol_docs(symbols, said)]
+
+
+def make_postings(docs: Sequence[Doc], b: float) -> Postings:
+    """The inverted index of one level; documents are numbered from 0."""
+    analysed = cache(terms)  # topics repeat the texts of their units
+    counts: list[dict[str, Counter[str]]] = []
+    lengths: dict[str, list[int]] = {name: [] for name in FIELDS}
+    for doc in docs:
+        row: dict[str, Counter[str]] = {}
+        for name in FIELDS:
+            found = [term for text in getattr(doc, name) if text for term in analysed(text)]
+            lengths[name].append(len(found))
+            if found:
+                row[name] = Counter(found)
+        counts.append(row)
+    average = {name: sum(row) / max(1, sum(1 for n in row if n)) for name, row in lengths.items()}
+    postings = Postings()
+    for number, row in enumerate(counts):
+        weights: dict[str, float] = defaultdict(float)
+        for name, counter in row.items():
+            scale = FIELD_WEIGHTS[name] / (1 - b + b * lengths[name][number] / average[name])
+            for term, frequency in counter.items():
+                weights[term] += scale * frequency
+        for term, weight in weights.items():
+            postings.numbers[term].append(number)
+            postings.weights[term].append(weight)
+    return postings
+
+
+def vocabulary(units: Iterable[Doc]) -> Iterator[tuple[str, str]]:
+    """(stem, most used spelling) for every word of the corpus."""
+    spellings: dict[str, Counter[str]] = defaultdict(Counter)
+    for unit in units:
+        for name in FIELDS:
+            for text in getattr(unit, name):
+                for word in words(text):
+                    if word not in STOP_WORDS:
+                        spellings[stem(word)][word] += 1
+    for stemmed, counter in spellings.items():
+        yield stemmed, counter.most_common(1)[0][0]

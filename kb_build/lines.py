@@ -1,0 +1,57 @@
+"""A symbol on one line: how a class lists its members. Written into the base when it is built."""
+
+from __future__ import annotations
+
+from kb_build.records import Symbol
+
+_SHOWN_VALUES = 8
+_SHOWN_ELEMENTS = 16
+
+
+def literal(value: object) -> str:
+    """A value as Python source; long sequences are shortened."""
+    if isinstance(value, list):
+        shown = ", ".join(map(literal, value[:_SHOWN_ELEMENTS]))
+        return f"({shown}{', …' if len(value) > _SHOWN_ELEMENTS else ''})"
+    return repr(value)
+
+
+def type_text(symbol: Symbol) -> str:
+    """``float[3]``, ``enum``, ``pointer → Mesh``, ``collection of Modifier``."""
+    if symbol.type == "collection" and symbol.target:
+        return f"collection of {symbol.target}"
+    if symbol.type == "pointer" and symbol.target:
+        return f"pointer → {symbol.target}"
+    if "enum-flag" in symbol.flags:
+        return "set of enum items"
+    return symbol.type + "".join(f"[{n}]" for n in symbol.array)
+
+
+def first_sentence(text: str) -> str:
+    """The first sentence of a description, on one line, without its full stop."""
+    line = " ".join(text.split())
+    end = line.find(". ")
+    return (line[:end] if end > 0 else line).rstrip(".")
+
+
+def member_line(symbol: Symbol) -> str:
+    """Name, type, default, first values and first sentence of a member, as its owner lists it."""
+    name = symbol.path[len(symbol.owner) + 1 :] if symbol.owner else symbol.path
+    if symbol.kind in {"function", "operator"}:
+        call = symbol.signature
+        arguments = call[call.index("(") :] if "(" in call else "()"
+        head = f"`{name}{arguments}`"
+    else:
+        head = f"`{name}`"
+    notes = [type_text(symbol)] if symbol.type else []
+    if symbol.default is not None and symbol.kind in {"property", "socket"}:
+        notes.append(f"= {literal(symbol.default)}")
+    if symbol.enum_items:
+        values = "|".join(item.identifier for item in symbol.enum_items[:_SHOWN_VALUES])
+        notes.append(values + ("|…" if len(symbol.enum_items) > _SHOWN_VALUES else ""))
+    if "readonly" in symbol.flags:
+        notes.append("read-only")
+    if symbol.modes:
+        notes.append("when " + " and ".join(symbol.modes))
+    said = first_sentence(symbol.description) or (symbol.label if symbol.label != symbol.name else "")
+    return " ".join([head, *notes]) + (f" — {said}" if said else "")

@@ -1,0 +1,42 @@
+"""English words that mean nearly the same, for queries that do not use Blender's terms.
+
+The table is general: it knows nothing of Blender, and no query. ``bench/near_words.py`` makes it from an openly
+licensed sentence model; here it is only read, and cut down to the words that the corpus has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator, Mapping
+from importlib.resources import files
+
+from kb_build.analysis import stem
+
+Near = tuple[tuple[str, float], ...]
+_KEPT = 8
+
+
+def load_near_words() -> dict[str, Near]:
+    """word → (near word, similarity 0…1), nearest first; {} where the package came without the table."""
+    source = files("corpora").joinpath("words", "near.txt")
+    if not source.is_file():
+        return {}
+    table: dict[str, Near] = {}
+    for line in source.read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            word, *rest = line.split()
+            table[word] = tuple((rest[i], int(rest[i + 1]) / 100) for i in range(0, len(rest), 2))
+    return table
+
+
+def near_stems(table: Mapping[str, Near], stems: Container[str]) -> Iterator[tuple[str, str, float]]:
+    """(word, stem of the corpus, similarity): the nearest few that the corpus holds."""
+    for word, near in table.items():
+        own, kept = stem(word), dict[str, float]()
+        for other, similarity in near:
+            stemmed = stem(other)
+            if stemmed != own and stemmed in stems and stemmed not in kept:
+                kept[stemmed] = similarity
+            if len(kept) == _KEPT:
+                break
+        for stemmed, similarity in kept.items():
+            yield word, stemmed, similarity

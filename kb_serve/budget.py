@@ -1,0 +1,73 @@
+"""Fits an answer into a number of tokens, part by part."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+_WORTH_FILLING = 0.25  # of a part: a block is not begun where less is left
+_BYTES_PER_TOKEN = 3  # below what tokenizers need for English, Markdown and identifiers, so that the promise holds
+
+
+def tokens(text: str) -> int:
+    """An upper estimate of a text's tokens: one for every three bytes."""
+    return math.ceil(len(text.encode(errors="replace")) / _BYTES_PER_TOKEN)
+
+
+def clip(text: str, budget: int) -> str:
+    """The beginning of a text within ``budget`` tokens, cut at a word, with an ellipsis where cut."""
+    if tokens(text) <= budget:
+        return text
+    room = max(0, budget * _BYTES_PER_TOKEN - 4)
+    cut = text.encode(errors="replace")[:room].decode(errors="ignore")
+    return (cut.rsplit(None, 1)[0] if " " in cut else cut) + " …"
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A piece of an answer that belongs together; ``name`` is what a reader calls it when it did not fit."""
+
+    text: str
+    name: str = ""
+
+
+def _split(text: str, room: int) -> tuple[str, str]:
+    """(what fits into ``room`` tokens, the rest), cut between lines; between words where one line is too long."""
+    lines, taken, used = text.split("\n"), 0, 0
+    for line in lines:
+        cost = len(line.encode(errors="replace")) + 1
+        if used + cost > room * _BYTES_PER_TOKEN:
+            break
+        taken, used = taken + 1, used + cost
+    if taken:
+        return "\n".join(lines[:taken]), "\n".join(lines[taken:])
+    head = text.encode(errors="replace")[: room * _BYTES_PER_TOKEN].decode(errors="ignore")
+    at = head.rfind(" ")
+    head = head[:at] if at > len(head) // 2 else head
+    return head, text[len(head) :].lstrip(" ")
+
+
+def paginate(blocks: Sequence[Block], budget: int) -> list[tuple[str, list[str]]]:
+    """(text, names of the blocks that come later) for every part, each within ``budget`` tokens.
+
+    Blocks keep their order. One that does not fit is continued in the next part, or moved there whole when
+    only a little room was left.
+    """
+    parts: list[tuple[str, list[str]]] = []
+    current = ""
+    for number, block in enumerate(blocks):
+        later = [other.name for other in blocks[number:] if other.name]
+        rest = block.text
+        while rest:
+            room = budget - tokens(f"{current}\n\n") if current else budget
+            if tokens(rest) <= room:
+                current = f"{current}\n\n{rest}" if current else rest
+                break
+            if room >= _WORTH_FILLING * budget:
+                head, rest = _split(rest, room)
+                current = f"{current}\n\n{head}" if current else head
+            parts.append((current, later))
+            current = ""
+    parts.append((current, []))
+    return parts

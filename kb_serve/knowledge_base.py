@@ -1,0 +1,73 @@
+"""The public face of a knowledge base: ``KnowledgeBase.open("5.1").query("cloth self collision")``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import Lock
+from types import TracebackType
+from typing import Self
+
+from kb_build.records import Page, Symbol
+from kb_serve.answer import LIMIT, MAX_TOKENS, Answer, Answerer
+from kb_serve.locate import find_base
+from kb_serve.reader import Reader
+
+
+class KnowledgeBase:
+    """One Blender version's knowledge base, read-only. Safe to share between threads."""
+
+    def __init__(self, path: Path) -> None:
+        """Opens a base file. Raises BaseMissing or BaseUnreadable, saying what to do."""
+        self._reader = Reader(path)
+        self._answerer = Answerer(self._reader)
+        self._lock = Lock()
+
+    @classmethod
+    def open(cls, version: str | None = None, *, home: Path | None = None) -> Self:
+        """Opens the base of a Blender version (``"5.1"``, ``"5.1.2"``), by default the newest that was built.
+
+        ``home`` is the folder of the bases: by default what SIMWORLDS_HOME names, else the user's data folder.
+        Raises BaseMissing when it was not built.
+        """
+        return cls(find_base(version, home))
+
+    def query(self, text: str, *, limit: int = LIMIT, max_tokens: int = MAX_TOKENS, part: int = 1) -> Answer:
+        """Answers a query in any form: a name, an expression, an error message, a question, a topic.
+
+        ``limit`` bounds the hits, ``max_tokens`` the text of the answer; what does not fit is in the further
+        parts, counted from 1. Raises BadQuery when there is nothing to answer.
+        """
+        with self._lock:
+            return self._answerer.answer(text, limit, max_tokens, part)
+
+    def symbol(self, path: str) -> Symbol | None:
+        """The raw record of an identifier, as the base spells it."""
+        with self._lock:
+            return self._reader.symbol(path)
+
+    def page(self, slug: str) -> Page | None:
+        """The raw record of a page, whole."""
+        with self._lock:
+            return self._reader.page(slug)
+
+    @property
+    def meta(self) -> dict[str, str]:
+        """Facts about the base: Blender's version and build, fingerprint, sources, what is missing."""
+        with self._lock:
+            return self._reader.meta
+
+    @property
+    def path(self) -> Path:
+        """The base's file."""
+        return self._reader.path
+
+    def close(self) -> None:
+        """Closes the file."""
+        with self._lock:
+            self._reader.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()

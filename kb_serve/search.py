@@ -1,0 +1,207 @@
+"""Ranks what the base holds for a query in plain words.
+
+BM25F over two levels (a unit and the topic around it), with three additions, each measured in ``make bench``:
+
+- *Concepts*: a word stands for itself and, less, for the corpus' words that mean nearly the same; the best of them
+  counts, once.
+- *Coverage*: a document's score is scaled by how much of the query, by rarity, it speaks of at all.
+- *Variety*: one class or page gives one hit before the others had theirs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from rapidfuzz import process
+from rapidfuzz.distance import OSA
+
+from kb_build.analysis import STOP_WORDS, stem, words
+from kb_serve.reader import Reader
+
+Scores = NDArray[np.float32]
+
+K1 = 1.2
+NEAR_WEIGHT = 0.9  # a near word's similarity counts this much of the word itself
+COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
+TOPIC_WEIGHT = 0.7
+ALONE = 0.5  # what stands in for the topic of a unit that has none
+UNKNOWN_IDF = 6.0
+MAX_IDF = 8.0
+_MAX_WORDS = 40
+_CANDIDATES = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """One ranked document. ``coverage`` is the share of the query, by rarity, that it speaks of."""
+
+    ref: str
+    kind: str
+    title: str
+    anchor: str
+    score: float
+    coverage: float
+
+
+@dataclass(frozen=True, slots=True)
+class Concept:
+    """One word of the query: corpus stems with weights, and how much the word tells (idf)."""
+
+    word: str
+    stems: tuple[tuple[str, float], ...]
+    idf: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Level:
+    """The documents of one level, by number."""
+
+    refs: list[str]
+    kinds: list[str]
+    titles: list[str]
+    anchors: list[str]
+    topics: NDArray[np.int32]
+
+
+class Searcher:
+    """Searches one base. The inverted lists that queries touch are kept."""
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+        self._postings = lru_cache(maxsize=4_000)(self._read_postings)
+
+    @cached_property
+    def _levels(self) -> tuple[_Level, _Level]:
+        return self._read_level(0), self._read_level(1)
+
+    def _read_level(self, level: int) -> _Level:
+        rows = self._reader.rows("SELECT ref, kind, title, anchor, topic FROM docs WHERE level = ? ORDER BY number", level)
+        columns = [list(column) for column in zip(*rows, strict=True)] or [[], [], [], [], []]
+        return _Level(*columns[:4], np.asarray(columns[4], np.int32))
+
+    def _read_postings(self, level: int, term: str) -> tuple[NDArray[np.uint32], Scores] | None:
+        rows = self._reader.rows("SELECT df, data FROM postings WHERE level = ? AND stem = ?", level, term)
+        if not rows:
+            return None
+        count, data = rows[0]
+        numbers = np.frombuffer(data, np.uint32, count)
+        weights = np.frombuffer(data, np.float16, count, offset=4 * count).astype(np.float32)
+        return numbers, weights * (K1 + 1) / (weights + K1)
+
+    def idf(self, term: str) -> float:
+        """How much a stem tells: ln(1 + (N - df + ½) / (df + ½)) over the units; 0 for an unknown one."""
+        found = self._postings(0, term)
+        if found is None:
+            return 0.0
+        total, df = len(self._levels[0].refs), len(found[0])
+        return math.log(1 + (total - df + 0.5) / (df + 0.5))
+
+    # The query
+
+    @cached_property
+    def vocabulary(self) -> dict[str, str]:
+        """stem → most used spelling."""
+        return dict(self._reader.rows("SELECT stem, word FROM vocabulary"))
+
+    @cached_property
+    def _spellings(self) -> list[str]:
+        return list(dict.fromkeys(word for word in self.vocabulary.values() if len(word) > 3))
+
+    def correction(self, word: str) -> str:
+        """The corpus' word that an unknown one was probably meant to be; empty when none is near."""
+        if len(word) < 4 or not word.isalpha():
+            return ""
+        allowed = 1 if len(word) < 6 else 2
+        matches = process.extract(word, self._spellings, scorer=OSA.distance, score_cutoff=allowed, limit=5)
+        same_start = [match for match in matches if match[0][0] == word[0]]
+        ranked = sorted(same_start or matches, key=lambda match: (match[1], -self._frequency(match[0])))
+        return ranked[0][0] if ranked else ""
+
+    def _frequency(self, word: str) -> int:
+        found = self._postings(0, stem(word))
+        return 0 if found is None else len(found[0])
+
+    def concepts(self, text: str) -> Iterator[Concept]:
+        """The query's words with what stands for each in this corpus."""
+        seen: set[str] = set()
+        for word in words(text)[:_MAX_WORDS]:
+            own = stem(word)
+            if word in STOP_WORDS or own in seen:
+                continue
+            seen.add(own)
+            yield self._concept(word, own)
+
+    def _concept(self, word: str, own: str) -> Concept:
+        idf = self.idf(own)
+        stems: dict[str, float] = {own: 1.0} if idf else {}
+        for near, similarity in self._reader.near(word):
+            stems.setdefault(near, NEAR_WEIGHT * similarity)
+        if not stems and (corrected := self.correction(word)):
+            stems[stem(corrected)] = 0.95
+        if not idf:
+            idf = max((self.idf(term) for term in stems), default=UNKNOWN_IDF)
+        return Concept(word, tuple(stems.items()), min(idf, MAX_IDF))
+
+    # Scores
+
+    def _score(self, level: int, concepts: Sequence[Concept]) -> tuple[Scores, Scores]:
+        """(scores, coverages) of every document of a level."""
+        count = len(self._levels[level].refs)
+        scores, covered = np.zeros(count, np.float32), np.zeros(count, np.float32)
+        total = sum(concept.idf for concept in concepts) or 1.0
+        for concept in concepts:
+            best, spoken = np.zeros(count, np.float32), np.zeros(count, np.float32)
+            for term, weight in concept.stems:
+                postings = self._postings(level, term)
+                if postings is None:
+                    continue
+                numbers, saturated = postings
+                idf = concept.idf if weight == 1.0 else min(concept.idf, self.idf(term))
+                best[numbers] = np.maximum(best[numbers], weight * idf * saturated)
+                spoken[numbers] = np.maximum(spoken[numbers], weight)
+            scores += best
+            covered += concept.idf * spoken
+        covered /= total
+        return scores * covered**COVERAGE, covered
+
+    def search(self, text: str, limit: int = 50) -> list[Found]:
+        """The best documents for a text, best first, each id once."""
+        concepts = list(self.concepts(text))
+        if not any(concept.stems for concept in concepts):
+            return []
+        units, _ = self._levels
+        own, covered = self._score(0, concepts)
+        topical, _ = self._score(1, concepts)
+        around = np.where(units.topics >= 0, topical[units.topics], ALONE * own)
+        scores = np.where(own > 0, own + TOPIC_WEIGHT * around, 0)
+        best = np.argpartition(-scores, min(_CANDIDATES, len(scores) - 1))[:_CANDIDATES]
+        order = best[np.argsort(-scores[best], kind="stable")]
+        return self._varied(order, scores, covered, limit)
+
+    def _varied(self, order: NDArray[np.intp], scores: Scores, covered: Scores, limit: int) -> list[Found]:
+        """The order with every topic's first document before any topic's second."""
+        units, _ = self._levels
+        first: list[Found] = []
+        later: list[Found] = []
+        refs: set[str] = set()
+        topics: set[int] = set()
+        for number in order.tolist():
+            if scores[number] <= 0:
+                break
+            ref, topic = units.refs[number], int(units.topics[number])
+            if ref in refs:
+                continue
+            refs.add(ref)
+            found = Found(
+                ref, units.kinds[number], units.titles[number], units.anchors[number],
+                float(scores[number]), float(covered[number]),
+            )  # fmt: skip
+            (later if topic in topics else first).append(found)
+            if topic >= 0:
+                topics.add(topic)
+        return (first + later)[:limit]
