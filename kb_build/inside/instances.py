@@ -6,6 +6,8 @@ import re
 import bpy
 
 DEPTH = 3
+# Up to Blender 4.3 it claims to be a Paint, which it is not in memory: reading what it inherits crashes.
+UNREADABLE = frozenset({"UvSculpt"})
 
 
 def refused_value_items(owner, name):
@@ -21,7 +23,7 @@ def refused_value_items(owner, name):
 
 def reachable(root, depth):
     """The data behind a scene's or object's pointers, each class once."""
-    queue, seen = [(root, depth)], set()
+    queue, seen = [(root, depth)], set(UNREADABLE)
     while queue:
         owner, left = queue.pop(0)
         if owner.bl_rna.identifier in seen:

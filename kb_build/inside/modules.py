@@ -16,6 +16,8 @@ ROOTS = (
     "idprop", "imbuf.types", "imbuf", "freestyle.types", "freestyle", "bpy.app", "bpy.props", "bpy.utils",
     "bpy.path", "bpy.msgbus", "bpy_extras",
 )  # fmt: skip
+# Class → path of those written so far.
+WRITTEN = {}
 PLAIN = (bool, int, float, str, bytes, tuple, list, dict, set, frozenset)
 
 
@@ -71,10 +73,15 @@ def write_member(write, owner, name, value):
     )
 
 
+def base_path(cls):
+    """Where a class's base is written; nothing where it is not: Python's own, unnamed helpers of the class."""
+    return WRITTEN.get(cls.__mro__[1], "") if len(cls.__mro__) > 1 else ""
+
+
 def write_class(write, path, cls):
     """A class outside RNA with its own members."""
-    base = cls.__mro__[1] if len(cls.__mro__) > 1 else object
     owner = path.rpartition(".")[0]
+    WRITTEN[cls] = path
     write(
         "symbol",
         path=path,
@@ -82,7 +89,7 @@ def write_class(write, path, cls):
         owner=owner,
         docstring=inspect.getdoc(cls) if "__doc__" in vars(cls) and cls.__doc__ else "",
         signature=signature(cls) if cls.__module__ != "builtins" and "__init__" in vars(cls) else "",
-        base="" if base is object else f"{owner}.{base.__name__}",
+        base=base_path(cls),
         group="data",
     )
     written = set()

@@ -137,6 +137,15 @@ def write_node(write, owner, node):
         index[side] += 1
 
 
+def compositing_scene():
+    """A scratch scene with a compositor tree of its own: before Blender 5.0 some nodes go nowhere else."""
+    if "node_tree" not in bpy.types.Scene.bl_rna.properties:
+        return None
+    scene = bpy.data.scenes.new("scratch")
+    scene.use_nodes = True
+    return scene
+
+
 def write_all(write, structs):
     """The sockets of every node class that one of the built-in tree types takes."""
     trees = {}
@@ -145,12 +154,15 @@ def write_all(write, structs):
             trees[name] = bpy.data.node_groups.new("scratch", name)
         except TypeError:
             continue
+    scene = compositing_scene()
     made = 0
     for identifier in sorted(structs):
         cls = getattr(bpy.types, identifier, None)
         if cls is None or not issubclass(cls, bpy.types.Node) or cls is bpy.types.Node:
             continue
         node, taken = make(trees, identifier)
+        if node is None and scene is not None:
+            node, taken = make({"CompositorNodeTree": scene.node_tree}, identifier)
         if node is None:
             continue
         made += 1
@@ -160,4 +172,6 @@ def write_all(write, structs):
         node.id_data.nodes.remove(node)
     for tree in trees.values():
         bpy.data.node_groups.remove(tree)
+    if scene is not None:
+        bpy.data.scenes.remove(scene)
     return made
