@@ -185,6 +185,7 @@ def _install(version: str, entry: Release, folder: Path, progress: Report | None
                     "--only-binary",
                     ":all:",
                     f"bpy=={version}",
+                    *entry.companions,
                 ],
             ):
                 run_group(command, environment=environment, timeout=_INSTALL_SECONDS, log=log)

@@ -20,11 +20,15 @@ _VERSION = re.compile(r"(\d{1,2})\.(\d{1,2})(?:\.(\d{1,3}))?")
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """One Blender minor version, the CPython its bpy wheel is made for (``"3.13"``), the wheel's version."""
+    """One Blender minor version, the CPython its bpy wheel is made for (``"3.13"``), the wheel's version.
+
+    ``companions`` are requirements that the wheel has but does not state.
+    """
 
     minor: str
     python: str
     bpy: str
+    companions: tuple[str, ...] = ()
 
 
 @cache
@@ -49,7 +53,10 @@ def same_version(asked: str, real: str) -> bool:
 
 def releases() -> tuple[Release, ...]:
     """Every minor version that has a bpy wheel, oldest first."""
-    return tuple(Release(minor, **row) for minor, row in _table()["versions"].items())
+    return tuple(
+        Release(minor, row["python"], row["bpy"], tuple(row.get("companions", ())))
+        for minor, row in _table()["versions"].items()
+    )
 
 
 def release(version: str) -> Release | None:
