@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Members of ``bpy.context`` that the screen provides; which exist, and of what type, depends on editor and mode.
+"""Members of ``bpy.context``: those of its class, and those that the screen provides.
 
-A member's type is what Blender returns for it in one of the scratch situations made here.
+Which of the latter exist, and of what type, depends on editor and mode: a member's type is what Blender
+returns for it in one of the scratch situations made here. The reference lists them below ``bpy.context`` in
+some versions, below ``bpy.types.Context`` in others; both names are written.
 """
 
 import bpy
+from rna import describe
 
 MODES = ("EDIT", "POSE", "OBJECT")
 
@@ -101,6 +104,16 @@ def guess(name):
     return "", ""
 
 
+def write_global(write, screen):
+    """The properties of the class ``Context`` as members of ``bpy.context``."""
+    for prop in bpy.types.Context.bl_rna.properties:
+        name = prop.identifier
+        if name != "rna_type" and name not in screen:
+            row = describe(prop)
+            row["flags"] = [*row["flags"], f"same-as:bpy.types.Context.{name}"]
+            write("symbol", path=f"bpy.context.{name}", kind="context", owner="bpy.context", **row)
+
+
 def write_all(write):
     """One record a member, with the editors that provide it."""
     by_place = member_names()
@@ -108,15 +121,14 @@ def write_all(write):
     for place, names in by_place.items():
         for name in names:
             places.setdefault(name, []).append(place)
+    write_global(write, places)
+    own = set(bpy.types.Context.bl_rna.properties.keys())
     found = probe(tuple(places))
     for name in sorted(places):
         kind, target = found.get(name) or guess(name)
-        write(
-            "symbol",
-            path=f"bpy.context.{name}",
-            kind="context",
-            owner="bpy.context",
-            type=kind,
-            target=target,
-            flags=["readonly", *(f"from:{place}" for place in sorted(places[name]))],
-        )
+        flags = ["readonly", *(f"from:{place}" for place in sorted(places[name]))]
+        row = {"kind": "context", "type": kind, "target": target}
+        write("symbol", path=f"bpy.context.{name}", owner="bpy.context", flags=flags, **row)
+        if name not in own:
+            also = [*flags, f"same-as:bpy.context.{name}"]
+            write("symbol", path=f"bpy.types.Context.{name}", owner="bpy.types.Context", flags=also, **row)

@@ -18,6 +18,7 @@ ROOTS = (
 )  # fmt: skip
 # Class → path of those written so far.
 WRITTEN = {}
+PRIVATE_BUT_DOCUMENTED = {"bpy.props._PropertyDeferred"}
 PLAIN = (bool, int, float, str, bytes, tuple, list, dict, set, frozenset)
 
 
@@ -51,11 +52,11 @@ def signature(value):
         return ""
 
 
-def write_member(write, owner, name, value):
+def write_member(write, owner, name, value, flags=()):
     """A method or attribute of a class."""
     attribute = isinstance(value, ATTRIBUTE_TYPES)
-    function = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
-    flags = []
+    function = getattr(value, "__func__", value)
+    flags = list(flags)
     if isinstance(value, (classmethod, types.ClassMethodDescriptorType)):
         flags.append("classmethod")
     elif isinstance(value, staticmethod):
@@ -135,7 +136,7 @@ class Walk:
         )
         below = []
         for attribute in dir(module):
-            if attribute.startswith("_"):
+            if attribute.startswith("_") and not self.is_documented(name, module, attribute):
                 continue
             try:
                 value = getattr(module, attribute)
@@ -155,10 +156,19 @@ class Walk:
             if value is not None:
                 self.module(path, value)
 
+    def is_documented(self, name, module, attribute):
+        """Whether a name with an underscore in front has documentation all the same."""
+        if f"{name}.{attribute}" in PRIVATE_BUT_DOCUMENTED:
+            return True
+        described = getattr(type(module), attribute, None)
+        return not attribute.startswith("__") and isinstance(described, types.MemberDescriptorType) and described.__doc__
+
     def member(self, name, module, path, attribute, value):
         """One thing that a module holds; what it merely imported is passed over."""
         home = getattr(value, "__module__", None)
         if isinstance(value, type):
+            if home != name and attribute not in getattr(module, "__all__", (attribute,)):
+                return
             if value in self.seen or (home not in {name, None, "builtins"} and not home.startswith(name.split(".")[0])):
                 return
             if home == "builtins" and value.__name__ != attribute:

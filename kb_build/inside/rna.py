@@ -20,6 +20,7 @@ FLAGS = (
 METHOD_TYPES = (
     types.FunctionType, types.BuiltinFunctionType, types.MethodDescriptorType, types.ClassMethodDescriptorType,
     classmethod, staticmethod,
+    *{type(value) for value in vars(bpy.types.Gizmo).values() if type(value).__name__ == "instancemethod"},
 )  # fmt: skip
 ATTRIBUTE_TYPES = (property, types.GetSetDescriptorType, types.MemberDescriptorType)
 
@@ -126,6 +127,8 @@ def all_structs():
 
 def group_of(rna):
     """``data``, ``ui`` or ``operator``: whether a script works with the class or only the interface does."""
+    if rna.identifier in UI_BASES:
+        return "data"
     ancestor = rna.base
     while ancestor is not None:
         if ancestor.identifier in UI_BASES:
@@ -137,12 +140,26 @@ def group_of(rna):
 
 
 def own(rna, kind):
-    """The properties or functions that a class adds to its base."""
-    inherited = set(getattr(rna.base, kind).keys()) if rna.base is not None else set()
-    return [item for item in getattr(rna, kind) if item.identifier not in inherited and item.identifier != "rna_type"]
+    """The properties or functions that a class adds to its base, those that replace one of it included."""
+    inherited = {item.as_pointer() for item in getattr(rna.base, kind)} if rna.base is not None else set()
+    return [
+        item
+        for item in getattr(rna, kind)
+        if item.as_pointer() not in inherited and item.identifier != "rna_type"
+    ]
 
 
-def write_function(write, owner, function):
+def same_as(rna, name):
+    """The flag of a function that a base has too: where that one is."""
+    base = rna.base
+    while base is not None:
+        if any(item.identifier == name for item in own(base, "functions")):
+            return [f"same-as:bpy.types.{base.identifier}.{name}"]
+        base = base.base
+    return []
+
+
+def write_function(write, owner, function, flags):
     """One RNA function with its arguments and results."""
     parameters = list(function.parameters)
     write(
@@ -153,7 +170,7 @@ def write_function(write, owner, function):
         description=function.description,
         parameters=[parameter(item) for item in parameters if not item.is_output],
         returns=[parameter(item) for item in parameters if item.is_output],
-        flags=[] if function.use_self or getattr(function, "use_self_type", False) else ["static"],
+        flags=flags + ([] if function.use_self or getattr(function, "use_self_type", False) else ["static"]),
     )
 
 
@@ -173,35 +190,68 @@ def write_struct(write, identifier, rna):
     for prop in own(rna, "properties"):
         write("symbol", path=f"{path}.{prop.identifier}", kind="property", owner=path, **describe(prop))
     for function in own(rna, "functions"):
-        write_function(write, path, function)
+        write_function(write, path, function, same_as(rna, function.identifier))
 
 
-def added_members(cls, known):
-    """(name, value) of what Python or C adds to an RNA class, mix-ins up to the next RNA class included.
+def is_described(identifier):
+    """Whether the reference has the class: it has the interface's lists and handlers, not its panels."""
+    return not any(infix in identifier for infix in ("_OT_", "_MT_", "_PT_", "_HT_", "_KSI_"))
 
-    Properties registered by add-ons are RNA already; double underscores and RNA's own names are left out.
+
+def repeats(value):
+    """Whether the reference lists an inherited member of this kind again on each class."""
+    if isinstance(value, (property, types.FunctionType, types.ClassMethodDescriptorType)):
+        return True
+    function = getattr(value, "__func__", None)
+    if isinstance(value, classmethod):
+        return isinstance(function, types.BuiltinFunctionType)
+    return isinstance(function, (types.FunctionType, types.BuiltinFunctionType))
+
+
+def added_members(cls, rna):
+    """(name, value, class that it is inherited from or "") of what Python or C adds to an RNA class.
+
+    Mix-ins count as the class' own. Properties registered by add-ons are RNA already; what begins with an
+    underscore is left out, and so are RNA's own names, unless a Python function takes their place.
     """
-    seen = set(known) | {"bl_rna", "rna_type"}
+    seen = {item.identifier for kind in ("properties", "functions") for item in own(rna, kind)}
+    seen |= {"bl_rna", "rna_type"}
+    inherited = set(rna.properties.keys()) | set(rna.functions.keys())
+    base = None
     for ancestor in cls.__mro__:
-        if ancestor is object or (ancestor is not cls and "bl_rna" in vars(ancestor)) or ancestor is bpy.types.bpy_struct:
+        if ancestor is object or ancestor is bpy.types.bpy_struct:
             continue
+        if ancestor is not cls and "bl_rna" in vars(ancestor):
+            base = ancestor
+        source = base.bl_rna.identifier if base is not None and issubclass(base, ancestor) else ""
         for name, value in vars(ancestor).items():
-            if name.startswith("_") or name in seen:
+            if name.startswith("_") or name in seen or not isinstance(value, METHOD_TYPES + ATTRIBUTE_TYPES):
                 continue
             seen.add(name)
-            if isinstance(value, METHOD_TYPES + ATTRIBUTE_TYPES):
-                yield name, value
+            if name in inherited and (source or not isinstance(value, types.FunctionType)):
+                continue
+            if not source or repeats(value):
+                yield name, value, source
+
+
+def subclass_lookups():
+    """The class methods of ``bpy_struct``, which the reference lists on every class."""
+    for name, value in vars(bpy.types.bpy_struct).items():
+        if isinstance(value, types.ClassMethodDescriptorType):
+            yield name, value, "bpy_struct"
 
 
 def write_added(write, structs, write_member):
-    """Methods and attributes that RNA does not list, for the classes that a script works with."""
+    """Methods and attributes that RNA does not list, for the classes that the reference has."""
     for identifier, rna in structs.items():
         cls = getattr(bpy.types, identifier, None)
-        if cls is None or group_of(rna) != "data":
+        group = group_of(rna)
+        if cls is None or group == "operator" or (group == "ui" and not is_described(identifier)):
             continue
-        known = set(rna.properties.keys()) | set(rna.functions.keys())
-        for name, value in added_members(cls, known):
-            write_member(write, f"bpy.types.{identifier}", name, value)
+        members = list(added_members(cls, rna))
+        for name, value, source in [*members, *(subclass_lookups() if group == "ui" else ())]:
+            flags = [f"same-as:bpy.types.{source}.{name}"] if source else []
+            write_member(write, f"bpy.types.{identifier}", name, value, flags)
 
 
 def write_all(write, write_member):
