@@ -190,7 +190,7 @@ class Walk:
     def holds_documented_members(self, value):
         """Blender's module-like objects: handlers, build options, unit categories, translations, …"""
         cls = type(value)
-        return cls.__name__ == "bpy_app_translations" or isinstance(value, tuple) and cls is not tuple and hasattr(cls, "n_fields")
+        return cls.__name__ in {"bpy_app_translations", "_translations_type"} or isinstance(value, tuple) and cls is not tuple and hasattr(cls, "n_fields")
 
     def function(self, path, owner, value):
         """A function of a module. bmesh operators describe themselves in their own way."""
