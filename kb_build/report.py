@@ -38,6 +38,8 @@ def base_lines(facts: Mapping[str, Any]) -> Iterator[str]:
     yield _row("built", f"{facts['built_at']} by SimWorlds {facts['simworlds']}")
     yield _row("fingerprint", facts["fingerprint"])
     yield from _content(facts)
+    for missing in facts["missing"]:
+        yield _row("MISSING", f"{missing['role']}: {missing['reason']}")
     yield _row("add-ons", ", ".join(facts["addons"]) or "none")
     for fault in facts["faults"]:
         yield _row("fault", str(fault).strip().splitlines()[-1])
@@ -55,8 +57,6 @@ def _content(facts: Mapping[str, Any]) -> Iterator[str]:
         yield _row("source", _source(source))
     if not facts["options"]["pages"]:
         yield _row("source", "built without pages (--no-pages)")
-    for missing in facts["missing"]:
-        yield _row("MISSING", f"{missing['role']}: {missing['reason']}")
     yield _row("summaries", _summaries(facts["summaries"]))
     if warned := facts.get("page_warnings"):
         yield _row("warnings", f"{len(warned):,} pages carry some; kb info --json lists them")

@@ -1,0 +1,288 @@
+"""Is a base whole, and does everything in it lead somewhere?"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections import Counter, defaultdict
+from contextlib import closing
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from kb_build.analysis import key
+from kb_build.base_file import open_base, read_meta
+from kb_build.records import page_from_json, symbol_from_json
+from kb_build.reference import WANTED, Resolution, read_reference, resolve
+from kb_build.schema import FORM_PATH, unpack
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+    from pathlib import Path
+
+_TYPES = "bpy.types."
+_SHOWN = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One thing that was looked at: how many, what is wrong with which, and what is merely worth knowing."""
+
+    name: str
+    looked_at: int
+    faults: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """What :func:`verify_base` found. ``sound`` is whether nothing is wrong."""
+
+    path: Path
+    blender: str
+    checks: tuple[Check, ...]
+    reference: Resolution | None = None
+
+    @property
+    def sound(self) -> bool:
+        """Whether no check has a fault and enough of the reference resolves."""
+        resolves = self.reference is None or self.reference.share >= WANTED
+        return resolves and not any(check.faults for check in self.checks)
+
+    def lines(self) -> Iterator[str]:
+        """For people."""
+        yield f"{self.path} (Blender {self.blender})"
+        for check in self.checks:
+            yield f"  {'FAULT' if check.faults else 'ok':<6} {check.name}: {check.looked_at:,} looked at"
+            yield from (f"           {line}" for line in _shortened(check.faults, "wrong"))
+            yield from (f"           {line}" for line in _shortened(check.notes, "worth knowing"))
+        if self.reference is not None:
+            found = self.reference
+            yield (
+                f"  {'ok' if found.share >= WANTED else 'FAULT':<6} reference: {found.exact:,} of "
+                f"{found.total:,} identifiers resolve exactly ({found.share:.2%}; wanted {WANTED:.1%})"
+            )
+            for reason, rows in found.others.items():
+                yield f"         {reason} ({len(rows):,})"
+                yield from (f"           {row}" for row in rows)
+        yield "Sound." if self.sound else "Not sound: build it again with simworlds kb build --force"
+
+    def as_json(self) -> dict[str, Any]:
+        """The same in JSON's terms, nothing shortened."""
+        found = self.reference
+        return {
+            "path": str(self.path),
+            "blender": self.blender,
+            "sound": self.sound,
+            "checks": [
+                {
+                    "name": one.name,
+                    "looked_at": one.looked_at,
+                    "faults": list(one.faults),
+                    "notes": list(one.notes),
+                }
+                for one in self.checks
+            ],
+            "reference": None
+            if found is None
+            else {
+                "total": found.total,
+                "exact": found.exact,
+                "share": found.share,
+                "others": {reason: list(rows) for reason, rows in found.others.items()},
+            },
+        }
+
+
+def _shortened(rows: tuple[str, ...], what: str) -> Iterator[str]:
+    yield from rows[:_SHOWN]
+    if len(rows) > _SHOWN:
+        yield f"… and {len(rows) - _SHOWN:,} more {what} (--json lists them)"
+
+
+def verify_base(path: Path, reference: Path | None = None) -> Verification:
+    """Runs every check on the base at ``path``; ``reference`` is a file for read_reference.
+
+    Raises StoreError when there is no base there that this SimWorlds understands, KBBuildError for a
+    reference that cannot be read.
+    """
+    meta = read_meta(path)
+    identifiers = read_reference(reference) if reference else None
+    resolution: Resolution | None = None
+    checks: list[Check] = []
+    with closing(open_base(path)) as connection:
+        checks.append(_guarded("file", _file, connection))
+        if not checks[0].faults:
+            base = _Base(connection, meta)
+            checks += [_guarded(name, check, base) for name, check in _CHECKS]
+            if identifiers is not None:
+                resolution = resolve(identifiers, base.bases)
+    return Verification(path, meta.get("blender", "?"), tuple(checks), resolution)
+
+
+def _guarded(name: str, check: Callable[[Any], Check], subject: object) -> Check:
+    """A check that damage keeps from ending is a fault, too."""
+    try:
+        return check(subject)
+    except (sqlite3.Error, ValueError, TypeError, KeyError) as error:
+        return Check(name, 0, (f"could not be checked: {type(error).__name__}: {error}",))
+
+
+class _Base:
+    """What the checks share."""
+
+    def __init__(self, connection: sqlite3.Connection, meta: dict[str, str]) -> None:
+        self.meta = meta
+        self._connection = connection
+        self.bases: dict[str, str] = dict(self.rows("SELECT path, base FROM symbols"))
+        self.slugs = {slug for (slug,) in self.rows("SELECT slug FROM pages")}
+
+    def rows(self, sql: str, *values: object) -> Iterator[Any]:
+        """The rows of one query."""
+        return self._connection.execute(sql, values)
+
+
+def _file(connection: sqlite3.Connection) -> Check:
+    messages = [str(row[0]) for row in connection.execute("PRAGMA integrity_check")]
+    pages = int(connection.execute("PRAGMA page_count").fetchone()[0])
+    return Check("file", pages, tuple(message for message in messages if message != "ok"))
+
+
+def _counts(base: _Base) -> Check:
+    """The build wrote down how much it put in."""
+    promised = json.loads(base.meta["counts"])
+    found = {
+        "symbols": dict(base.rows("SELECT kind, count(*) FROM symbols GROUP BY kind")),
+        "pages": dict(base.rows("SELECT source, count(*) FROM pages GROUP BY source")),
+        "sections": next(base.rows("SELECT count(*) FROM sections"))[0],
+        "links": dict(base.rows("SELECT kind, count(*) FROM links GROUP BY kind")),
+    }
+    faults = [
+        f"{name}: {promised[name]} were written, {found[name]} are there"
+        for name in found
+        if found[name] != promised[name]
+    ]
+    return Check("counts", len(found), tuple(faults))
+
+
+def _symbols(base: _Base) -> Check:
+    """Owner, base, target and collection of every symbol exist, and its record can be read.
+
+    Operators are exempt: Blender shows the classes of those that Python registered, and of no others.
+    """
+    known = base.bases
+    faults: list[str] = []
+    looked_at = 0
+    for path, kind, owner, parent, target, collection, record in base.rows(
+        "SELECT path, kind, owner, base, target, collection, record FROM symbols"
+    ):
+        looked_at += 1
+        faults += [
+            f"{path}: its {role} {name} is not in the base"
+            for role, name in (
+                ("owner", owner),
+                ("base", parent),
+                ("target", target and kind != "operator" and _TYPES + target),
+                ("collection", collection and _TYPES + collection),
+            )
+            if name and name not in known
+        ]
+        if symbol_from_json(unpack(record)).path != path:
+            faults.append(f"{path}: its record is another symbol's")
+    return Check("symbols", looked_at, tuple(faults))
+
+
+def _names(base: _Base) -> Check:
+    """Every identifier and every page is found by its own spelling."""
+    found = set(base.rows("SELECT key, id FROM names WHERE form = ?", FORM_PATH))
+    ids = [*base.bases, *base.slugs]
+    faults = [f"{one} is not found by its own name" for one in ids if (key(one), one) not in found]
+    return Check("names", len(ids), tuple(faults))
+
+
+def _pages(base: _Base) -> Check:
+    """Every page has sections, and the page above it exists."""
+    sections = Counter(slug for (slug,) in base.rows("SELECT slug FROM sections"))
+    faults = [f"{slug}: sections without a page" for slug in sections.keys() - base.slugs]
+    for slug, parent, record in base.rows("SELECT slug, parent, record FROM pages"):
+        page = page_from_json({"sections": [], **unpack(record)})
+        if page.slug != slug:
+            faults.append(f"{slug}: its record is another page's")
+        if not sections[slug]:
+            faults.append(f"{slug}: no sections")
+        faults += [
+            f"{slug}: the page {other} that it refers to is not there"
+            for other in (parent, *page.children, *page.links)
+            if other and other not in base.slugs
+        ]
+    return Check("pages", len(base.slugs), tuple(faults))
+
+
+def _links(base: _Base) -> Check:
+    """Both ends of every link exist. Blender's table also names pages that a manual no longer has."""
+    anchors: dict[str, set[str]] = defaultdict(set)
+    for slug, anchor in base.rows("SELECT slug, anchor FROM sections"):
+        anchors[slug].add(anchor)
+    manual = any("manual" in row for row in base.rows("SELECT DISTINCT source FROM pages"))
+    faults: list[str] = []
+    notes: Counter[str] = Counter()
+    looked_at = 0
+    for source, target, kind in base.rows("SELECT source, target, kind FROM links"):
+        looked_at += 1
+        if source not in base.bases:
+            faults.append(f"{kind} link from {source}, which is not in the base")
+        page, _, anchor = target.partition("#")
+        if kind != "manual":
+            if target not in base.bases:
+                faults.append(f"{kind} link from {source} to {target}, which is not in the base")
+        elif manual and page not in base.slugs:
+            notes[f"Blender's table names the page {page}, which the manual lacks"] += 1
+        elif manual and anchor and anchor not in anchors[page]:
+            notes[
+                "Blender's table names a place in a page that begins no section: the link leads to the page"
+            ] += 1
+    if not manual:
+        notes["without a manual, links to it lead nowhere"] += 1
+    return Check("links", looked_at, tuple(faults), _counted(notes))
+
+
+def _counted(notes: Counter[str]) -> tuple[str, ...]:
+    return tuple(f"{note} ({count:,} symbols)" if count > 1 else note for note, count in notes.most_common())
+
+
+def _index(base: _Base) -> Check:
+    """Every unit of retrieval is something that can be answered, every posting is one of a unit."""
+    faults: list[str] = []
+    sizes: Counter[int] = Counter()
+    for level, ref in base.rows("SELECT level, ref FROM docs"):
+        sizes[level] += 1
+        if ref not in base.bases and ref not in base.slugs:
+            faults.append(f"the index names {ref}, which is not in the base")
+    faults += _postings(base.rows("SELECT level, stem, df, data FROM postings"), sizes)
+    if not sizes:
+        faults.append("the index is empty")
+    return Check("index", sum(sizes.values()), tuple(faults))
+
+
+def _postings(rows: Iterable[tuple[int, str, int, bytes]], sizes: Counter[int]) -> Iterator[str]:
+    """Of each term: document numbers as uint32, ascending, then as many weights as float16."""
+    for level, stem, df, data in rows:
+        if len(data) != df * 6:
+            yield f"the postings of {stem!r} are cut off"
+            continue
+        numbers = memoryview(data)[: df * 4].cast("I")
+        last = -1
+        for number in numbers:
+            if not last < number < sizes[level]:
+                yield f"the postings of {stem!r} name unit {number} out of order or of nothing"
+                break
+            last = number
+
+
+_CHECKS: tuple[tuple[str, Callable[[_Base], Check]], ...] = (
+    ("counts", _counts),
+    ("symbols", _symbols),
+    ("names", _names),
+    ("pages", _pages),
+    ("links", _links),
+    ("index", _index),
+)
