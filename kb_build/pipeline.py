@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import threading
 import time
+from collections import deque
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import import_module
@@ -23,7 +26,7 @@ from kb_build.staging import remove_unfinished_files
 from kb_build.versions import ROLES, minor_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Generator, Mapping, Sequence
     from pathlib import Path
 
     from kb_build.extract import Extract
@@ -111,14 +114,29 @@ def build(
     meta = None if options.force else _present(work.path, fingerprint)
     if meta is not None:
         return _report(work, began, meta, built=False)
-    with _page_reader(work) as reader:
-        threading.Thread(target=_load_ahead, daemon=True).start()
-        extract = _extract(work)
-        pages = _pages(work, reader.result(), extract)
-    run = _summaries(work, pages)
-    meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
-    _write(work, extract, pages, run, meta)
+    with _paused_collector():
+        with _page_reader(work) as reader:
+            ahead = threading.Thread(target=_load_ahead, daemon=True)
+            ahead.start()
+            extract = _extract(work)
+            pages = _pages(work, reader.result(), extract)
+            ahead.join()
+        run = _summaries(work, pages)
+        meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
+        _write(work, extract, pages, run, meta)
     return _report(work, began, meta, built=True, run=run)
+
+
+@contextmanager
+def _paused_collector() -> Generator[None]:
+    """Records are no cycles, and nearly all live to the end: looking for garbage costs a second."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 def _find_sources(work: _Build) -> None:
@@ -181,9 +199,12 @@ def _page_reader(work: _Build) -> PageReader:
 
 
 def _load_ahead() -> None:
-    """Loads what comes after Blender's answer while Blender works on it."""
+    """Loads what comes after Blender's answer while Blender works on it, and fills the cache of stems."""
     for name in _LOADED_AHEAD:
         import_module(name)
+    from kb_build.near_words import load_near_words, near_stems  # noqa: PLC0415 - off the main thread
+
+    deque(near_stems(load_near_words(), frozenset()), maxlen=0)
 
 
 def _extract(work: _Build) -> Extract:
