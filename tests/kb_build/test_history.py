@@ -1,0 +1,125 @@
+"""What the history says, how it is written down, and that it survives being read back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.errors import StoreError
+from kb_build.history import History, join_path, parse_history, split_path
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PATHS = {
+    "4.2.1": {"bpy", "bpy.types", "bpy.types.A", "bpy.types.A.old", "aud", "rna_enum_x", "rna_enum_x:ONE"},
+    "4.3.0": {
+        "bpy", "bpy.types", "bpy.types.A", "bpy.types.A.kind", "bpy.types.A.kind:ONE", "bpy.types.A.kind:TWO",
+        'bpy.types.A.inputs["A: (b.c)"]', 'bpy.types.A.inputs[""]', "bpy.types.A.run(size)",
+        "rna_enum_x", "rna_enum_x:ONE", "rna_enum_x:TWO",
+    },
+    "4.10.2": {
+        "bpy", "bpy.types", "bpy.types.A", "bpy.types.A.old", 'bpy.types.A.outputs["Out"]', "aud",
+        "rna_enum_x",
+        "bpy.types.A.look", "bpy.types.A.look:", "bpy.types.A.look:Two words", 'bpy.types.A.look:=q"uote',
+        'bpy.types.A.inputs["Mode"]', 'bpy.types.A.inputs["Mode"]:Fast one',
+    },
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def committed() -> History:
+    return History.load()
+
+
+@pytest.mark.parametrize(
+    ("path", "span"),
+    [
+        ("bpy.types.Action.fcurves", ("3.4", "4.5")),
+        ("bpy.types.Scene.node_tree", ("3.4", "4.5")),
+        ("bpy.types.Scene.compositing_node_group", ("5.0", "5.2")),
+        ("bpy.types.Mesh.use_auto_smooth", ("3.4", "3.4")),
+        ("bpy.types.SceneEEVEE.use_bloom", ("3.4", "4.2")),
+        ("bpy.ops.export_mesh.stl", ("3.4", "3.4")),
+        ("bpy.ops.wm.stl_export", ("4.2", "5.2")),
+        ('bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular"]', ("3.4", "3.4")),
+        ('bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular IOR Level"]', ("4.2", "5.2")),
+        ("bpy.types.ShaderNodeTexSky.sky_type:NISHITA", ("3.4", "4.5")),
+        ("bpy.types.SequenceEditor.sequences", ("3.4", "4.5")),
+        ("bpy.types.SequenceEditor.strips", ("4.4", "5.2")),
+        ("bpy.types.RenderSettings.engine:BLENDER_EEVEE_NEXT", ("4.2", "4.5")),
+        ("bpy.types.UILayout.label(icon):CAMERA_DATA", ("3.4", "5.2")),
+        ("bpy.ops.object.modifier_add(type):NODES", ("3.4", "5.2")),
+        ('bpy.types.CompositorNodeRLayers.outputs["Image"]', ("3.4", "5.2")),
+        ("bpy.types.Object.no_such_property", None),
+    ],
+)
+def test_the_committed_history_knows_when_a_symbol_was_there(
+    committed: History, path: str, span: tuple[str, str] | None
+) -> None:
+    assert committed.span(path) == span
+
+
+def test_the_committed_history_reaches_from_3_4_to_5_2(committed: History) -> None:
+    assert committed.versions == ("3.4", "4.2", "4.3", "4.4", "4.5", "5.0", "5.1", "5.2")
+
+
+def test_the_committed_history_gives_itself_when_it_is_written_again(committed: History) -> None:
+    assert parse_history(committed.text()) == committed
+
+
+def test_what_5_1_lacks_and_what_it_has_gained_is_listed_with_versions(committed: History) -> None:
+    gone = {path: (first, last) for path, first, last in committed.removed_from("5.1.2")}
+    since = committed.since("5.1")
+    assert gone["bpy.types.Action.fcurves"] == ("3.4", "4.5")
+    assert since["bpy.types.Scene.compositing_node_group"] == "5.0"
+    assert "bpy.types.Object" not in gone.keys() | since.keys()
+    assert not gone.keys() & since.keys()
+
+
+def test_every_path_of_every_version_is_found_again() -> None:
+    history = parse_history(History.of(PATHS).text())
+    for version, paths in PATHS.items():
+        expected = paths | {"aud"} if version == "4.3.0" else paths
+        assert set(history.paths(version)) == expected
+
+
+def test_versions_are_ordered_as_numbers() -> None:
+    assert History.of(PATHS).versions == ("4.2", "4.3", "4.10")
+
+
+def test_a_symbol_that_came_back_counts_since_it_came_back() -> None:
+    history = History.of(PATHS)
+    assert history.since("4.10")["bpy.types.A.old"] == "4.10"
+    assert ("bpy.types.A.old", "4.2", "4.2") in set(history.removed_from("4.3"))
+
+
+def test_what_is_not_there_yet_is_said_with_the_version_that_brings_it() -> None:
+    assert ("bpy.types.A.look", "4.10", "4.10") in set(History.of(PATHS).removed_from("4.3"))
+
+
+def test_an_unknown_version_is_neither_yes_nor_no() -> None:
+    history = History.of(PATHS)
+    assert history.exists("bpy", "2.79") is None
+    assert history.exists("bpy", "4.3") is True
+    assert history.exists("bpy.types.A.kind", "4.2") is False
+    assert list(history.removed_from("2.79")) == []
+    assert history.since("2.79") == {}
+
+
+@pytest.mark.parametrize("path", sorted(set().union(*PATHS.values())))
+def test_a_path_taken_apart_and_put_together_is_the_same(path: str) -> None:
+    assert join_path(*split_path(path)) == path
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "format 99\n\n. bpy\n", "format 1\nversion x\n\n. a\n", "format 1\nversion 4.2.0\n\n    . deep\n",
+     "format 1\nversion 4.2.0\n\n.7.7- a\n", "\x00\x01"],
+)  # fmt: skip
+def test_a_file_that_is_no_history_is_refused_with_what_to_do(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "api.txt"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(StoreError, match="simworlds kb history"):
+        History.load(file)
