@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import signal
 import sys
+import tempfile
 import threading
 import time
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.errors import KBBuildError, SourceError
 from kb_build.page_files import kept_pages, read_pages
+from kb_build.staging import scratch_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,6 +45,7 @@ class PageReader:
         self._pages: dict[str, list[Page]] = {}
         self._process: Any = None
         self._messages: Connection | None = None
+        self._cleanup = contextlib.ExitStack()
 
     def __enter__(self) -> PageReader:
         for source in self._sources:
@@ -50,13 +53,19 @@ class PageReader:
             if kept is not None:
                 self._pages[source.role] = kept
         if self._unread and os.name == "posix" and threading.active_count() == 1:
+            scratch = self._scratch()
             context = multiprocessing.get_context("fork")
             self._messages, theirs = context.Pipe(duplex=False)
             self._process = context.Process(
                 target=_work,
-                args=(_Job(self._unread, self._cache, self._jobs, os.getpid()), theirs, self._messages),
+                args=(
+                    _Job(self._unread, self._cache, self._jobs, os.getpid(), scratch),
+                    theirs,
+                    self._messages,
+                ),
             )
             self._process.start()
+            self._cleanup.callback(self._stop)
             theirs.close()
         return self
 
@@ -98,8 +107,18 @@ class PageReader:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._process is None:
-            return
+        self._cleanup.close()
+
+    def _scratch(self) -> Path:
+        """Where the other process keeps what it cannot remove when it is killed."""
+        try:
+            return self._cleanup.enter_context(scratch_folder(self._cache / "scratch"))
+        except OSError as error:
+            raise SourceError(
+                f"{self._cache} cannot be written: {error}; make room there, or set SIMWORLDS_HOME"
+            ) from error
+
+    def _stop(self) -> None:
         self._process.kill()
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, signal.SIGKILL)
@@ -114,6 +133,7 @@ class _Job:
     cache: Path
     processes: int
     parent: int
+    scratch: Path
 
 
 def _work(job: _Job, messages: Connection, theirs: Connection) -> None:
@@ -122,6 +142,7 @@ def _work(job: _Job, messages: Connection, theirs: Connection) -> None:
     os.register_at_fork(after_in_child=_die_with_parent)
     _die_with_parent()
     theirs.close()
+    tempfile.tempdir = str(job.scratch)
     last = 0.0
 
     def report(label: str, done: int, total: int | None, /) -> None:

@@ -41,6 +41,21 @@ def staged_folder(target: Path) -> Generator[Path]:
 
 
 @contextmanager
+def scratch_folder(parent: Path) -> Generator[Path]:
+    """A new folder below ``parent`` that vanishes afterwards; what a killed process left there goes first.
+
+    Raises OSError when the disk refuses.
+    """
+    parent.mkdir(parents=True, exist_ok=True)
+    _remove_leftovers(parent)
+    folder = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=parent))
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
 def staged_file(target: Path) -> Generator[Path]:
     """A path beside ``target`` to write to; it becomes ``target`` when the body ends well, else it vanishes.
 
