@@ -31,13 +31,17 @@ TOPIC_B = 0.4
 
 @dataclass(frozen=True, slots=True)
 class Doc:
-    """One unit or topic: the id it counts for, what it is called, and the texts of its five fields."""
+    """One unit or topic: the id it counts for, what it is called, and the texts of its five fields.
+
+    ``chapter`` is the part of the manual it belongs to (``physics/cloth``); a symbol's is its manual page's.
+    """
 
     ref: str
     kind: str
     title: str
     anchor: str = ""
     topic: str = ""
+    chapter: str = ""
     name: tuple[str, ...] = ()
     heading: tuple[str, ...] = ()
     context: tuple[str, ...] = ()
@@ -94,6 +98,11 @@ def definitions(page: Page) -> Iterator[tuple[str, str]]:
             yield key(term.strip("*:").partition("(")[0]), " ".join(body)
 
 
+def chapter_of(slug: str) -> str:
+    """The first two parts of a slug: ``physics/cloth/settings/index`` → ``physics/cloth``."""
+    return "/".join(slug.split("/")[:2])
+
+
 def _manual_texts(
     symbols: Sequence[Symbol], pages: Sequence[Page], links: Sequence[Link]
 ) -> tuple[dict[str, tuple[str, ...]], dict[str, list[str]]]:
@@ -116,7 +125,9 @@ def _manual_texts(
     return said, explains
 
 
-def symbol_docs(symbols: Sequence[Symbol], said: Mapping[str, tuple[str, ...]]) -> Iterator[Doc]:
+def symbol_docs(
+    symbols: Sequence[Symbol], said: Mapping[str, tuple[str, ...]], explained_on: Mapping[str, str]
+) -> Iterator[Doc]:
     """A unit for every symbol that a script works with."""
     by_path = {symbol.path: symbol for symbol in symbols}
     sockets: dict[str, list[str]] = defaultdict(list)
@@ -135,6 +146,7 @@ def symbol_docs(symbols: Sequence[Symbol], said: Mapping[str, tuple[str, ...]]) 
             kind=symbol.kind,
             title=symbol.label or symbol.name,
             topic=_topic_of(symbol),
+            chapter=chapter_of(explained_on.get(symbol.path) or explained_on.get(symbol.owner) or symbol.owner),
             name=(symbol.name,),
             heading=(symbol.label,),
             context=(symbol.owner.removeprefix(TYPES).removeprefix("bpy."), owner.label if owner else ""),
@@ -158,6 +170,7 @@ def page_docs(
                 title=page.title if first else f"{page.title} › {section.title}",
                 anchor="" if first else section.anchor,
                 topic=page.slug,
+                chapter=chapter_of(page.slug),
                 name=(page.slug,) if first else (),
                 heading=(section.title,),
                 context=(above,) if first else (above, page.title),
@@ -187,7 +200,8 @@ def make_units(
 ) -> list[Doc]:
     """Every unit of retrieval, pages first."""
     said, explains = _manual_texts(symbols, pages, links)
-    return [*page_docs(pages, summaries, explains), *symbol_docs(symbols, said)]
+    explained_on = {link.source: link.target.partition("#")[0] for link in links if link.kind == "manual"}
+    return [*page_docs(pages, summaries, explains), *symbol_docs(symbols, said, explained_on)]
 
 
 def make_postings(docs: Sequence[Doc], b: float) -> Postings:

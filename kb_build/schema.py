@@ -62,14 +62,27 @@ CREATE TABLE sections (
 -- source and target are ids; a manual link's target may carry an anchor.
 CREATE TABLE links (source TEXT NOT NULL, target TEXT NOT NULL, kind TEXT NOT NULL);
 
+-- Symbols that this Blender does not have and another had: first and last version, and under which keys they are
+-- asked for; the nearest symbols that this one has, best first.
+CREATE TABLE removed (path TEXT PRIMARY KEY, first TEXT NOT NULL, last TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE removed_names (key TEXT NOT NULL, path TEXT NOT NULL, PRIMARY KEY (key, path)) WITHOUT ROWID;
+CREATE TABLE replacements (
+    path TEXT NOT NULL, target TEXT NOT NULL, score REAL NOT NULL, PRIMARY KEY (path, target)
+) WITHOUT ROWID;
+
+-- Symbols that came after the oldest version known.
+CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL) WITHOUT ROWID;
+
 -- Page → symbols whose manual link leads there: classes and operators only.
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;
 
 -- What is retrieved (kb_build.index): units (level 0) and topics (level 1), numbered from 0 within their level.
--- ``ref`` is the id a document counts for, ``topic`` the number of its topic or -1.
+-- ``ref`` is the id a document counts for, ``topic`` the number of its topic or -1, ``chapter`` a number that
+-- documents of one chapter of the manual share.
 CREATE TABLE docs (
     level INTEGER NOT NULL, number INTEGER NOT NULL, ref TEXT NOT NULL, kind TEXT NOT NULL,
-    title TEXT NOT NULL, anchor TEXT NOT NULL, topic INTEGER NOT NULL, PRIMARY KEY (level, number)
+    title TEXT NOT NULL, anchor TEXT NOT NULL, topic INTEGER NOT NULL, chapter INTEGER NOT NULL,
+    PRIMARY KEY (level, number)
 ) WITHOUT ROWID;
 
 -- The inverted index: df document numbers as uint32, then df weighted term frequencies as float16.

@@ -144,11 +144,15 @@ def _write_pages(
 
 def _write_level(connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int]) -> set[str]:
     """One level of the retrieval index; returns its stems."""
+    chapters: dict[str, int] = {}
     rows = (
-        (level, number, doc.ref, doc.kind, doc.title, doc.anchor, topics.get(doc.topic, -1))
+        (
+            level, number, doc.ref, doc.kind, doc.title, doc.anchor, topics.get(doc.topic, -1),
+            chapters.setdefault(doc.chapter, len(chapters)),
+        )
         for number, doc in enumerate(docs)
-    )
-    _insert(connection, "docs", rows, 7)
+    )  # fmt: skip
+    _insert(connection, "docs", rows, 8)
     postings = make_postings(docs, TOPIC_B if level else UNIT_B)
     _insert(connection, "postings", ((level, *row) for row in postings.packed()), 4)
     return set(postings.numbers)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from kb_build.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_serve.chains import Chain, find_chains
+from kb_serve.corrections import Correction, Corrector, Drift, Drifts, nearest
 from kb_serve.reader import TYPES, Entry, Reader
 from kb_serve.walk import Walked, Walker
 
@@ -28,6 +29,8 @@ _POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
+
+_FITTING = 0.5  # how far the words around a bare value must fit the property that takes it
 
 # Python's own names, which are nobody's API.
 _NOT_API = frozenset(
@@ -54,11 +57,12 @@ class Missing:
 
 @dataclass(slots=True)
 class Identified:
-    """What was recognised: ``matches`` best first, names that do not exist, and what is left as prose."""
+    """What was recognised: ``matches`` best first, and what was wrong with the names that were typed."""
 
     matches: list[Match] = field(default_factory=list)
     missing: list[Missing] = field(default_factory=list)
-    prose: list[str] = field(default_factory=list)
+    corrections: list[Correction] = field(default_factory=list)
+    drifts: list[Drift] = field(default_factory=list)
 
     def add(self, identifier: str, sure: float, why: str) -> None:
         """Adds a match, or raises the certainty of the same one."""
@@ -81,6 +85,8 @@ class Identifier:
     def __init__(self, reader: Reader) -> None:
         self._reader = reader
         self._walker = Walker(reader)
+        self._corrector = Corrector(reader, self._walker)
+        self._drifts = Drifts(reader)
 
     def identify(self, query: str) -> Identified:
         """Everything that ``query`` names, surest first."""
@@ -93,7 +99,7 @@ class Identifier:
             self._chains(chains, found)
             self._class_with_member(chains, found)
             self._enum_values(query, found)
-            found.prose = [chain.root for chain in chains if not chain.is_code]
+            self._explain_missing(found)
         found.matches.sort(key=lambda match: -match.sure)
         return found
 
@@ -129,6 +135,8 @@ class Identifier:
         rows = self._reader.by_key(key(called))
         if rows:
             self._spelled(called, rows, found)
+        if found.best is None or found.best.sure < 1:
+            found.drifts.extend(self._drifts.spelled(called))
 
     def _spelled(self, text: str, rows: list[tuple[int, str]], found: Identified) -> None:
         """Symbols and pages that share the key of what was typed; the fuller the spelling, the surer."""
@@ -180,32 +188,75 @@ class Identifier:
     # Code
 
     def _chains(self, chains: list[Chain], found: Identified) -> None:
-        position = 0
+        code = [chain for chain in chains if chain.is_code and chain.root not in _NOT_API]
         prose = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
-        for chain in chains:
-            if not chain.is_code or chain.root in _NOT_API:
-                continue
+        for position, chain in enumerate(code):
+            later = 0.02 * min(position, 5)
             readings = self._walker.walk(chain)
-            if readings:
-                self._reading(chain, readings, position, found)
-            if not readings or not readings[0].complete:
+            if self._former(chain, readings, found):
+                continue
+            if readings and readings[0].complete:
+                self._reading(chain, readings, later, found)
+            elif not self._corrected(chain, later, found):
+                if readings:
+                    self._broken_off(readings[0], later, found)
                 self._loose_name(chain, prose, found)
-            position += 1
 
-    def _reading(self, chain: Chain, readings: list[Walked], position: int, found: Identified) -> None:
-        """The best reading of one chain; chains further back in the query count a little less."""
-        best = readings[0]
-        later = 0.02 * min(position, 5)
-        if best.complete:
-            for rank, walked in enumerate(reading for reading in readings[:4] if reading.complete):
-                sure = 0.97 if walked.fit >= 0.2 or len(chain.steps) > 2 else 0.85
-                found.add(walked.symbols[-1], sure - 0.04 * rank - later, "expression")
-            for step, symbol in enumerate(reversed(best.symbols[:-1])):
-                found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
-        else:
-            found.missing.append(Missing(best.missing, best.owner))
-            for step, symbol in enumerate(reversed(best.symbols)):
-                found.add(symbol, 0.45 - 0.05 * step - later, "on the way")
+    def _former(self, chain: Chain, readings: list[Walked], found: Identified) -> bool:
+        """Whether the chain names what another version had: on the likeliest class, or under its own path."""
+        if not (readings and readings[0].complete and readings[0].fit >= 0.85):
+            for walked in readings:
+                if walked.missing and walked.fit >= 0.6 and (drift := self._drifts.of_member(walked.owner, walked.missing)):
+                    found.drifts.append(drift)
+                    return True
+            for drift in self._drifts.spelled(chain.dotted) if chain.steps or "_" in chain.root else ():
+                found.drifts.append(drift)
+                return True
+        return False
+
+    def _reading(self, chain: Chain, readings: list[Walked], later: float, found: Identified) -> None:
+        """The best reading of one chain, and what lies on the way to it."""
+        for rank, walked in enumerate(reading for reading in readings[:4] if reading.complete):
+            sure = 0.97 if walked.fit >= 0.2 or len(chain.steps) > 2 else 0.85
+            found.add(walked.symbols[-1], sure - 0.04 * rank - later, "expression")
+        for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
+            found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
+
+    def _corrected(self, chain: Chain, later: float, found: Identified) -> bool:
+        """Reads a chain with its misspelt names mended."""
+        if not chain.steps and not chain.root[:1].isupper():
+            return False
+        mended = self._corrector.corrected(chain)
+        if mended is None:
+            return False
+        walked, corrections = mended
+        found.corrections += corrections
+        found.add(walked.symbols[-1], 0.93 * min(c.similarity for c in corrections) ** 0.25 - later, "correction")
+        for step, symbol in enumerate(reversed(walked.symbols[:-1])):
+            found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
+        return True
+
+    @staticmethod
+    def _broken_off(walked: Walked, later: float, found: Identified) -> None:
+        """As far as a chain could be followed."""
+        found.missing.append(Missing(walked.missing, walked.owner))
+        for step, symbol in enumerate(reversed(walked.symbols)):
+            found.add(symbol, 0.45 - 0.05 * step - later, "on the way")
+
+    def _explain_missing(self, found: Identified) -> None:
+        """What stands in for names that do not exist: replacements of former ones, similar members."""
+        for missing in found.missing:
+            if missing.owner and (drift := self._drifts.of_member(missing.owner, missing.name)):
+                found.drifts.append(drift)
+        for place, drift in enumerate(found.drifts):
+            for rank, (target, _) in enumerate(drift.instead):
+                found.add(target, 0.92 - 0.03 * rank - 0.05 * min(place, 3), "replacement")
+        for missing in found.missing:
+            names = self._corrector.member_names(missing.owner) if missing.owner else []
+            for name, alike in nearest(missing.name, names):
+                member = self._walker.member(missing.owner, name)
+                if member:
+                    found.add(member.path, 0.8 * alike, "similar name")
 
     def _loose_name(self, chain: Chain, prose: set[str], found: Identified) -> None:
         """A name of code without its owner (``thickness_outer``): its owners, by the words around it."""
@@ -262,7 +313,8 @@ class Identifier:
         for rank, (owner, share) in enumerate(self._owners_of_items(values, around)):
             if rank >= 5:
                 break
-            sure = (0.92 if alone else 0.9) * (0.6 + 0.4 * share) - 0.03 * rank
+            fits = alone or quoted or self._owner_fit(owner, around) >= _FITTING
+            sure = (0.92 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             found.add(owner.partition("(")[0], sure, "enum item")
 
     def _owners_of_items(self, values: Iterable[str], around: set[str] | None = None) -> Iterator[tuple[str, float]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from kb_serve.corrections import Drift
 from kb_serve.identifiers import Identified, Identifier
 from kb_serve.reader import Reader
 from kb_serve.search import Found, Searcher
@@ -32,6 +33,12 @@ class Ranking:
     notes: list[str] = field(default_factory=list)
 
 
+def _span_text(drift: Drift) -> str:
+    if drift.first == drift.last:
+        return f"seen in {drift.last} only"
+    return f"seen from {drift.first} to {drift.last}"
+
+
 class Ranker:
     """Brings what a query names and what it describes into one order."""
 
@@ -49,8 +56,25 @@ class Ranker:
             return Ranking(ranked, identified, named=True)
         found = self.searcher.search(query, _FOUND)
         ranked = self._merged(identified, found)
-        named = best is not None and best.sure >= 0.9
-        return Ranking(ranked, identified, named)
+        named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
+        return Ranking(ranked, identified, named, self._notes(identified))
+
+    def _notes(self, identified: Identified) -> list[str]:
+        """What the caller should know about the names that were typed."""
+        version = self._reader.meta.get("minor", "this version")
+        notes: list[str] = []
+        for correction in identified.corrections:
+            if correction.similarity < 1:
+                notes.append(f"`{correction.written}` does not exist; read as `{correction.meant}`.")
+        for drift in identified.drifts:
+            instead = ", ".join(f"`{target}`" for target, _ in drift.instead[:3])
+            closest = f" Closest in {version}: {instead}." if instead else ""
+            notes.append(f"`{drift.path}` does not exist in Blender {version}; {_span_text(drift)}.{closest}")
+        former = {drift.path.rpartition(".")[2] for drift in identified.drifts}
+        for missing in identified.missing:
+            if missing.owner and missing.name not in former:
+                notes.append(f"`{missing.owner}` has no `{missing.name}`.")
+        return list(dict.fromkeys(notes))
 
     @staticmethod
     def _merged(identified: Identified, found: list[Found]) -> list[Ranked]:

@@ -150,6 +150,24 @@ class Reader:
         """(owner, identifier, name) for every enumeration that has the item."""
         return self.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)
 
+    def removed(self, path: str) -> tuple[str, str] | None:
+        """(first, last) version that had a symbol which this one lacks."""
+        rows = self.rows("SELECT first, last FROM removed WHERE path = ?", path)
+        return rows[0] if rows else None
+
+    def removed_by_key(self, key: str) -> list[str]:
+        """Paths of symbols of other versions that are spelled like ``key``."""
+        return [row[0] for row in self.rows("SELECT path FROM removed_names WHERE key = ? ORDER BY path", key)]
+
+    def replacements(self, path: str) -> list[tuple[str, float]]:
+        """What this version has that is closest to a symbol it lacks, best first."""
+        return self.rows("SELECT target, score FROM replacements WHERE path = ? ORDER BY score DESC", path)
+
+    def since(self, path: str) -> str:
+        """The version that brought a symbol; empty for those older than the history."""
+        rows = self.rows("SELECT version FROM since WHERE path = ?", path)
+        return rows[0][0] if rows else ""
+
     def near(self, word: str) -> list[tuple[str, float]]:
         """Stems of the corpus that mean nearly what an English word means, with the similarity."""
         return self.rows("SELECT stem, weight FROM near WHERE word = ? ORDER BY weight DESC", word)

@@ -1,10 +1,12 @@
 """Ranks what the base holds for a query in plain words.
 
-BM25F over two levels (a unit and the topic around it), with three additions, each measured in ``make bench``:
+BM25F over two levels (a unit and the topic around it), with four additions, each measured in ``make bench``:
 
 - *Concepts*: a word stands for itself and, less, for the corpus' words that mean nearly the same; the best of them
   counts, once.
 - *Coverage*: a document's score is scaled by how much of the query, by rarity, it speaks of at all.
+- *Chapters*: what the best documents mostly come from is probably what the query is about (pseudo-relevance
+  feedback); the rest of that chapter gains by it.
 - *Variety*: one class or page gives one hit before the others had theirs.
 """
 
@@ -30,10 +32,13 @@ NEAR_WEIGHT = 0.9  # a near word's similarity counts this much of the word itsel
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
+CHAPTER_WEIGHT = 0.3
 UNKNOWN_IDF = 6.0
 MAX_IDF = 8.0
 _MAX_WORDS = 40
 _CANDIDATES = 400
+_FEEDBACK = 100
+_FEEDBACK_POWER = 3  # the weaker half of the feedback documents hardly votes
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +71,7 @@ class _Level:
     titles: list[str]
     anchors: list[str]
     topics: NDArray[np.int32]
+    chapters: NDArray[np.int32]
 
 
 class Searcher:
@@ -80,9 +86,9 @@ class Searcher:
         return self._read_level(0), self._read_level(1)
 
     def _read_level(self, level: int) -> _Level:
-        rows = self._reader.rows("SELECT ref, kind, title, anchor, topic FROM docs WHERE level = ? ORDER BY number", level)
-        columns = [list(column) for column in zip(*rows, strict=True)] or [[], [], [], [], []]
-        return _Level(*columns[:4], np.asarray(columns[4], np.int32))
+        sql = "SELECT ref, kind, title, anchor, topic, chapter FROM docs WHERE level = ? ORDER BY number"
+        columns = [list(column) for column in zip(*self._reader.rows(sql, level), strict=True)] or [[] for _ in range(6)]
+        return _Level(*columns[:4], np.asarray(columns[4], np.int32), np.asarray(columns[5], np.int32))
 
     def _read_postings(self, level: int, term: str) -> tuple[NDArray[np.uint32], Scores] | None:
         rows = self._reader.rows("SELECT df, data FROM postings WHERE level = ? AND stem = ?", level, term)
@@ -179,9 +185,17 @@ class Searcher:
         topical, _ = self._score(1, concepts)
         around = np.where(units.topics >= 0, topical[units.topics], ALONE * own)
         scores = np.where(own > 0, own + TOPIC_WEIGHT * around, 0)
-        best = np.argpartition(-scores, min(_CANDIDATES, len(scores) - 1))[:_CANDIDATES]
-        order = best[np.argsort(-scores[best], kind="stable")]
+        scores *= 1 + CHAPTER_WEIGHT * self._chapter_votes(scores)
+        order = _top(scores, _CANDIDATES)
         return self._varied(order, scores, covered, limit)
+
+    def _chapter_votes(self, scores: Scores) -> Scores:
+        """How much each document's chapter is favoured by the best documents, 0…1."""
+        chapters = self._levels[0].chapters
+        best = _top(scores, _FEEDBACK)
+        strength = (scores[best] / max(float(scores[best[0]]), 1e-9)) ** _FEEDBACK_POWER
+        votes = np.bincount(chapters[best], strength, int(chapters.max()) + 1).astype(np.float32)
+        return (votes / max(float(votes.max()), 1e-9))[chapters]
 
     def _varied(self, order: NDArray[np.intp], scores: Scores, covered: Scores, limit: int) -> list[Found]:
         """The order with every topic's first document before any topic's second."""
@@ -205,3 +219,10 @@ class Searcher:
             if topic >= 0:
                 topics.add(topic)
         return (first + later)[:limit]
+
+
+def _top(scores: Scores, count: int) -> NDArray[np.intp]:
+    """The numbers of the ``count`` highest scores, highest first."""
+    count = min(count, len(scores))
+    best = np.argpartition(-scores, count - 1)[:count]
+    return best[np.argsort(-scores[best], kind="stable")]

@@ -1,0 +1,147 @@
+"""Names that do not exist: what was probably meant, and what other versions had."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from rapidfuzz import process
+from rapidfuzz.distance import OSA
+
+from kb_build.analysis import key, words
+from kb_serve.chains import Chain, Step
+from kb_serve.reader import TYPES, Reader
+from kb_serve.walk import Walked, Walker
+
+LIKELY = 0.72  # similarity from which on a name is offered as a correction
+_CONTAINED = 0.8  # of a name whose words are all in the other: ``select`` and ``select_set``
+_ROUNDS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """``written`` was read as ``meant``; ``similarity`` 0…1."""
+
+    written: str
+    meant: str
+    similarity: float
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """A symbol of another version: its path, first and last version, and what this version has instead."""
+
+    path: str
+    first: str
+    last: str
+    instead: tuple[tuple[str, float], ...]
+
+
+def similarity(written: str, name: str) -> float:
+    """How alike two names are: 1 when only the spelling differs, else by edits and by shared words."""
+    left, right = key(written), key(name)
+    if left == right:
+        return 1.0
+    alike = OSA.normalized_similarity(left, right)
+    mine, theirs = set(words(written)), set(words(name))
+    if mine and mine < theirs:
+        alike = max(alike, _CONTAINED + 0.1 * len(mine) / len(theirs))
+    return alike
+
+
+def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[str, float]]:
+    """The most similar names that are likely meant, best first."""
+    scored = [(name, similarity(written, name)) for name in names]
+    likely = [row for row in scored if row[1] >= LIKELY]
+    return sorted(likely, key=lambda row: (-row[1], len(row[0]), row[0]))[:limit]
+
+
+class Corrector:
+    """Finds what a chain with a wrong name in it was meant to be."""
+
+    def __init__(self, reader: Reader, walker: Walker) -> None:
+        self._reader = reader
+        self._walker = walker
+
+    @cached_property
+    def _roots(self) -> dict[str, str]:
+        """key → name for everything that code starts with: classes and modules."""
+        rows = self._reader.rows(
+            "SELECT name, path FROM symbols WHERE kind IN ('class', 'module') AND grp NOT IN ('ui', 'operator')"
+        )
+        return {key(name): path.removeprefix(TYPES) for name, path in rows}
+
+    def root(self, written: str) -> Correction | None:
+        """A class or module that a misspelt first name stands for."""
+        if len(written) < 5:
+            return None
+        found = process.extractOne(
+            key(written), self._roots.keys(), scorer=OSA.normalized_similarity, score_cutoff=0.8
+        )
+        return Correction(written, self._roots[found[0]], found[1]) if found else None
+
+    def member_names(self, owner: str) -> list[str]:
+        """The names that may follow after ``owner``: own, inherited, and its contents for a module."""
+        names: dict[str, None] = {}
+        for ancestor in self._reader.lineage(owner):
+            names.update(dict.fromkeys(self._reader.members(ancestor.path)))
+        if not names:
+            names.update(dict.fromkeys(self._reader.members(owner)))
+        return list(names)
+
+    def corrected(self, chain: Chain) -> tuple[Walked, list[Correction]] | None:
+        """A chain read with its wrong names replaced by likely ones; None when nothing likely was found."""
+        corrections: list[Correction] = []
+        readings = self._walker.walk(chain)
+        if not (readings and readings[0].complete) and (not readings or readings[0].fit < 1.0):
+            root = self.root(chain.root)
+            if root and root.similarity < 1.0 and chain.root[:1].isupper():
+                corrections.append(root)
+                chain = replace(chain, root=root.meant)
+                readings = self._walker.walk(chain)
+        for _ in range(_ROUNDS):
+            if not readings or readings[0].complete:
+                break
+            walked = readings[0]
+            found = nearest(walked.missing, self.member_names(walked.owner), 1)
+            if not found:
+                break
+            corrections.append(Correction(walked.missing, found[0][0], found[0][1]))
+            chain = _with_step(chain, len(chain.steps) - walked.steps_left, found[0][0])
+            readings = self._walker.walk(chain)
+        if corrections and readings and readings[0].complete:
+            return readings[0], corrections
+        return None
+
+
+def _with_step(chain: Chain, number: int, name: str) -> Chain:
+    steps = list(chain.steps)
+    steps[number] = Step("key" if steps[number].kind == "key" else "attr", name.partition('["')[2].rstrip('"]') or name)
+    return replace(chain, steps=tuple(steps))
+
+
+class Drifts:
+    """Looks up symbols that other versions had."""
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+
+    def of_member(self, owner: str, name: str) -> Drift | None:
+        """A former member of a class, of its bases, or of a module."""
+        for ancestor in [entry.path for entry in self._reader.lineage(owner)] or [owner]:
+            for path in (f"{ancestor}.{name}", f'{ancestor}.inputs["{name}"]', f"{ancestor}:{name}"):
+                if drift := self.of_path(path):
+                    return drift
+        return None
+
+    def of_path(self, path: str) -> Drift | None:
+        """A symbol of another version by its exact path."""
+        span = self._reader.removed(path)
+        return Drift(path, *span, tuple(self._reader.replacements(path))) if span else None
+
+    def spelled(self, text: str) -> Iterator[Drift]:
+        """Symbols of other versions under any usual spelling."""
+        for path in self._reader.removed_by_key(key(text)):
+            if drift := self.of_path(path):
+                yield drift
