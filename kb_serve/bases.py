@@ -1,0 +1,111 @@
+"""The bases that are served: opened once, picked by version, opened anew when their file was replaced."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from dataclasses import dataclass
+from functools import cached_property
+from threading import RLock
+from typing import TYPE_CHECKING
+
+from kb_build.settings import built_bases
+from kb_serve.errors import BaseUnreadable
+from kb_serve.in_use import blender_in_use, minor
+from kb_serve.locate import find_base
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_serve.knowledge_base import KnowledgeBase
+
+_LOOK_SECONDS = 1.0
+
+_Stamp = tuple[int, int, int]
+
+
+@dataclass(slots=True)
+class _Opened:
+    base: KnowledgeBase
+    stamp: _Stamp
+    looked: float
+
+
+class Bases:
+    """The bases in a home folder, by version. Safe to share between threads.
+
+    A base that ``pick`` returned is open until a later call finds its file replaced: use it at once.
+    """
+
+    def __init__(self, home: Path, *, default: str | None = None, blender_exe: Path | None = None) -> None:
+        """``default`` is the version that is meant where none is named."""
+        self.home = home
+        self._default = default
+        self._blender_exe = blender_exe
+        self._opened: dict[Path, _Opened] = {}
+        self._built: tuple[float, dict[str, Path]] = (0.0, {})
+        self._lock = RLock()
+
+    def pick(self, version: str | None = None) -> KnowledgeBase:
+        """The base of a version. Without one: of the default, of the Blender in use, or the newest.
+
+        Raises BaseMissing, saying which there are, and BaseUnreadable.
+        """
+        with self._lock:
+            return self._open(self._file(version or self._default))
+
+    def built(self) -> dict[str, Path]:
+        """Minor version → file, oldest Blender first; looked up at most once a second."""
+        with self._lock:
+            at, found = self._built
+            if not found or time.monotonic() - at >= _LOOK_SECONDS:
+                found = built_bases(self.home)
+                self._built = (time.monotonic(), found)
+            return found
+
+    @cached_property
+    def in_use(self) -> str | None:
+        """The full version of the Blender in use."""
+        return blender_in_use(self._blender_exe)
+
+    def close(self) -> None:
+        """Closes all files."""
+        with self._lock:
+            for opened in self._opened.values():
+                opened.base.close()
+            self._opened.clear()
+
+    def _file(self, version: str | None) -> Path:
+        built = self.built()
+        if version is None and len(built) > 1 and self.in_use is not None:
+            version = minor(self.in_use) if minor(self.in_use) in built else None
+        path = built.get(version) if version is not None else next(reversed(built.values()), None)
+        return path or find_base(version, self.home)
+
+    def _open(self, path: Path) -> KnowledgeBase:
+        opened = self._opened.get(path)
+        now = time.monotonic()
+        if opened is not None and now - opened.looked < _LOOK_SECONDS:
+            return opened.base
+        stamp = _stamp(path)
+        if opened is not None:
+            opened.looked = now
+            if stamp in (None, opened.stamp):
+                return opened.base
+        from kb_serve.knowledge_base import KnowledgeBase  # noqa: PLC0415 - loaded while the client connects
+
+        with contextlib.suppress(BaseUnreadable) if opened is not None else contextlib.nullcontext():
+            base = KnowledgeBase(path)
+            # The stamp was taken before the file was opened: a file replaced in between is noticed next time.
+            self._opened[path] = _Opened(base, stamp or (0, 0, 0), now)
+            if opened is not None:
+                opened.base.close()
+        return self._opened[path].base
+
+
+def _stamp(path: Path) -> _Stamp | None:
+    try:
+        stat = path.stat()
+    except OSError:
+        return None
+    return stat.st_ino, stat.st_mtime_ns, stat.st_size

@@ -1,0 +1,160 @@
+"""The commands ``simworlds docs`` and ``simworlds serve``."""
+
+from __future__ import annotations
+
+import gc
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kb_build.settings import home_folder
+from kb_serve.errors import KBServeError
+
+if TYPE_CHECKING:
+    from kb_serve.answer import Answer
+    from kb_serve.bases import Bases
+    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.service import Service
+
+_NOTHING_FOUND = 1
+_ERROR = 2
+_PORT = 8765
+_TYPED = click.core.ParameterSource.COMMANDLINE
+_BLENDER = click.option("--blender", metavar="VERSION", help="Blender version. Default: the one in use.")
+
+
+@click.command()
+@click.argument("query", nargs=-1, required=True)
+@_BLENDER
+@click.option("--limit", type=int, default=8, show_default=True, help="Hits at most.")
+@click.option("--max-tokens", type=int, default=1500, show_default=True, help="Length of one part at most.")
+@click.option("--part", type=int, default=1, show_default=True, help="Which part of a long answer.")
+@click.option("--json", "as_json", is_flag=True, help="The answer as JSON.")
+@click.option("--raw", is_flag=True, help="The whole record of the best hit, as JSON.")
+def docs(  # noqa: PLR0913 - one for each option
+    *,
+    query: tuple[str, ...],
+    blender: str | None,
+    limit: int,
+    max_tokens: int,
+    part: int,
+    as_json: bool,
+    raw: bool,
+) -> None:
+    """Ask the knowledge base: a name, an expression, an error message, a question, a topic.
+
+    Prints Markdown. Exit code: 0 when something was found, 1 when nothing was, 2 on errors.
+    """
+    if as_json and raw:
+        raise click.UsageError("--json and --raw exclude each other.")
+    # What is loaded now stays until the end, which is near: looking for garbage would only take time.
+    gc.disable()
+    try:
+        base = _bases(blender).pick()
+        answer = base.query(" ".join(query), limit=limit, max_tokens=max_tokens, part=part)
+        found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
+    except KBServeError as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(_ERROR)
+    sys.exit(0 if found else _NOTHING_FOUND)
+
+
+def _print_answer(answer: Answer, *, as_json: bool) -> bool:
+    if as_json:
+        from dataclasses import asdict  # noqa: PLC0415 - the other ways do without
+
+        click.echo(json.dumps(asdict(answer), ensure_ascii=False, indent=2))
+    elif sys.stdout.isatty():
+        from rich.console import Console  # noqa: PLC0415 - takes as long to load as the answer to find
+        from rich.markdown import Markdown  # noqa: PLC0415
+
+        Console().print(Markdown(answer.text))
+    else:
+        click.echo(answer.text)
+    return answer.kind != "none"
+
+
+def _print_raw(base: KnowledgeBase, answer: Answer) -> bool:
+    from kb_build.records import to_json  # noqa: PLC0415 - the other ways do without
+
+    for hit in answer.hits[:1]:
+        # An enum item and a parameter stand in the record of what they belong to.
+        whole = hit.id.partition(":")[0].partition("(")[0]
+        record = base.symbol(hit.id) or base.page(hit.id) or base.symbol(whole)
+        if record is not None:
+            click.echo(json.dumps(to_json(record), ensure_ascii=False, indent=2))
+            return True
+    click.echo(answer.text, err=True)
+    return False
+
+
+def _bases(blender: str | None, blender_exe: Path | None = None) -> Bases:
+    from kb_serve.bases import Bases  # noqa: PLC0415 - not for --help
+
+    return Bases(home_folder(), default=blender, blender_exe=blender_exe)
+
+
+@click.command()
+@_BLENDER
+@click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=_PORT, show_default=True, help="0 takes a free one."
+)
+@click.option("--token", envvar="SIMWORLDS_TOKEN", show_envvar=True, help="What clients must send.")
+@click.option("--allow-host", multiple=True, metavar="NAME", help="A further name of this server.")
+@click.option("--blender-exe", type=click.Path(path_type=Path), help="The Blender in use, if not bpy.")
+@click.option("--no-rebuild", is_flag=True, help="Build nothing when Blender is newer than its base.")
+@click.pass_context
+def serve(  # noqa: PLR0913 - one for each option
+    context: click.Context,
+    *,
+    blender: str | None,
+    over_http: bool,
+    host: str,
+    port: int,
+    token: str | None,
+    allow_host: tuple[str, ...],
+    blender_exe: Path | None,
+    no_rebuild: bool,
+) -> None:
+    """Serve the tool blender_docs over MCP, on stdio or HTTP.
+
+    When the Blender in use is newer than its knowledge base, the base is built again in the background. On an
+    address other than loopback clients must send a token: Authorization: Bearer …
+    """
+    for_http = [
+        name for name in ("host", "port", "allow_host") if context.get_parameter_source(name) is _TYPED
+    ]
+    if for_http and not over_http:
+        raise click.UsageError("--host, --port and --allow-host go with --http.")
+    # Nothing of what is loaded is garbage, and looking for it would take a tenth of the time to start.
+    gc.disable()
+    service = _service(blender, blender_exe, rebuild=not no_rebuild)
+    try:
+        if over_http:
+            from kb_serve.http import Address, run_http  # noqa: PLC0415 - loads the MCP package
+
+            gc.enable()
+            run_http(service, Address(host, port, token or "", allow_host))
+        else:
+            from kb_serve.server import run_stdio  # noqa: PLC0415 - loads the MCP package
+
+            gc.enable()
+            run_stdio(service)
+    except KBServeError as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(_ERROR)
+    finally:
+        service.bases.close()
+
+
+def _service(blender: str | None, blender_exe: Path | None, *, rebuild: bool) -> Service:
+    from kb_serve.rebuild import Upkeep  # noqa: PLC0415 - not for --help
+    from kb_serve.service import Service  # noqa: PLC0415
+
+    bases = _bases(blender, blender_exe)
+    return Service(bases, Upkeep(bases, blender_exe, enabled=rebuild))

@@ -1,0 +1,55 @@
+"""Which Blender is in use here: an executable that was named, else this environment's bpy."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_SECONDS = 60.0
+_VERSION = re.compile(r"^Blender (\d+\.\d+\.\d+)", re.MULTILINE)
+
+
+def blender_in_use(executable: Path | None = None) -> str | None:
+    """The full version (``"5.1.2"``) of ``executable``, else of this environment's bpy, if there is one.
+
+    bpy is not imported: what its distribution says is enough.
+    """
+    return _version_of(executable) if executable is not None else _installed()
+
+
+def _installed() -> str | None:
+    from importlib import metadata  # noqa: PLC0415 - a look-up in the only base there is does without
+
+    try:
+        return metadata.version("bpy")
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def _version_of(executable: Path) -> str | None:
+    try:
+        done = subprocess.run(
+            [str(executable), "--version"],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_SECONDS,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    match = _VERSION.search((done.stdout + done.stderr).decode(errors="replace"))
+    return match[1] if match else None
+
+
+def numbers(version: str) -> tuple[int, ...]:
+    """``"5.1.2"`` → ``(5, 1, 2)``, so that versions compare; what is not a number counts as nothing."""
+    return tuple(int(number) for number in re.findall(r"\d+", version)[:3])
+
+
+def minor(version: str) -> str:
+    """``"5.1.2"`` → ``"5.1"``."""
+    return ".".join(version.split(".")[:2])

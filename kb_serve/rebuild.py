@@ -1,0 +1,214 @@
+"""Keeps the base of the Blender in use up to date: builds it in a process of its own, of low priority.
+
+``python -m kb_serve.rebuild VERSION --home FOLDER`` is that process. It says nothing but what went wrong, on
+stderr, and leaves a build that another process has begun to that one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NoReturn
+
+from kb_serve.errors import KBServeError
+from kb_serve.in_use import minor, numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Mapping, Sequence
+
+    from kb_serve.bases import Bases
+
+_ELSEWHERE = 3
+_LONGEST_REASON = 300
+
+State = Literal["idle", "running", "failed"]
+
+
+@dataclass(slots=True)
+class Upkeep:
+    """Whether the base of the Blender in use is outdated, and what is being done about it."""
+
+    bases: Bases
+    blender_exe: Path | None = None
+    enabled: bool = True
+    state: State = field(default="idle", init=False)
+    reason: str = field(default="", init=False)
+    _process: subprocess.Popen[bytes] | None = field(default=None, init=False)
+
+    def run(self) -> None:
+        """Builds the base of the Blender in use if that Blender is newer; returns when the build has ended.
+
+        Blocks: to be called in a thread. How it ended is in ``state`` and ``reason``.
+        """
+        in_use = self.bases.in_use
+        if not self.enabled or in_use is None:
+            return
+        try:
+            meta = self._nearest(in_use)
+        except KBServeError:
+            return
+        if meta is not None:
+            self._build(in_use, meta)
+
+    def stop(self) -> None:
+        """Ends a build that is under way; what was there before stands."""
+        if self._process is not None and self._process.poll() is None:
+            self._process.terminate()
+
+    def note(self, meta: Mapping[str, str], asked: str | None) -> str:
+        """What an answer drawn from the base with this meta must say: nothing, or that Blender is newer.
+
+        ``asked`` is the version that the caller named, if any: who names one wants no other.
+        """
+        have, in_use = meta.get("blender", ""), self.bases.in_use
+        if in_use is None or not _newer(in_use, have) or (asked and minor(in_use) != minor(have)):
+            return ""
+        then = {
+            "idle": f"Build its base: simworlds kb build {minor(in_use)}",
+            "running": "Its base is being built in the background; until then this one answers.",
+            "failed": f"Building its base failed: {self.reason}",
+        }
+        return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then[self.state]}"
+
+    def building(self, version: str | None) -> bool:
+        """Whether the base of this version (None: of whichever is in use) is being built."""
+        in_use = self.bases.in_use if self.state == "running" else None
+        return in_use is not None and (version is None or minor(version) == minor(in_use))
+
+    def _nearest(self, in_use: str) -> Mapping[str, str] | None:
+        """The meta of the base that the Blender in use has outgrown; None when there is none."""
+        built = self.bases.built()
+        if minor(in_use) in built:
+            meta = self.bases.pick(minor(in_use)).meta
+            return meta if _newer(in_use, meta.get("blender", "")) else None
+        older = [version for version in built if numbers(version) < numbers(in_use)]
+        return self.bases.pick(older[-1]).meta if older else None
+
+    def _build(self, in_use: str, meta: Mapping[str, str]) -> None:
+        command = [sys.executable, "-m", "kb_serve.rebuild", in_use, "--home", str(self.bases.home)]
+        command += _as_before(meta, minor(in_use))
+        if self.blender_exe is not None:
+            command += ["--blender-exe", str(self.blender_exe)]
+        self.state = "running"
+        try:
+            self._process = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+            )
+        except OSError as error:
+            self.state, self.reason = "failed", str(error)
+            return
+        said = self._process.communicate()[1].decode(errors="replace").strip()
+        if self._process.returncode == 0:
+            self.state = "idle"
+        elif self._process.returncode != _ELSEWHERE:
+            last = (said.splitlines() or [f"exit code {self._process.returncode}"])[-1]
+            self.state, self.reason = "failed", last[:_LONGEST_REASON]
+
+
+def _newer(in_use: str, have: str) -> bool:
+    return bool(numbers(have)) and numbers(in_use) > numbers(have)
+
+
+def _as_before(meta: Mapping[str, str], version: str) -> list[str]:
+    """The arguments that build from what a base was built from, as far as that fits the version."""
+    options, sources = json.loads(meta.get("options", "{}")), json.loads(meta.get("sources", "[]"))
+    arguments = [] if options.get("pages", True) else ["--no-pages"]
+    arguments += ["--summaries", options.get("summaries", "extractive")]
+    if options.get("model"):
+        arguments += ["--model", options["model"]]
+    for source in sources:
+        if source.get("given") and source.get("version") == version and Path(source["origin"]).exists():
+            arguments += [f"--{source['role']}", source["origin"]]
+    return arguments
+
+
+# The process
+
+
+def build_base(given: argparse.Namespace, summaries: str) -> None:
+    """The server's only way into the build. Raises what the build raises.
+
+    Nothing is spent on summaries: claude's are used where they were paid for already.
+    """
+    from kb_build import pipeline  # noqa: PLC0415 - the one place
+    from kb_build.settings import corpora_folder  # noqa: PLC0415
+
+    options = pipeline.BuildOptions(
+        blender_exe=given.blender_exe,
+        manual=given.manual,
+        guides=given.guides,
+        corpora=corpora_folder(),
+        pages=not given.no_pages,
+        summaries=summaries,  # pyright: ignore[reportArgumentType] - argparse has checked it
+        model=given.model,
+        max_cost=0.0,
+        jobs=1,
+    )
+    pipeline.build(given.version, options=options, home=given.home)
+
+
+@contextlib.contextmanager
+def _alone(home: Path) -> Generator[bool]:
+    """Whether no other process is building here; SQLite's own locks work on every system and end with us."""
+    home.mkdir(parents=True, exist_ok=True)
+    with contextlib.closing(sqlite3.connect(home / "rebuild.lock", timeout=0, isolation_level=None)) as lock:
+        try:
+            lock.execute("BEGIN EXCLUSIVE")
+        except sqlite3.OperationalError:
+            yield False
+            return
+        yield True
+
+
+def _terminated(_number: int, _frame: object) -> NoReturn:
+    """Unwinds like Ctrl-C: no child process stays behind."""
+    raise KeyboardInterrupt
+
+
+def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m kb_serve.rebuild", description=__doc__)
+    parser.add_argument("version")
+    parser.add_argument("--home", type=Path, required=True)
+    parser.add_argument("--no-pages", action="store_true")
+    parser.add_argument("--summaries", choices=["extractive", "claude", "none"], default="extractive")
+    parser.add_argument("--model")
+    for name in ("--blender-exe", "--manual", "--guides"):
+        parser.add_argument(name, type=Path)
+    return parser.parse_args(arguments)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Builds one base. Returns 0, 1 when it failed, or 3 when another process is building."""
+    given = _arguments(arguments)
+    signal.signal(signal.SIGTERM, _terminated)
+    if hasattr(os, "nice"):
+        os.nice(10)
+    try:
+        with _alone(given.home) as alone:
+            if not alone:
+                return _ELSEWHERE
+            try:
+                build_base(given, given.summaries)
+            except Exception:
+                if given.summaries != "claude":
+                    raise
+                # Some of claude's summaries are still to be paid for, which nobody has asked for here.
+                build_base(given, "extractive")
+    except KeyboardInterrupt:
+        return 130
+    except Exception as error:
+        sys.stderr.write(f"{error or type(error).__name__}\n")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

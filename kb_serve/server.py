@@ -1,0 +1,220 @@
+"""The MCP server: the tool ``blender_docs``, resources for symbols and pages, and stdio to carry them."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import signal
+import sys
+from contextlib import asynccontextmanager
+from dataclasses import asdict
+from importlib import metadata
+from io import TextIOWrapper
+from typing import TYPE_CHECKING, Any
+
+import anyio
+import anyio.to_thread
+import mcp_types as types
+from mcp.server.lowlevel import Server
+from mcp.server.stdio import stdio_server
+from mcp.shared.exceptions import MCPError
+from mcp.shared.uri_template import UriTemplate
+
+from kb_build.records import to_json
+from kb_serve.errors import KBServeError
+from kb_serve.tool import NAME, parse, tool
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncGenerator
+
+    from mcp.server.context import ServerRequestContext
+
+    from kb_serve.service import Service
+
+    _Context = ServerRequestContext[None]
+    _Listing = types.PaginatedRequestParams | None
+
+BASES = "blender://bases"
+SYMBOL = UriTemplate.parse("blender://{version}/symbol/{+path}")
+PAGE = UriTemplate.parse("blender://{version}/page/{+slug}")
+
+INSTRUCTIONS = (
+    "blender_docs answers from the schemas and the manual of the Blender version in use. Ask it before you "
+    "use a name of Blender's Python API that you have not looked up for that version, at the start of each "
+    "stage of work (with its topic: cloth, materials, compositor), and with every error message of Blender's."
+)
+
+_LOG = logging.getLogger(__name__)
+_JSON, _MARKDOWN = "application/json", "text/markdown"
+
+
+def make_server(service: Service) -> Server[None]:
+    """The server, without a transport. Bases are opened, and brought up to date, while it runs."""
+    # Answers wait for it, the handshake does not.
+    ready = anyio.Event()
+
+    @asynccontextmanager
+    async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
+        async def prepare() -> None:
+            try:
+                await anyio.to_thread.run_sync(service.warm)
+            finally:
+                ready.set()
+            await anyio.to_thread.run_sync(service.upkeep.run, abandon_on_cancel=True)
+
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(prepare)
+            try:
+                yield
+            finally:
+                service.upkeep.stop()
+                tasks.cancel_scope.cancel()
+
+    async def call_tool(_context: _Context, asked: types.CallToolRequestParams) -> types.CallToolResult:
+        if asked.name != NAME:
+            raise MCPError(types.INVALID_PARAMS, f"There is no tool {asked.name[:80]!r}; there is {NAME}.")
+        await ready.wait()
+        try:
+            return _answered(service, asked.arguments)
+        except KBServeError as error:
+            return _failed(str(error))
+        except Exception as error:
+            _LOG.exception("%s failed on %.300r", NAME, asked.arguments)
+            return _failed(
+                f"{NAME} failed on this query ({type(error).__name__}); its log has more. Ask otherwise."
+            )
+
+    async def read_resource(
+        _context: _Context, asked: types.ReadResourceRequestParams
+    ) -> types.ReadResourceResult:
+        await ready.wait()
+        uri = str(asked.uri)
+        try:
+            text, kind = _resource(service, uri)
+        except KBServeError as error:
+            raise MCPError(types.INVALID_PARAMS, str(error), {"uri": uri[:500]}) from error
+        return types.ReadResourceResult(
+            contents=[types.TextResourceContents(uri=asked.uri, text=text, mime_type=kind)]
+        )
+
+    async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
+        return types.ListToolsResult(tools=[tool()])
+
+    async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
+        return types.ListResourcesResult(resources=[BASE_LIST])
+
+    async def list_templates(_context: _Context, _page: _Listing) -> types.ListResourceTemplatesResult:
+        return types.ListResourceTemplatesResult(resource_templates=TEMPLATES)
+
+    return Server(
+        "simworlds",
+        version=_own_version(),
+        title="SimWorlds: Blender documentation",
+        instructions=INSTRUCTIONS,
+        lifespan=lifespan,
+        on_list_tools=list_tools,
+        on_call_tool=call_tool,
+        on_list_resources=list_resources,
+        on_list_resource_templates=list_templates,
+        on_read_resource=read_resource,
+    )
+
+
+def _own_version() -> str:
+    try:
+        return metadata.version("simworlds")
+    except metadata.PackageNotFoundError:  # run from its source
+        return ""
+
+
+def _answered(service: Service, arguments: dict[str, Any] | None) -> types.CallToolResult:
+    ask = parse(arguments)
+    answer, version = service.ask(
+        ask.query, blender=ask.blender, limit=ask.limit, max_tokens=ask.max_tokens, part=ask.part
+    )
+    return types.CallToolResult(
+        content=[types.TextContent(text=answer.text)],
+        structured_content={**asdict(answer), "blender": version},
+    )
+
+
+def _failed(message: str) -> types.CallToolResult:
+    return types.CallToolResult(content=[types.TextContent(text=message)], is_error=True)
+
+
+# Resources
+
+BASE_LIST = types.Resource(
+    uri=BASES,
+    name="bases",
+    title="Knowledge bases",
+    description="The Blender versions that can be asked about.",
+    mime_type=_JSON,
+)
+TEMPLATES = [
+    types.ResourceTemplate(
+        uri_template="blender://{version}/symbol/{+path}",
+        name="symbol",
+        title="API symbol",
+        description="The whole record of an identifier: blender://5.1/symbol/bpy.types.ClothSettings.quality",
+        mime_type=_JSON,
+    ),
+    types.ResourceTemplate(
+        uri_template="blender://{version}/page/{+slug}",
+        name="page",
+        title="Manual page, guide or script template",
+        description="A page, whole: blender://5.1/page/physics/cloth/introduction",
+        mime_type=_MARKDOWN,
+    ),
+]
+
+
+def _resource(service: Service, uri: str) -> tuple[str, str]:
+    """A resource's text and MIME type. Raises MCPError when there is no such thing, and KBServeError."""
+    if uri == BASES:
+        return json.dumps(service.built(), indent=2), _JSON
+    if (named := SYMBOL.match(uri)) is not None:
+        symbol = service.symbol(str(named["version"]), str(named["path"]))
+        if symbol is not None:
+            return json.dumps(to_json(symbol), ensure_ascii=False, indent=2), _JSON
+    if (named := PAGE.match(uri)) is not None:
+        page = service.page(str(named["version"]), str(named["slug"]))
+        if page is not None:
+            return page.text, _MARKDOWN
+    raise MCPError(
+        types.INVALID_PARAMS,
+        "There is no such resource. Identifiers and slugs are written as in hits[].id of blender_docs: "
+        "blender://5.1/symbol/bpy.types.ClothSettings.quality, blender://5.1/page/physics/cloth/introduction",
+        {"uri": uri[:500]},
+    )
+
+
+# stdio
+
+
+def run_stdio(service: Service) -> None:
+    """Serves one client on stdin and stdout until it closes them; whatever else is printed goes to stderr."""
+    # Kept from here on, not only while serving: importing and shutting down may print too.
+    wire = os.fdopen(os.dup(1), "wb", closefd=False)
+    os.dup2(2, 1)
+    _end_on_signals(service)
+    anyio.run(_serve_stdio, service, TextIOWrapper(wire, encoding="utf-8"))
+
+
+async def _serve_stdio(service: Service, out: TextIOWrapper) -> None:
+    server = make_server(service)
+    async with stdio_server(stdout=anyio.wrap_file(out)) as (read, write):
+        await server.run(read, write, server.create_initialization_options())
+
+
+def _end_on_signals(service: Service) -> None:
+    """Ends at once, and a build with it: the thread that waits for a line on stdin cannot be interrupted."""
+
+    def end(_number: int, _frame: object) -> None:
+        service.upkeep.stop()
+        sys.stderr.flush()
+        os._exit(0)
+
+    signal.signal(signal.SIGINT, end)
+    signal.signal(signal.SIGTERM, end)

@@ -1,0 +1,82 @@
+"""What the server answers, whatever carries it: the right base, its answer, and what must be said with it."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from kb_serve.errors import BadQuery, BaseMissing, KBServeError
+
+if TYPE_CHECKING:
+    from kb_build.records import Page, Symbol
+    from kb_serve.answer import Answer
+    from kb_serve.bases import Bases
+    from kb_serve.rebuild import Upkeep
+
+LONGEST_QUERY = 20_000
+
+
+class Service:
+    """Answers from the bases there are."""
+
+    def __init__(self, bases: Bases, upkeep: Upkeep) -> None:
+        self.bases = bases
+        self.upkeep = upkeep
+
+    def warm(self) -> None:
+        """Loads what the first answer needs."""
+        with contextlib.suppress(KBServeError):
+            self.bases.pick()
+
+    def ask(
+        self, query: str, *, blender: str | None, limit: int, max_tokens: int, part: int
+    ) -> tuple[Answer, str]:
+        """The answer, and the full version of the Blender that it holds for. Raises KBServeError."""
+        if len(query) > LONGEST_QUERY:
+            raise BadQuery(
+                f"The query has {len(query):,} characters; {LONGEST_QUERY:,} are the most. Ask shorter."
+            )
+        base = self._base(blender)
+        note = self.upkeep.note(base.meta, blender)
+        version = base.meta.get("blender", "")
+        if not note:
+            return base.query(query, limit=limit, max_tokens=max_tokens, part=part), version
+        from kb_serve.answer import LEAST_TOKENS  # noqa: PLC0415 - loaded with the base
+        from kb_serve.budget import tokens  # noqa: PLC0415
+
+        lead = f"> {note}\n\n"
+        room = max_tokens - tokens(lead) - 1
+        shown = room >= LEAST_TOKENS
+        answer = base.query(query, limit=limit, max_tokens=room if shown else max_tokens, part=part)
+        text = lead + answer.text if shown and part == 1 else answer.text
+        return replace(answer, text=text, notes=(note, *answer.notes)), version
+
+    def symbol(self, blender: str, path: str) -> Symbol | None:
+        """The raw record of an identifier. Raises KBServeError."""
+        return self._base(blender).symbol(path)
+
+    def page(self, blender: str, slug: str) -> Page | None:
+        """A page, whole. Raises KBServeError."""
+        return self._base(blender).page(slug)
+
+    def built(self) -> list[dict[str, Any]]:
+        """What there is: for each base its versions, when it was built, or why it cannot be read."""
+        return [self._facts(version) for version in self.bases.built()]
+
+    def _facts(self, version: str) -> dict[str, Any]:
+        try:
+            meta = self.bases.pick(version).meta
+        except KBServeError as error:
+            return {"version": version, "error": str(error)}
+        return {"version": version, "blender": meta.get("blender", ""), "built_at": meta.get("built_at", "")}
+
+    def _base(self, blender: str | None) -> Any:
+        try:
+            return self.bases.pick(blender)
+        except BaseMissing as error:
+            if self.upkeep.building(blender):
+                raise BaseMissing(
+                    f"{error} It is being built in the background: ask again in a minute."
+                ) from error
+            raise

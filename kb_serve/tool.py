@@ -1,0 +1,106 @@
+"""The tool ``blender_docs`` as a client sees it: description, arguments, and the shape of what it returns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mcp_types import Tool, ToolAnnotations
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from kb_serve.errors import BadQuery
+
+NAME = "blender_docs"
+
+DESCRIPTION = """\
+Look up Blender's Python API and manual: exact schemas (types, defaults, ranges, enum values, units, what \
+is read-only), operators with their arguments, node sockets, and the manual's pages, for the Blender \
+version in use. Answers come from that Blender itself. Ask before you write a name you are not sure of, \
+and again when Blender raises an error: a property from memory may be of another version.
+
+How to ask (`query`), one thing at a time:
+- a name as Blender writes it: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, \
+`mathutils.Vector.lerp`, `ShaderNodeBsdfPrincipled`
+- an expression from your code: `bpy.context.object.modifiers["Cloth"].settings.quality`, \
+`mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]`; a name that does not exist is answered with \
+those that do
+- an error message, pasted whole: `AttributeError: 'Mesh' object has no attribute 'use_auto_smooth'`
+- an enum value: `BLENDER_EEVEE`
+- plain words: `make cloth collide with itself`, `bake rigid body simulation`
+- a topic, when you begin a stage of work: `cloth`, `rigid body`, `compositor`, `uv` give an overview of \
+what belongs to it
+
+The answer names the best hit in full and lists others by `id`; ask for an id to see it. A long answer \
+comes in parts: repeat the call with `part=2`, `part=3`. `max_tokens` bounds one part. `blender="4.5"` \
+asks about another version that was built here. `notes` tell of corrections, missing sources and version \
+drift: heed them."""
+
+
+class Ask(BaseModel):
+    """The arguments of a call."""
+
+    model_config = ConfigDict(extra="forbid", coerce_numbers_to_str=True, title="blender_docs")
+
+    query: str = Field(description="A name, expression, error message, enum value, question or topic.")
+    blender: str | None = Field(
+        default=None, description="Blender version, as 5.1. Default: the one in use, else the newest built."
+    )
+    limit: int = Field(default=8, ge=1, description="Hits at most.")
+    max_tokens: int = Field(default=1500, ge=150, description="Length of one part of the answer at most.")
+    part: int = Field(default=1, ge=1, description="Which part of a long answer.")
+
+
+class Found(BaseModel):
+    """One thing that the answer is about."""
+
+    id: str = Field(description="Symbol path or page slug; also a query that finds exactly this.")
+    kind: str = Field(description="class, property, operator, …, or manual, guide, template for pages.")
+    title: str
+    score: float = Field(description="Higher is better; comparable within one answer only.")
+    url: str = Field(description="The public manual page, where there is one.")
+
+
+class Reply(BaseModel):
+    """The structured content of a result."""
+
+    model_config = ConfigDict(title="blender_docs answer")
+
+    kind: str = Field(
+        description="How well the query was met: by one thing, by several that may fit, or not at all.",
+        json_schema_extra={"enum": ["schema", "page", "candidates", "none"]},
+    )
+    text: str = Field(description="The answer in Markdown.")
+    hits: list[Found] = Field(description="What was found, best first.")
+    notes: list[str] = Field(description="Corrections, version drift, missing sources.")
+    part: int
+    parts: int = Field(description="How many parts the answer has.")
+    blender: str = Field(description="The Blender version that the answer holds for.")
+
+
+def tool() -> Tool:
+    """The tool's entry in the list of tools."""
+    return Tool(
+        name=NAME,
+        title="Blender documentation",
+        description=DESCRIPTION,
+        input_schema=Ask.model_json_schema(),
+        output_schema=Reply.model_json_schema(),
+        annotations=ToolAnnotations(
+            title="Blender documentation",
+            read_only_hint=True,
+            destructive_hint=False,
+            idempotent_hint=True,
+            open_world_hint=False,
+        ),
+    )
+
+
+def parse(arguments: dict[str, Any] | None) -> Ask:
+    """The arguments of a call, checked. Raises BadQuery, naming each that is wrong."""
+    try:
+        return Ask.model_validate(arguments or {})
+    except ValidationError as error:
+        wrong = "; ".join(
+            f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']}"
+            for fault in error.errors(include_url=False, include_context=False)
+        )
+        raise BadQuery(f"The arguments do not fit {NAME}: {wrong[:500]}") from error
