@@ -12,6 +12,7 @@ import sqlite_utils
 
 from kb_build.analysis import key
 from kb_build.errors import StoreError
+from kb_build.former import Former
 from kb_build.index import TOPIC_B, UNIT_B, Doc, make_postings, make_units, topic_docs, vocabulary
 from kb_build.lines import member_line
 from kb_build.near_words import load_near_words, near_stems
@@ -39,7 +40,8 @@ class Contents:
     pages: Sequence[Page]
     links: Sequence[Link]
     meta: Mapping[str, str]
-    summaries: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    summaries: Mapping[str, tuple[str, str]] = field(default_factory=dict[str, tuple[str, str]])
+    former: Former = field(default_factory=Former)
 
 
 def short_path(path: str) -> str:
@@ -118,6 +120,13 @@ def _explained(symbols: Sequence[Symbol], links: Sequence[Link]) -> Iterator[tup
     for link in links:
         if link.kind == "manual" and link.source in listed:
             yield link.target.partition("#")[0], link.source
+
+
+def _write_former(connection: sqlite3.Connection, former: Former) -> None:
+    _insert(connection, "removed", former.removed, 3)
+    _insert(connection, "removed_names", former.names, 2)
+    _insert(connection, "replacements", former.replacements, 3)
+    _insert(connection, "since", former.since, 2)
 
 
 def _write_pages(
@@ -201,6 +210,7 @@ def _write(part: Path, contents: Contents) -> None:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
             _write_index(connection, units)
+            _write_former(connection, contents.former)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3)
             _insert(connection, "meta", contents.meta.items(), 2)

@@ -26,10 +26,12 @@ _BAD_KEY = re.compile(r"\bkey \"(?P<name>[^\"]+)\" not found")
 _BAD_ENUM = re.compile(r"enum \"(?P<name>[^\"]*)\" not found in \((?P<items>[^)]*)\)")
 _BAD_KEYWORD = re.compile(r"keyword \"(?P<name>\w+)\" unrecognized")
 _POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
+_BOILERPLATE = re.compile(r"bpy_struct: item\.attr\s*=\s*val:|bpy_prop_collection\[key\]:|has no attribute '\w+'")
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 
+_OWN_CLASS = 0.2  # from this fit on, a variable's name speaks for the class at all
 _FITTING = 0.5  # how far the words around a bare value must fit the property that takes it
 
 # Python's own names, which are nobody's API.
@@ -95,7 +97,7 @@ class Identifier:
         self._whole(query, found)
         if found.best is None or found.best.sure < 1:
             self._errors(query, found)
-            chains = find_chains(query)
+            chains = find_chains(_BOILERPLATE.sub(" ", query))
             self._chains(chains, found)
             self._class_with_member(chains, found)
             self._enum_values(query, found)
@@ -195,12 +197,19 @@ class Identifier:
             readings = self._walker.walk(chain)
             if self._former(chain, readings, found):
                 continue
-            if readings and readings[0].complete:
+            if readings and self._trusted(chain, readings[0]):
                 self._reading(chain, readings, later, found)
             elif not self._corrected(chain, later, found):
-                if readings:
-                    self._broken_off(readings[0], later, found)
+                if broken := next((walked for walked in readings if walked.missing), None):
+                    self._broken_off(broken, later, found)
                 self._loose_name(chain, prose, found)
+
+    @staticmethod
+    def _trusted(chain: Chain, walked: Walked) -> bool:
+        """Whether a reading stands on more than a guess at what a variable or a bare word is."""
+        if not walked.complete:
+            return False
+        return walked.fit >= 1.0 or len(chain.attributes) >= (1 if walked.fit >= _OWN_CLASS else 2)
 
     def _former(self, chain: Chain, readings: list[Walked], found: Identified) -> bool:
         """Whether the chain names what another version had: on the likeliest class, or under its own path."""
@@ -216,8 +225,9 @@ class Identifier:
 
     def _reading(self, chain: Chain, readings: list[Walked], later: float, found: Identified) -> None:
         """The best reading of one chain, and what lies on the way to it."""
+        bare = not chain.attributes  # a class with a call or an index behind it
         for rank, walked in enumerate(reading for reading in readings[:4] if reading.complete):
-            sure = 0.97 if walked.fit >= 0.2 or len(chain.steps) > 2 else 0.85
+            sure = 0.78 if bare and chain.steps else 0.97
             found.add(walked.symbols[-1], sure - 0.04 * rank - later, "expression")
         for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
             found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
@@ -249,14 +259,15 @@ class Identifier:
             if missing.owner and (drift := self._drifts.of_member(missing.owner, missing.name)):
                 found.drifts.append(drift)
         for place, drift in enumerate(found.drifts):
-            for rank, (target, _) in enumerate(drift.instead):
-                found.add(target, 0.92 - 0.03 * rank - 0.05 * min(place, 3), "replacement")
+            for target, score in drift.instead:
+                sure = 0.74 + 0.2 * min(1.0, (score - 0.6) / 0.8)
+                found.add(target, sure - 0.05 * min(place, 3), "replacement")
         for missing in found.missing:
             names = self._corrector.member_names(missing.owner) if missing.owner else []
             for name, alike in nearest(missing.name, names):
                 member = self._walker.member(missing.owner, name)
                 if member:
-                    found.add(member.path, 0.8 * alike, "similar name")
+                    found.add(member.path, 0.95 * alike, "similar name")
 
     def _loose_name(self, chain: Chain, prose: set[str], found: Identified) -> None:
         """A name of code without its owner (``thickness_outer``): its owners, by the words around it."""
@@ -268,10 +279,10 @@ class Identifier:
                 if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
             ]
             scored = sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]
-            if chain.steps and len(rows) > 3:
+            if chain.attributes and len(rows) > 3:
                 continue  # a common name whose owner was given, and does not have it
             for rank, entry in enumerate(scored):
-                sure = (0.9 if len(rows) == 1 else 0.8) if not chain.steps else 0.55
+                sure = (0.9 if len(rows) == 1 else 0.84) if not chain.attributes else 0.55
                 found.add(entry.path, sure - 0.03 * rank, "name")
 
     def _affinity(self, entry: Entry, prose: set[str]) -> float:
@@ -305,6 +316,10 @@ class Identifier:
         values = list(dict.fromkeys([*quoted, *_CAPITALS.findall(text)]))
         if not values:
             return
+        for value in quoted:
+            for entry in self._reader.by_name(value):
+                if entry.kind == "class":
+                    found.add(entry.path, 0.82, "quoted name")
         rest = text
         for value in values:
             rest = rest.replace(value, " ")
@@ -314,7 +329,7 @@ class Identifier:
             if rank >= 5:
                 break
             fits = alone or quoted or self._owner_fit(owner, around) >= _FITTING
-            sure = (0.92 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
+            sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             found.add(owner.partition("(")[0], sure, "enum item")
 
     def _owners_of_items(self, values: Iterable[str], around: set[str] | None = None) -> Iterator[tuple[str, float]]:

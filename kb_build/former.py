@@ -1,0 +1,47 @@
+"""What a base tells of other versions: the symbols it lacks, what to use instead, since when it has the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from kb_build.analysis import key
+from kb_build.history import History
+from kb_build.records import Symbol
+from kb_build.replacements import find_replacements, is_asked_for
+
+_PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
+
+
+@dataclass(frozen=True, slots=True)
+class Former:
+    """Rows of the tables removed, removed_names, replacements and since (see schema.DDL)."""
+
+    removed: tuple[tuple[str, str, str], ...] = ()
+    names: tuple[tuple[str, str], ...] = ()
+    replacements: tuple[tuple[str, str, float], ...] = ()
+    since: tuple[tuple[str, str], ...] = ()
+
+
+def _keys(path: str) -> Iterator[str]:
+    yield key(path)
+    for prefix in _PREFIXES:
+        if path.startswith(prefix):
+            yield key(path[len(prefix) :])
+            return
+
+
+def former_symbols(symbols: Sequence[Symbol], history: History, version: str) -> Former:
+    """Compares the version (minor) whose symbols these are with the others that the history knows.
+
+    A symbol that extraction found is never called removed, whatever the history says.
+    """
+    known = {symbol.path for symbol in symbols}
+    removed = [row for row in history.removed_from(version) if row[0] not in known and is_asked_for(row[0])]
+    since = history.since(version)
+    return Former(
+        removed=tuple(removed),
+        names=tuple((spelled, path) for path, _, _ in removed for spelled in _keys(path)),
+        replacements=tuple(find_replacements(symbols, history, version)),
+        since=tuple((path, first) for path, first in since.items() if path in known),
+    )
