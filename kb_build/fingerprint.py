@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from kb_build.sources import Missing, Source
 
 _PACKAGE = Path(__file__).resolve().parent
-_WORDS = _PACKAGE.parent / "corpora" / "words"
+_DATA = _PACKAGE.parent / "corpora"
 # Packages whose versions show in the text of pages or in the index.
 _READERS = ("sphinx", "docutils", "beautifulsoup4", "lxml")
 _WRITERS = ("sqlite-utils", "snowballstemmer")
 # What is asked of a base or shown of a build leaves the base as it is.
 _ONLOOKERS = frozenset(
     {
-        "base_file.py", "cli.py", "diff.py", "history.py", "history_build.py", "progress.py", "reference.py",
+        "base_file.py", "cli.py", "diff.py", "history_build.py", "progress.py", "reference.py",
         "report.py", "verify.py",
     }
 )  # fmt: skip
@@ -83,8 +83,8 @@ def reader_digest() -> str:
 def code_digest() -> str:
     """Everything that shapes a base."""
     files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS]
-    words = [path.read_bytes() for path in sorted(_WORDS.glob("*"))]
-    return _digest([_code(files), _versions((*_READERS, *_WRITERS)), *words])
+    data = [path.read_bytes() for name in ("history", "words") for path in sorted((_DATA / name).glob("*"))]
+    return _digest([_code(files), _versions((*_READERS, *_WRITERS)), *data])
 
 
 def runtime_digest(runtime: Runtime, digests: Digests) -> str:

@@ -28,6 +28,7 @@ from kb_build.schema import (
     SCHEMA_VERSION,
     pack,
 )
+from kb_build.staging import staged_file
 
 _PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
 
@@ -182,18 +183,13 @@ def write_base(path: Path, contents: Contents) -> None:
     A reader sees the old base or the new one, whatever happens in between. Raises StoreError when the disk is
     full or the folder cannot be written; nothing is left behind then.
     """
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part.unlink(missing_ok=True)
-        _write(part, contents)
-        with part.open("rb") as file:
-            os.fsync(file.fileno())
-        part.replace(path)
+        with staged_file(path) as part:
+            _write(part, contents)
+            with part.open("rb") as file:
+                os.fsync(file.fileno())
     except (OSError, sqlite3.Error) as error:
         raise StoreError(f"{path}: the knowledge base cannot be written: {error}. The old one, if any, stands.") from error
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _write(part: Path, contents: Contents) -> None:

@@ -1,0 +1,179 @@
+"""What a build puts together, and what it leaves alone."""
+
+from __future__ import annotations
+
+import json
+import re
+import sqlite3
+from contextlib import closing
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from kb_build.errors import SourceError
+from kb_build.pipeline import BuildOptions, build
+from kb_build.records import symbol_from_json
+from kb_build.schema import unpack
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from built_base import Built
+
+pytestmark = pytest.mark.blender
+
+
+def rows(path: Path, sql: str, *values: object) -> list[Any]:
+    with closing(sqlite3.connect(path)) as connection:
+        return connection.execute(sql, values).fetchall()
+
+
+def stamp(path: Path) -> tuple[int, int]:
+    status = path.stat()
+    return status.st_mtime_ns, status.st_ino
+
+
+def test_a_base_holds_what_blender_and_both_sources_say(built: Built) -> None:
+    record = rows(built.path, "SELECT record FROM symbols WHERE path = 'bpy.types.ClothSettings.quality'")
+    quality = symbol_from_json(unpack(record[0][0]))
+    assert (quality.type, quality.hard_min) == ("int", 1)
+    sources = dict(rows(built.path, "SELECT source, count(*) FROM pages GROUP BY source"))
+    assert sources["manual"] >= 10
+    assert sources["guide"] == 2
+    assert sources["template"] > 30
+    assert rows(built.path, "SELECT count(*) FROM pages WHERE summary_method != 'extractive'") == [(0,)]
+
+
+def test_a_base_says_what_it_was_made_of(built: Built, blender_version: str) -> None:
+    meta = dict(rows(built.path, "SELECT name, value FROM meta"))
+    assert meta["blender"] == blender_version
+    assert meta["minor"] == built.minor
+    assert re.fullmatch(r"[0-9a-f]{64}", meta["fingerprint"])
+    sources = {one["role"]: one for one in json.loads(meta["sources"])}
+    assert sources["manual"]["form"] == "rst"
+    assert sources["manual"]["version"] == built.minor
+    assert sources["manual"]["pages"] >= 10
+    assert re.fullmatch(r"[0-9a-f]{64}", sources["guides"]["sha256"])
+    assert json.loads(meta["missing"]) == json.loads(meta["faults"]) == []
+    counts = json.loads(meta["counts"])
+    assert counts["symbols"]["operator"] > 2000
+    assert counts["classes"]["data"] > 1500
+    assert "cycles" in json.loads(meta["addons"])
+    assert any(slug.startswith("troubleshooting/") for slug in json.loads(meta["page_warnings"]))
+
+
+def test_nothing_is_done_when_nothing_has_changed(built: Built) -> None:
+    before = stamp(built.path)
+    report = build(None, options=built.options, home=built.home)
+    assert not report.built
+    assert report.meta["fingerprint"] == built.report.meta["fingerprint"]
+    assert stamp(built.path) == before
+
+
+def test_a_changed_page_makes_a_new_base_without_asking_blender_again(built: Built) -> None:
+    extract = next((built.home / "extracts").glob("*.jsonl"))
+    before = stamp(extract)
+    page = built.corpora / f"manual-{built.minor}-rst" / "physics" / "index.rst"
+    page.write_text(page.read_text() + "\nWobbling jelly is simulated, too.\n")
+    report = build(None, options=built.options, home=built.home)
+    assert report.built
+    assert rows(built.path, "SELECT slug FROM sections WHERE text LIKE '%Wobbling jelly%'") == [
+        ("physics/index",)
+    ]
+    assert stamp(extract) == before
+
+
+def test_pages_are_not_read_again_when_only_an_option_changes(built: Built) -> None:
+    kept = {path: stamp(path) for path in (built.home / "cache" / "pages").iterdir()}
+    assert len(kept) == 2
+    report = build(None, options=replace(built.options, summaries="none"), home=built.home)
+    assert report.built
+    assert rows(built.path, "SELECT count(*) FROM pages WHERE summary != ''") == [(0,)]
+    assert {path: stamp(path) for path in (built.home / "cache" / "pages").iterdir()} == kept
+
+
+def test_force_builds_again_what_has_not_changed(built: Built) -> None:
+    before = stamp(built.path)
+    report = build(None, options=replace(built.options, force=True), home=built.home)
+    assert report.built
+    assert report.meta["fingerprint"] == built.report.meta["fingerprint"]
+    assert stamp(built.path) != before
+
+
+def test_a_damaged_base_is_built_again(built: Built) -> None:
+    data = built.path.read_bytes()
+    built.path.write_bytes(data[: len(data) // 2])
+    assert build(None, options=built.options, home=built.home).built
+    assert built.path.stat().st_size > len(data) // 2
+
+
+def test_damaged_pages_in_the_cache_are_read_again(built: Built) -> None:
+    for path in (built.home / "cache" / "pages").iterdir():
+        path.write_bytes(path.read_bytes()[:100])
+    built.path.unlink()
+    report = build(None, options=built.options, home=built.home)
+    assert json.loads(report.meta["counts"]) == json.loads(built.report.meta["counts"])
+
+
+def test_a_missing_source_is_named_in_the_report_and_in_the_base(built: Built) -> None:
+    guides = built.corpora / f"api-guides-{built.minor}-rst"
+    guides.rename(built.corpora / "elsewhere")
+    report = build(None, options=built.options, home=built.home)
+    assert report.built
+    assert [one.role for one in report.missing] == ["guides"]
+    assert any("--guides PATH" in warning for warning in report.warnings)
+    recorded = json.loads(report.meta["missing"])
+    assert [one["role"] for one in recorded] == ["guides"]
+    assert recorded[0]["reason"] == report.missing[0].reason
+
+
+def test_a_required_source_that_is_missing_is_an_error_and_the_old_base_stands(built: Built) -> None:
+    before = stamp(built.path)
+    (built.corpora / f"manual-{built.minor}-rst").rename(built.corpora / "elsewhere")
+    with pytest.raises(SourceError, match="required"):
+        build(None, options=replace(built.options, require=frozenset({"manual"})), home=built.home)
+    assert stamp(built.path) == before
+
+
+def test_a_manual_of_another_version_is_taken_by_path_and_said_so(built: Built) -> None:
+    other = built.corpora / "manual-4.4-rst"
+    (built.corpora / f"manual-{built.minor}-rst").rename(other)
+    report = build(None, options=replace(built.options, manual=other), home=built.home)
+    assert any("is of Blender 4.4" in warning for warning in report.warnings)
+    manual = next(one for one in json.loads(report.meta["sources"]) if one["role"] == "manual")
+    assert (manual["version"], manual["given"]) == ("4.4", True)
+    assert rows(built.path, "SELECT DISTINCT version FROM pages WHERE source = 'manual'") == [("4.4",)]
+
+
+def test_a_base_can_be_built_without_pages_into_any_file(built: Built, tmp_path: Path) -> None:
+    output = tmp_path / "else" / "where.sqlite"
+    options = BuildOptions(pages=False, output=output)
+    report = build(built.minor, options=options, home=built.home)
+    assert report.path == output
+    assert rows(output, "SELECT DISTINCT source FROM pages") == [("template",)]
+    assert json.loads(report.meta["missing"]) == []
+    assert not build(built.minor, options=options, home=built.home).built
+
+
+def test_of_two_pages_with_one_name_the_manuals_is_kept_and_the_other_named(built: Built) -> None:
+    guides = built.corpora / f"api-guides-{built.minor}-rst"
+    (guides / "index.rst").write_text("Guides\n======\n\n.. toctree::\n\n   info_overview\n   info_traps\n")
+    report = build(None, options=built.options, home=built.home)
+    assert rows(built.path, "SELECT source FROM pages WHERE slug = 'index'") == [("manual",)]
+    assert any("two pages are called index" in warning for warning in report.warnings)
+
+
+@pytest.mark.corpora
+def test_the_real_manual_and_guides_are_built_whole(
+    corpora: Path, built: Built, tmp_path: Path, blender_version: str
+) -> None:
+    if not blender_version.startswith("5.1."):
+        pytest.skip("the sources here are of Blender 5.1")
+    options = BuildOptions(corpora=corpora, offline=True, require=frozenset({"manual", "guides"}))
+    report = build("5.1", options=options, home=tmp_path / "home")
+    counts = json.loads(report.meta["counts"])
+    assert counts["pages"]["manual"] >= 2190
+    assert counts["pages"]["guide"] >= 14
+    assert report.warnings == ()
+    assert report.path.stat().st_size < 60e6

@@ -1,0 +1,194 @@
+"""A build that is killed, interrupted, starved or lied to: the old base stands, and the fault is named."""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.base_file import read_meta
+from kb_build.errors import ExtractError, KBBuildError, SourceError
+from kb_build.pipeline import BuildOptions, build
+
+if TYPE_CHECKING:
+    from built_base import Built
+
+REPO = Path(__file__).resolve().parent.parent.parent
+COMMAND = [sys.executable, "-c", "from agents.cli import main; main()", "kb", "build", "--offline"]
+
+pytestmark = [
+    pytest.mark.blender,
+    pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc"),
+]
+
+
+def start(built: Built, *words: str, limit: int | None = None) -> subprocess.Popen[str]:
+    """A build in a process of its own; ``limit`` bounds the size of every file that it writes."""
+
+    def prepare() -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        if limit is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    environment = os.environ | {
+        "SIMWORLDS_HOME": str(built.home),
+        "SIMWORLDS_CORPORA": str(built.corpora),
+        "PYTHONPATH": str(REPO),
+    }
+    return subprocess.Popen(
+        [*COMMAND, *words],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=prepare,
+    )
+
+
+def wait_for(process: subprocess.Popen[str], text: str) -> None:
+    """Reads what the build says until it says ``text``."""
+    assert process.stderr is not None
+    for line in process.stderr:
+        if text in line:
+            return
+    pytest.fail(f"the build ended without saying {text!r}")
+
+
+def wait_until_alone(home: Path) -> None:
+    """Returns when no process works for ``home`` any more; the test's own time limit bounds the wait."""
+    while any(belongs_to(path, home) for path in Path("/proc").glob("[0-9]*/environ")):
+        os.sched_yield()
+
+
+def belongs_to(environ: Path, home: Path) -> bool:
+    try:
+        return f"SIMWORLDS_HOME={home}\0".encode() in environ.read_bytes()
+    except OSError:
+        return False
+
+
+def change_a_page(built: Built) -> None:
+    page = built.corpora / f"manual-{built.minor}-rst" / "physics" / "index.rst"
+    page.write_text(page.read_text() + "\nSomething new.\n")
+
+
+def files_below(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.rglob("*") if path.is_file())
+
+
+@pytest.mark.parametrize("step", ["Reading the manual", "Summarising", "Writing"])
+def test_a_killed_build_leaves_the_old_base_and_no_process(built: Built, step: str) -> None:
+    change_a_page(built)
+    with start(built) as process:
+        wait_for(process, step)
+        process.kill()
+    wait_until_alone(built.home)
+    assert read_meta(built.path)["fingerprint"] == built.report.meta["fingerprint"]
+    assert build(None, options=built.options, home=built.home).built
+    assert files_below(built.home / "kb") == [built.path.name]
+    assert files_below(built.home / "cache" / "scratch") == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("step", ["Reading the manual", "Asking Blender"])
+def test_an_interrupted_build_says_so_and_leaves_nothing_running(
+    built: Built, step: str, number: signal.Signals
+) -> None:
+    change_a_page(built)
+    with start(built, "--force") as process:
+        wait_for(process, step)
+        process.send_signal(number)
+        output, errors = process.communicate()
+    assert process.returncode == 130
+    assert output == ""
+    assert "still stands" in errors
+    assert "Traceback" not in errors
+    wait_until_alone(built.home)
+    assert read_meta(built.path)["fingerprint"] == built.report.meta["fingerprint"]
+    assert files_below(built.home / "kb") == [built.path.name]
+
+
+@pytest.mark.parametrize(
+    ("limit", "words", "place"),
+    [(20_000_000, [], "blender-"), (4_000_000, ["--force"], "extracts")],
+    ids=["the base does not fit", "the extract does not fit"],
+)
+def test_a_full_disk_is_named_and_the_old_base_stands(
+    built: Built, limit: int, words: list[str], place: str
+) -> None:
+    change_a_page(built)
+    with start(built, *words, limit=limit) as process:
+        _, errors = process.communicate()
+    assert process.returncode == 2
+    error = errors[errors.index("Error:") :]
+    assert place in error
+    assert "Traceback (most recent call last)" not in errors or "Its whole output is in" in error
+    assert read_meta(built.path)["fingerprint"] == built.report.meta["fingerprint"]
+    assert files_below(built.home / "kb") == [built.path.name]
+
+
+def program(folder: Path, body: str) -> Path:
+    """An executable that says it is Blender 5.1.2, and runs ``body`` when it is asked for more."""
+    path = folder / "blender"
+    path.write_text(f'#!/bin/sh\n[ "$1" = --version ] && echo "Blender 5.1.2" && exit\n{body}\n')
+    path.chmod(0o755)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ('echo "out of memory in the depsgraph"; exit 11', "out of memory in the depsgraph"),
+        ("echo I am fine", "what it wrote is not whole"),
+        ("""for word; do last=$word; done; echo '{"record":"blender","ver' > "$last\"""", "is not whole"),
+    ],
+)
+def test_a_blender_that_fails_half_way_is_named_with_its_output_kept(
+    tmp_path: Path, body: str, message: str
+) -> None:
+    options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)
+    with pytest.raises(ExtractError, match=message) as failure:
+        build("5.1", options=options, home=tmp_path / "home")
+    log = tmp_path / "home" / "extracts" / "blender-5.1.2.log"
+    assert str(log) in str(failure.value)
+    assert log.is_file()
+    assert files_below(tmp_path / "home" / "extracts") == [log.name]
+
+
+def test_an_extract_without_classes_is_refused_and_not_kept(tmp_path: Path) -> None:
+    lines = '{"record":"blender","version":"5.1.2","build":"x"}\\n{"record":"end","lines":1}\\n'
+    body = f"for word; do last=$word; done; printf '{lines}' > \"$last\""
+    options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)
+    with pytest.raises(ExtractError, match="did not describe its classes"):
+        build("5.1", options=options, home=tmp_path / "home")
+    assert list((tmp_path / "home" / "extracts").glob("*.jsonl")) == []
+
+
+def test_a_blender_that_writes_another_versions_api_is_refused(built: Built, tmp_path: Path) -> None:
+    extract = next((built.home / "extracts").glob("*.jsonl"))
+    body = (
+        f'for word; do last=$word; done; sed \'s/"version":"[0-9.]*"/"version":"4.5.1"/\' {extract} > $last'
+    )
+    options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)
+    with pytest.raises(ExtractError, match=r"is Blender 4\.5\.1, though it passed for 5\.1\.2"):
+        build("5.1", options=options, home=tmp_path / "home")
+
+
+def test_a_folder_without_pages_is_an_error_before_blender_is_asked(tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    options = BuildOptions(blender_exe=program(tmp_path, "exit 1"), manual=tmp_path / "empty", offline=True)
+    with pytest.raises(SourceError, match="holds no manual pages"):
+        build("5.1", options=options, home=tmp_path / "home")
+
+
+def test_a_home_that_cannot_be_written_is_named(built: Built, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(KBBuildError, match="file"):
+        build(None, options=replace(built.options, output=tmp_path / "file" / "a.sqlite"), home=built.home)
