@@ -167,6 +167,37 @@ def verify(version: str | None, reference: Path | None, as_json: bool) -> None:
     sys.exit(0 if found.sound else 1)
 
 
+@kb.command()
+@click.argument("versions", nargs=-1)
+@click.option("--blender-exe", "blender_exes", type=_PATH, multiple=True, help="A Blender to ask, too.")
+@click.option("--out", type=_PATH, help="The file to write (default: the one that SimWorlds came with).")
+@click.option("--force", is_flag=True, help="Write even if the file says more than is found now.")
+@reports_errors
+def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path | None, force: bool) -> None:
+    """Write down which symbol exists in which Blender version.
+
+    Asks VERSIONS (default: all that a bpy package is known of); each is installed on first use, 350 MB.
+    """
+    from kb_build.history import HISTORY_FILE  # noqa: PLC0415 - only here
+    from kb_build.history_build import build_history  # noqa: PLC0415
+    from kb_build.progress import shown_progress  # noqa: PLC0415
+    from kb_build.report import history_lines  # noqa: PLC0415
+    from kb_build.versions import releases  # noqa: PLC0415
+
+    signal.signal(signal.SIGTERM, _terminated)
+    asked = versions or tuple(release.minor for release in releases())
+    with shown_progress() as progress:
+        report = build_history(
+            asked,
+            home=home_folder(),
+            output=out or HISTORY_FILE,
+            blender_exes=blender_exes,
+            force=force,
+            progress=progress,
+        )
+    click.echo("\n".join(history_lines(report)))
+
+
 @kb.command("merge-summaries")
 @click.argument("file", type=click.Path(path_type=Path, exists=True, dir_okay=False))
 @reports_errors

@@ -27,7 +27,7 @@ _WRITERS = ("sqlite-utils", "snowballstemmer")
 # What is asked of a base or shown of a build leaves the base as it is.
 _ONLOOKERS = frozenset(
     {
-        "base_file.py", "cli.py", "diff.py", "history_build.py", "progress.py", "reference.py",
+        "bars.py", "base_file.py", "cli.py", "diff.py", "history_build.py", "progress.py", "reference.py",
         "report.py", "verify.py",
     }
 )  # fmt: skip

@@ -47,7 +47,7 @@ class PlainProgress:
 
 
 class TerminalProgress:
-    """One bar for what is being done now, with the time it takes; nothing of it stays on the screen."""
+    """A line with what is being done now and the time since the start; nothing of it stays on the screen."""
 
     def __init__(self) -> None:
         self._bars: Bars | None = None
@@ -59,36 +59,17 @@ class TerminalProgress:
         """Draws the bar, at most ten times a second."""
         bars = self._bars or self._start()
         now = time.monotonic()
-        if label != self._label or self._task is None:
-            if self._task is not None:
-                bars.remove_task(self._task)
-            self._task, self._label, self._drawn = bars.add_task(label, total=total), label, 0.0
-        if now - self._drawn >= _DRAW_SECONDS or done == total:
-            bars.update(self._task, completed=done, total=total, refresh=True)
-            self._drawn = now
+        if self._task is None:
+            self._task = bars.add_task(label, total=total)
+        if label != self._label or done == total or now - self._drawn >= _DRAW_SECONDS:
+            bars.update(self._task, description=label, completed=done, total=total)
+            bars.refresh()
+            self._label, self._drawn = label, now
 
     def _start(self) -> Bars:
-        from rich.console import Console  # noqa: PLC0415 - a build that does nothing draws nothing
-        from rich.progress import (  # noqa: PLC0415
-            BarColumn,
-            Progress,
-            SpinnerColumn,
-            TaskProgressColumn,
-            TextColumn,
-            TimeElapsedColumn,
-        )
+        from kb_build.bars import make_bars  # noqa: PLC0415 - a build that does nothing draws nothing
 
-        self._bars = Progress(
-            SpinnerColumn(),
-            TextColumn("{task.description}"),
-            BarColumn(bar_width=30),
-            TaskProgressColumn(),
-            TimeElapsedColumn(),
-            console=Console(stderr=True),
-            # Its own thread would keep the readers of pages from using a second process.
-            auto_refresh=False,
-            transient=True,
-        )
+        self._bars = make_bars()
         self._bars.start()
         return self._bars
 

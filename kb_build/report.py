@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from kb_build.history_build import HistoryReport
     from kb_build.pipeline import BuildReport
 
 _PLURALS = {
@@ -121,6 +122,21 @@ def warning_lines(report: BuildReport) -> Iterator[str]:
             yield f"WARNING: no summary by Claude for {failure.slug} ({failure.reason}): {failure.detail}"
         if len(failed) > _SHOWN_FAILURES:
             yield f"WARNING: … and {len(failed) - _SHOWN_FAILURES:,} more; kb info --json lists them"
+
+
+def history_lines(report: HistoryReport) -> Iterator[str]:
+    """What the comparison of versions came to."""
+    yield (
+        f"{'Wrote' if report.written else 'Nothing to change in'} {report.path}: {report.symbols:,} symbols, "
+        f"{report.size / 1e3:.0f} kB."
+    )
+    yield _row("asked", ", ".join(report.asked) or "none")
+    if report.kept:
+        yield _row("kept", f"{', '.join(report.kept)} (from the file as it was)")
+    for version, reason in report.missing.items():
+        yield _row("MISSING", f"{version}: {reason}")
+    for fault in report.faults:
+        yield _row("fault", fault.strip().splitlines()[-1])
 
 
 def _numbers(counts: Mapping[str, int], *, plain: bool = False) -> str:
