@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from pathlib import Path
-from typing import Any
+from typing import Any, TYPE_CHECKING
 from urllib.parse import quote
 
 from kb_build.analysis import key
 from kb_build.records import Page, Section, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, unpack
 from kb_serve.errors import BaseMissing, BaseUnreadable
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from collections.abc import Iterator
 
 TYPES = "bpy.types."
 STRUCT = "bpy.types.bpy_struct"
@@ -66,6 +68,18 @@ def open_file(path: Path) -> sqlite3.Connection:
     uri = f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1"
     try:
         connection = sqlite3.connect(uri, uri=True, check_same_thread=False)
+    except sqlite3.Error as error:
+        raise BaseUnreadable(f"{path}: cannot be opened ({error}). {_REBUILD}") from error
+    try:
+        _check(connection, path)
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _check(connection: sqlite3.Connection, path: Path) -> None:
+    try:
         application = connection.execute("PRAGMA application_id").fetchone()[0]
         version = connection.execute("PRAGMA user_version").fetchone()[0]
     except sqlite3.Error as error:
@@ -78,8 +92,9 @@ def open_file(path: Path) -> sqlite3.Connection:
             "Upgrade SimWorlds, or build the base again with this one: simworlds kb build --force"
         )
     if version < SCHEMA_VERSION:
-        raise BaseUnreadable(f"{path}: of an older layout (schema {version}, needed {SCHEMA_VERSION}). {_REBUILD}")
-    return connection
+        raise BaseUnreadable(
+            f"{path}: of an older layout (schema {version}, needed {SCHEMA_VERSION}). {_REBUILD}"
+        )
 
 
 class Reader:
@@ -157,7 +172,9 @@ class Reader:
 
     def removed_by_key(self, key: str) -> list[str]:
         """Paths of symbols of other versions that are spelled like ``key``."""
-        return [row[0] for row in self.rows("SELECT path FROM removed_names WHERE key = ? ORDER BY path", key)]
+        return [
+            row[0] for row in self.rows("SELECT path FROM removed_names WHERE key = ? ORDER BY path", key)
+        ]
 
     def replacements(self, path: str) -> list[tuple[str, float]]:
         """What this version has that is closest to a symbol it lacks, best first."""
@@ -174,11 +191,17 @@ class Reader:
 
     def links_from(self, source: str, kind: str) -> list[str]:
         """Targets of a symbol's or page's links of one kind."""
-        return [row[0] for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)]
+        return [
+            row[0]
+            for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)
+        ]
 
     def links_to(self, target: str, kind: str) -> list[str]:
         """Sources of the links of one kind that lead to ``target``."""
-        return [row[0] for row in self.rows("SELECT source FROM links WHERE target = ? AND kind = ?", target, kind)]
+        return [
+            row[0]
+            for row in self.rows("SELECT source FROM links WHERE target = ? AND kind = ?", target, kind)
+        ]
 
     def page_entry(self, slug: str) -> PageEntry | None:
         """A page's row, or None."""
@@ -192,7 +215,10 @@ class Reader:
 
     def pages_ending_in(self, name: str) -> list[PageEntry]:
         """Pages whose slug's last part, ``index`` left out, is ``name``."""
-        rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE slug IN (SELECT id FROM names WHERE key = ? AND form = 2)", key(name))
+        rows = self.rows(
+            f"SELECT {_PAGE} FROM pages WHERE slug IN (SELECT id FROM names WHERE key = ? AND form = 2)",
+            key(name),
+        )
         return [PageEntry(*row) for row in rows]
 
     def symbols_of_page(self, slug: str) -> list[str]:
@@ -204,7 +230,9 @@ class Reader:
         rows = self.rows("SELECT record FROM pages WHERE slug = ?", slug)
         if not rows:
             return None
-        sections = self.rows("SELECT anchor, title, level, text FROM sections WHERE slug = ? ORDER BY position", slug)
+        sections = self.rows(
+            "SELECT anchor, title, level, text FROM sections WHERE slug = ? ORDER BY position", slug
+        )
         record = unpack(rows[0][0])
         record["sections"] = []
         page = page_from_json(record)
