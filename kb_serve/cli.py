@@ -53,8 +53,10 @@ def docs(  # noqa: PLR0913 - one for each option
     # What is loaded now stays until the end, which is near: looking for garbage would only take time.
     gc.disable()
     try:
+        from kb_serve.service import readable  # noqa: PLC0415 - not for --help
+
         base = _bases(blender).pick()
-        answer = base.query(" ".join(query), limit=limit, max_tokens=max_tokens, part=part)
+        answer = base.query(readable(" ".join(query)), limit=limit, max_tokens=max_tokens, part=part)
         found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
     except KBServeError as error:
         click.echo(f"Error: {error}", err=True)

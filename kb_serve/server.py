@@ -81,9 +81,7 @@ def make_server(service: Service) -> Server[None]:
             return _failed(str(error))
         except Exception as error:
             _LOG.exception("%s failed on %.300r", NAME, asked.arguments)
-            return _failed(
-                f"{NAME} failed on this query ({type(error).__name__}); its log has more. Ask otherwise."
-            )
+            return _failed(f"{NAME} failed on this query ({type(error).__name__}). Ask it otherwise.")
 
     async def read_resource(
         _context: _Context, asked: types.ReadResourceRequestParams

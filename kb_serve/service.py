@@ -17,6 +17,11 @@ if TYPE_CHECKING:
 LONGEST_QUERY = 20_000
 
 
+def readable(query: str) -> str:
+    """The query without what no file can hold: halves of characters, as undecodable input leaves them."""
+    return query.encode(errors="replace").decode()
+
+
 class Service:
     """Answers from the bases there are."""
 
@@ -37,6 +42,7 @@ class Service:
             raise BadQuery(
                 f"The query has {len(query):,} characters; {LONGEST_QUERY:,} are the most. Ask shorter."
             )
+        query = readable(query)
         base = self._base(blender)
         note = self.upkeep.note(base.meta, blender)
         version = base.meta.get("blender", "")

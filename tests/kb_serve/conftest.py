@@ -1,0 +1,79 @@
+"""What the tests of the server share: home folders with real bases, a service, the installed command."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sqlite3
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing
+from pathlib import Path
+
+import pytest
+
+from kb_serve.bases import Bases
+from kb_serve.rebuild import Upkeep
+from kb_serve.service import Service
+
+REPO = Path(__file__).resolve().parent.parent.parent
+COMMAND = [sys.executable, "-c", "from agents.cli import main; main(prog_name='simworlds')"]
+
+MakeBase = Callable[..., Path]
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+def environment(home: Path, **more: str) -> dict[str, str]:
+    """The environment of a command that works in ``home`` and knows nothing of the user's own settings."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("SIMWORLDS_")}
+    return {**kept, "SIMWORLDS_HOME": str(home), "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error", **more}
+
+
+@pytest.fixture
+def home(base: Path, tmp_path: Path) -> Path:
+    """A home folder of its own with the base of this environment's Blender."""
+    (tmp_path / "kb").mkdir()
+    os.link(base, tmp_path / "kb" / base.name)
+    return tmp_path
+
+
+@pytest.fixture
+def make_base(base: Path, home: Path) -> MakeBase:
+    """Puts a further base into ``home``: this environment's, passing for another version's."""
+
+    def make(version: str, name: str | None = None, **meta: object) -> Path:
+        minor = version.rpartition(".")[0]
+        target = home / "kb" / (name or f"blender-{minor}.sqlite")
+        draft = target.with_suffix(".draft")
+        shutil.copy(base, draft)
+        with closing(sqlite3.connect(draft)) as file, file:
+            for field, value in {"blender": version, "minor": minor, **meta}.items():
+                text = value if isinstance(value, str) else json.dumps(value)
+                file.execute("UPDATE meta SET value = ? WHERE name = ?", (text, field))
+        return draft.replace(target)
+
+    return make
+
+
+@pytest.fixture
+def serve_from() -> Iterator[Callable[[Path], Service]]:
+    """Makes services over home folders, which build nothing by themselves; closes their bases."""
+    with ExitStack() as opened:
+
+        def make(home: Path) -> Service:
+            bases = Bases(home)
+            opened.callback(bases.close)
+            return Service(bases, Upkeep(bases, enabled=False))
+
+        yield make
+
+
+@pytest.fixture
+def service(home: Path, serve_from: Callable[[Path], Service]) -> Service:
+    """The service over ``home``."""
+    return serve_from(home)
