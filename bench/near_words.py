@@ -48,7 +48,11 @@ def reduce(vectors: Vectors, dimensions: int) -> Vectors:
 def documentation_words(base: Path) -> set[str]:
     """The most used spelling of every stem in a knowledge base."""
     with sqlite3.connect(f"file:{base}?mode=ro", uri=True) as connection:
-        return {word for (word,) in connection.execute("SELECT word FROM vocabulary") if word.isalpha() and word.isascii()}
+        return {
+            word
+            for (word,) in connection.execute("SELECT word FROM vocabulary")
+            if word.isalpha() and word.isascii()
+        }
 
 
 def neighbours(words: list[str], vectors: Vectors, targets: set[str]) -> dict[str, list[tuple[str, float]]]:
@@ -75,14 +79,20 @@ def neighbours(words: list[str], vectors: Vectors, targets: set[str]) -> dict[st
 
 def main() -> int:
     """Reads the arguments, writes the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--model", type=Path, required=True)
     parser.add_argument("--words", type=Path, required=True)
     parser.add_argument("--base", type=Path, required=True)
     parser.add_argument("--output", type=Path, required=True)
     options = parser.parse_args()
     targets = documentation_words(options.base)
-    general = {word for word in options.words.read_text().split() if word.isalpha() and word.isascii() and len(word) > 2}
+    general = {
+        word
+        for word in options.words.read_text().split()
+        if word.isalpha() and word.isascii() and len(word) > 2
+    }
     words = sorted((general | targets) - STOP_WORDS)
     table = neighbours(words, reduce(encode(words, options.model), DIMENSIONS), targets)
     lines = [

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from functools import cache
+from typing import Any
 
 import snowballstemmer
-
-ANALYSIS_VERSION = 1
 
 _WORD = re.compile(r"\d+[dD]\b|[A-Za-z]+|\d+(?:\.\d+)?|[^\W\d_]+")
 _CAMEL = re.compile(r"[A-Z]{2,}s\b|[A-Z]{2,}(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
@@ -18,17 +16,17 @@ _NOT_KEY = re.compile(r"[\W_]+")
 STOP_WORDS = frozenset(
     """a about after all also am an and any are as at be because been before being but by can cannot could did do
     does doing don done each either else every etc few for from get gets getting go goes going got had has have
-    having he her here hers him his how however i if in instead into is isn it its itself just let like make makes
-    making many may me might more most much must my need needs no nor not now of on one only onto or other our out
-    own per please rather s same shall she should so some still such t than that the their them then there these
-    they thing things this those to too until up upon us very via want wants was way we were what when where
-    whether which while who whole whom whose why will with without would yet you your python blender script bpy
-    api code""".split()
+    having he her here hers him his how however i if in instead into is isn it its just let like make makes making
+    many may me might more most much must my need needs no nor not now of on one only onto or other our out own per
+    please rather s same shall she should so some still such t than that the their them then there these they thing
+    things this those to too until up upon us very via want wants was way we were what when where whether which
+    while who whole whom whose why will with without would yet you your python blender script bpy api code
+    """.split()  # noqa: SIM905 - a hundred words read best as a paragraph
 )
 
 
 @cache
-def _stemmer() -> snowballstemmer.stemmer:
+def _stemmer() -> Any:
     return snowballstemmer.stemmer("english")
 
 
@@ -57,8 +55,3 @@ def terms(text: str) -> list[str]:
 def key(text: str) -> str:
     """Spelling folded away: ``quality_steps``, ``qualitySteps`` and ``Quality Steps`` have one key."""
     return _NOT_KEY.sub("", text).lower()
-
-
-def index_text(texts: Iterable[str]) -> str:
-    """What goes into an FTS5 column: terms joined by blanks."""
-    return " ".join(term for text in texts for term in terms(text))

@@ -7,6 +7,7 @@ import re
 import textwrap
 from dataclasses import dataclass, field, replace
 from functools import cache
+from typing import TYPE_CHECKING, Any, cast
 
 from docutils import nodes
 from docutils.frontend import get_default_settings
@@ -14,6 +15,9 @@ from docutils.parsers.rst import Parser, roles
 from docutils.utils import new_document
 
 from kb_build.records import Default, Parameter
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 _DIRECTIVE = re.compile(
     r"\.\. (?:function|method|classmethod|staticmethod|class|data|attribute|property|exception)::[ \t]*(.*)"
@@ -46,7 +50,7 @@ class _Fields:
 
 
 def _literal_role(
-    name: str, rawtext: str, text: str, lineno: int, inliner: object, options: object = None, content: object = None
+    _name: str, rawtext: str, text: str, *_position: object, **_options: object
 ) -> tuple[list[nodes.Node], list[nodes.system_message]]:
     """A cross-reference inside a docstring is the identifier it names."""
     shown = text.partition(" <")[0] if text.endswith(">") else text
@@ -54,10 +58,10 @@ def _literal_role(
 
 
 @cache
-def _parser() -> tuple[Parser, object]:
+def _parser() -> tuple[Parser, Any]:
     for role in _REFERENCE_ROLES:
-        roles.register_local_role(role, _literal_role)
-    settings = get_default_settings(Parser)
+        roles.register_local_role(role, cast("Any", _literal_role))
+    settings: Any = get_default_settings(Parser())
     settings.report_level = settings.halt_level = _QUIET
     settings.file_insertion_enabled = settings.raw_enabled = False
     return Parser(), settings
@@ -77,7 +81,7 @@ def _inline(node: nodes.Node) -> str:
     return "".join(parts)
 
 
-def _block(node: nodes.Node) -> str:
+def _block(node: nodes.Node) -> str:  # noqa: PLR0911 - one return a kind of node
     """One body element as Markdown."""
     if isinstance(node, nodes.paragraph):
         return _inline(node)
@@ -102,7 +106,7 @@ def _block(node: nodes.Node) -> str:
     return _inline(node) if node.children else node.astext()
 
 
-def _blocks(children: list[nodes.Node]) -> str:
+def _blocks(children: Sequence[nodes.Node]) -> str:
     return "\n\n".join(text for text in map(_block, children) if text)
 
 

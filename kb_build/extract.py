@@ -6,15 +6,17 @@ import fnmatch
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from kb_build.docstrings import parse_docstring
 from kb_build.errors import ExtractError
 from kb_build.reach import reached_expressions
 from kb_build.records import Default, Link, Page, Parameter, Section, Symbol, symbol_from_json
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
 
 SCRIPT = Path(__file__).parent / "inside" / "extract.py"
 _INDEXABLE = re.compile(r"[\[*?]")
@@ -60,7 +62,9 @@ def _read(path: Path) -> _Raw:
             try:
                 row = json.loads(line)
             except json.JSONDecodeError as error:
-                raise ExtractError(f"{path}: line {lines + 1} is cut off; Blender stopped half-way") from error
+                raise ExtractError(
+                    f"{path}: line {lines + 1} is cut off; Blender stopped half-way"
+                ) from error
             record = row.pop("record")
             if record == "end":
                 ended = row["lines"]
@@ -189,7 +193,9 @@ def read_extract(path: Path) -> Extract:
         for name in ("bl_rna_get_subclass", "bl_rna_get_subclass_py")
         if (symbol := symbols.get(f"bpy.types.bpy_struct.{name}"))
     ]
-    classes = [symbol for symbol in symbols.values() if symbol.kind == "class" and symbol.owner == "bpy.types"]
+    classes = [
+        symbol for symbol in symbols.values() if symbol.kind == "class" and symbol.owner == "bpy.types"
+    ]
     for extra in _subclass_lookups((cls for cls in classes if cls.group == "data"), prototypes):
         symbols.setdefault(extra.path, extra)
     for name, expression in reached_expressions(symbols.values()).items():

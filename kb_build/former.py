@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from kb_build.analysis import key
-from kb_build.history import History
-from kb_build.records import Symbol
 from kb_build.replacements import find_replacements, is_asked_for
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_build.history import History
+    from kb_build.records import Symbol
 
 _PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
 

@@ -12,19 +12,23 @@ idf are applied when a query is answered.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kb_build.analysis import STOP_WORDS, key, stem, terms, words
-from kb_build.records import Link, Page, Symbol
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from kb_build.records import Link, Page, Symbol
 
 TYPES = "bpy.types."
 PAGE_KINDS = frozenset({"manual", "guide", "template"})
 FIELDS = ("name", "heading", "context", "body", "related")
-FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.5}
+FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.25}
 UNIT_B = 0.35  # how much a unit's length counts: most are a sentence
 TOPIC_B = 0.4
 
@@ -146,7 +150,9 @@ def symbol_docs(
             kind=symbol.kind,
             title=symbol.label or symbol.name,
             topic=_topic_of(symbol),
-            chapter=chapter_of(explained_on.get(symbol.path) or explained_on.get(symbol.owner) or symbol.owner),
+            chapter=chapter_of(
+                explained_on.get(symbol.path) or explained_on.get(symbol.owner) or symbol.owner
+            ),
             name=(symbol.name,),
             heading=(symbol.label,),
             context=(symbol.owner.removeprefix(TYPES).removeprefix("bpy."), owner.label if owner else ""),

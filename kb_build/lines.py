@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from kb_build.records import Symbol
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kb_build.records import Symbol
 
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16

@@ -6,10 +6,13 @@ licensed sentence model; here it is only read, and cut down to the words that th
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping
 from importlib.resources import files
+from typing import TYPE_CHECKING
 
 from kb_build.analysis import stem
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterator, Mapping
 
 Near = tuple[tuple[str, float], ...]
 _KEPT = 8

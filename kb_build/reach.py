@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import heapq
 from collections import defaultdict
-from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from kb_build.records import Symbol
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from kb_build.records import Symbol
 
 TYPES = "bpy.types."
 
@@ -111,7 +114,9 @@ def reached_expressions(symbols: Iterable[Symbol]) -> dict[str, str]:
             for child in _descendants(target, graph) if target != "ID" else ():
                 if child not in found:
                     order += 1
-                    heapq.heappush(queue, (step + 1, order, child, here + (_key(child, graph) if many else "")))
+                    heapq.heappush(
+                        queue, (step + 1, order, child, here + (_key(child, graph) if many else ""))
+                    )
     # Every tree's ``nodes`` takes every node as far as RNA knows; a shader's live in a material.
     for cls in graph.shader_nodes:
         found[cls] = f"{found.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"

@@ -157,7 +157,7 @@ class Page:
     @property
     def content_hash(self) -> str:
         """SHA-256 of the text with its white space folded: equal for equal content, whatever the layout."""
-        return hashlib.sha256(" ".join(self.text.split()).encode()).hexdigest()
+        return hashlib.sha256(" ".join(self.text.split()).encode(errors="replace")).hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,36 +180,38 @@ def _enum_items(rows: list[dict[str, Any]]) -> tuple[EnumItem, ...]:
 
 
 def _parameters(rows: list[dict[str, Any]]) -> tuple[Parameter, ...]:
-    return tuple(Parameter(**{**row, "enum_items": _enum_items(row.get("enum_items", []))}) for row in rows)
+    found: list[Parameter] = []
+    for row in rows:
+        values: dict[str, Any] = {**row, "enum_items": _enum_items(row.get("enum_items", []))}
+        found.append(Parameter(**values))
+    return tuple(found)
 
 
 def symbol_from_json(data: dict[str, Any]) -> Symbol:
     """The inverse of :func:`to_json` for symbols. Raises TypeError on unknown fields."""
     deprecation = data.get("deprecation")
-    return Symbol(
-        **{
-            **data,
-            "array": tuple(data.get("array", ())),
-            "flags": tuple(data.get("flags", ())),
-            "modes": tuple(data.get("modes", ())),
-            "trees": tuple(data.get("trees", ())),
-            "enum_items": _enum_items(data.get("enum_items", [])),
-            "parameters": _parameters(data.get("parameters", [])),
-            "returns": _parameters(data.get("returns", [])),
-            "deprecation": Deprecation(**deprecation) if deprecation else None,
-        }
-    )
+    values: dict[str, Any] = {
+        **data,
+        "array": tuple(data.get("array", ())),
+        "flags": tuple(data.get("flags", ())),
+        "modes": tuple(data.get("modes", ())),
+        "trees": tuple(data.get("trees", ())),
+        "enum_items": _enum_items(data.get("enum_items", [])),
+        "parameters": _parameters(data.get("parameters", [])),
+        "returns": _parameters(data.get("returns", [])),
+        "deprecation": Deprecation(**deprecation) if deprecation else None,
+    }
+    return Symbol(**values)
 
 
 def page_from_json(data: dict[str, Any]) -> Page:
     """The inverse of :func:`to_json` for pages. Raises TypeError on unknown fields."""
-    return Page(
-        **{
-            **data,
-            "sections": tuple(Section(**row) for row in data.get("sections", [])),
-            "breadcrumbs": tuple(data.get("breadcrumbs", ())),
-            "children": tuple(data.get("children", ())),
-            "links": tuple(data.get("links", ())),
-            "warnings": tuple(data.get("warnings", ())),
-        }
-    )
+    values: dict[str, Any] = {
+        **data,
+        "sections": tuple(Section(**row) for row in data.get("sections", [])),
+        "breadcrumbs": tuple(data.get("breadcrumbs", ())),
+        "children": tuple(data.get("children", ())),
+        "links": tuple(data.get("links", ())),
+        "warnings": tuple(data.get("warnings", ())),
+    }
+    return Page(**values)

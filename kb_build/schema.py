@@ -95,7 +95,9 @@ CREATE TABLE postings (
 CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWID;
 
 -- English words → stems of the corpus that mean nearly the same.
-CREATE TABLE near (word TEXT NOT NULL, stem TEXT NOT NULL, weight REAL NOT NULL, PRIMARY KEY (word, stem)) WITHOUT ROWID;
+CREATE TABLE near (
+    word TEXT NOT NULL, stem TEXT NOT NULL, weight REAL NOT NULL, PRIMARY KEY (word, stem)
+) WITHOUT ROWID;
 """
 
 INDEXES = """

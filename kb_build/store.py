@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import sqlite_utils
 
@@ -29,6 +28,10 @@ from kb_build.schema import (
     pack,
 )
 from kb_build.staging import staged_file
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from pathlib import Path
 
 _PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
 
@@ -88,7 +91,9 @@ def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
             yield key(item.identifier), f"{symbol.path}({parameter.name})", item.identifier, item.name
 
 
-def _insert(connection: sqlite3.Connection, table: str, rows: Iterable[tuple[object, ...]], width: int) -> None:
+def _insert(
+    connection: sqlite3.Connection, table: str, rows: Iterable[tuple[object, ...]], width: int
+) -> None:
     marks = ",".join("?" * width)
     connection.executemany(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", rows)  # noqa: S608
 
@@ -152,7 +157,9 @@ def _write_pages(
         _insert(connection, "names", page_names(page), 3)
 
 
-def _write_level(connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int]) -> set[str]:
+def _write_level(
+    connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int]
+) -> set[str]:
     """One level of the retrieval index; returns its stems."""
     chapters: dict[str, int] = {}
     rows = (
@@ -189,7 +196,9 @@ def write_base(path: Path, contents: Contents) -> None:
             with part.open("rb") as file:
                 os.fsync(file.fileno())
     except (OSError, sqlite3.Error) as error:
-        raise StoreError(f"{path}: the knowledge base cannot be written: {error}. The old one, if any, stands.") from error
+        raise StoreError(
+            f"{path}: the knowledge base cannot be written: {error}. The old one, if any, stands."
+        ) from error
 
 
 def _write(part: Path, contents: Contents) -> None:
@@ -208,7 +217,9 @@ def _write(part: Path, contents: Contents) -> None:
             _write_index(connection, units)
             _write_former(connection, contents.former)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
-            _insert(connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3)
+            _insert(
+                connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3
+            )
             _insert(connection, "meta", contents.meta.items(), 2)
         connection.executescript(f"{INDEXES} ANALYZE;")
     finally:

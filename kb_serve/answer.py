@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from kb_serve.budget import Block, clip, paginate, tokens
 from kb_serve.errors import BadQuery
 from kb_serve.rank import Ranked, Ranker, Ranking
-from kb_serve.reader import Reader
 from kb_serve.render import Renderer, first_sentence
 from kb_serve.topics import Topics
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_serve.reader import Reader
 
 AnswerKind = Literal["schema", "page", "candidates", "none"]
 LIMIT = 8
@@ -71,11 +74,15 @@ class Answerer:
         """Answers a query. Raises BadQuery for an empty one, or a part that does not exist."""
         text = " ".join(query.replace("\0", " ").split())
         if not text:
-            raise BadQuery("The query is empty. Ask for a name (ClothSettings.quality) or say what you want to do.")
+            raise BadQuery(
+                "The query is empty. Ask for a name (ClothSettings.quality) or say what you want to do."
+            )
         if limit < 1 or part < 1:
             raise BadQuery(f"limit and part count from 1 (given: limit={limit}, part={part}).")
         if max_tokens < LEAST_TOKENS:
-            raise BadQuery(f"max_tokens={max_tokens} is too little to say anything; give at least {LEAST_TOKENS}.")
+            raise BadQuery(
+                f"max_tokens={max_tokens} is too little to say anything; give at least {LEAST_TOKENS}."
+            )
         draft = self._draft(text, min(limit, MAX_LIMIT))
         return _paged(text, draft, max_tokens, part)
 
@@ -106,7 +113,13 @@ class Answerer:
         entry = self._reader.entry(row.id)
         if entry is None:
             return Hit(row.id, "unknown", row.id, round(row.score, 3))
-        return Hit(row.id, entry.kind, entry.label or entry.name, round(row.score, 3), self._renderer.manual_page(row.id))
+        return Hit(
+            row.id,
+            entry.kind,
+            entry.label or entry.name,
+            round(row.score, 3),
+            self._renderer.manual_page(row.id),
+        )
 
     # What is said
 
@@ -132,7 +145,11 @@ class Answerer:
         entry = self._reader.entry(hit.id)
         if entry is not None:
             owner = f"{entry.owner}." if entry.kind != "socket" else ""
-            told = entry.line.partition(" — ")[2] if entry.kind in {"operator", "function", "class"} else entry.line
+            told = (
+                entry.line.partition(" — ")[2]
+                if entry.kind in {"operator", "function", "class"}
+                else entry.line
+            )
             told = told.removeprefix(f"`{entry.name}`").strip()
             return clip(f"`{owner + entry.name if owner else hit.id}` {told}", _LINE_TOKENS)
         page = self._reader.page_entry(hit.id)
@@ -152,12 +169,18 @@ def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> Answer:
     room = max_tokens - _FOOTER_TOKENS - min(tokens(notes), max_tokens // 3)
     pages = paginate(draft.blocks, max(40, room))
     if part > len(pages):
-        raise BadQuery(f"part={part} does not exist: this answer has {len(pages)} part(s) of {max_tokens} tokens.")
+        raise BadQuery(
+            f"part={part} does not exist: this answer has {len(pages)} part(s) of {max_tokens} tokens."
+        )
     text, left = pages[part - 1]
     pieces = [clip(notes, max_tokens // 3)] if notes and part == 1 else []
     pieces.append(text)
     if part < len(pages):
         names = clip(", ".join(dict.fromkeys(left)), _FOOTER_TOKENS // 2)
         asked = clip(query, 16)
-        pieces.append(f'_Part {part} of {len(pages)}. Left: {names}. Next: blender_docs("{asked}", part={part + 1})_')
-    return Answer(draft.kind, clip("\n\n".join(pieces), max_tokens), draft.hits, draft.notes, part, len(pages))
+        pieces.append(
+            f'_Part {part} of {len(pages)}. Left: {names}. Next: blender_docs("{asked}", part={part + 1})_'
+        )
+    return Answer(
+        draft.kind, clip("\n\n".join(pieces), max_tokens), draft.hits, draft.notes, part, len(pages)
+    )

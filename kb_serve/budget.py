@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 _WORTH_FILLING = 0.25  # of a part: a block is not begun where less is left
-_BYTES_PER_TOKEN = 3  # below what tokenizers need for English, Markdown and identifiers, so that the promise holds
+_BYTES_PER_TOKEN = (
+    3  # below what tokenizers need for English, Markdown and identifiers, so that the promise holds
+)
 
 
 def tokens(text: str) -> int:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from rapidfuzz import process
 from rapidfuzz.distance import OSA
@@ -12,7 +12,11 @@ from rapidfuzz.distance import OSA
 from kb_build.analysis import key, words
 from kb_serve.chains import Chain, Step
 from kb_serve.reader import TYPES, Reader
-from kb_serve.walk import Walked, Walker
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_serve.walk import Walked, Walker
 
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
 _CONTAINED = 0.8  # of a name whose words are all in the other: ``select`` and ``select_set``
@@ -117,7 +121,9 @@ class Corrector:
 
 def _with_step(chain: Chain, number: int, name: str) -> Chain:
     steps = list(chain.steps)
-    steps[number] = Step("key" if steps[number].kind == "key" else "attr", name.partition('["')[2].rstrip('"]') or name)
+    steps[number] = Step(
+        "key" if steps[number].kind == "key" else "attr", name.partition('["')[2].rstrip('"]') or name
+    )
     return replace(chain, steps=tuple(steps))
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from kb_build.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
@@ -17,6 +17,9 @@ from kb_serve.chains import Chain, find_chains
 from kb_serve.corrections import Correction, Corrector, Drift, Drifts, nearest
 from kb_serve.reader import TYPES, Entry, Reader
 from kb_serve.walk import Walked, Walker
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
 
 _URL = re.compile(r"https?://[\w.]*blender\.org/(?:manual|api)/[^\s'\"<>)]*")
 _HTML = re.compile(r"(?P<page>[\w./-]+?)\.html(?:#(?P<anchor>[\w.-]+))?$")
@@ -26,7 +29,9 @@ _BAD_KEY = re.compile(r"\bkey \"(?P<name>[^\"]+)\" not found")
 _BAD_ENUM = re.compile(r"enum \"(?P<name>[^\"]*)\" not found in \((?P<items>[^)]*)\)")
 _BAD_KEYWORD = re.compile(r"keyword \"(?P<name>\w+)\" unrecognized")
 _POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
-_BOILERPLATE = re.compile(r"bpy_struct: item\.attr\s*=\s*val:|bpy_prop_collection\[key\]:|has no attribute '\w+'")
+_BOILERPLATE = re.compile(
+    r"bpy_struct: item\.attr\s*=\s*val:|bpy_prop_collection\[key\]:|has no attribute '\w+'"
+)
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
@@ -36,7 +41,17 @@ _FITTING = 0.5  # how far the words around a bare value must fit the property th
 
 # Python's own names, which are nobody's API.
 _NOT_API = frozenset(
-    "NoneType AttributeError TypeError ValueError RuntimeError KeyError IndexError NameError ReferenceError".split()
+    [
+        "NoneType",
+        "AttributeError",
+        "TypeError",
+        "ValueError",
+        "RuntimeError",
+        "KeyError",
+        "IndexError",
+        "NameError",
+        "ReferenceError",
+    ]
 )
 
 
@@ -215,7 +230,11 @@ class Identifier:
         """Whether the chain names what another version had: on the likeliest class, or under its own path."""
         if not (readings and readings[0].complete and readings[0].fit >= 0.85):
             for walked in readings:
-                if walked.missing and walked.fit >= 0.6 and (drift := self._drifts.of_member(walked.owner, walked.missing)):
+                if (
+                    walked.missing
+                    and walked.fit >= 0.6
+                    and (drift := self._drifts.of_member(walked.owner, walked.missing))
+                ):
                     found.drifts.append(drift)
                     return True
             for drift in self._drifts.spelled(chain.dotted) if chain.steps or "_" in chain.root else ():
@@ -241,7 +260,9 @@ class Identifier:
             return False
         walked, corrections = mended
         found.corrections += corrections
-        found.add(walked.symbols[-1], 0.93 * min(c.similarity for c in corrections) ** 0.25 - later, "correction")
+        found.add(
+            walked.symbols[-1], 0.93 * min(c.similarity for c in corrections) ** 0.25 - later, "correction"
+        )
         for step, symbol in enumerate(reversed(walked.symbols[:-1])):
             found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
@@ -332,7 +353,9 @@ class Identifier:
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             found.add(owner.partition("(")[0], sure, "enum item")
 
-    def _owners_of_items(self, values: Iterable[str], around: set[str] | None = None) -> Iterator[tuple[str, float]]:
+    def _owners_of_items(
+        self, values: Iterable[str], around: set[str] | None = None
+    ) -> Iterator[tuple[str, float]]:
         """(owner, share of the values it has), the fullest first, then the one the other words fit."""
         wanted = list(values)
         held: dict[str, set[str]] = defaultdict(set)
@@ -340,7 +363,9 @@ class Identifier:
             for owner, identifier, name in self._reader.enum_owners(key(value)):
                 if value in {identifier, name}:
                     held[owner].add(value)
-        for owner in sorted(held, key=lambda o: (-len(held[o]), -self._owner_fit(o, around or set()), len(o), o)):
+        for owner in sorted(
+            held, key=lambda o: (-len(held[o]), -self._owner_fit(o, around or set()), len(o), o)
+        ):
             yield owner, len(held[owner]) / max(1, len(wanted))
 
     def _owner_fit(self, owner: str, around: set[str]) -> float:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from threading import Lock
-from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
-from kb_build.records import Page, Symbol
 from kb_serve.answer import LIMIT, MAX_TOKENS, Answer, Answerer
 from kb_serve.locate import find_base
 from kb_serve.reader import Reader
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from types import TracebackType
+
+    from kb_build.records import Page, Symbol
 
 
 class KnowledgeBase:
@@ -69,5 +72,7 @@ class KnowledgeBase:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self.close()

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from kb_build.settings import base_path, built_bases, home_folder
 from kb_serve.errors import BaseMissing
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _VERSION = re.compile(r"(\d+)\.(\d+)(?:\.\d+)?")
 

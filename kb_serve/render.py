@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from kb_build.lines import first_sentence, literal, type_text
-from kb_build.records import EnumItem, Parameter, Section, Symbol
 from kb_serve.budget import Block
 from kb_serve.reader import STRUCT, TYPES, Entry, Reader
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from kb_build.records import EnumItem, Parameter, Section, Symbol
 
 _SHOWN_ITEMS = 60
 _UNITS = {
@@ -16,7 +20,15 @@ _UNITS = {
     "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
     "TEMPERATURE": "K", "WAVELENGTH": "nm", "COLOR_TEMPERATURE": "K", "FREQUENCY": "Hz",
 }  # fmt: skip
-_WORTH_SAYING = ("readonly", "animatable", "enum-flag", "never-none", "static", "classmethod", "hidden-by-default")
+_WORTH_SAYING = (
+    "readonly",
+    "animatable",
+    "enum-flag",
+    "never-none",
+    "static",
+    "classmethod",
+    "hidden-by-default",
+)
 
 
 def _range_text(low: float | None, high: float | None) -> str:
@@ -89,7 +101,10 @@ def _parameters(symbol: Symbol) -> Iterator[Block]:
         yield Block(f"**Returns**\n{lines}", "returns")
     for parameter in symbol.parameters:
         if len(parameter.enum_items) > 3 and any(item.description for item in parameter.enum_items):
-            yield Block(f"**Values of `{parameter.name}`**\n{_items(parameter.enum_items, 0)}", f"values of {parameter.name}")
+            yield Block(
+                f"**Values of `{parameter.name}`**\n{_items(parameter.enum_items, 0)}",
+                f"values of {parameter.name}",
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,13 +215,16 @@ class Renderer:
 
     def _class(self, symbol: Symbol) -> Iterator[Block]:
         members = list(self.reader.members(symbol.path).values())
-        lineage = [entry for entry in self.reader.lineage(symbol.path)][1:]
+        lineage = list(self.reader.lineage(symbol.path))[1:]
         if lineage:
             yield Block("base classes: " + ", ".join(f"`{entry.name}`" for entry in lineage), "bases")
         groups: tuple[tuple[str, Iterable[Entry]], ...] = (
             ("Inputs and outputs", [entry for entry in members if entry.kind == "socket"]),
             ("Properties", [entry for entry in members if entry.kind in {"property", "data"}]),
-            ("Functions", [e for e in members if e.kind == "function" and not e.name.startswith("bl_rna_get_subclass")]),
+            (
+                "Functions",
+                [e for e in members if e.kind == "function" and not e.name.startswith("bl_rna_get_subclass")],
+            ),
         )
         for title, entries in groups:
             lines = ["- " + entry.line for entry in entries]
@@ -216,7 +234,9 @@ class Renderer:
             names = [e.name for e in self.reader.members(ancestor.path).values() if e.kind != "class"]
             names = [name for name in names if not name.startswith("bl_rna_get_subclass")]
             if names and ancestor.path != STRUCT:
-                yield Block(f"**Inherited from `{ancestor.name}`**: {', '.join(names)}", f"members of {ancestor.name}")
+                yield Block(
+                    f"**Inherited from `{ancestor.name}`**: {', '.join(names)}", f"members of {ancestor.name}"
+                )
         below = [entry.name for entry in self.reader.subclasses(symbol.path) if entry.group in {"data", ""}]
         if below:
             yield Block(f"**Subclasses**: {', '.join(below)}", "subclasses")
@@ -235,7 +255,11 @@ def definition_of(label: str, sections: Iterable[Section]) -> str:
         lines = section.text.split("\n")
         for number, line in enumerate(lines):
             term = line.strip()
-            if term.startswith("**") and term.rstrip(":").endswith("**") and term.strip("*: ").lower() == wanted:
+            if (
+                term.startswith("**")
+                and term.rstrip(":").endswith("**")
+                and term.strip("*: ").lower() == wanted
+            ):
                 return "\n".join(_indented_after(lines, number))
     return ""
 

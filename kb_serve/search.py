@@ -13,9 +13,9 @@ BM25F over two levels (a unit and the topic around it), with four additions, eac
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,18 +23,21 @@ from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
 from kb_build.analysis import STOP_WORDS, stem, words
-from kb_serve.reader import Reader
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_serve.reader import Reader
 
 Scores = NDArray[np.float32]
 
 K1 = 1.2
-NEAR_WEIGHT = 0.9  # a near word's similarity counts this much of the word itself
+NEAR_WEIGHT = 1.0  # a near word counts by its similarity, times this
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 CHAPTER_WEIGHT = 0.3
 UNKNOWN_IDF = 6.0
-MAX_IDF = 8.0
 _MAX_WORDS = 40
 _CANDIDATES = 400
 _FEEDBACK = 100
@@ -87,8 +90,13 @@ class Searcher:
 
     def _read_level(self, level: int) -> _Level:
         sql = "SELECT ref, kind, title, anchor, topic, chapter FROM docs WHERE level = ? ORDER BY number"
-        columns = [list(column) for column in zip(*self._reader.rows(sql, level), strict=True)] or [[] for _ in range(6)]
-        return _Level(*columns[:4], np.asarray(columns[4], np.int32), np.asarray(columns[5], np.int32))
+        rows = self._reader.rows(sql, level)
+        if not rows:
+            return _Level([], [], [], [], np.zeros(0, np.int32), np.zeros(0, np.int32))
+        refs, kinds, titles, anchors, topics, chapters = (list(column) for column in zip(*rows, strict=True))
+        return _Level(
+            refs, kinds, titles, anchors, np.asarray(topics, np.int32), np.asarray(chapters, np.int32)
+        )
 
     def _read_postings(self, level: int, term: str) -> tuple[NDArray[np.uint32], Scores] | None:
         rows = self._reader.rows("SELECT df, data FROM postings WHERE level = ? AND stem = ?", level, term)
@@ -97,7 +105,7 @@ class Searcher:
         count, data = rows[0]
         numbers = np.frombuffer(data, np.uint32, count)
         weights = np.frombuffer(data, np.float16, count, offset=4 * count).astype(np.float32)
-        return numbers, weights * (K1 + 1) / (weights + K1)
+        return numbers, np.asarray(weights * (K1 + 1) / (weights + K1), np.float32)
 
     def idf(self, term: str) -> float:
         """How much a stem tells: ln(1 + (N - df + ½) / (df + ½)) over the units; 0 for an unknown one."""
@@ -151,7 +159,7 @@ class Searcher:
             stems[stem(corrected)] = 0.95
         if not idf:
             idf = max((self.idf(term) for term in stems), default=UNKNOWN_IDF)
-        return Concept(word, tuple(stems.items()), min(idf, MAX_IDF))
+        return Concept(word, tuple(stems.items()), idf)
 
     # Scores
 
@@ -173,12 +181,12 @@ class Searcher:
             scores += best
             covered += concept.idf * spoken
         covered /= total
-        return scores * covered**COVERAGE, covered
+        return np.asarray(scores * covered**COVERAGE, np.float32), covered
 
     def search(self, text: str, limit: int = 50) -> list[Found]:
         """The best documents for a text, best first, each id once."""
         concepts = list(self.concepts(text))
-        if not any(concept.stems for concept in concepts):
+        if not self._levels[0].refs or not any(concept.stems for concept in concepts):
             return []
         units, _ = self._levels
         own, covered = self._score(0, concepts)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from kb_build.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_SHORT
 from kb_serve.budget import Block
-from kb_serve.reader import PageEntry, Reader
 from kb_serve.render import first_sentence
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.reader import PageEntry, Reader
 
 _MAX_WORDS = 4
 _MOST = 40
@@ -67,14 +71,24 @@ class Topics:
         """The chapter, its pages, and the classes, operators and modifiers that belong to it."""
         page = self._reader.page_entry(slug)
         assert page is not None
-        symbols = list(dict.fromkeys(path for below in self._subtree(slug) for path in self._reader.symbols_of_page(below)))
+        symbols = list(
+            dict.fromkeys(
+                path for below in self._subtree(slug) for path in self._reader.symbols_of_page(below)
+            )
+        )
         entries = [entry for path in symbols if (entry := self._reader.entry(path))]
         classes = [entry for entry in entries if entry.kind == "class" and entry.group == "data"]
         classes.sort(key=lambda entry: ("Modifier" not in entry.name, -len(self._reader.members(entry.path))))
         operators = [entry for entry in entries if entry.kind == "operator"]
         blocks = [Block(f"## {page.title}\n\n{page.summary}\n\n{page.url}", "summary")]
-        blocks += _listed("Classes", [f"`{e.path}` — {first_sentence(e.line.partition(' — ')[2]) or e.label}" for e in classes])
-        blocks += _listed("Operators", [f"`{e.path}` — {first_sentence(e.line.partition(' — ')[2]) or e.label}" for e in operators])
+        blocks += _listed(
+            "Classes",
+            [f"`{e.path}` — {first_sentence(e.line.partition(' — ')[2]) or e.label}" for e in classes],
+        )
+        blocks += _listed(
+            "Operators",
+            [f"`{e.path}` — {first_sentence(e.line.partition(' — ')[2]) or e.label}" for e in operators],
+        )
         blocks += _listed("Pages", list(self._page_lines(slug)))
         return Overview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
 
@@ -88,6 +102,8 @@ class Topics:
 def _listed(title: str, lines: list[str]) -> list[Block]:
     if not lines:
         return []
-    shown = "\n".join(f"- {line}" if not line.startswith("  ") else f"  - {line.strip()}" for line in lines[:_MOST])
+    shown = "\n".join(
+        f"- {line}" if not line.startswith("  ") else f"  - {line.strip()}" for line in lines[:_MOST]
+    )
     more = f"\n- … {len(lines) - _MOST} more" if len(lines) > _MOST else ""
     return [Block(f"**{title}**\n{shown}{more}", title.lower())]

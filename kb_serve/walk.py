@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from kb_build.analysis import key
-from kb_serve.chains import Chain, Step
 from kb_serve.reader import COLLECTION, TYPES, Entry, Reader
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_serve.chains import Chain, Step
 
 _MATH = {
     "TRANSLATION": "Vector", "XYZ": "Vector", "DIRECTION": "Vector", "VELOCITY": "Vector", "ACCELERATION": "Vector",
     "XYZ_LENGTH": "Vector", "EULER": "Euler", "QUATERNION": "Quaternion", "MATRIX": "Matrix", "COLOR": "Color",
     "COLOR_GAMMA": "Color",
 }  # fmt: skip
-_ROOTS = {"C": "bpy.context", "D": "bpy.data", "context": "bpy.context", "ops": "bpy.ops", "types": "bpy.types"}
+_ROOTS = {
+    "C": "bpy.context",
+    "D": "bpy.data",
+    "context": "bpy.context",
+    "ops": "bpy.ops",
+    "types": "bpy.types",
+}
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _NUMBERED = re.compile(r"\.\d{3}$")
 _CLASS_NAME = re.compile(r"\b[A-Z]\w+")
@@ -94,7 +104,8 @@ class Walker:
     def walk(self, chain: Chain) -> list[Walked]:
         """Every reading of a chain, best first: most steps found, then the likelier class for a variable."""
         walks = [
-            replace(self._follow(place, chain.steps[used:]), fit=fit) for place, used, fit in self._starts(chain)
+            replace(self._follow(place, chain.steps[used:]), fit=fit)
+            for place, used, fit in self._starts(chain)
         ]
         unique = {(walked.symbols[-1:], walked.missing): walked for walked in reversed(self._ranked(walks))}
         return self._ranked(unique.values())
@@ -119,7 +130,11 @@ class Walker:
             for entry in self._reader.by_name(first)[:_MAX_BRANCHES]:
                 if entry.owner.startswith(TYPES) and entry.owner not in seen:
                     seen.add(entry.owner)
-                    yield Place(entry.owner, entry.owner), 0, 0.3 * variable_fit(chain.root, entry.owner[len(TYPES) :])
+                    yield (
+                        Place(entry.owner, entry.owner),
+                        0,
+                        0.3 * variable_fit(chain.root, entry.owner[len(TYPES) :]),
+                    )
 
     def _rooted(self, chain: Chain) -> tuple[Place, int, float] | None:
         """The longest leading part that is a path of its own: a module, a class, ``bpy.context``."""
@@ -150,7 +165,7 @@ class Walker:
             if entry and entry.kind == "class":
                 yield entry.path, 0.9
 
-    def _place(self, entry: Entry, came_from: str = "") -> Place:
+    def _place(self, entry: Entry, came_from: str = "") -> Place:  # noqa: PLR0911 - one return a kind
         """Where one stands after a step to ``entry``."""
         if entry.path in _INSTANCES:
             return Place(entry.path, _INSTANCES[entry.path])
@@ -224,7 +239,7 @@ class Walker:
         declared, _, side = place.symbol.rpartition(".")
         owner = place.origin or declared
         if step.kind == "key" and side in {"inputs", "outputs"}:
-            yield from self._socket(place, owner, side, step.text)
+            yield from self._socket(owner, side, step.text)
             return
         named = set(self._named_classes(place.cls, step.text)) if step.kind == "key" else set[str]()
         for path in sorted(named):
@@ -240,12 +255,12 @@ class Walker:
                 if identifier.startswith(TYPES) and self._descends(identifier, cls):
                     yield identifier
 
-    def _socket(self, place: Place, owner: str, side: str, name: str) -> Iterator[Place]:
+    def _socket(self, owner: str, side: str, name: str) -> Iterator[Place]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""
         for entry in self._reader.by_name(name):
-            if entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}["):
-                if self._descends(entry.owner, owner):
-                    yield self._place(entry)
+            on_side = entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
+            if on_side and self._descends(entry.owner, owner):
+                yield self._place(entry)
 
     def _call(self, place: Place) -> Place:
         """What a call returns; a function that promises some ID returns what it was called on."""
@@ -253,7 +268,11 @@ class Walker:
         if entry is None or entry.kind != "function":
             return replace(place)
         returned = self._returned(place.symbol)
-        if place.container and returned and any(base.path == returned for base in self._reader.lineage(place.container)):
+        if (
+            place.container
+            and returned
+            and any(base.path == returned for base in self._reader.lineage(place.container))
+        ):
             returned = place.container
         return Place(place.symbol, returned)
 

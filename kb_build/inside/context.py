@@ -19,7 +19,9 @@ def member_names():
     if hasattr(_bpy, "context_members"):
         return {place: tuple(names) for place, names in _bpy.context_members().items()}
     rna = set(bpy.types.Context.bl_rna.properties.keys()) | set(bpy.types.Context.bl_rna.functions.keys())
-    return {"screen": tuple(name for name in dir(bpy.context) if name not in rna and not name.startswith("_"))}
+    return {
+        "screen": tuple(name for name in dir(bpy.context) if name not in rna and not name.startswith("_"))
+    }
 
 
 def type_of(value):

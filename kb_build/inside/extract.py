@@ -11,14 +11,14 @@ import traceback
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import bpy  # noqa: E402
-import context  # noqa: E402
-import instances  # noqa: E402
-import modules  # noqa: E402
-import nodes  # noqa: E402
-import operators  # noqa: E402
-import rna  # noqa: E402
-from wire import Writer  # noqa: E402
+import bpy
+import context
+import instances
+import modules
+import nodes
+import operators
+import rna
+from wire import Writer
 
 
 def text(value):

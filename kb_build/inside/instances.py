@@ -49,12 +49,23 @@ def write_all(write):
     """One ``enum_items`` record for each enumeration that RNA alone lists as empty, or as a lone placeholder."""
     context = bpy.context
     done = set()
-    for root in (context.scene, context.object, context.view_layer, context.preferences, *bpy.data.materials[:1]):
+    for root in (
+        context.scene,
+        context.object,
+        context.view_layer,
+        context.preferences,
+        *bpy.data.materials[:1],
+    ):
         if root is None:
             continue
         for owner in reachable(root, DEPTH):
             for prop in owner.bl_rna.properties:
-                if prop.type != "ENUM" or prop.is_readonly or prop.is_enum_flag or len(prop.enum_items_static) > 1:
+                if (
+                    prop.type != "ENUM"
+                    or prop.is_readonly
+                    or prop.is_enum_flag
+                    or len(prop.enum_items_static) > 1
+                ):
                     continue
                 path = f"bpy.types.{declaring_class(owner.bl_rna, prop.identifier)}.{prop.identifier}"
                 items = refused_value_items(owner, prop.identifier) if path not in done else []

@@ -107,7 +107,14 @@ def write_class(write, path, cls):
             elif isinstance(value, type) and value.__module__ == cls.__module__:
                 write_class(write, f"{path}.{name}", value)
             elif isinstance(value, PLAIN):
-                write("symbol", path=f"{path}.{name}", kind="data", owner=path, type=type(value).__name__, default=plain(value))
+                write(
+                    "symbol",
+                    path=f"{path}.{name}",
+                    kind="data",
+                    owner=path,
+                    type=type(value).__name__,
+                    default=plain(value),
+                )
     for name, hint in getattr(cls, "__annotations__", {}).items():
         if not name.startswith("_") and name not in written:
             text = hint if isinstance(hint, str) else getattr(hint, "__name__", str(hint))
@@ -132,7 +139,9 @@ class Walk:
             path=name,
             kind="module",
             owner=name.rpartition(".")[0],
-            docstring=inspect.getdoc(module) or "" if not isinstance(module, tuple) else type(module).__doc__ or "",
+            docstring=inspect.getdoc(module) or ""
+            if not isinstance(module, tuple)
+            else type(module).__doc__ or "",
         )
         below = []
         for attribute in dir(module):
@@ -161,7 +170,11 @@ class Walk:
         if f"{name}.{attribute}" in PRIVATE_BUT_DOCUMENTED:
             return True
         described = getattr(type(module), attribute, None)
-        return not attribute.startswith("__") and isinstance(described, types.MemberDescriptorType) and described.__doc__
+        return (
+            not attribute.startswith("__")
+            and isinstance(described, types.MemberDescriptorType)
+            and described.__doc__
+        )
 
     def member(self, name, module, path, attribute, value):
         """One thing that a module holds; what it merely imported is passed over."""
@@ -169,7 +182,9 @@ class Walk:
         if isinstance(value, type):
             if home != name and attribute not in getattr(module, "__all__", (attribute,)):
                 return
-            if value in self.seen or (home not in {name, None, "builtins"} and not home.startswith(name.split(".")[0])):
+            if value in self.seen or (
+                home not in {name, None, "builtins"} and not home.startswith(name.split(".")[0])
+            ):
                 return
             if home == "builtins" and value.__name__ != attribute:
                 return
@@ -190,7 +205,9 @@ class Walk:
     def holds_documented_members(self, value):
         """Blender's module-like objects: handlers, build options, unit categories, translations, …"""
         cls = type(value)
-        return cls.__name__ in {"bpy_app_translations", "_translations_type"} or isinstance(value, tuple) and cls is not tuple and hasattr(cls, "n_fields")
+        return cls.__name__ in {"bpy_app_translations", "_translations_type"} or (
+            isinstance(value, tuple) and cls is not tuple and hasattr(cls, "n_fields")
+        )
 
     def function(self, path, owner, value):
         """A function of a module. bmesh operators describe themselves in their own way."""
@@ -214,7 +231,9 @@ class Walk:
             kind="data",
             owner=owner,
             type=type(value).__name__,
-            default=plain(value) if isinstance(value, (bool, int, float, str)) and not owner.startswith("bpy.app") else None,
+            default=plain(value)
+            if isinstance(value, (bool, int, float, str)) and not owner.startswith("bpy.app")
+            else None,
             docstring=inspect.getdoc(described) or "" if documented else "",
         )
 

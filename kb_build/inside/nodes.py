@@ -18,7 +18,10 @@ def menu_items(socket):
     try:
         socket.default_value = "\x01"
     except TypeError as refusal:
-        return [{"identifier": name} for name in re.findall(r"'([^']*)'", str(refusal).partition("not found in")[2])]
+        return [
+            {"identifier": name}
+            for name in re.findall(r"'([^']*)'", str(refusal).partition("not found in")[2])
+        ]
     return []
 
 
@@ -50,7 +53,9 @@ def describe(socket):
 
 def keyed(sockets):
     """(side, identifier) → socket for both sides of a node."""
-    return {(side, socket.identifier): socket for side, collection in sockets.items() for socket in collection}
+    return {
+        (side, socket.identifier): socket for side, collection in sockets.items() for socket in collection
+    }
 
 
 def sides(node):
@@ -62,7 +67,12 @@ def mode_enums(node):
     """The enum properties that belong to the node's own class and have more than one value."""
     inherited = set(bpy.types.Node.bl_rna.properties.keys())
     for prop in node.bl_rna.properties:
-        if prop.type == "ENUM" and prop.identifier not in inherited and not prop.is_readonly and not prop.is_enum_flag:
+        if (
+            prop.type == "ENUM"
+            and prop.identifier not in inherited
+            and not prop.is_readonly
+            and not prop.is_enum_flag
+        ):
             values = [row["identifier"] for row in read_items(prop.enum_items_static)]
             if len(values) > 1 and getattr(node, prop.identifier) in values:
                 yield prop.identifier, values
@@ -130,7 +140,8 @@ def write_node(write, owner, node):
             kind="socket",
             owner=owner,
             signature=f"{side}[{index[side]}]",
-            flags=[f"identifier:{identifier}"] + (["hidden-by-default"] if (side, identifier) in hidden else []),
+            flags=[f"identifier:{identifier}"]
+            + (["hidden-by-default"] if (side, identifier) in hidden else []),
             modes=modes.get((side, identifier), []),
             **row,
         )

@@ -10,7 +10,9 @@ def write_all(write):
     for module_name in sorted(dir(bpy.ops)):
         module = getattr(bpy.ops, module_name)
         owner = f"bpy.ops.{module_name}"
-        write("symbol", path=owner, kind="module", owner="bpy.ops", description=f"Operators of {module_name}.")
+        write(
+            "symbol", path=owner, kind="module", owner="bpy.ops", description=f"Operators of {module_name}."
+        )
         for name in sorted(dir(module)):
             rna = getattr(module, name).get_rna_type()
             write(

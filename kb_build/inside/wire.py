@@ -47,7 +47,9 @@ class Writer:
 
     def __call__(self, record, **values):
         row = {"record": record}
-        row.update((key, value) for key, value in values.items() if value is not None and value not in ("", [], ()))
+        row.update(
+            (key, value) for key, value in values.items() if value is not None and value not in ("", [], ())
+        )
         self._file.write(json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n")
         self.count += 1
 
