@@ -14,12 +14,11 @@ from kb_build.analysis import stem
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Mapping
 
-Near = tuple[tuple[str, float], ...]
-_KEPT = 8
+Near = tuple[tuple[str, int], ...]
 
 
 def load_near_words() -> dict[str, Near]:
-    """word → (near word, similarity 0…1), nearest first; {} where the package came without the table."""
+    """word → (near word, similarity in hundredths), nearest first; {} where the package came without the table."""
     source = files("corpora").joinpath("words", "near.txt")
     if not source.is_file():
         return {}
@@ -27,19 +26,17 @@ def load_near_words() -> dict[str, Near]:
     for line in source.read_text(encoding="utf-8").splitlines():
         if line and not line.startswith("#"):
             word, *rest = line.split()
-            table[word] = tuple((rest[i], int(rest[i + 1]) / 100) for i in range(0, len(rest), 2))
+            table[word] = tuple((rest[i], int(rest[i + 1])) for i in range(0, len(rest), 2))
     return table
 
 
-def near_stems(table: Mapping[str, Near], stems: Container[str]) -> Iterator[tuple[str, str, float]]:
-    """(word, stem of the corpus, similarity): the nearest few that the corpus holds."""
+def near_stems(table: Mapping[str, Near], stems: Container[str]) -> Iterator[tuple[str, str]]:
+    """(word, stems of the corpus with their similarities): rows of the table ``near`` (see schema.DDL)."""
     for word, near in table.items():
-        own, kept = stem(word), dict[str, float]()
+        own, kept = stem(word), dict[str, int]()
         for other, similarity in near:
             stemmed = stem(other)
-            if stemmed != own and stemmed in stems and stemmed not in kept:
-                kept[stemmed] = similarity
-            if len(kept) == _KEPT:
-                break
-        for stemmed, similarity in kept.items():
-            yield word, stemmed, similarity
+            if stemmed != own and stemmed in stems:
+                kept.setdefault(stemmed, similarity)
+        if kept:
+            yield word, " ".join(f"{stemmed} {similarity}" for stemmed, similarity in kept.items())

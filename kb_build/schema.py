@@ -94,10 +94,8 @@ CREATE TABLE postings (
 -- The corpus' words: stem and most used spelling.
 CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWID;
 
--- English words → stems of the corpus that mean nearly the same.
-CREATE TABLE near (
-    word TEXT NOT NULL, stem TEXT NOT NULL, weight REAL NOT NULL, PRIMARY KEY (word, stem)
-) WITHOUT ROWID;
+-- English words → stems of the corpus that mean nearly the same, each followed by the similarity in hundredths.
+CREATE TABLE near (word TEXT PRIMARY KEY, stems TEXT NOT NULL) WITHOUT ROWID;
 """
 
 INDEXES = """
@@ -106,7 +104,6 @@ CREATE INDEX symbols_name ON symbols (name);
 CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
 CREATE INDEX sections_slug ON sections (slug, position);
 CREATE INDEX links_source ON links (source, kind);
-CREATE INDEX links_target ON links (target, kind);
 CREATE INDEX pages_parent ON pages (parent, position);
 """
 

@@ -181,7 +181,7 @@ def _write_index(connection: sqlite3.Connection, units: Sequence[Doc]) -> None:
     stems = _write_level(connection, 0, units, numbers)
     _write_level(connection, 1, topics, numbers)
     _insert(connection, "vocabulary", vocabulary(units), 2)
-    _insert(connection, "near", near_stems(load_near_words(), stems), 3)
+    _insert(connection, "near", near_stems(load_near_words(), stems), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:

@@ -186,21 +186,16 @@ class Reader:
         return rows[0][0] if rows else ""
 
     def near(self, word: str) -> list[tuple[str, float]]:
-        """Stems of the corpus that mean nearly what an English word means, with the similarity."""
-        return self.rows("SELECT stem, weight FROM near WHERE word = ? ORDER BY weight DESC", word)
+        """Stems of the corpus that mean nearly what an English word means, with the similarity, nearest first."""
+        rows = self.rows("SELECT stems FROM near WHERE word = ?", word)
+        parts = rows[0][0].split() if rows else []
+        return [(parts[i], int(parts[i + 1]) / 100) for i in range(0, len(parts), 2)]
 
     def links_from(self, source: str, kind: str) -> list[str]:
         """Targets of a symbol's or page's links of one kind."""
         return [
             row[0]
             for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)
-        ]
-
-    def links_to(self, target: str, kind: str) -> list[str]:
-        """Sources of the links of one kind that lead to ``target``."""
-        return [
-            row[0]
-            for row in self.rows("SELECT source FROM links WHERE target = ? AND kind = ?", target, kind)
         ]
 
     def page_entry(self, slug: str) -> PageEntry | None:
