@@ -132,7 +132,7 @@ class Reader:
         return {row[3] if row[1] != "socket" else row[0][len(owner) + 1 :]: Entry(*row) for row in rows}
 
     def _subclasses(self, path: str) -> tuple[Entry, ...]:
-        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE base = ? ORDER BY path", path)
+        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE base = ? AND base != '' ORDER BY path", path)
         return tuple(Entry(*row) for row in rows)
 
     def descendants(self, path: str) -> Iterator[Entry]:
