@@ -1,0 +1,191 @@
+"""The server from outside: start, calls over stdio beside a tool that only echoes, the cold command, HTTP load.
+
+Everything goes through the real MCP client and the real command. Byte code is written by a run that does not count;
+the files are then in the system's cache, as on any machine that is in use.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import anyio
+from mcp import StdioServerParameters
+from mcp.client import Client
+from mcp.client.stdio import stdio_client
+
+from bench import load
+from bench.echo import TOOL as ECHO
+from bench.memory import children, resident_mb
+from bench.report import Figure, Part, Table
+from bench.retrieval import read_queries
+from bench.setting import BLENDER, REPO, environment, percentile, say, simworlds
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from bench.setting import Setting
+
+TOOL = "blender_docs"
+STARTS = 3
+COLD_RUNS = 7
+_FIRST = "bpy.types.Scene.frame_end"
+_COLD = ("ClothSettings.quality", "how do I bake a rigid body simulation")
+
+
+@dataclass(slots=True)
+class _Stdio:
+    """What several starts of one server gave: seconds to the first answer, ms a call, MB at the end."""
+
+    starts: list[float] = field(default_factory=list[float])
+    calls: list[float] = field(default_factory=list[float])
+    memory: list[float] = field(default_factory=list[float])
+
+
+def measure(setting: Setting) -> Part:
+    """Everything that a client or a shell sees. A server that does not start is a reason to skip, named."""
+    queries = [query.query for query in read_queries(setting.queries[0])]
+    serve = [*simworlds(), "serve", "--blender", BLENDER, "--no-rebuild"]
+    figures: list[Figure] = []
+    skipped: list[str] = []
+    data: dict[str, Any] = {}
+    tables: list[Table] = []
+    if reason := _unusable(setting):
+        return Part("server", skipped=(reason,))
+    starts = 1 if setting.quick else STARTS
+    try:
+        say("server: calls over stdio")
+        ours = anyio.run(_stdio, serve, TOOL, queries, setting, starts)
+        say("server: an echo tool, side by side")
+        echo = anyio.run(_stdio, [sys.executable, "-m", "bench.echo"], ECHO, queries, setting, starts)
+    except Exception as error:  # whatever a broken server makes the client raise
+        skipped.append(f"calls over stdio: {_brief(error)}")
+    else:
+        figures += _stdio_figures(ours, echo)
+        tables.append(_stdio_table({"simworlds serve": ours, "echo tool": echo}))
+        data["stdio"] = {"simworlds": _as_data(ours), "echo": _as_data(echo)}
+    cold = _cold(setting)
+    if cold:
+        figures.append(Figure("docs", percentile(cold[_COLD[0]], 0.5), f"median of {len(cold[_COLD[0]])}"))
+        data["docs_s"] = cold
+    try:
+        loaded, memory = load.measure(setting, serve, queries)
+    except load.NoServer as error:
+        skipped.append(f"HTTP load: {error}")
+    else:
+        figures += [
+            Figure("load_errors", len(loaded.errors), f"of {len(loaded.times):,} calls"),
+            Figure("load_wrong", len(loaded.wrong), f"of {len(loaded.times):,} calls"),
+        ]
+        tables.append(load.table(loaded, memory))
+        data["load"] = load.as_data(loaded) | {"resident_mb": memory}
+    return Part("server", tuple(figures), tuple(tables), tuple(skipped), data)
+
+
+def _unusable(setting: Setting) -> str:
+    """Why the command cannot be measured; empty when it answers. Leaves byte code behind."""
+    try:
+        _docs(setting, _FIRST)
+        return ""
+    except subprocess.CalledProcessError as error:
+        said = (error.stderr or error.stdout or "").strip().splitlines()
+        return f"simworlds docs failed with exit code {error.returncode}: {said[-1] if said else 'it said nothing'}"
+    except (OSError, subprocess.SubprocessError) as error:
+        return f"simworlds docs could not be run: {error}"
+
+
+def _docs(setting: Setting, query: str) -> None:
+    subprocess.run(
+        [*simworlds(), "docs", "--blender", BLENDER, query],
+        env=environment(setting.home), cwd=REPO, capture_output=True, text=True, check=True, timeout=120,
+    )  # fmt: skip
+
+
+def _cold(setting: Setting) -> dict[str, list[float]]:
+    """Query → seconds of whole processes."""
+    say("server: simworlds docs, cold")
+    found: dict[str, list[float]] = {}
+    for query in _COLD:
+        for _ in range(3 if setting.quick else COLD_RUNS):
+            began = time.perf_counter()
+            _docs(setting, query)
+            found.setdefault(query, []).append(time.perf_counter() - began)
+    return found
+
+
+async def _stdio(
+    command: Sequence[str], tool: str, queries: Sequence[str], setting: Setting, starts: int
+) -> _Stdio:
+    """Starts the server, asks it every query once, and again with a new process; the first start does not count."""
+    found = _Stdio()
+    parameters = StdioServerParameters(
+        command=command[0], args=list(command[1:]), cwd=REPO, env=environment(setting.home)
+    )
+    with open(os.devnull, "w", encoding="utf-8") as silence:  # noqa: PTH123 - it has no other name
+        for number in range(starts + 1):
+            before = children()
+            began = time.perf_counter()
+            async with Client(stdio_client(parameters, errlog=silence)) as client:
+                await _call(client, tool, _FIRST)
+                if number == 0:
+                    continue
+                found.starts.append(time.perf_counter() - began)
+                for query in queries:
+                    began = time.perf_counter()
+                    await _call(client, tool, query)
+                    found.calls.append((time.perf_counter() - began) * 1e3)
+                for pid in children() - before:
+                    if (memory := resident_mb(pid)) is not None:
+                        found.memory.append(memory)
+    return found
+
+
+async def _call(client: Client, tool: str, query: str) -> None:
+    result = await client.call_tool(tool, {"query": query})
+    if result.is_error:
+        raise RuntimeError(f"{tool} refused {query[:60]!r}: {result.content}")
+
+
+def _stdio_figures(ours: _Stdio, echo: _Stdio) -> list[Figure]:
+    figures = [
+        Figure("mcp_p50", percentile(ours.calls, 0.5), f"echo here {percentile(echo.calls, 0.5):.1f} ms"),
+        Figure("start", percentile(ours.starts, 0.5), f"echo here {percentile(echo.starts, 0.5):.2f} s"),
+    ]
+    if ours.memory:
+        figures.append(Figure("memory", max(ours.memory), "over stdio"))
+    return figures
+
+
+def _stdio_table(servers: dict[str, _Stdio]) -> Table:
+    rows = tuple(
+        (
+            name,
+            f"{percentile(one.starts, 0.5):.2f}",
+            *(f"{percentile(one.calls, share):.1f}" for share in (0.5, 0.95, 1.0)),
+            f"{max(one.memory):.0f}" if one.memory else "–",
+        )
+        for name, one in servers.items()
+    )
+    header = ("server", "first answer s", "call p50 ms", "p95", "slowest", "resident MB")
+    note = (
+        "Each dev query once in each of several processes; from before the start to the first tool's answer."
+    )
+    return Table("MCP over stdio", header, rows, note)
+
+
+def _as_data(one: _Stdio) -> dict[str, list[float]]:
+    return {"starts_s": one.starts, "calls_ms": one.calls, "resident_mb": one.memory}
+
+
+def _brief(error: BaseException) -> str:
+    """The innermost reason, in one line."""
+    while isinstance(error, BaseExceptionGroup):
+        error = error.exceptions[0]
+    with contextlib.suppress(IndexError):
+        return f"{type(error).__name__}: {str(error).splitlines()[0]}"
+    return type(error).__name__

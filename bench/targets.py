@@ -1,0 +1,92 @@
+"""What is to be reached, and what others reach: one row for each figure that the benchmark judges.
+
+Peers' figures were measured on one machine (2 cores, no GPU) with 240 labelled queries, of which
+``corpora/queries/dev.jsonl`` is a third; *FTS5* is SQLite's, one flat index of 25,000 documents with the name
+weighted threefold, *rank-bm25* is BM25Okapi over the same documents, *official* is Blender Lab's MCP server.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Unit = Literal["share", "ms", "s", "MB", "tokens", "count"]
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """One figure: what it is, the bound it must keep (None: only shown), and what peers reach.
+
+    ``at_least`` tells which side of ``bound`` is the good one. MB are 10⁶ bytes.
+    """
+
+    key: str
+    what: str
+    unit: Unit
+    bound: float | None = None
+    at_least: bool = False
+    peers: str = ""
+
+    def reached(self, value: float) -> bool | None:
+        """Whether a measured value keeps the bound; None where there is none."""
+        if self.bound is None:
+            return None
+        return value >= self.bound if self.at_least else value <= self.bound
+
+    @property
+    def goal(self) -> str:
+        """The bound as text, ``≤ 10 ms``."""
+        if self.bound is None:
+            return ""
+        return f"{'≥' if self.at_least else '≤'} {_number(self.bound, self.unit)}"
+
+
+def shown(value: float, unit: Unit) -> str:
+    """A measured value, in no more digits than it deserves."""
+    if unit == "share":
+        return f"{value:.3f}"
+    if unit == "count":
+        return f"{value:,.0f}"
+    if unit == "tokens":
+        return f"{value:,.0f} tokens"
+    if value < 10:
+        return f"{value:.2f} {unit}"
+    return f"{value:.1f} {unit}" if value < 100 else f"{value:,.0f} {unit}"
+
+
+def _number(bound: float, unit: Unit) -> str:
+    if unit == "share":
+        return f"{bound:.2f}"
+    return f"{bound:,g}" if unit == "count" else f"{bound:,g} {unit}"
+
+
+_ROWS = (
+    Target(
+        "hit1", "all kinds but task: hit@1", "share", 0.75, True, "FTS5 0.33 · rank-bm25 0.34 · official 0.11"
+    ),
+    Target(
+        "hit5", "all kinds but task: hit@5", "share", 0.92, True, "FTS5 0.55 · rank-bm25 0.54 · official 0.13"
+    ),
+    Target("task5", "task: hit@5", "share", 0.60, True, "FTS5 0.24 · MiniLM embeddings 0.56"),
+    Target("names1", "exact, member, expression: hit@1", "share", 0.97, True),
+    Target("members", "class members found first by full path", "share", None, True, "official 0 of 400"),
+    Target("longest", "longest answer (estimated high)", "tokens", 1500, False, "official 121 KB"),
+    Target("exact_p50", "in process, by exact name: p50", "ms", 0.5),
+    Target(
+        "ranked_p50", "in process, ranked: p50", "ms", 3, False, "FTS5 1.2 · rank-bm25 11 · official 860 ms"
+    ),
+    Target("ranked_p95", "in process, ranked: p95", "ms", 10, False, "official 12.5 s (first broad query)"),
+    Target("mcp_p50", "MCP over stdio, one call: p50", "ms", 4, False, "echo tool 1.0 ms"),
+    Target("start", "server start to first answer", "s", 0.8, False, "echo tool 0.45 s · others past 10 s"),
+    Target("docs", "simworlds docs X, cold process", "s", 0.6),
+    Target("memory", "server's resident memory, after all queries", "MB", 120),
+    Target("load_errors", "64 HTTP clients: errors", "count", 0),
+    Target("load_wrong", "64 HTTP clients: wrong answers", "count", 0),
+    Target("build", "build with manual and guides", "s", 60, False, "Sphinx alone 34 s"),
+    Target("build_api", "build without pages", "s", 8),
+    Target("build_again", "build when nothing has changed", "s", 1),
+    Target("html", "manual from HTML (789 MB): reading", "s", 30),
+    Target("size", "base file", "MB", 60),
+)
+TARGETS = {target.key: target for target in _ROWS}
+assert len(TARGETS) == len(_ROWS), "a figure is listed twice"

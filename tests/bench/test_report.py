@@ -1,0 +1,88 @@
+"""The report: tables that line up, and verdicts that are true."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+
+from bench.__main__ import main
+from bench.report import Figure, Part, Table, markdown, table, targets_table, write
+from bench.targets import TARGETS, Target, shown
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.mark.parametrize(
+    ("target", "value", "reached"),
+    [
+        (Target("a", "a", "share", 0.75, at_least=True), 0.75, True),
+        (Target("a", "a", "share", 0.75, at_least=True), 0.7499, False),
+        (Target("a", "a", "ms", 4), 4.0, True),
+        (Target("a", "a", "ms", 4), 4.01, False),
+        (Target("a", "a", "ms"), 4000.0, None),
+    ],
+)
+def test_a_target_is_reached_on_its_good_side_only(
+    target: Target, value: float, reached: bool | None
+) -> None:
+    assert target.reached(value) is reached
+
+
+def test_what_is_just_missed_does_not_look_reached() -> None:
+    assert shown(0.7496, "share") != "0.75"
+    row = targets_table([Figure("hit1", 0.7496)]).rows[0]
+    assert "NOT reached" in row
+
+
+def test_figures_stand_in_the_order_of_the_targets_and_are_counted() -> None:
+    found = targets_table([Figure("size", 61.0), Figure("members", 1.0), Figure("hit1", 0.8)])
+    assert [row[0] for row in found.rows] == [TARGETS[key].what for key in ("hit1", "members", "size")]
+    assert found.note.startswith("1 of 2 targets reached")
+
+
+def test_the_lines_of_a_table_are_equally_long_and_numbers_stand_right() -> None:
+    lines = table(
+        Table("T", ("name", "n"), (("a|b", "1.5"), ("longer name", "12,000"), ("c", "–")))
+    ).splitlines()[2:]
+    assert len({len(line) for line in lines}) == 1
+    assert lines[1].endswith(":|")
+    assert lines[2].startswith("| a\\|b ")
+    assert lines[2].endswith(" 1.5 |")
+
+
+def test_a_part_that_was_skipped_is_named_with_its_reason() -> None:
+    text = markdown([Part("server", skipped=("simworlds docs failed",))], {"date": "today"})
+    assert "- server: simworlds docs failed" in text
+    assert "- date: today" in text
+
+
+def test_the_report_is_written_as_markdown_and_as_data(tmp_path: Path) -> None:
+    parts = [Part("builds", (Figure("size", 50.0, "just built"),), data={"builds": [1]})]
+    text = write(tmp_path / "new" / "reports", parts, {"commit": "abc"})
+    folder = tmp_path / "new" / "reports"
+    assert (folder / "bench.md").read_text(encoding="utf-8") == text
+    data = json.loads((folder / "bench.json").read_text(encoding="utf-8"))
+    assert data["figures"][0] | {"what": ""} == {
+        "key": "size", "what": "", "value": 50.0, "unit": "MB", "target": "≤ 60 MB", "reached": True,
+        "peers": "", "how": "just built",
+    }  # fmt: skip
+    assert data["parts"]["builds"] == {"builds": [1]}
+
+
+def test_an_unknown_part_is_refused_with_those_that_exist(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--only", "retrieval,speed"])
+    assert ended.value.code == 2
+    assert "speed: parts are retrieval, latency" in capsys.readouterr().err
+
+
+def test_a_file_that_is_no_base_is_an_error_without_a_traceback(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "kb").mkdir()
+    (tmp_path / "kb" / "blender-5.1.sqlite").write_text("not a database", encoding="utf-8")
+    assert main(["--only", "retrieval", "--home", str(tmp_path), "--output", str(tmp_path)]) == 2
+    assert "Error: " in capsys.readouterr().err
