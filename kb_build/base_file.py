@@ -35,21 +35,18 @@ def open_base(path: Path) -> sqlite3.Connection:
 
 def _check(connection: sqlite3.Connection, path: Path) -> None:
     try:
-        facts = [
+        application, schema = (
             int(connection.execute(f"PRAGMA {name}").fetchone()[0])
-            for name in ("application_id", "user_version", "page_count", "page_size")
-        ]
+            for name in ("application_id", "user_version")
+        )
     except sqlite3.Error as error:
         raise StoreError(f"{path}: not readable as a knowledge base ({error}). {_AGAIN}") from error
-    application, schema, pages, page_size = facts
     if application != APPLICATION_ID:
         raise StoreError(f"{path}: an SQLite file of something else, not a knowledge base. {_AGAIN}")
     if schema != SCHEMA_VERSION:
         raise StoreError(
             f"{path}: its layout is number {schema}, and this SimWorlds knows {SCHEMA_VERSION}. {_AGAIN}"
         )
-    if pages * page_size != path.stat().st_size:
-        raise StoreError(f"{path}: cut off; {pages * page_size:,} bytes were written. {_AGAIN}")
 
 
 def read_meta(path: Path) -> dict[str, str]:

@@ -24,7 +24,8 @@ _SHOWN_FAILURES = 5
 def base_facts(path: Path) -> dict[str, Any]:
     """All that a base knows of itself, with ``path`` and ``bytes``; ``fault`` where it cannot be read."""
     try:
-        return {"path": str(path), "bytes": path.stat().st_size, **described(read_meta(path))}
+        meta = described(read_meta(path))
+        return {"path": str(path), "bytes": path.stat().st_size, **meta}
     except (StoreError, OSError) as error:
         return {"path": str(path), "fault": str(error)}
 

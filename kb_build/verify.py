@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
+import zlib
 from collections import Counter, defaultdict
 from contextlib import closing
 from dataclasses import dataclass
@@ -123,7 +124,7 @@ def _guarded(name: str, check: Callable[[Any], Check], subject: object) -> Check
     """A check that damage keeps from ending is a fault, too."""
     try:
         return check(subject)
-    except (sqlite3.Error, ValueError, TypeError, KeyError) as error:
+    except (sqlite3.Error, zlib.error, ValueError, TypeError, KeyError) as error:
         return Check(name, 0, (f"could not be checked: {type(error).__name__}: {error}",))
 
 

@@ -1,0 +1,236 @@
+"""The commands ``simworlds kb …`` as their users meet them."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.summaries import Summary, SummaryStore, summary_key
+
+if TYPE_CHECKING:
+    from built_base import Built
+
+REPO = Path(__file__).resolve().parent.parent.parent
+COMMAND = [sys.executable, "-c", "from agents.cli import main; main()"]
+
+
+def environment(home: Path, corpora: Path | None = None) -> dict[str, str]:
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("SIMWORLDS_")}
+    extra = {"SIMWORLDS_CORPORA": str(corpora)} if corpora else {}
+    return kept | extra | {"SIMWORLDS_HOME": str(home), "PYTHONPATH": str(REPO), "COLUMNS": "120"}
+
+
+def run(home: Path, *words: str, corpora: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *words], env=environment(home, corpora), capture_output=True, text=True, check=False
+    )
+
+
+def run_on_terminal(home: Path, *words: str, corpora: Path) -> tuple[int, bytes]:
+    """The exit code and everything that a terminal was sent."""
+    ours, theirs = pty.openpty()
+    env = environment(home, corpora) | {"TERM": "xterm-256color"}
+    with subprocess.Popen([*COMMAND, *words], env=env, stdin=theirs, stdout=theirs, stderr=theirs) as process:
+        os.close(theirs)
+        received = b""
+        while chunk := read_some(ours):
+            received += chunk
+    os.close(ours)
+    return process.returncode, received
+
+
+def read_some(descriptor: int) -> bytes:
+    try:
+        return os.read(descriptor, 65536)
+    except OSError:  # Linux's way of saying that the other side is closed
+        return b""
+
+
+@pytest.mark.blender
+def test_a_build_in_a_pipe_tells_its_steps_on_stderr_and_its_outcome_on_stdout(built: Built) -> None:
+    (built.home / "kb").rename(built.home / "old")
+    done = run(built.home, "kb", "build", "--offline", corpora=built.corpora)
+    assert done.returncode == 0
+    assert done.stdout.startswith(f"Built the knowledge base of Blender {built.report.version} in ")
+    assert str(built.path) in done.stdout
+    assert "manual" in done.stdout
+    assert "Writing" in done.stderr
+    assert "\x1b" not in done.stdout + done.stderr
+
+
+@pytest.mark.blender
+def test_a_build_on_a_terminal_draws_its_progress_and_wipes_it_off(built: Built) -> None:
+    (built.home / "kb").rename(built.home / "old")
+    code, sent = run_on_terminal(built.home, "kb", "build", "--offline", corpora=built.corpora)
+    assert code == 0
+    assert b"Writing" in sent
+    assert b"\x1b[2K" in sent
+    assert b"Built the knowledge base" in sent
+    assert b"WARNING" not in sent
+
+
+@pytest.mark.blender
+def test_a_build_with_nothing_to_do_says_so_and_shows_no_progress(built: Built) -> None:
+    done = run(built.home, "kb", "build", built.minor, "--offline", corpora=built.corpora)
+    assert done.returncode == 0
+    assert done.stdout.startswith("Nothing has changed")
+    assert done.stderr == ""
+
+
+@pytest.mark.blender
+def test_missing_sources_are_the_last_thing_that_a_build_says(built: Built, tmp_path: Path) -> None:
+    (tmp_path / "none").mkdir()
+    done = run(built.home, "kb", "build", "--offline", corpora=tmp_path / "none")
+    assert done.returncode == 0
+    warnings = done.stderr.splitlines()[-2:]
+    assert warnings[0].startswith("WARNING: no manual of Blender")
+    assert warnings[1].startswith("WARNING: no API guides of Blender")
+    information = run(built.home, "kb", "info", built.minor).stdout
+    assert information.count("MISSING") == 2
+    assert "(missing: manual, guides)" in run(built.home, "kb", "info").stdout
+
+
+@pytest.mark.blender
+def test_a_required_source_that_is_missing_ends_with_code_2(built: Built, tmp_path: Path) -> None:
+    (tmp_path / "none").mkdir()
+    words = ("kb", "build", "--offline", "--require", "manual,guides")
+    done = run(built.home, *words, corpora=tmp_path / "none")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith("Error: no manual of Blender")
+    assert "--require manual" in done.stderr
+
+
+@pytest.mark.blender
+def test_info_tells_what_is_in_a_base(built: Built) -> None:
+    text = run(built.home, "kb", "info", built.minor).stdout
+    for expected in (
+        built.report.version,
+        "operators",
+        "classes",
+        "source       manual",
+        "sha256",
+        "extractive",
+    ):
+        assert expected in text
+    facts = json.loads(run(built.home, "kb", "info", built.minor, "--json").stdout)
+    assert facts["blender"] == built.report.version
+    assert facts["bytes"] == built.path.stat().st_size
+    assert facts["counts"]["symbols"]["class"] > 2000
+    assert facts["page_warnings"]
+    listed = json.loads(run(built.home, "kb", "info", "--json").stdout)
+    assert [one["path"] for one in listed] == [str(built.path)]
+
+
+@pytest.mark.blender
+def test_info_of_a_damaged_base_says_what_to_do(built: Built) -> None:
+    built.path.write_bytes(b"SQLite format 3\x00" + b"\x07" * 5000)
+    done = run(built.home, "kb", "info", built.minor)
+    assert done.returncode == 2
+    assert "simworlds kb build --force" in done.stdout
+    assert "unreadable" in run(built.home, "kb", "info").stdout
+
+
+@pytest.mark.blender
+def test_verify_passes_a_sound_base_and_fails_a_damaged_one(built: Built) -> None:
+    done = run(built.home, "kb", "verify")
+    assert done.returncode == 0, done.stdout
+    assert done.stdout.endswith("Sound.\n")
+    with built.path.open("r+b") as file:
+        file.seek(500_000)
+        file.write(b"\xff" * 100_000)
+    done = run(built.home, "kb", "verify", built.minor)
+    assert done.returncode == 1
+    assert "FAULT" in done.stdout
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.blender
+def test_verify_tells_its_findings_as_json(built: Built, tmp_path: Path) -> None:
+    reference = tmp_path / "list.txt"
+    reference.write_text("bpy.types.Mesh\nbpy.types.Nobody\n")
+    done = run(built.home, "kb", "verify", str(built.path), "--reference", str(reference), "--json")
+    assert done.returncode == 1
+    found = json.loads(done.stdout)
+    assert found["sound"] is False
+    assert found["reference"]["exact"] == 1
+    assert [row for rows in found["reference"]["others"].values() for row in rows] == [
+        "bpy.types.Nobody → bpy.types"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("kb", "build", "five"), "'five' is not a Blender version"),
+        (("kb", "build", "9.9"), "no bpy package is known for Blender 9.9"),
+        (("kb", "build", "5.1", "--blender-exe", "/nowhere"), "no Blender executable at /nowhere"),
+        (("kb", "build", "--require", "pictures"), "give manual, guides or both"),
+        (("kb", "build", "--jobs", "0"), "--jobs"),
+        (("kb", "info", "5.1"), "no knowledge base here"),
+        (("kb", "verify"), "there is no knowledge base yet"),
+        (("kb", "verify", "../../etc/passwd"), "not a Blender version"),
+        (("kb", "merge-summaries", "/nowhere"), "does not exist"),
+    ],
+)
+def test_what_cannot_be_done_is_one_message_and_code_2(
+    tmp_path: Path, words: tuple[str, ...], message: str
+) -> None:
+    done = run(tmp_path / "home", *words)
+    assert done.returncode == 2
+    assert message in done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_info_without_any_base_says_how_to_build_one(tmp_path: Path) -> None:
+    done = run(tmp_path, "kb", "info")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "simworlds kb build" in done.stdout
+    assert json.loads(run(tmp_path, "kb", "info", "--json").stdout) == []
+
+
+def test_summaries_of_a_colleague_are_taken_over(tmp_path: Path) -> None:
+    theirs = SummaryStore(tmp_path / "theirs.sqlite")
+    key = summary_key("0" * 64, "1", "a-model")
+    theirs.add([Summary(key, "What it says.", "claude", "a-model", "1")])
+    home = tmp_path / "home"
+    assert run(home, "kb", "merge-summaries", str(theirs.path)).stdout.startswith(
+        "1 summaries are new, 1 in all"
+    )
+    assert run(home, "kb", "merge-summaries", str(theirs.path)).stdout.startswith(
+        "0 summaries are new, 1 in all"
+    )
+
+
+def test_the_commands_are_listed_without_being_loaded(tmp_path: Path) -> None:
+    code = (
+        "import sys\nfrom agents.cli import main\n"
+        "try:\n    main(['--help'])\nexcept SystemExit as end:\n    assert not end.code\n"
+        "loaded = [name for name in sys.modules if name.startswith(('kb_build', 'kb_serve', 'sphinx', 'mcp'))]\n"
+        "assert loaded == [], loaded\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment(tmp_path), capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    for command in ("docs", "kb", "serve"):
+        assert f"  {command}" in done.stdout
+
+
+def test_a_build_command_loads_nothing_heavy_before_it_knows_what_to_do(tmp_path: Path) -> None:
+    code = (
+        "import sys\nimport kb_build.cli, kb_build.pipeline\n"
+        "heavy = {'sphinx', 'docutils', 'bs4', 'anthropic', 'mcp', 'numpy', 'sqlite_utils', 'rich', 'bpy'}\n"
+        "assert not heavy & sys.modules.keys(), heavy & sys.modules.keys()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment(tmp_path), capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
