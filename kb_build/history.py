@@ -137,6 +137,13 @@ class History:
                 f"{source} is not a readable history ({error}); make it again: simworlds kb history"
             ) from error
 
+    def including(self, version: str, paths: Iterable[str]) -> History:
+        """This history, and where it does not know the version, with that full version's paths added."""
+        if self._number(version) is not None:
+            return self
+        known = {patch: set(self.paths(patch)) for patch in self.patches}
+        return History.of({**known, version: paths})
+
     def mask(self, path: str) -> int:
         """One bit a version, lowest the oldest; 0 for what no known version has."""
         mask = self.masks.get(path)
@@ -161,16 +168,7 @@ class History:
         number = self._number(version)
         if number is None:
             return
-        items: defaultdict[str, list[str]] = defaultdict(list)
-        for path, mask in self.masks.items():
-            if mask >> number & 1:
-                yield path
-                if path.startswith(_SHARED) and ":" in path:
-                    name, _, item = path.partition(":")
-                    items[name].append(item)
-        for path, enumeration in self.shared.items():
-            if self.masks[path] >> number & 1:
-                yield from (f"{path}:{item}" for item in items[enumeration])
+        yield from (path for path, mask in self.symbols() if mask >> number & 1)
 
     def removed_from(self, version: str) -> Iterator[tuple[str, str, str]]:
         """(path, first, last) of what other versions have and this one lacks: gone, or not there yet.
@@ -180,11 +178,23 @@ class History:
         number = self._number(version)
         if number is None:
             return
-        for path, mask in self.masks.items():
+        for path, mask in self.symbols():
             if not mask >> number & 1:
                 before = mask & ((1 << number) - 1)
                 first, last = list(_runs(before))[-1] if before else next(_runs(mask))
                 yield path, self.versions[first], self.versions[last]
+
+    def symbols(self) -> Iterator[tuple[str, int]]:
+        """(path, mask) of everything, the items of shared enumerations at each of their places included."""
+        yield from self.masks.items()
+        items: defaultdict[str, list[tuple[str, int]]] = defaultdict(list)
+        for path, mask in self.masks.items():
+            if path.startswith(_SHARED) and ":" in path:
+                name, _, item = path.partition(":")
+                items[name].append((item, mask))
+        for path, enumeration in self.shared.items():
+            own = self.masks[path]
+            yield from ((f"{path}:{item}", mask & own) for item, mask in items[enumeration] if mask & own)
 
     def since(self, version: str) -> dict[str, str]:
         """What the version has → since which one without a gap; only where that is not the oldest known."""
@@ -193,7 +203,7 @@ class History:
             return {}
         full = (2 << number) - 1
         found: dict[str, str] = {}
-        for path, mask in self.masks.items():
+        for path, mask in self.symbols():
             if mask >> number & 1 and mask & full != full:
                 first = next(first for first, last in _runs(mask) if last >= number)
                 found[path] = self.versions[first]
@@ -329,7 +339,7 @@ def _wrapped(head: str, tokens: Iterable[str]) -> Iterator[str]:
 
 
 def parse_history(text: str) -> History:
-    """The inverse of :meth:`History.text`. On what is none: ValueError, KeyError, IndexError, KBBuildError."""
+    """The inverse of :meth:`History.text`. Raises ValueError, KeyError, IndexError or KBBuildError."""
     head, _, body = text.partition("\n\n")
     kind, *rows = head.splitlines()
     if kind != f"format {FORMAT}":

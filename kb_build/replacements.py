@@ -8,13 +8,15 @@ one went, the same kind, and texts that mention the missing name.
 from __future__ import annotations
 
 import heapq
-import math
 import re
 from collections import Counter, defaultdict
+from functools import cache
 from typing import TYPE_CHECKING
 
 from kb_build.analysis import stem, words
+from kb_build.feature_index import Bag, FeatureIndex, Mentions
 from kb_build.history import split_path, version_key
+from kb_build.versions import minor_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -25,13 +27,15 @@ if TYPE_CHECKING:
 KEPT = 5
 _LEAST = 0.3
 # Features that more candidates share than this do not find any.
-_COMMON = 400
+_COMMON = 200
 _COMMON_IN_TEXTS = 60
 _SHORTEST_PART = 4
+_SHORTEST_PREFIX = 3
 
 _OWNER_WORDS = 0.5
 _WHOLE_NAME = 0.6
 _PART = 0.7
+_OVERTAKEN = 0.3
 _BELOW = 0.7
 _MENTION = 0.7
 _SAME_OWNER = 0.3
@@ -39,61 +43,34 @@ _OWNERS_BASE = 0.2
 _OWNERS_REPLACEMENT = 0.45
 _CAME_THEN = 0.15
 _CAME_BEFORE = 0.1
-_CAME_TO_OWNER = 0.3
+_LONG_ELSEWHERE = 0.85
+_CAME_TO_OWNER = 2.7
 _SAME_KIND = 0.1
+_ITEM_CAME_THEN = 0.5
 _VERSIONS_BEFORE = 2
 # Words that took the place of others: seen in so many pairs of alike symbols, and in this share of them.
 _ALIKE = 0.5
-_LEAST_PAIRS = 3
+_LEAST_INSIDE = 3
+_LEAST_PAIRS = 5
 _LEAST_SHARE = 0.5
 _NOT_DATA = frozenset({"ui", "operator"})
 
+_LONE_CAPITAL = re.compile(r"(?<![A-Z])[A-Z]{2}(?=[a-z])(?!s\b)")
 _INTERFACE = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
 
-Bag = dict[str, float]
 
-
-class _Index:
-    """Weighted bags of features of all candidates, for comparing one bag against all of them at once."""
-
-    def __init__(self, bags: Sequence[Bag], common: int) -> None:
-        df = Counter(name for bag in bags for name in bag)
-        self._idf = {name: math.log(1 + len(bags) / count) for name, count in df.items()}
-        self._unknown = math.log(1 + len(bags)) / 2
-        self._postings: dict[str, list[tuple[int, float]]] = {
-            name: [] for name, count in df.items() if count <= common
-        }
-        for number, bag in enumerate(bags):
-            for name, weight in self._vector(bag).items():
-                if name in self._postings:
-                    self._postings[name].append((number, weight))
-
-    def knows(self, name: str) -> bool:
-        return name in self._idf
-
-    def _vector(self, bag: Bag) -> Bag:
-        weighted = {name: weight * self._idf.get(name, self._unknown) for name, weight in bag.items()}
-        length = math.sqrt(sum(weight * weight for weight in weighted.values())) or 1.0
-        return {name: weight / length for name, weight in weighted.items()}
-
-    def compare(self, bag: Bag, factor: float, scores: defaultdict[int, float]) -> None:
-        """Adds the cosine with every candidate that shares a feature, times ``factor``."""
-        for name, weight in self._vector(bag).items():
-            share = weight * factor
-            for number, other in self._postings.get(name, ()):
-                scores[number] += share * other
-
-
-def _stems(text: str) -> list[str]:
-    return [stem(word) for word in words(text)]
+@cache
+def _stems(text: str) -> tuple[str, ...]:
+    """The stems of a name's words. FCurve is one word, as it is in fcurves."""
+    return tuple(stem(word) for word in words(_LONE_CAPITAL.sub(lambda match: match[0].capitalize(), text)))
 
 
 def _name_bag(path: str) -> Bag:
-    """The words of a path: its last name's fully, those above it for less."""
+    """The words of a path: its last name's fully, those above it for less; and the last name as a whole."""
     above, _, name = split_path(path)
     outer = above if above.startswith("bpy.ops") else split_path(above)[2]
     bag = dict.fromkeys(_stems(outer.removeprefix("bpy.ops")), _OWNER_WORDS)
-    return bag | dict.fromkeys(_stems(name), 1.0)
+    return bag | dict.fromkeys(_stems(name), 1.0) | {f"={name}": _WHOLE_NAME}
 
 
 def _kind(path: str, below: Sequence[str]) -> str:
@@ -121,13 +98,14 @@ def _directly_below(paths: Iterable[str]) -> dict[str, list[str]]:
     return dict(found)
 
 
-def _mention_bag(symbol: Symbol, items: Iterable[str]) -> Bag:
-    """The words of a symbol's texts, each once."""
-    return dict.fromkeys(_stems(" ".join((symbol.label, symbol.description, *items))), 1.0)
+def _text(symbol: Symbol) -> str:
+    """What a symbol says of itself, its enum items included."""
+    items = (f"{item.identifier} {item.name}" for item in symbol.enum_items)
+    return " ".join((symbol.label, symbol.description, *items))
 
 
 class Replacements:
-    """Finds the closest symbols of one version. ``symbols`` are that version's."""
+    """Finds the closest symbols of one version, which the history must know. ``symbols`` are that version's."""
 
     def __init__(self, symbols: Sequence[Symbol], history: History, version: str) -> None:
         by_path = {symbol.path: symbol for symbol in symbols}
@@ -140,19 +118,18 @@ class Replacements:
         self._members: defaultdict[str, list[int]] = defaultdict(list)
         for number, symbol in enumerate(self._candidates):
             self._members[symbol.owner].append(number)
+        self._found_items: dict[tuple[str, str, int], list[tuple[str, float]]] = {}
         order = {name: number for number, name in enumerate(history.versions)}
         self._order = order
+        self._bit = 1 << order[minor_of(version)]
         since = history.since(version)
         self._came = [order[since.get(symbol.path, history.versions[0])] for symbol in self._candidates]
         self._kinds = [_candidate_kind(symbol) for symbol in self._candidates]
-        self._names = _Index([_name_bag(symbol.path) for symbol in self._candidates], _COMMON)
-        self._insides = _Index([self._inside(symbol.path) for symbol in self._candidates], _COMMON)
-        texts = [
-            _mention_bag(symbol, (f"{item.identifier} {item.name}" for item in symbol.enum_items))
-            for symbol in self._candidates
-        ]
-        self._texts = _Index(texts, _COMMON_IN_TEXTS)
+        self._names = FeatureIndex([_name_bag(symbol.path) for symbol in self._candidates], _COMMON)
+        self._insides = FeatureIndex([self._inside(symbol.path) for symbol in self._candidates], _COMMON)
+        self._mentions = Mentions(map(_text, self._candidates), _COMMON_IN_TEXTS, stem)
         self._found: dict[str, list[tuple[str, float]]] = {}
+        self._successors = self._learn_successors()
 
     def closest(self, path: str) -> list[tuple[str, float]]:
         """(path, score) of the closest symbols to a missing one, best first; [] when none is close."""
@@ -168,34 +145,93 @@ class Replacements:
         last = self._order[self._missing.get(path, self._history.versions[0])]
         kind = _kind(path, self._below.get(path, ()))
         scores: defaultdict[int, float] = defaultdict(float)
-        self._names.compare(self._parted(_name_bag(path)), 1.0, scores)
-        self._insides.compare(self._inside(path), _BELOW, scores)
-        self._texts.compare(dict.fromkeys(_stems(name), 1.0), _MENTION, scores)
+        names = self._names.vector(self._today(_name_bag(path)))
+        self._names.add_cosines(names, 1.0, scores)
+        self._insides.add_cosines(self._insides.vector(self._inside(path)), _BELOW, scores)
+        mentions = self._mentions.coverage(set(_stems(name)), besides=self._names)
+        at_home: dict[int, float] = {}
         for owner, bonus in self._owners(above):
-            for number in self._members.get(owner, ()):
-                scores[number] += bonus
-        for number in scores:
+            members = self._members.get(owner, ())
+            self._names.add_common(names, members, scores)
+            arrived = sum(self._came[number] == last + 1 for number in members)
+            for number in members:
+                # One that came alone says more than one of many.
+                came_here = _CAME_TO_OWNER / (1 + arrived) if self._came[number] == last + 1 else 0.0
+                at_home[number] = bonus * (1 + came_here)
+        if kind == "class":
+            alike = [number for number in scores if self._kinds[number] == kind]
+            self._names.add_common(names, alike, scores)
+        ranked: list[tuple[float, int]] = []
+        for number in scores.keys() | at_home.keys() | mentions.keys():
             came = self._came[number]
+            total = scores[number]
             if came == last + 1:
-                scores[number] += _CAME_THEN
+                total += _CAME_THEN
             elif 0 < came <= last and came > last - _VERSIONS_BEFORE:
-                scores[number] += _CAME_BEFORE
-            if self._kinds[number] == kind:
-                scores[number] += _SAME_KIND
-        best = heapq.nlargest(KEPT, scores.items(), key=lambda entry: (entry[1], -entry[0]))
-        return [(self._candidates[number].path, round(score, 3)) for number, score in best if score >= _LEAST]
+                total += _CAME_BEFORE
+            elif number not in at_home:
+                total *= _LONG_ELSEWHERE
+            total += at_home.get(number, 0.0) + _MENTION * mentions.get(number, 0.0)
+            total += _SAME_KIND if self._kinds[number] == kind else 0.0
+            if total >= _LEAST:
+                ranked.append((total, -number))
+        best = heapq.nlargest(KEPT, ranked)
+        return [(self._candidates[-number].path, round(score, 3)) for score, number in best]
 
-    def _parted(self, bag: Bag) -> Bag:
-        """Words that this version does not know are taken apart at one that it does: clear|coat, g|pencil."""
-        parted: Bag = {}
+    def _learn_successors(self) -> dict[str, list[str]]:
+        """Word that went → words that took its place, told from symbols alike in all but the name."""
+        changes = list(self._renamings())
+        gone = Counter(word for lost, _ in changes for word in lost)
+        pairs = Counter((word, other) for lost, won in changes for word in lost for other in won)
+        # Of several words that went together, the one that went most regularly is what was replaced.
+        pairs = Counter(
+            (max(lost, key=lambda word: (pairs[word, other] / gone[word], gone[word], word)), other)
+            for lost, won in changes
+            for other in won
+        )
+        before = Counter(word for path in self._missing if is_asked_for(path) for word in _name_bag(path))
+        found: defaultdict[str, list[str]] = defaultdict(list)
+        for (word, other), count in sorted(pairs.items()):
+            dying = before[word] > self._names.df(word)
+            if dying and count >= _LEAST_PAIRS and count >= _LEAST_SHARE * gone[word]:
+                found[word].append(other)
+        return dict(found)
+
+    def _renamings(self) -> Iterator[tuple[set[str], set[str]]]:
+        """(words lost, words won) between a missing symbol and a newer one that has the same inside."""
+        for path in self._missing:
+            inside = self._inside(path)
+            if len(inside) < _LEAST_INSIDE or not is_asked_for(path):
+                continue
+            scores: defaultdict[int, float] = defaultdict(float)
+            self._insides.add_cosines(self._insides.vector(inside), 1.0, scores)
+            number = max(scores, key=lambda number: (scores[number], -number), default=None)
+            if number is None or scores[number] < _ALIKE or not self._came[number]:
+                continue
+            old, new = _name_bag(path), _name_bag(self._candidates[number].path)
+            lost = {word for word in old if word not in new and word[0] != "="}
+            won = {word for word in new if word not in old and word[0] != "="}
+            if lost and won:
+                yield lost, won
+
+    def _today(self, bag: Bag) -> Bag:
+        """The bag with what took its words' place; words no longer known are taken apart: clear|coat."""
+        found = dict(bag)
         for word, weight in bag.items():
-            parted[word] = weight
-            if not self._names.knows(word):
-                for cut in range(1, len(word)):
-                    for part in (word[cut:], word[:cut]):
-                        if len(part) >= _SHORTEST_PART and self._names.knows(part):
-                            parted[part] = max(weight * 0.7, parted.get(part, 0.0))
-        return parted
+            if after := self._successors.get(word):
+                found[word] = weight * _OVERTAKEN
+                found.update((other, max(weight, found.get(other, 0.0))) for other in after)
+            elif word not in self._names and word[0] != "=":
+                for part in self._relatives(word):
+                    found[part] = max(weight * _PART, found.get(part, 0.0))
+        return found
+
+    def _relatives(self, word: str) -> list[str]:
+        """Known words that an unknown one is made of (clear|coat) or short for (sep: separate)."""
+        halves = [half for cut in range(1, len(word)) for half in (word[cut:], word[:cut])]
+        parts = [half for half in halves if len(half) >= _SHORTEST_PART and half in self._names]
+        longer = self._names.starting_with(word) if len(word) >= _SHORTEST_PREFIX else []
+        return parts + longer
 
     def _owners(self, owner: str) -> Iterator[tuple[str, float]]:
         """Where members of ``owner`` may live now, with what that is worth."""
@@ -217,23 +253,25 @@ class Replacements:
             yield path
 
     def _items(self, path: str) -> list[tuple[str, float]]:
-        """For an enum item: the items of the same enumeration, newly come ones first."""
+        """For an enum item: the items of the same enumeration, by words shared and by having come then."""
         above, _, name = split_path(path)
+        enumeration = self._history.shared.get(above, above)
         last = self._order[self._missing.get(path, self._history.versions[0])]
-        newest = self._history.masks.get(above, 0)
+        if (enumeration, name, last) not in self._found_items:
+            self._found_items[enumeration, name, last] = self._closest_items(enumeration, name, last)
+        return [(above + entry, score) for entry, score in self._found_items[enumeration, name, last]]
+
+    def _closest_items(self, enumeration: str, name: str, last: int) -> list[tuple[str, float]]:
         wanted = set(_stems(name))
-        found: list[tuple[str, float]] = []
-        for entry in self._below.get(above, ()):
-            other = above + entry
-            mask = self._history.masks.get(other, 0)
-            if entry[0] != ":" or other in self._missing or not mask & newest:
-                continue
-            came = (mask & -mask).bit_length() - 1
-            shared = wanted & set(_stems(entry[1:]))
-            score = len(shared) / len(wanted | set(_stems(entry[1:]))) + (0.5 if came == last + 1 else 0.0)
-            found.append((other, round(score, 3)))
-        best = heapq.nlargest(KEPT, found, key=lambda entry: (entry[1], entry[0]))
-        return [(other, score) for other, score in best if score >= _LEAST]
+        found: list[tuple[float, str]] = []
+        for entry in self._below.get(enumeration, ()):
+            mask = self._history.masks[enumeration + entry]
+            if entry[0] == ":" and mask & self._bit:
+                having = set(_stems(entry[1:]))
+                alike = len(wanted & having) / len(wanted | having or {""})
+                came = mask & -mask == 2 << last
+                found.append((round(alike + (_ITEM_CAME_THEN if came else 0.0), 3), entry))
+        return [(entry, score) for score, entry in heapq.nlargest(KEPT, found) if score >= _LEAST]
 
 
 def _is_candidate(symbol: Symbol, by_path: Mapping[str, Symbol]) -> bool:
@@ -261,9 +299,15 @@ def is_asked_for(path: str) -> bool:
 def find_replacements(
     symbols: Sequence[Symbol], history: History, version: str
 ) -> Iterator[tuple[str, str, float]]:
-    """(missing path, closest path, score) for what ``version`` lacks and an earlier version had."""
+    """(missing path, closest path, score) for what ``version`` lacks and an earlier version had.
+
+    Nothing for a version that the history does not know (see History.including).
+    """
+    if minor_of(version) not in history.versions:
+        return
     finder = Replacements(symbols, history, version)
+    earlier = {known for known in history.versions if version_key(known) < version_key(version)}
     for path, first, _ in history.removed_from(version):
-        if version_key(first) < version_key(version) and is_asked_for(path):
+        if first in earlier and is_asked_for(path):
             for target, score in finder.closest(path):
                 yield path, target, score
