@@ -29,6 +29,8 @@ class Former:
 
 def _keys(path: str) -> Iterator[str]:
     yield key(path)
+    if path.endswith('"]'):  # a socket is also asked for on a node whose class is not known
+        yield key(path.partition('["')[0].rpartition(".")[2] + path.partition('["')[2])
     for prefix in _PREFIXES:
         if path.startswith(prefix):
             yield key(path[len(prefix) :])

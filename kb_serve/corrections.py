@@ -44,19 +44,24 @@ class Drift:
 
 def similarity(written: str, name: str) -> float:
     """How alike two names are: 1 when only the spelling differs, else by edits and by shared words."""
-    left, right = key(written), key(name)
-    if left == right:
+    return _alike(key(written), set(words(written)), name)
+
+
+def _alike(written: str, mine: set[str], name: str) -> float:
+    right = key(name)
+    if written == right:
         return 1.0
-    alike = OSA.normalized_similarity(left, right)
-    mine, theirs = set(words(written)), set(words(name))
-    if mine and mine < theirs:
+    alike = OSA.normalized_similarity(written, right)
+    # Only names that may hold all the words are taken apart: that is what costs among thousands of names.
+    if mine and all(word in right for word in mine) and mine < (theirs := set(words(name))):
         alike = max(alike, _CONTAINED + 0.1 * len(mine) / len(theirs))
     return alike
 
 
 def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[str, float]]:
     """The most similar names that are likely meant, best first."""
-    scored = [(name, similarity(written, name)) for name in names]
+    left, mine = key(written), set(words(written))
+    scored = [(name, _alike(left, mine, name)) for name in names]
     likely = [row for row in scored if row[1] >= LIKELY]
     return sorted(likely, key=lambda row: (-row[1], len(row[0]), row[0]))[:limit]
 
@@ -136,10 +141,21 @@ class Drifts:
     def of_member(self, owner: str, name: str) -> Drift | None:
         """A former member of a class, of its bases, or of a module."""
         for ancestor in [entry.path for entry in self._reader.lineage(owner)] or [owner]:
-            for path in (f"{ancestor}.{name}", f'{ancestor}.inputs["{name}"]', f"{ancestor}:{name}"):
-                if drift := self.of_path(path):
-                    return drift
+            if drift := self.of_path(f"{ancestor}.{name}"):
+                return drift
         return None
+
+    def of_socket(self, owner: str, name: str, variable: str) -> Drift | None:
+        """A former socket, ``inputs["Subsurface"]``, of some node below ``owner``; the variable's name may tell which."""
+        paths = [path for path in self._reader.removed_by_key(key(name)) if '["' in path]
+        below = [
+            path for path in paths if self._descends(path.partition('puts["')[0].rpartition(".")[0], owner)
+        ]
+        below.sort(key=lambda path: (key(variable) not in key(path), path))
+        return self.of_path(below[0]) if below else None
+
+    def _descends(self, cls: str, ancestor: str) -> bool:
+        return any(entry.path == ancestor for entry in self._reader.lineage(cls))
 
     def of_path(self, path: str) -> Drift | None:
         """A symbol of another version by its exact path."""

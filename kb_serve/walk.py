@@ -31,6 +31,8 @@ _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendDa
 _NUMBERED = re.compile(r"\.\d{3}$")
 _CLASS_NAME = re.compile(r"\b[A-Z]\w+")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
+_CUSTOMISABLE = frozenset({"ID", "Bone", "EditBone", "PoseBone", "PropertyGroup", "Strip", "ViewLayer"})
+_COLLECTION_FIT = 0.7  # a variable called like a collection property and indexed is likely that collection
 _MAX_BRANCHES = 60
 
 
@@ -126,6 +128,10 @@ class Walker:
             if cls not in seen:
                 seen.add(cls)
                 yield Place(cls, cls), 0, fit
+        if chain.steps and chain.steps[0].kind in {"key", "index"}:
+            for entry in self._reader.by_name(chain.root)[:_MAX_BRANCHES]:
+                if entry.kind == "property" and entry.type == "collection":
+                    yield self._place(entry), 0, _COLLECTION_FIT
         if chain.steps and first:
             for entry in self._reader.by_name(first)[:_MAX_BRANCHES]:
                 if entry.owner.startswith(TYPES) and entry.owner not in seen:
@@ -196,12 +202,19 @@ class Walker:
         for number, step in enumerate(steps):
             following = [after for before in places for after in self._step(before, step)]
             if not following:
-                owner = places[0].cls or places[0].symbol
-                return Walked(tuple(symbols), step.text, owner, steps_left=len(steps) - number)
+                missing, owner = self._lost(places[0], step)
+                return Walked(tuple(symbols), missing, owner, steps_left=len(steps) - number)
             places = following[:_MAX_BRANCHES]
             if step.kind == "attr" or places[0].symbol != symbols[-1]:
                 symbols.append(places[0].symbol)
         return Walked(tuple(symbols))
+
+    @staticmethod
+    def _lost(place: Place, step: Step) -> tuple[str, str]:
+        """(name, owner) of a step that leads nowhere; a socket is missing on its node, not on its collection."""
+        if step.kind == "key" and place.many:
+            return f'{place.symbol.rpartition(".")[2]}["{step.text}"]', place.origin or place.cls
+        return step.text, place.cls or place.symbol
 
     def _step(self, place: Place, step: Step) -> Iterator[Place]:
         if step.kind == "attr":
@@ -210,10 +223,13 @@ class Walker:
             yield self._call(place)
         elif place.many:
             yield from self._item(place, step)
-        elif place.cls:
-            yield replace(place, cls="")  # an element of a vector, or a custom property
-        else:
-            yield place
+        elif step.kind == "index":
+            yield replace(place, cls="")  # an element of a vector
+        elif not place.cls or self._takes_custom_properties(place.cls):
+            yield replace(place, cls="")
+
+    def _takes_custom_properties(self, cls: str) -> bool:
+        return any(entry.name in _CUSTOMISABLE for entry in self._reader.lineage(cls))
 
     def _attribute(self, place: Place, name: str) -> Iterator[Place]:
         if place.many:
