@@ -146,7 +146,7 @@ class Drifts:
         return None
 
     def of_socket(self, owner: str, name: str, variable: str) -> Drift | None:
-        """A former socket, ``inputs["Subsurface"]``, of some node below ``owner``; the variable's name may tell which."""
+        """A former socket, ``inputs["Subsurface"]``, of a node below ``owner``: the variable may tell which."""
         paths = [path for path in self._reader.removed_by_key(key(name)) if '["' in path]
         below = [
             path for path in paths if self._descends(path.partition('puts["')[0].rpartition(".")[0], owner)

@@ -37,6 +37,9 @@ COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 CHAPTER_WEIGHT = 0.3
+# What is rarely asked for: how the manual itself is written, single add-ons, what Blender keeps for old files.
+ASIDE = ("contribute/", "addons/", "freestyle.", "legacy")
+ASIDE_WEIGHT = 0.7
 UNKNOWN_IDF = 6.0
 _MAX_WORDS = 40
 _CANDIDATES = 400
@@ -75,6 +78,7 @@ class _Level:
     anchors: list[str]
     topics: NDArray[np.int32]
     chapters: NDArray[np.int32]
+    weights: Scores
 
 
 class Searcher:
@@ -92,11 +96,15 @@ class Searcher:
         sql = "SELECT ref, kind, title, anchor, topic, chapter FROM docs WHERE level = ? ORDER BY number"
         rows = self._reader.rows(sql, level)
         if not rows:
-            return _Level([], [], [], [], np.zeros(0, np.int32), np.zeros(0, np.int32))
+            return _Level(
+                [], [], [], [], np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.float32)
+            )
         refs, kinds, titles, anchors, topics, chapters = (list(column) for column in zip(*rows, strict=True))
+        weights = [ASIDE_WEIGHT if any(part in ref for part in ASIDE) else 1.0 for ref in refs]
         return _Level(
-            refs, kinds, titles, anchors, np.asarray(topics, np.int32), np.asarray(chapters, np.int32)
-        )
+            refs, kinds, titles, anchors,
+            np.asarray(topics, np.int32), np.asarray(chapters, np.int32), np.asarray(weights, np.float32),
+        )  # fmt: skip
 
     def _read_postings(self, level: int, term: str) -> tuple[NDArray[np.uint32], Scores] | None:
         rows = self._reader.rows("SELECT df, data FROM postings WHERE level = ? AND stem = ?", level, term)
@@ -192,7 +200,7 @@ class Searcher:
         own, covered = self._score(0, concepts)
         topical, _ = self._score(1, concepts)
         around = np.where(units.topics >= 0, topical[units.topics], ALONE * own)
-        scores = np.where(own > 0, own + TOPIC_WEIGHT * around, 0)
+        scores = np.where(own > 0, own + TOPIC_WEIGHT * around, 0) * units.weights
         scores *= 1 + CHAPTER_WEIGHT * self._chapter_votes(scores)
         order = _top(scores, _CANDIDATES)
         return self._varied(order, scores, covered, limit)
