@@ -63,6 +63,7 @@ def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
     yield key(short), FORM_SHORT, symbol.path
     if symbol.kind == "operator":
         yield key(symbol.target), FORM_SHORT, symbol.path
+        yield key(f"bpy.types.{symbol.target}"), FORM_SHORT, symbol.path
     if symbol.group in {"ui", "operator"} or symbol.name.startswith("bl_rna_get_subclass"):
         return
     yield key(symbol.name), FORM_NAME, symbol.path
