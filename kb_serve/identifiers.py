@@ -36,6 +36,8 @@ _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 
+_FEW = 3
+_CLEAR = 0.85  # a variable's name that hardly means another class
 _OWN_CLASS = 0.2  # from this fit on, a variable's name speaks for the class at all
 _FITTING = 0.5  # how far the words around a bare value must fit the property that takes it
 
@@ -224,17 +226,24 @@ class Identifier:
             readings = self._walker.walk(chain)
             if self._former(chain, readings, found):
                 continue
-            if readings and self._trusted(chain, readings[0]):
+            broken = max((walked for walked in readings if walked.missing), key=lambda w: w.fit, default=None)
+            if readings and self._trusted(chain, readings[0], broken):
                 self._reading(chain, readings, later, found)
             elif not self._corrected(chain, later, found):
-                if broken := next((walked for walked in readings if walked.missing), None):
+                if broken:
                     self._broken_off(broken, later, found)
                 self._loose_name(chain, prose, found)
 
     @staticmethod
-    def _trusted(chain: Chain, walked: Walked) -> bool:
-        """Whether a reading stands on more than a guess at what a variable or a bare word is."""
+    def _trusted(chain: Chain, walked: Walked, broken: Walked | None) -> bool:
+        """Whether a reading stands on more than a guess at what a variable or a bare word is.
+
+        A variable that clearly bears a class' name, and lacks the one attribute, is believed before a class that
+        merely has it.
+        """
         if not walked.complete:
+            return False
+        if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and walked.fit < 0.5:
             return False
         return walked.fit >= 1.0 or len(chain.attributes) >= (1 if walked.fit >= _OWN_CLASS else 2)
 
@@ -242,17 +251,24 @@ class Identifier:
         """Whether the chain names what another version had: on the likeliest class, or under its own path."""
         if not (readings and readings[0].complete and readings[0].fit >= 0.85):
             for walked in readings:
-                if (
-                    walked.missing
-                    and walked.fit >= 0.6
-                    and (drift := self._drifts.of_member(walked.owner, walked.missing))
-                ):
+                if drift := self._drift(chain, walked):
                     found.drifts.append(drift)
                     return True
             for drift in self._drifts.spelled(chain.dotted) if chain.steps or "_" in chain.root else ():
                 found.drifts.append(drift)
                 return True
         return False
+
+    def _drift(self, chain: Chain, walked: Walked) -> Drift | None:
+        """The former symbol that a broken reading stops at."""
+        if "puts[" in walked.missing:
+            former = self._drifts.of_member(walked.owner, walked.missing)
+            return former or self._drifts.of_socket(walked.owner, walked.missing, chain.root)
+        return (
+            self._drifts.of_member(walked.owner, walked.missing)
+            if walked.missing and walked.fit >= 0.6
+            else None
+        )
 
     def _reading(self, chain: Chain, readings: list[Walked], later: float, found: Identified) -> None:
         """The best reading of one chain, and what lies on the way to it."""
@@ -292,31 +308,32 @@ class Identifier:
             if missing.owner and (drift := self._drifts.of_member(missing.owner, missing.name)):
                 found.drifts.append(drift)
         for place, drift in enumerate(found.drifts):
-            for target, score in drift.instead:
-                sure = 0.74 + 0.2 * min(1.0, (score - 0.6) / 0.8)
+            for rank, (target, score) in enumerate(drift.instead):
+                sure = max(0.74 + 0.2 * min(1.0, (score - 0.6) / 0.8), 0 if rank else 0.85)
                 found.add(target, sure - 0.05 * min(place, 3), "replacement")
         for missing in found.missing:
             names = self._corrector.member_names(missing.owner) if missing.owner else []
             for name, alike in nearest(missing.name, names):
-                member = self._walker.member(missing.owner, name)
-                if member:
+                if member := self._walker.member(missing.owner, name):
                     found.add(member.path, 0.95 * alike, "similar name")
 
     def _loose_name(self, chain: Chain, prose: set[str], found: Identified) -> None:
         """A name of code without its owner (``thickness_outer``): its owners, by the words around it."""
-        names = [chain.attributes[-1]] if chain.attributes else [chain.root]
-        for name in names:
-            rows = [
-                entry
-                for form, identifier in self._reader.by_key(key(name))
-                if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
-            ]
-            scored = sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]
-            if chain.attributes and len(rows) > 3:
-                continue  # a common name whose owner was given, and does not have it
-            for rank, entry in enumerate(scored):
-                sure = (0.9 if len(rows) == 1 else 0.84) if not chain.attributes else 0.55
-                found.add(entry.path, sure - 0.03 * rank, "name")
+        name = chain.attributes[-1] if chain.attributes else chain.root
+        rows = [
+            entry
+            for form, identifier in self._reader.by_key(key(name))
+            if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
+        ]
+        if chain.attributes and len(rows) > _FEW:
+            return  # a common name whose owner was given, and does not have it
+        for rank, entry in enumerate(sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]):
+            sure = 0.9 if len(rows) == 1 else 0.84
+            if chain.attributes:
+                sure = 0.55
+            elif entry.kind == "class" and chain.steps:
+                sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
+            found.add(entry.path, sure - 0.03 * rank, "name")
 
     def _affinity(self, entry: Entry, prose: set[str]) -> float:
         """How many of the words around a name belong to its owner, and how usual the owner is."""
