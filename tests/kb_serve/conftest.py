@@ -1,4 +1,4 @@
-"""What the tests of the server share: home folders with real bases, a service, the installed command."""
+"""What the tests of the server share: home folders with real bases, a service over them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import json
 import os
 import shutil
 import sqlite3
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
 from pathlib import Path
@@ -17,21 +16,12 @@ from kb_serve.bases import Bases
 from kb_serve.rebuild import Upkeep
 from kb_serve.service import Service
 
-REPO = Path(__file__).resolve().parent.parent.parent
-COMMAND = [sys.executable, "-c", "from agents.cli import main; main(prog_name='simworlds')"]
-
 MakeBase = Callable[..., Path]
 
 
 @pytest.fixture
 def anyio_backend() -> str:
     return "asyncio"
-
-
-def environment(home: Path, **more: str) -> dict[str, str]:
-    """The environment of a command that works in ``home`` and knows nothing of the user's own settings."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("SIMWORLDS_")}
-    return {**kept, "SIMWORLDS_HOME": str(home), "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error", **more}
 
 
 @pytest.fixture

@@ -1,0 +1,70 @@
+"""The command as a process of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+REPO = Path(__file__).resolve().parent.parent.parent
+COMMAND = [sys.executable, "-c", "from agents.cli import main; main(prog_name='simworlds')"]
+
+
+def environment(home: Path, **more: str) -> dict[str, str]:
+    """The environment of a command that works in ``home`` and knows nothing of the user's own settings."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("SIMWORLDS_")}
+    return {**kept, "SIMWORLDS_HOME": str(home), "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error", **more}
+
+
+class Wire:
+    """The other end of a server's stdin and stdout, read and written line by line."""
+
+    def __init__(self, words: list[str], home: Path) -> None:
+        self.process = subprocess.Popen(
+            words,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=environment(home),
+            cwd=REPO,
+        )
+        self._number = 0
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """Sends a request and returns what comes back."""
+        self._number += 1
+        self.send({"id": self._number, "method": method, "params": parameters})
+        return self.receive()
+
+    def send(self, message: dict[str, Any] | str) -> None:
+        """Sends a message, or a line that is none."""
+        assert self.process.stdin is not None
+        line = message if isinstance(message, str) else json.dumps({"jsonrpc": "2.0", **message})
+        self.process.stdin.write(line.encode() + b"\n")
+        self.process.stdin.flush()
+
+    def receive(self) -> dict[str, Any]:
+        """The next message."""
+        assert self.process.stdout is not None
+        return json.loads(self.process.stdout.readline())
+
+    def shake_hands(self) -> dict[str, Any]:
+        """What the server says of itself."""
+        client = {"name": "test", "version": "1"}
+        answer = self.call("initialize", protocolVersion="2025-06-18", capabilities={}, clientInfo=client)
+        self.send({"method": "notifications/initialized"})
+        return answer["result"]
+
+    def ask(self, query: str, **more: Any) -> dict[str, Any]:
+        """The result of a call of the tool."""
+        return self.call("tools/call", name="blender_docs", arguments={"query": query, **more})["result"]
+
+    def close(self) -> bytes:
+        """Ends the conversation as a client does. Returns what was still said."""
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        self.process.stdin.close()
+        return self.process.stdout.read()

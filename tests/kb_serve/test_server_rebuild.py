@@ -1,0 +1,193 @@
+"""A Blender that is newer than its base: the base is built again, and the old one answers meanwhile."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import subprocess
+import sys
+import threading
+import time
+from contextlib import closing
+from typing import TYPE_CHECKING
+
+import pytest
+from running import COMMAND, REPO, Wire, environment
+
+from kb_serve.budget import tokens
+from kb_serve.errors import BaseMissing
+from kb_serve.in_use import blender_in_use, minor
+from kb_serve.rebuild import Upkeep
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from kb_serve.answer import Answer
+    from kb_serve.service import Service
+
+    MakeBase = Callable[..., Path]
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="executables are shell scripts here")
+
+IN_USE = blender_in_use() or "0.0.0"
+MINOR = minor(IN_USE)
+OLD = f"{MINOR}.0"
+WITHOUT_PAGES = {"options": {"pages": False, "summaries": "none"}, "sources": []}
+SECONDS = 120.0
+
+
+def ask(service: Service, blender: str | None = None, **more: int) -> tuple[Answer, str]:
+    arguments = {"limit": 8, "max_tokens": 1500, "part": 1, **more}
+    return service.ask("ClothSettings.quality", blender=blender, **arguments)
+
+
+def stopping_blender(home: Path, version: str, then: str) -> Path:
+    """An executable that passes for a Blender until it is asked to do anything."""
+    path = home / "blender"
+    path.write_text(f'#!/bin/sh\n[ "$1" = --version ] && echo "Blender {version}" && exit 0\n{then}\n')
+    path.chmod(0o755)
+    return path
+
+
+@pytest.fixture
+def upkeep(service: Service) -> Upkeep:
+    service.upkeep = Upkeep(service.bases)
+    return service.upkeep
+
+
+def test_an_up_to_date_base_is_left_alone(service: Service, upkeep: Upkeep) -> None:
+    before = service.bases.pick().path.stat().st_ino
+    upkeep.run()
+    assert (upkeep.state, service.bases.pick().path.stat().st_ino) == ("idle", before)
+    assert ask(service)[0].notes == ()
+
+
+def test_a_blender_of_a_newer_minor_version_gets_a_base_of_its_own(service: Service, home: Path) -> None:
+    blender = stopping_blender(home, "98.1.2", "exit 7")
+    service.bases.__init__(home, blender_exe=blender)
+    service.upkeep = Upkeep(service.bases, blender)
+    assert "simworlds kb build 98.1" in ask(service)[0].notes[0]
+    assert ask(service, blender=MINOR)[0].notes == (), "who names a version wants that one"
+    service.upkeep.run()
+    assert service.upkeep.state == "failed"
+    assert "98.1.2" in service.upkeep.reason
+
+
+def test_an_older_blender_changes_nothing(service: Service, upkeep: Upkeep, make_base: MakeBase) -> None:
+    path = make_base(f"{MINOR}.99")
+    before = path.stat().st_ino
+    upkeep.run()
+    assert (upkeep.state, path.stat().st_ino) == ("idle", before)
+    assert ask(service)[0].notes == ()
+
+
+def test_without_leave_to_build_the_note_says_how(service: Service, make_base: MakeBase) -> None:
+    before = make_base(OLD).stat().st_ino
+    service.upkeep.run()
+    answer, version = ask(service)
+    assert version == OLD
+    assert f"simworlds kb build {MINOR}" in answer.notes[0]
+    assert service.bases.pick().path.stat().st_ino == before
+
+
+@pytest.mark.parametrize("max_tokens", [150, 160, 250, 400])
+def test_the_note_is_within_the_budget(service: Service, make_base: MakeBase, max_tokens: int) -> None:
+    make_base(OLD)
+    answer, _ = service.ask("bpy.types.Object", blender=None, limit=8, max_tokens=max_tokens, part=1)
+    assert IN_USE in answer.notes[0]
+    assert tokens(answer.text) <= max_tokens
+    last, _ = service.ask("bpy.types.Object", blender=None, limit=8, max_tokens=max_tokens, part=answer.parts)
+    assert tokens(last.text) <= max_tokens
+
+
+def test_a_build_that_fails_is_noted_and_the_old_base_answers_on(
+    service: Service, home: Path, make_base: MakeBase
+) -> None:
+    make_base(OLD, **WITHOUT_PAGES)
+    blender = stopping_blender(home, f"{MINOR}.98", "echo 'no library libfoo' >&2; exit 7")
+    service.bases.__init__(home, blender_exe=blender)
+    service.upkeep = Upkeep(service.bases, blender)
+    service.upkeep.run()
+    assert service.upkeep.state == "failed"
+    answer, version = ask(service)
+    assert version == OLD
+    assert "failed" in answer.notes[0]
+    assert str(blender) in answer.notes[0]
+
+
+def test_a_build_under_way_is_ended_with_the_server_and_its_children_too(
+    service: Service, home: Path, make_base: MakeBase
+) -> None:
+    before = make_base(OLD, **WITHOUT_PAGES).stat().st_ino
+    running = home / "running"
+    blender = stopping_blender(
+        home, f"{MINOR}.98", f"sleep 1; echo $$ > {running}.new; mv {running}.new {running}; sleep 600"
+    )
+    service.bases.__init__(home, blender_exe=blender)
+    service.upkeep = Upkeep(service.bases, blender)
+    thread = threading.Thread(target=service.upkeep.run)
+    thread.start()
+    deadline = time.monotonic() + SECONDS
+    while not running.exists():
+        assert time.monotonic() < deadline
+        assert thread.is_alive(), service.upkeep.reason
+    assert "being built" in ask(service)[0].notes[0]
+    service.upkeep.stop()
+    thread.join(SECONDS)
+    assert not thread.is_alive()
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(running.read_text()), 0)
+    assert ask(service)[1] == OLD
+    assert service.bases.pick().path.stat().st_ino == before
+
+
+def test_a_base_that_is_being_built_is_named_as_such(
+    service: Service, home: Path, make_base: MakeBase
+) -> None:
+    make_base("4.5.3")
+    service.bases.__init__(home, blender_exe=stopping_blender(home, "98.1.2", ""))
+    service.upkeep = Upkeep(service.bases)
+    service.upkeep.state = "running"
+    with pytest.raises(BaseMissing, match="being built"):
+        ask(service, blender="98.1")
+    with pytest.raises(BaseMissing, match=r"simworlds kb build 4\.4"):
+        ask(service, blender="4.4")
+
+
+def test_two_servers_do_not_build_at_once(home: Path) -> None:
+    command = [sys.executable, "-m", "kb_serve.rebuild", IN_USE, "--home", str(home), "--no-pages"]
+    with closing(sqlite3.connect(home / "rebuild.lock", isolation_level=None)) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        done = subprocess.run(command, env=environment(home), cwd=REPO, capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (3, b"", b"")
+
+
+def test_what_went_wrong_is_one_line(home: Path) -> None:
+    command = [sys.executable, "-m", "kb_serve.rebuild", "nonsense", "--home", str(home)]
+    done = subprocess.run(
+        command, env=environment(home), cwd=REPO, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "nonsense" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_an_outdated_base_is_built_again_while_it_answers_and_says_so(
+    home: Path, make_base: MakeBase
+) -> None:
+    make_base(OLD, **WITHOUT_PAGES)
+    wire = Wire([*COMMAND, "serve"], home)
+    with wire.process:
+        wire.shake_hands()
+        assert wire.ask("bpy.types.Object")["structuredContent"]["blender"] == OLD
+        deadline = time.monotonic() + SECONDS
+        while (answer := wire.ask("bpy.types.Object")["structuredContent"])["blender"] == OLD:
+            assert "being built" in answer["text"]
+            assert time.monotonic() < deadline
+        assert answer["blender"] == IN_USE
+        assert answer["notes"] == []
+        assert wire.ask("physics/cloth/introduction")["structuredContent"]["kind"] != "page", (
+            "nor had the old"
+        )
+        assert wire.close() == b""

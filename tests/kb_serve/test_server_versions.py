@@ -1,0 +1,155 @@
+"""Which base answers, and that a new one takes over from the old without a break."""
+
+from __future__ import annotations
+
+import os
+import time
+from contextlib import closing
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.bases import Bases
+from kb_serve.errors import BaseMissing
+from kb_serve.in_use import blender_in_use, minor
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from kb_serve.knowledge_base import KnowledgeBase
+
+IN_USE = blender_in_use() or ""
+SECONDS = 10.0
+
+
+@pytest.fixture
+def bases(home: Path) -> Iterator[Bases]:
+    with closing(Bases(home)) as opened:
+        yield opened
+
+
+def answers_for(base: KnowledgeBase) -> str:
+    assert base.query("ClothSettings.quality").hits
+    return base.meta["blender"]
+
+
+def until(bases: Bases, version: str | None, expected: str) -> int:
+    """Asks again and again until the base is the expected one; how often it took."""
+    deadline = time.monotonic() + SECONDS
+    asked = 1
+    while answers_for(bases.pick(version)) != expected:
+        assert time.monotonic() < deadline, f"Blender {expected}'s base was not taken up"
+        asked += 1
+    return asked
+
+
+def test_the_version_named_answers(bases: Bases, make_base: Callable[..., Path]) -> None:
+    make_base("4.5.3")
+    assert answers_for(bases.pick("4.5")) == "4.5.3"
+    assert answers_for(bases.pick("4.5.1")) == "4.5.3"
+    assert answers_for(bases.pick(minor(IN_USE))) == IN_USE
+
+
+def test_by_default_the_blender_in_use_answers_though_there_is_a_newer_base(
+    bases: Bases, make_base: Callable[..., Path]
+) -> None:
+    make_base("99.1.0")
+    make_base("4.5.3")
+    assert answers_for(bases.pick()) == IN_USE
+
+
+def test_the_newest_answers_when_the_blender_in_use_has_no_base(
+    home: Path, base: Path, make_base: Callable[..., Path]
+) -> None:
+    make_base("4.5.3")
+    make_base("4.10.0")
+    (home / "kb" / base.name).unlink()
+    with closing(Bases(home)) as bases:
+        assert answers_for(bases.pick()) == "4.10.0"
+
+
+def test_a_default_that_was_given_comes_before_the_blender_in_use(
+    home: Path, make_base: Callable[..., Path]
+) -> None:
+    make_base("4.5.3")
+    with closing(Bases(home, default="4.5")) as bases:
+        assert answers_for(bases.pick()) == "4.5.3"
+        assert answers_for(bases.pick(minor(IN_USE))) == IN_USE
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the executable is a shell script")
+def test_an_executable_that_was_named_is_the_blender_in_use(
+    home: Path, make_base: Callable[..., Path]
+) -> None:
+    make_base("4.5.3")
+    blender = home / "blender"
+    blender.write_text("#!/bin/sh\necho noise\necho 'Blender 4.5.3 LTS'\n")
+    blender.chmod(0o755)
+    with closing(Bases(home, blender_exe=blender)) as bases:
+        assert answers_for(bases.pick()) == "4.5.3"
+
+
+def test_an_executable_that_is_none_leaves_the_newest(home: Path, make_base: Callable[..., Path]) -> None:
+    make_base("99.1.0")
+    with closing(Bases(home, blender_exe=home / "nothing")) as bases:
+        assert answers_for(bases.pick()) == "99.1.0"
+
+
+def test_a_version_that_was_not_built_is_named_with_those_that_were(
+    bases: Bases, make_base: Callable[..., Path]
+) -> None:
+    make_base("4.5.3")
+    with pytest.raises(BaseMissing, match=rf"built are: 4\.5, {minor(IN_USE)}.*simworlds kb build 4\.4"):
+        bases.pick("4.4")
+
+
+def test_a_base_that_is_built_while_serving_is_found_at_once(
+    bases: Bases, make_base: Callable[..., Path]
+) -> None:
+    with pytest.raises(BaseMissing):
+        bases.pick("4.5")
+    make_base("4.5.3")
+    assert answers_for(bases.pick("4.5")) == "4.5.3"
+
+
+def test_the_first_base_is_found_at_once(tmp_path: Path, base: Path) -> None:
+    with closing(Bases(tmp_path)) as bases:
+        with pytest.raises(BaseMissing):
+            bases.pick()
+        (tmp_path / "kb").mkdir()
+        os.link(base, tmp_path / "kb" / base.name)
+        assert answers_for(bases.pick()) == IN_USE
+
+
+def test_a_base_that_is_replaced_while_serving_takes_over(
+    bases: Bases, make_base: Callable[..., Path]
+) -> None:
+    make_base("4.5.1")
+    assert answers_for(bases.pick("4.5")) == "4.5.1"
+    make_base("4.5.2")
+    assert until(bases, "4.5", "4.5.2") > 1, "its file is looked at once a second, not for every answer"
+
+
+def test_the_old_base_answers_on_when_its_replacement_is_damaged(
+    bases: Bases, home: Path, base: Path, make_base: Callable[..., Path]
+) -> None:
+    make_base("4.5.1")
+    assert answers_for(bases.pick("4.5")) == "4.5.1"
+    damaged = home / "damaged"
+    damaged.write_bytes(b"this is no base")
+    damaged.replace(home / "kb" / "blender-4.5.sqlite")
+    deadline = time.monotonic() + 2.5
+    while time.monotonic() < deadline:
+        assert answers_for(bases.pick("4.5")) == "4.5.1"
+    make_base("4.5.2")
+    until(bases, "4.5", "4.5.2")
+
+
+def test_the_file_is_only_read(bases: Bases, home: Path, base: Path) -> None:
+    target = home / "kb" / base.name
+    before = target.stat()
+    answers_for(bases.pick())
+    after = target.stat()
+    assert (before.st_mtime_ns, before.st_size) == (after.st_mtime_ns, after.st_size)
+    assert [path.name for path in (home / "kb").iterdir()] == [base.name]
