@@ -255,6 +255,8 @@ class Replacements:
     def _items(self, path: str) -> list[tuple[str, float]]:
         """For an enum item: the items of the same enumeration, by words shared and by having come then."""
         above, _, name = split_path(path)
+        if above in self._missing:
+            return self.closest(above)
         enumeration = self._history.shared.get(above, above)
         last = self._order[self._missing.get(path, self._history.versions[0])]
         if (enumeration, name, last) not in self._found_items:
@@ -301,13 +303,16 @@ def find_replacements(
 ) -> Iterator[tuple[str, str, float]]:
     """(missing path, closest path, score) for what ``version`` lacks and an earlier version had.
 
-    Nothing for a version that the history does not know (see History.including).
+    Nothing for a version that the history does not know (see History.including), and nothing for the items of
+    an enumeration that is missing itself: what replaces it is told of it.
     """
     if minor_of(version) not in history.versions:
         return
     finder = Replacements(symbols, history, version)
     earlier = {known for known in history.versions if version_key(known) < version_key(version)}
     for path, first, _ in history.removed_from(version):
-        if first in earlier and is_asked_for(path):
+        above, mark, _ = split_path(path)
+        with_its_owner = mark == ":" and not history.exists(above, version)
+        if first in earlier and not with_its_owner and is_asked_for(path):
             for target, score in finder.closest(path):
                 yield path, target, score

@@ -1,0 +1,83 @@
+"""How the history file is made and what protects an old one; with this environment's Blender."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.errors import KBBuildError, StoreError
+from kb_build.history import History
+from kb_build.history_build import build_history
+from kb_build.runtime import installed_bpy
+from kb_build.versions import minor_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = pytest.mark.blender
+
+
+@pytest.fixture(scope="module")
+def version() -> str:
+    found = installed_bpy()
+    if found is None:
+        pytest.skip("there is no Blender in this environment")
+    return found
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("history-home")
+
+
+def test_what_one_blender_has_is_written(version: str, home: Path, tmp_path: Path) -> None:
+    report = build_history([version], home=home, output=tmp_path / "api.txt")
+    history = History.load(tmp_path / "api.txt")
+    assert (report.written, report.asked, report.missing) == (True, (version,), {})
+    assert history.patches == (version,)
+    assert history.exists("bpy.ops.object.modifier_add(type):NODES", version)
+    assert report.size == (tmp_path / "api.txt").stat().st_size
+    again = build_history([version], home=home, output=tmp_path / "api.txt")
+    assert not again.written
+
+
+def test_versions_that_cannot_be_had_are_named_and_kept_from_the_old_file(
+    version: str, home: Path, tmp_path: Path
+) -> None:
+    output = tmp_path / "api.txt"
+    output.write_text(History.of({"3.4.1": {"bpy", "bpy.old"}}).text(), encoding="utf-8")
+    absent = tmp_path / "no-blender-here"
+    report = build_history([version], home=home, output=output, blender_exes=[absent])
+    assert report.kept == ("3.4.1",)
+    assert "no Blender executable" in report.missing[str(absent)]
+    assert History.load(output).span("bpy.old") == ("3.4", "3.4")
+
+
+def test_a_poorer_extract_does_not_replace_what_the_file_knows(
+    version: str, home: Path, tmp_path: Path
+) -> None:
+    output = tmp_path / "api.txt"
+    richer = {f"bpy.types.Lost.p{n}" for n in range(100_000)}
+    output.write_text(History.of({version: richer}).text(), encoding="utf-8")
+    before = output.read_bytes()
+    with pytest.raises(StoreError, match=r"lost: bpy\.types\.Lost\.p0"):
+        build_history([version], home=home, output=output)
+    assert output.read_bytes() == before
+    assert build_history([version], home=home, output=output, force=True).written
+    assert not History.load(output).exists("bpy.types.Lost.p0", minor_of(version))
+
+
+def test_with_no_blender_at_all_the_file_stays_and_the_reasons_are_given(home: Path, tmp_path: Path) -> None:
+    output = tmp_path / "api.txt"
+    output.write_text("whatever", encoding="utf-8")
+    with pytest.raises(KBBuildError, match="not one Blender"):
+        build_history(["2.79"], home=home, output=output, force=True)
+    assert output.read_text(encoding="utf-8") == "whatever"
+
+
+def test_a_folder_that_cannot_be_written_is_a_clear_error(version: str, home: Path, tmp_path: Path) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("", encoding="utf-8")
+    with pytest.raises(StoreError, match="cannot be written"):
+        build_history([version], home=home, output=blocked / "api.txt")
