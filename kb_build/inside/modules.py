@@ -13,7 +13,7 @@ from wire import plain
 # Canonical homes first: what a later module merely imports is already known by then.
 ROOTS = (
     "mathutils", "bmesh.types", "bmesh", "gpu.types", "gpu", "gpu_extras", "bl_math", "blf", "aud", "idprop.types",
-    "idprop", "imbuf.types", "imbuf", "freestyle.types", "freestyle", "bpy.app", "bpy.props", "bpy.utils",
+    "idprop", "bgl", "imbuf.types", "imbuf", "freestyle.types", "freestyle", "bpy.app", "bpy.props", "bpy.utils",
     "bpy.path", "bpy.msgbus", "bpy_extras",
 )  # fmt: skip
 # Class → path of those written so far.
