@@ -20,6 +20,17 @@ if TYPE_CHECKING:
 
 SCRIPT = Path(__file__).parent / "inside" / "extract.py"
 _INDEXABLE = re.compile(r"[\[*?]")
+# RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
+_TREES = {
+    "bpy.types.FreestyleLineStyle.node_tree": "ShaderNodeTree",
+    "bpy.types.Light.node_tree": "ShaderNodeTree",
+    "bpy.types.Material.node_tree": "ShaderNodeTree",
+    "bpy.types.World.node_tree": "ShaderNodeTree",
+    "bpy.types.NodesModifier.node_group": "GeometryNodeTree",
+    "bpy.types.Scene.compositing_node_group": "CompositorNodeTree",
+    "bpy.types.Scene.node_tree": "CompositorNodeTree",
+    "bpy.types.Texture.node_tree": "TextureNodeTree",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +198,9 @@ def read_extract(path: Path) -> Extract:
     for owner, trees in raw.trees.items():
         if owner in raw.symbols:
             raw.symbols[owner]["trees"] = trees
+    for holder, tree in _TREES.items():
+        if holder in raw.symbols:
+            raw.symbols[holder]["target"] = tree
     symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}
     prototypes = [
         symbol

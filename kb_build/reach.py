@@ -22,7 +22,7 @@ _DETOURS = frozenset(
     {
         "window_manager", "window", "screen", "workspace", "area", "region", "preferences", "space_data", "library",
         "original", "override_library", "asset_data", "asset", "drivers", "rigidbody_world",
-        "blend_data", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
+        "blend_data", "node_groups", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
     }
 )  # fmt: skip
 _DETOUR_COST = 6
@@ -36,7 +36,7 @@ class _Graph:
     base: dict[str, str] = field(default_factory=dict)
     derived: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
     label: dict[str, str] = field(default_factory=dict)
-    shader_nodes: set[str] = field(default_factory=set)
+    trees: dict[str, tuple[str, ...]] = field(default_factory=dict)
     named: set[str] = field(default_factory=set)
 
 
@@ -47,8 +47,8 @@ def _graph(symbols: Iterable[Symbol]) -> _Graph:
             name, base = symbol.path.removeprefix(TYPES), symbol.base.removeprefix(TYPES)
             graph.base[name] = base
             graph.label[name] = symbol.label
-            if "ShaderNodeTree" in symbol.trees:
-                graph.shader_nodes.add(name)
+            if symbol.trees:
+                graph.trees[name] = symbol.trees
             if base != "bpy_struct":
                 graph.derived[base].append(name)
         elif symbol.kind == "property" and symbol.name == "name":
@@ -112,12 +112,13 @@ def reached_expressions(symbols: Iterable[Symbol]) -> dict[str, str]:
                 heapq.heappush(queue, (step, order, target, here + (_key(target, graph) if many else "")))
             # ``Object.data`` is any data-block to RNA; the collections of ``bpy.data`` say which.
             for child in _descendants(target, graph) if target != "ID" else ():
-                if child not in found:
+                # Every tree's ``nodes`` takes every node as far as RNA knows.
+                if child not in found and cls in graph.trees.get(child, (cls,)):
                     order += 1
                     heapq.heappush(
                         queue, (step + 1, order, child, here + (_key(child, graph) if many else ""))
                     )
-    # Every tree's ``nodes`` takes every node as far as RNA knows; a shader's live in a material.
-    for cls in graph.shader_nodes:
+    # A shader's nodes live in a material, where there are others like it.
+    for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
         found[cls] = f"{found.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"
     return found

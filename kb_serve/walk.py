@@ -258,10 +258,17 @@ class Walker:
             yield from self._socket(owner, side, step.text)
             return
         named = set(self._named_classes(place.cls, step.text)) if step.kind == "key" else set[str]()
-        for path in sorted(named):
+        for path in self._in_tree(sorted(named, key=lambda path: (len(path), path)), owner):
             yield Place(path, path)
         if not named:
             yield Place(place.symbol, place.cls)
+
+    def _in_tree(self, nodes: list[str], tree: str) -> list[str]:
+        """Of nodes that share a name, those that the tree takes; all where that does not tell them apart."""
+        if len(nodes) < 2:
+            return nodes
+        name = tree.removeprefix(TYPES)
+        return [path for path in nodes if (node := self._reader.symbol(path)) and name in node.trees] or nodes
 
     def _named_classes(self, cls: str, text: str) -> Iterator[str]:
         """Descendants of ``cls`` (or itself) whose elements are called ``text`` by default."""
