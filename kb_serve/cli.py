@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -55,9 +56,10 @@ def docs(  # noqa: PLR0913 - one for each option
     try:
         from kb_serve.service import readable  # noqa: PLC0415 - not for --help
 
-        base = _bases(blender).pick()
-        answer = base.query(readable(" ".join(query)), limit=limit, max_tokens=max_tokens, part=part)
-        found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
+        with closing(_bases(blender)) as bases:
+            base = bases.pick()
+            answer = base.query(readable(" ".join(query)), limit=limit, max_tokens=max_tokens, part=part)
+            found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
     except KBServeError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)

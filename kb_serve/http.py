@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import hmac
 import ipaddress
+import signal
 import socket
 import sys
 from dataclasses import dataclass
@@ -63,8 +64,9 @@ def run_http(service: Service, address: Address) -> None:
     server = uvicorn.Server(config)
     sys.stderr.write(f"Serving blender_docs at {url(address.host, listener)}\n")
     sys.stderr.flush()
+    # uvicorn raises the signal that ended it once more, when all is done; that must not look like a crash.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        # It takes SIGTERM for the end of serving, then lets it loose again: by then there is nothing to end.
         server.run(sockets=[listener])
     except KeyboardInterrupt:
         pass

@@ -68,3 +68,33 @@ class Wire:
         assert self.process.stdout is not None
         self.process.stdin.close()
         return self.process.stdout.read()
+
+
+class HttpServer:
+    """``simworlds serve --http`` on a free port of the loopback address. ``url`` is what it says it serves at."""
+
+    def __init__(self, home: Path, *arguments: str, **environment_variables: str) -> None:
+        self.process = subprocess.Popen(
+            [*COMMAND, "serve", "--http", "--port", "0", *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=environment(home, **environment_variables),
+            cwd=REPO,
+            text=True,
+        )
+        assert self.process.stderr is not None
+        self.url = self.process.stderr.readline().strip().rpartition(" ")[2]
+
+    def __enter__(self) -> HttpServer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+    def end(self, number: int) -> tuple[int, str, str]:
+        """Sends a signal; the exit code, and what was printed meanwhile."""
+        self.process.send_signal(number)
+        out, err = self.process.communicate(timeout=20)
+        return self.process.returncode, out, err

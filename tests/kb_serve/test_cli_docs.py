@@ -1,0 +1,173 @@
+"""``simworlds docs`` and ``simworlds serve`` as commands."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+import pytest
+from running import COMMAND, REPO, environment
+
+from kb_build.records import page_from_json, symbol_from_json
+from kb_serve.knowledge_base import KnowledgeBase
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+QUALITY = "bpy.types.ClothSettings.quality"
+
+
+def run(home: Path, *words: str | bytes) -> subprocess.CompletedProcess[str]:
+    command: list[str | bytes] = [*COMMAND, *words]
+    return subprocess.run(
+        command,
+        env=environment(home),
+        cwd=REPO,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+        timeout=60,
+    )
+
+
+@pytest.fixture
+def home(base: Path) -> Path:
+    return base.parent.parent
+
+
+@pytest.fixture
+def expected(base: Path) -> Callable[..., dict[str, object]]:
+    def answer(query: str, **more: int) -> dict[str, object]:
+        with KnowledgeBase(base) as direct:
+            return json.loads(json.dumps(asdict(direct.query(query, **more))))
+
+    return answer
+
+
+def test_the_answer_is_printed_as_markdown(home: Path, expected: Callable[..., dict[str, object]]) -> None:
+    done = run(home, "docs", "ClothSettings.quality")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == f"{expected('ClothSettings.quality')['text']}\n"
+
+
+def test_words_need_no_quotes(home: Path, expected: Callable[..., dict[str, object]]) -> None:
+    done = run(home, "docs", "--max-tokens", "400", "--limit", "3", "rigid", "body", "mass")
+    assert done.stdout == f"{expected('rigid body mass', limit=3, max_tokens=400)['text']}\n"
+
+
+def test_json_is_exactly_the_answer(home: Path, expected: Callable[..., dict[str, object]]) -> None:
+    done = run(home, "docs", "bpy.types.Object", "--json", "--max-tokens", "300", "--part", "2")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(done.stdout) == expected("bpy.types.Object", max_tokens=300, part=2)
+
+
+def test_raw_is_the_whole_record_of_a_symbol(home: Path, base: Path) -> None:
+    done = run(home, "docs", "--raw", "ClothSettings.quality")
+    assert done.returncode == 0
+    with KnowledgeBase(base) as direct:
+        assert symbol_from_json(json.loads(done.stdout)) == direct.symbol(QUALITY)
+
+
+def test_raw_is_the_whole_record_of_a_page(home: Path, base: Path) -> None:
+    done = run(home, "docs", "--raw", "physics/cloth/introduction")
+    assert done.returncode == 0
+    with KnowledgeBase(base) as direct:
+        assert page_from_json(json.loads(done.stdout)) == direct.page("physics/cloth/introduction")
+
+
+@pytest.mark.parametrize("way", [(), ("--json",), ("--raw",)])
+def test_nothing_found_is_exit_code_1(home: Path, way: tuple[str, ...]) -> None:
+    done = run(home, "docs", "qqqzzzxxqv", *way)
+    assert done.returncode == 1
+    assert "Traceback" not in done.stderr
+    assert done.stdout or done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "hint"),
+    [
+        (("",), "empty"),
+        ((QUALITY, "--limit", "0"), "limit"),
+        ((QUALITY, "--part", "99"), "part"),
+        ((QUALITY, "--max-tokens", "1"), "max_tokens"),
+        ((QUALITY, "--max-tokens", "many"), "--max-tokens"),
+        ((QUALITY, "--blender", "9.9"), "simworlds kb build 9.9"),
+        ((QUALITY, "--blender", "../../etc"), "no Blender version"),
+        ((QUALITY, "--json", "--raw"), "--raw"),
+        ((), "QUERY"),
+        (("--no-such-option", QUALITY), "--no-such-option"),
+    ],
+)
+def test_errors_are_exit_code_2_and_say_why(home: Path, words: tuple[str, ...], hint: str) -> None:
+    done = run(home, "docs", *words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert hint in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_without_a_base_it_says_what_to_do(tmp_path: Path) -> None:
+    done = run(tmp_path, "docs", QUALITY)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "simworlds kb build" in done.stderr
+
+
+def test_a_damaged_base_is_named(tmp_path: Path) -> None:
+    (tmp_path / "kb").mkdir()
+    (tmp_path / "kb" / "blender-5.1.sqlite").write_bytes(b"no base")
+    done = run(tmp_path, "docs", QUALITY)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "blender-5.1.sqlite" in done.stderr
+    assert "simworlds kb build" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "query", ["🙂", "x" * 10_000, '"', "NEAR(a b)", "name:*", "-- -x", "../../etc/passwd"]
+)
+def test_any_text_is_answered_or_refused_in_words(home: Path, query: str) -> None:
+    done = run(home, "docs", "--", query)
+    assert done.returncode in {0, 1}
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="arguments are bytes on POSIX only")
+def test_bytes_that_are_no_text_are_no_crash(home: Path) -> None:
+    done = run(home, "docs", b"cloth \xff\xfe")
+    assert done.returncode in {0, 1}
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pseudo-terminals are POSIX's")
+def test_on_a_terminal_the_markdown_is_rendered(home: Path) -> None:
+    import pty
+
+    leader, follower = pty.openpty()
+    with subprocess.Popen(
+        [*COMMAND, "docs", QUALITY],
+        stdin=follower,
+        stdout=follower,
+        stderr=follower,
+        env=environment(home, TERM="xterm", COLUMNS="80"),
+        cwd=REPO,
+    ) as process:
+        os.close(follower)
+        shown = b""
+        try:
+            while more := os.read(leader, 4096):
+                shown += more
+        except OSError:  # how Linux says that the other side has gone
+            pass
+        os.close(leader)
+    assert process.returncode == 0
+    assert b"Quality" in shown
+    assert b"## " not in shown
+    assert b"\x1b[" in shown
+
+
+def test_options_for_http_alone_are_refused_on_stdio(home: Path) -> None:
+    done = run(home, "serve", "--port", "1234")
+    assert done.returncode == 2
+    assert "--http" in done.stderr
