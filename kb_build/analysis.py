@@ -9,7 +9,7 @@ from typing import Any
 import snowballstemmer
 
 _WORD = re.compile(r"\d+[dD]\b|[A-Za-z]+|\d+(?:\.\d+)?|[^\W\d_]+")
-_CAMEL = re.compile(r"[A-Z]{2,}s\b|[A-Z]{2,}(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
+_CAMEL = re.compile(r"[A-Z]{2,}s\b|[A-Z]{2,}(?=[A-Z][a-z])|[A-Z]{2}[a-z]+|[A-Z]?[a-z]+|[A-Z]+")
 _NOT_KEY = re.compile(r"[\W_]+")
 
 # Words that say nothing about Blender: they join sentences or frame a question.

@@ -294,13 +294,14 @@ def _write(
     work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun | None, meta: dict[str, str]
 ) -> None:
     from kb_build.former import former_symbols  # noqa: PLC0415 - loaded ahead
-    from kb_build.history import History  # noqa: PLC0415
+    from kb_build.history import History, history_paths  # noqa: PLC0415
     from kb_build.store import Contents, write_base  # noqa: PLC0415
 
     work.progress(f"Writing {work.path.name}", 0, None)
     by_slug = run.by_slug if run else {}
     summaries = {slug: (summary.text, summary.method) for slug, summary in by_slug.items()}
-    former = former_symbols(extract.symbols, History.load(), meta["minor"])
+    history = History.load().including(extract.version, history_paths(extract))
+    former = former_symbols(extract.symbols, history, meta["minor"])
     contents: Contents = Contents(extract.symbols, pages, extract.links, meta, summaries, former)
     write_base(work.path, contents)
 

@@ -55,7 +55,15 @@ RULES = (
     Rule(
         "kb_serve",
         ("kb_build", "agents", "bench"),
-        ("kb_build.records", "kb_build.schema", "kb_build.analysis", "kb_build.pipeline"),
+        # What a base holds (records, schema, analysis, lines), where it lies (settings), and one way to make it.
+        (
+            "kb_build.records",
+            "kb_build.schema",
+            "kb_build.analysis",
+            "kb_build.lines",
+            "kb_build.settings",
+            "kb_build.pipeline",
+        ),
     ),
     Rule("agents", ("kb_build", "kb_serve", "bench"), ("agents.cli:kb_build", "agents.cli:kb_serve")),
     Rule("agents.plan", ("agents.models", "agents.blender", "agents.roles", "agents.pipeline")),
