@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
-import os
-import signal
-import sys
 import tempfile
-import threading
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
 from kb_build.errors import KBBuildError, SourceError
+from kb_build.forked import can_fork, forked
 from kb_build.page_files import kept_pages, read_pages
 from kb_build.staging import scratch_folder
 
@@ -28,7 +25,6 @@ if TYPE_CHECKING:
     from kb_build.sources import Source
 
 _REPORT_SECONDS = 0.1
-_PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of <linux/prctl.h>
 
 
 class PageReader:
@@ -43,7 +39,6 @@ class PageReader:
         self._jobs = jobs
         self._progress = progress
         self._pages: dict[str, list[Page]] = {}
-        self._process: Any = None
         self._messages: Connection | None = None
         self._cleanup = contextlib.ExitStack()
 
@@ -52,26 +47,23 @@ class PageReader:
             kept = kept_pages(source, self._cache)
             if kept is not None:
                 self._pages[source.role] = kept
-        if self._unread and os.name == "posix" and threading.active_count() == 1:
-            scratch = self._scratch()
-            context = multiprocessing.get_context("fork")
-            self._messages, theirs = context.Pipe(duplex=False)
-            self._process = context.Process(
-                target=_work,
-                args=(
-                    _Job(self._unread, self._cache, self._jobs, os.getpid(), scratch),
-                    theirs,
-                    self._messages,
-                ),
-            )
-            self._process.start()
-            self._cleanup.callback(self._stop)
-            theirs.close()
+        if self._unread and can_fork():
+            job = _Job(self._unread, self._cache, self._jobs, self._scratch())
+            self._messages = self._cleanup.enter_context(forked(partial(_work, job)))
         return self
 
     @property
     def _unread(self) -> list[Source]:
         return [source for source in self._sources if source.role not in self._pages]
+
+    def _scratch(self) -> Path:
+        """Where the other process keeps what it cannot remove when it is killed."""
+        try:
+            return self._cleanup.enter_context(scratch_folder(self._cache / "scratch"))
+        except OSError as error:
+            raise SourceError(
+                f"{self._cache} cannot be written: {error}; make room there, or set SIMWORLDS_HOME"
+            ) from error
 
     def result(self) -> dict[str, list[Page]]:
         """The pages by role. Raises SourceError when a source cannot be read."""
@@ -90,11 +82,9 @@ class PageReader:
             try:
                 message = messages.recv()
             except EOFError:
-                self._process.join()
-                code = self._process.exitcode
                 raise SourceError(
-                    f"the process that read the pages ended before it was done (exit code {code}); if "
-                    "memory is scarce, try --jobs 1"
+                    "the process that read the pages was killed before it was done; if memory is scarce, "
+                    "try --jobs 1"
                 ) from None
             match message:
                 case ("progress", label, done, total):
@@ -109,39 +99,17 @@ class PageReader:
     ) -> None:
         self._cleanup.close()
 
-    def _scratch(self) -> Path:
-        """Where the other process keeps what it cannot remove when it is killed."""
-        try:
-            return self._cleanup.enter_context(scratch_folder(self._cache / "scratch"))
-        except OSError as error:
-            raise SourceError(
-                f"{self._cache} cannot be written: {error}; make room there, or set SIMWORLDS_HOME"
-            ) from error
-
-    def _stop(self) -> None:
-        self._process.kill()
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.join()
-        if self._messages is not None:
-            self._messages.close()
-
 
 @dataclass(frozen=True, slots=True)
 class _Job:
     sources: Sequence[Source]
     cache: Path
     processes: int
-    parent: int
     scratch: Path
 
 
-def _work(job: _Job, messages: Connection, theirs: Connection) -> None:
+def _work(job: _Job, messages: Connection) -> None:
     """The other process: reads, keeps, tells how far it is."""
-    os.setsid()  # Ctrl-C reaches the parent alone, which ends the whole group
-    os.register_at_fork(after_in_child=_die_with_parent)
-    _die_with_parent()
-    theirs.close()
     tempfile.tempdir = str(job.scratch)
     last = 0.0
 
@@ -153,23 +121,10 @@ def _work(job: _Job, messages: Connection, theirs: Connection) -> None:
 
     outcome = ("done",)
     try:
-        if os.getppid() != job.parent:
-            return
         for source in job.sources:
             read_pages(source, job.cache, jobs=job.processes, progress=report)
     except KBBuildError as error:
         outcome = ("failed", str(error))
     except Exception as error:
         outcome = ("failed", f"pages could not be read: {type(error).__name__}: {error}")
-    with contextlib.suppress(OSError):  # nobody listens when the parent is gone
-        messages.send(outcome)
-
-
-def _die_with_parent() -> None:
-    """Where the system offers it, end this process when the one that started it is killed."""
-    if sys.platform != "linux":
-        return
-    import ctypes  # noqa: PLC0415 - in the other process only
-
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+    messages.send(outcome)

@@ -10,6 +10,7 @@ from collections import deque
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -18,6 +19,7 @@ from kb_build.digests import Digests
 from kb_build.errors import ExtractError, SourceError, StoreError
 from kb_build.extraction import extract_api
 from kb_build.fingerprint import base_fingerprint, own_version, runtime_digest
+from kb_build.forked import beside
 from kb_build.progress import silent
 from kb_build.runtime import find_runtime
 from kb_build.settings import base_path, cache_folder, summaries_path
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.extract import Extract
+    from kb_build.former import Former
     from kb_build.page_reader import PageReader
     from kb_build.progress import Progress
     from kb_build.records import Page
@@ -39,7 +42,7 @@ if TYPE_CHECKING:
     from kb_build.summaries import SummaryReport, SummaryRun
 
 SummaryMethod = Literal["extractive", "claude", "none"]
-_LOADED_AHEAD = ("kb_build.extract", "kb_build.store", "kb_build.summaries")
+_LOADED_AHEAD = ("kb_build.extract", "kb_build.summaries")
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,17 +296,23 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
 def _write(
     work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun | None, meta: dict[str, str]
 ) -> None:
-    from kb_build.former import former_symbols  # noqa: PLC0415 - loaded ahead
-    from kb_build.history import History, history_paths  # noqa: PLC0415
-    from kb_build.store import Contents, write_base  # noqa: PLC0415
-
     work.progress(f"Writing {work.path.name}", 0, None)
     by_slug = run.by_slug if run else {}
     summaries = {slug: (summary.text, summary.method) for slug, summary in by_slug.items()}
+    with beside(partial(_former, extract)) as former:
+        # Loaded now: a process is not forked safely from one that has NumPy's threads.
+        from kb_build.store import Contents, write_base  # noqa: PLC0415
+
+        contents: Contents = Contents(extract.symbols, pages, extract.links, meta, summaries, former)
+        write_base(work.path, contents)
+
+
+def _former(extract: Extract) -> Former:
+    from kb_build.former import former_symbols  # noqa: PLC0415 - not when nothing changed
+    from kb_build.history import History, history_paths  # noqa: PLC0415
+
     history = History.load().including(extract.version, history_paths(extract))
-    former = former_symbols(extract.symbols, history, meta["minor"])
-    contents: Contents = Contents(extract.symbols, pages, extract.links, meta, summaries, former)
-    write_base(work.path, contents)
+    return former_symbols(extract.symbols, history, minor_of(extract.version))
 
 
 def _report(

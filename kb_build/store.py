@@ -30,7 +30,7 @@ from kb_build.schema import (
 from kb_build.staging import staged_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
 _PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
@@ -38,14 +38,17 @@ _PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """Everything that goes into one base. ``summaries`` are slug → (text, method)."""
+    """Everything that goes into one base.
+
+    ``summaries`` are slug → (text, method); ``former`` is called late, so that it can be computed meanwhile.
+    """
 
     symbols: Sequence[Symbol]
     pages: Sequence[Page]
     links: Sequence[Link]
     meta: Mapping[str, str]
     summaries: Mapping[str, tuple[str, str]] = field(default_factory=dict[str, tuple[str, str]])
-    former: Former = field(default_factory=Former)
+    former: Callable[[], Former] = Former
 
 
 def short_path(path: str) -> str:
@@ -216,7 +219,7 @@ def _write(part: Path, contents: Contents) -> None:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
             _write_index(connection, units)
-            _write_former(connection, contents.former)
+            _write_former(connection, contents.former())
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3
