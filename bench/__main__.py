@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from bench import report
 from bench.builds import BuildFailed, run_build
-from bench.retrieval import BadQueries, misses_table
+from bench.retrieval import BadQueries, misses
 from bench.setting import BLENDER, QUERIES, REPO, Setting, say
 from kb_build.base_file import read_meta
 from kb_build.errors import KBBuildError
@@ -56,7 +56,7 @@ def _base(home: Path) -> Path:
     base = base_path(home, BLENDER)
     if not base.is_file():
         say(f"no base of Blender {BLENDER} in {home}: building it")
-        say(f"built in {run_build(home):.1f} s")
+        say(f"built in {run_build(home).wall:.1f} s")
     return base
 
 
@@ -88,7 +88,7 @@ def main(given: Sequence[str] | None = None) -> int:
     text = report.write(options.output, parts, facts)
     print(text)
     if options.misses:
-        print("\n\n".join(report.table(misses_table(part)) for part in parts if part.name == "retrieval"))
+        print("\n\n".join(misses(part) for part in parts if part.name == "retrieval"))
     say(f"written to {options.output / 'bench.md'} and bench.json")
     return 0
 

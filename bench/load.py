@@ -9,28 +9,30 @@ from __future__ import annotations
 import contextlib
 import queue
 import subprocess
-import tempfile
 import threading
 import time
 from dataclasses import dataclass, field
 from typing import IO, TYPE_CHECKING, Any
 
 import anyio
+from httpx2 import AsyncClient
 from mcp.client import Client
+from mcp.client.streamable_http import streamable_http_client
 
 from bench.memory import resident_mb
 from bench.report import Table
-from bench.setting import REPO, environment, percentile, say
+from bench.setting import REPO, brief, environment, percentile, say
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping, Sequence
+    from collections.abc import AsyncGenerator, Generator, Mapping, Sequence
 
     from bench.setting import Setting
 
 CLIENTS = 64
 _TOOL = "blender_docs"
 _START_SECONDS = 30
+_PATIENCE_SECONDS = 30.0  # a call that takes longer is an error
 _KEPT = 20  # errors and wrong answers that the report quotes
 
 
@@ -40,8 +42,12 @@ class NoServer(Exception):  # noqa: N818 - reads as the state it names
 
 @dataclass(slots=True)
 class Loaded:
-    """What came of it: ms for every call that was answered, and a line for each error and each wrong answer."""
+    """What came of it: ms for every call that was answered, and a line for each error and each wrong answer.
 
+    ``alone`` are the ms of a single client's calls before the others come.
+    """
+
+    alone: list[float] = field(default_factory=list[float])
     seconds: float = 0.0
     times: list[float] = field(default_factory=list[float])
     errors: list[str] = field(default_factory=list[str])
@@ -55,9 +61,10 @@ def measure(setting: Setting, serve: Sequence[str], queries: Sequence[str]) -> t
     """
     seconds = min(5.0, setting.load_seconds) if setting.quick else setting.load_seconds
     say(f"load: {CLIENTS} HTTP clients for {seconds:g} s")
+    loaded = Loaded()
     with _server(serve, setting) as (url, pid):
-        right = anyio.run(_alone, url, queries)
-        loaded = anyio.run(_together, url, right, seconds)
+        right = anyio.run(_alone, url, queries, loaded)
+        anyio.run(_together, url, right, seconds, loaded)
         memory = resident_mb(pid)
     loaded.wrong += _not_as_in_process(setting, right)
     return loaded, memory
@@ -66,20 +73,24 @@ def measure(setting: Setting, serve: Sequence[str], queries: Sequence[str]) -> t
 @contextlib.contextmanager
 def _server(serve: Sequence[str], setting: Setting) -> Generator[tuple[str, int]]:
     """A server on a free port: its address and process id."""
-    command = [*serve, "--http", "--port", "0"]
-    with tempfile.TemporaryFile("w+b") as log:
-        process = subprocess.Popen(
-            command, stdout=log, stderr=subprocess.PIPE, text=True, env=environment(setting.home), cwd=REPO
-        )
-        try:
-            assert process.stderr is not None
-            yield _address(process.stderr), process.pid
-        finally:
-            process.terminate()
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(10)
-            process.kill()
-            process.wait()
+    process = subprocess.Popen(
+        [*serve, "--http", "--port", "0"],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment(setting.home),
+        cwd=REPO,
+    )
+    try:
+        assert process.stderr is not None
+        yield _address(process.stderr), process.pid
+    finally:
+        process.terminate()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(10)
+        process.kill()
+        process.wait()
 
 
 def _address(stream: IO[str]) -> str:
@@ -104,27 +115,40 @@ def _address(stream: IO[str]) -> str:
     return url
 
 
-async def _alone(url: str, queries: Sequence[str]) -> dict[str, dict[str, Any]]:
+@contextlib.asynccontextmanager
+async def _connected(url: str) -> AsyncGenerator[Client]:
+    """A client of its own connection. Certificates, which take long to load, are not needed on loopback."""
+    async with (
+        AsyncClient(timeout=_PATIENCE_SECONDS, verify=False) as http,
+        Client(streamable_http_client(url, http_client=http)) as client,
+    ):
+        yield client
+
+
+async def _alone(url: str, queries: Sequence[str], loaded: Loaded) -> dict[str, dict[str, Any]]:
     """query → structured answer, asked by one client."""
-    async with Client(url) as client:
-        return {query: await _ask(client, query) for query in queries}
+    right: dict[str, dict[str, Any]] = {}
+    async with _connected(url) as client:
+        for query in queries:
+            right[query] = await _ask(client, query, loaded.alone)
+    return right
 
 
-async def _ask(client: Client, query: str) -> dict[str, Any]:
+async def _ask(client: Client, query: str, times: list[float]) -> dict[str, Any]:
+    began = time.perf_counter()
     result = await client.call_tool(_TOOL, {"query": query})
+    times.append((time.perf_counter() - began) * 1e3)
     if result.is_error or result.structured_content is None:
         raise RuntimeError(f"an error instead of an answer: {result.content}")
     return result.structured_content
 
 
-async def _together(url: str, right: Mapping[str, dict[str, Any]], seconds: float) -> Loaded:
-    loaded = Loaded()
+async def _together(url: str, right: Mapping[str, dict[str, Any]], seconds: float, loaded: Loaded) -> None:
     began = time.monotonic()
     async with anyio.create_task_group() as tasks:
         for number in range(CLIENTS):
             tasks.start_soon(_client, url, right, number, began + seconds, loaded)
     loaded.seconds = time.monotonic() - began
-    return loaded
 
 
 async def _client(
@@ -135,17 +159,14 @@ async def _client(
     place = number * len(queries) // CLIENTS
     while time.monotonic() < until:
         try:
-            async with Client(url) as client:
+            async with _connected(url) as client:
                 while time.monotonic() < until:
                     query = queries[place % len(queries)]
                     place += 1
-                    began = time.perf_counter()
-                    answer = await _ask(client, query)
-                    loaded.times.append((time.perf_counter() - began) * 1e3)
-                    if answer != right[query]:
+                    if await _ask(client, query, loaded.times) != right[query]:
                         loaded.wrong.append(f"{query[:60]!r} was answered otherwise than to a client alone")
         except Exception as error:  # every failure counts, whatever its type
-            loaded.errors.append(f"{type(error).__name__}: {str(error)[:200]}")
+            loaded.errors.append(brief(error))
             await anyio.sleep(0.1)
 
 
@@ -162,28 +183,40 @@ def _not_as_in_process(setting: Setting, right: Mapping[str, dict[str, Any]]) ->
 
 def table(loaded: Loaded, memory: float | None) -> Table:
     """What came of it, as a table."""
+    alone = (
+        (f"{percentile(loaded.alone, share):.1f}" for share in (0.5, 0.95)) if loaded.alone else ("–", "–")
+    )
     times = loaded.times or [0.0]
-    row = (
+    together = (
         str(CLIENTS),
-        f"{loaded.seconds:.0f}",
         f"{len(loaded.times):,}",
         str(len(loaded.errors)),
         str(len(loaded.wrong)),
         f"{len(loaded.times) / loaded.seconds:.0f}" if loaded.seconds else "–",
-        f"{percentile(times, 0.5):.0f}",
-        f"{percentile(times, 0.95):.0f}",
+        f"{percentile(times, 0.5):.1f}",
+        f"{percentile(times, 0.95):.1f}",
         f"{memory:.0f}" if memory is not None else "–",
     )
-    header = ("clients", "seconds", "calls", "errors", "wrong", "calls/s", "p50 ms", "p95 ms", "server MB")
-    note = "All clients run in one process on the server's machine: calls a second are theirs as much as the server's."
+    rows = (("1", f"{len(loaded.alone):,}", "0", "0", "–", *alone, "–"), together)
+    header = ("clients", "calls", "errors", "wrong", "calls/s", "p50 ms", "p95 ms", "server MB")
+    note = (
+        f"{loaded.seconds:.0f} s. All clients run in one process on the server's machine: calls a second are theirs "
+        "as much as the server's."
+    )
     examples = list(dict.fromkeys([*loaded.errors, *loaded.wrong]))[:5]
-    return Table("HTTP load", header, (row,), "\n".join([note, *(f"- {example}" for example in examples)]))
+    return Table("HTTP load", header, rows, "\n".join([note, *(f"- {example}" for example in examples)]))
 
 
 def as_data(loaded: Loaded) -> dict[str, Any]:
     """What came of it, as data."""
+    times, alone = loaded.times or [0.0], loaded.alone or [0.0]
     return {
-        "clients": CLIENTS, "seconds": loaded.seconds, "calls": len(loaded.times),
-        "p50_ms": percentile(loaded.times or [0.0], 0.5), "p95_ms": percentile(loaded.times or [0.0], 0.95),
-        "errors": loaded.errors[:_KEPT], "wrong": loaded.wrong[:_KEPT],
-    }  # fmt: skip
+        "clients": CLIENTS,
+        "seconds": loaded.seconds,
+        "calls": len(loaded.times),
+        "alone_p50_ms": percentile(alone, 0.5),
+        "p50_ms": percentile(times, 0.5),
+        "p95_ms": percentile(times, 0.95),
+        "errors": loaded.errors[:_KEPT],
+        "wrong": loaded.wrong[:_KEPT],
+    }

@@ -336,12 +336,13 @@ def _rows(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def misses_table(part: Part) -> Table:
-    """The queries without a right id among the first five."""
-    rows = [
-        (row["id"], row["query"], ", ".join(row["ids"][:3]), ", ".join(row["expected"][:2]))
-        for found in part.data.get("queries", {}).values()
-        for row in found
-        if not row["hit5"]
-    ]
-    return Table("Misses", ("query", "asked", "first three", "expected, among others"), tuple(rows))
+def misses(part: Part) -> str:
+    """The queries without a right id among the first five, with what was found and what was expected."""
+    lines = ["## Misses", ""]
+    for title, found in part.data.get("queries", {}).items():
+        for row in found:
+            if not row["hit5"]:
+                lines.append(f"- {title} {row['id']} — {row['query']}")
+                lines.append(f"  - found {', '.join(row['ids'][:4]) or 'nothing'}")
+                lines.append(f"  - expected {', '.join(row['expected'][:4])}")
+    return "\n".join(lines)

@@ -6,13 +6,12 @@ the files are then in the system's cache, as on any machine that is in use.
 
 from __future__ import annotations
 
-import contextlib
 import os
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING
 
 import anyio
 from mcp import StdioServerParameters
@@ -24,10 +23,10 @@ from bench.echo import TOOL as ECHO
 from bench.memory import children, resident_mb
 from bench.report import Figure, Part, Table
 from bench.retrieval import read_queries
-from bench.setting import BLENDER, REPO, environment, percentile, say, simworlds
+from bench.setting import BLENDER, REPO, brief, environment, percentile, say, simworlds
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from bench.setting import Setting
 
@@ -48,43 +47,59 @@ class _Stdio:
 
 
 def measure(setting: Setting) -> Part:
-    """Everything that a client or a shell sees. A server that does not start is a reason to skip, named."""
-    queries = [query.query for query in read_queries(setting.queries[0])]
-    serve = [*simworlds(), "serve", "--blender", BLENDER, "--no-rebuild"]
-    figures: list[Figure] = []
-    skipped: list[str] = []
-    data: dict[str, Any] = {}
-    tables: list[Table] = []
+    """Everything that a client or a shell sees. What does not work is skipped, and named with the reason."""
     if reason := _unusable(setting):
         return Part("server", skipped=(reason,))
-    starts = 1 if setting.quick else STARTS
+    steps = {"over stdio": _over_stdio, "simworlds docs": _cold, "under HTTP load": _under_load}
+    parts = [_tried(name, step, setting) for name, step in steps.items()]
+    memory = [(size, part.name) for part in parts for size in part.data.get("resident_mb", ())]
+    return Part(
+        "server",
+        (
+            *(figure for part in parts for figure in part.figures),
+            *(Figure("memory", *most) for most in sorted(memory)[-1:]),
+        ),
+        tuple(table for part in parts for table in part.tables),
+        tuple(f"{part.name}: {reason}" for part in parts for reason in part.skipped),
+        {part.name: part.data for part in parts},
+    )
+
+
+def _tried(name: str, step: Callable[[Setting], Part], setting: Setting) -> Part:
     try:
-        say("server: calls over stdio")
-        ours = anyio.run(_stdio, serve, TOOL, queries, setting, starts)
-        say("server: an echo tool, side by side")
-        echo = anyio.run(_stdio, [sys.executable, "-m", "bench.echo"], ECHO, queries, setting, starts)
+        return step(setting)
     except Exception as error:  # whatever a broken server makes the client raise
-        skipped.append(f"calls over stdio: {_brief(error)}")
-    else:
-        figures += _stdio_figures(ours, echo)
-        tables.append(_stdio_table({"simworlds serve": ours, "echo tool": echo}))
-        data["stdio"] = {"simworlds": _as_data(ours), "echo": _as_data(echo)}
-    cold = _cold(setting)
-    if cold:
-        figures.append(Figure("docs", percentile(cold[_COLD[0]], 0.5), f"median of {len(cold[_COLD[0]])}"))
-        data["docs_s"] = cold
-    try:
-        loaded, memory = load.measure(setting, serve, queries)
-    except load.NoServer as error:
-        skipped.append(f"HTTP load: {error}")
-    else:
-        figures += [
-            Figure("load_errors", len(loaded.errors), f"of {len(loaded.times):,} calls"),
-            Figure("load_wrong", len(loaded.wrong), f"of {len(loaded.times):,} calls"),
-        ]
-        tables.append(load.table(loaded, memory))
-        data["load"] = load.as_data(loaded) | {"resident_mb": memory}
-    return Part("server", tuple(figures), tuple(tables), tuple(skipped), data)
+        return Part(name, skipped=(brief(error),))
+
+
+def _over_stdio(setting: Setting) -> Part:
+    queries = [query.query for query in read_queries(setting.queries[0])]
+    say("server: calls over stdio")
+    ours = anyio.run(_stdio, _serve(), TOOL, queries, setting)
+    say("server: an echo tool, side by side")
+    echo = anyio.run(_stdio, [sys.executable, "-m", "bench.echo"], ECHO, queries, setting)
+    data = {"simworlds": asdict(ours), "echo": asdict(echo), "resident_mb": ours.memory}
+    figures = (
+        Figure("mcp_p50", percentile(ours.calls, 0.5), f"echo here {percentile(echo.calls, 0.5):.1f} ms"),
+        Figure("start", percentile(ours.starts, 0.5), f"echo here {percentile(echo.starts, 0.5):.2f} s"),
+    )
+    tables = (_stdio_table({"simworlds serve": ours, "echo tool": echo}),)
+    return Part("over stdio", figures, tables, data=data)
+
+
+def _under_load(setting: Setting) -> Part:
+    """All sets' queries: more than the server keeps answers of."""
+    queries = dict.fromkeys(query.query for path in setting.queries for query in read_queries(path))
+    loaded, resident = load.measure(setting, _serve(), list(queries))
+    note = f"of {len(loaded.times):,} calls"
+    figures = Figure("load_errors", len(loaded.errors), note), Figure("load_wrong", len(loaded.wrong), note)
+    data = load.as_data(loaded) | {"resident_mb": [resident] if resident is not None else []}
+    return Part("under HTTP load", figures, (load.table(loaded, resident),), data=data)
+
+
+def _serve() -> list[str]:
+    """A base is not to be rebuilt in the background while it is measured."""
+    return [*simworlds(), "serve", "--blender", BLENDER, "--no-rebuild"]
 
 
 def _unusable(setting: Setting) -> str:
@@ -106,28 +121,27 @@ def _docs(setting: Setting, query: str) -> None:
     )  # fmt: skip
 
 
-def _cold(setting: Setting) -> dict[str, list[float]]:
-    """Query → seconds of whole processes."""
+def _cold(setting: Setting) -> Part:
+    """Seconds of whole processes."""
     say("server: simworlds docs, cold")
-    found: dict[str, list[float]] = {}
-    for query in _COLD:
+    times: dict[str, list[float]] = {query: [] for query in _COLD}
+    for query, found in times.items():
         for _ in range(3 if setting.quick else COLD_RUNS):
             began = time.perf_counter()
             _docs(setting, query)
-            found.setdefault(query, []).append(time.perf_counter() - began)
-    return found
+            found.append(time.perf_counter() - began)
+    named, asked = (percentile(times[query], 0.5) for query in _COLD)
+    return Part("simworlds docs", (Figure("docs", named, f"a question {asked:.2f} s"),), data=times)
 
 
-async def _stdio(
-    command: Sequence[str], tool: str, queries: Sequence[str], setting: Setting, starts: int
-) -> _Stdio:
+async def _stdio(command: Sequence[str], tool: str, queries: Sequence[str], setting: Setting) -> _Stdio:
     """Starts the server, asks it every query once, and again with a new process; the first start does not count."""
     found = _Stdio()
     parameters = StdioServerParameters(
         command=command[0], args=list(command[1:]), cwd=REPO, env=environment(setting.home)
     )
     with open(os.devnull, "w", encoding="utf-8") as silence:  # noqa: PTH123 - it has no other name
-        for number in range(starts + 1):
+        for number in range(1 + (1 if setting.quick else STARTS)):
             before = children()
             began = time.perf_counter()
             async with Client(stdio_client(parameters, errlog=silence)) as client:
@@ -151,16 +165,6 @@ async def _call(client: Client, tool: str, query: str) -> None:
         raise RuntimeError(f"{tool} refused {query[:60]!r}: {result.content}")
 
 
-def _stdio_figures(ours: _Stdio, echo: _Stdio) -> list[Figure]:
-    figures = [
-        Figure("mcp_p50", percentile(ours.calls, 0.5), f"echo here {percentile(echo.calls, 0.5):.1f} ms"),
-        Figure("start", percentile(ours.starts, 0.5), f"echo here {percentile(echo.starts, 0.5):.2f} s"),
-    ]
-    if ours.memory:
-        figures.append(Figure("memory", max(ours.memory), "over stdio"))
-    return figures
-
-
 def _stdio_table(servers: dict[str, _Stdio]) -> Table:
     rows = tuple(
         (
@@ -176,16 +180,3 @@ def _stdio_table(servers: dict[str, _Stdio]) -> Table:
         "Each dev query once in each of several processes; from before the start to the first tool's answer."
     )
     return Table("MCP over stdio", header, rows, note)
-
-
-def _as_data(one: _Stdio) -> dict[str, list[float]]:
-    return {"starts_s": one.starts, "calls_ms": one.calls, "resident_mb": one.memory}
-
-
-def _brief(error: BaseException) -> str:
-    """The innermost reason, in one line."""
-    while isinstance(error, BaseExceptionGroup):
-        error = error.exceptions[0]
-    with contextlib.suppress(IndexError):
-        return f"{type(error).__name__}: {str(error).splitlines()[0]}"
-    return type(error).__name__

@@ -65,3 +65,11 @@ def percentile(values: list[float], share: float) -> float:
     """The smallest of ``values`` that ``share`` of them do not exceed (nearest rank)."""
     ordered = sorted(values)
     return ordered[max(0, min(len(ordered) - 1, -int(-share * len(ordered) // 1) - 1))]
+
+
+def brief(error: BaseException) -> str:
+    """The innermost reason, in one line."""
+    while isinstance(error, BaseExceptionGroup):
+        error = error.exceptions[0]
+    said = str(error).strip().splitlines()
+    return f"{type(error).__name__}: {said[0][:200]}" if said else type(error).__name__

@@ -79,7 +79,7 @@ _ROWS = (
     Target("mcp_p50", "MCP over stdio, one call: p50", "ms", 4, False, "echo tool 1.0 ms"),
     Target("start", "server start to first answer", "s", 0.8, False, "echo tool 0.45 s · others past 10 s"),
     Target("docs", "simworlds docs X, cold process", "s", 0.6),
-    Target("memory", "server's resident memory, after all queries", "MB", 120),
+    Target("memory", "server's resident memory, at most", "MB", 120),
     Target("load_errors", "64 HTTP clients: errors", "count", 0),
     Target("load_wrong", "64 HTTP clients: wrong answers", "count", 0),
     Target("build", "build with manual and guides", "s", 60, False, "Sphinx alone 34 s"),
