@@ -79,6 +79,21 @@ def base_path(cls):
     return WRITTEN.get(cls.__mro__[1], "") if len(cls.__mro__) > 1 else ""
 
 
+def annotated(hint):
+    """What an annotation says: the property that a class gets when it is registered, or just a type."""
+    given = getattr(hint, "keywords", None)
+    if given is None:
+        return {"type": hint if isinstance(hint, str) else getattr(hint, "__name__", str(hint))}
+    kind = hint.function.__name__.removesuffix("Property").lower()
+    return {
+        "type": "boolean" if kind == "bool" else kind,
+        "label": given.get("name", ""),
+        "description": given.get("description", ""),
+        "default": plain(given.get("default")),
+        "subtype": given.get("subtype", ""),
+    }
+
+
 def write_class(write, path, cls):
     """A class outside RNA with its own members."""
     owner = path.rpartition(".")[0]
@@ -117,8 +132,7 @@ def write_class(write, path, cls):
                 )
     for name, hint in getattr(cls, "__annotations__", {}).items():
         if not name.startswith("_") and name not in written:
-            text = hint if isinstance(hint, str) else getattr(hint, "__name__", str(hint))
-            write("symbol", path=f"{path}.{name}", kind="property", owner=path, type=text)
+            write("symbol", path=f"{path}.{name}", kind="property", owner=path, **annotated(hint))
 
 
 class Walk:
