@@ -24,6 +24,8 @@ from kb_build.analysis import STOP_WORDS, stem
 DIMENSIONS = 96
 LEAST_SIMILARITY = 0.5
 MOST_NEIGHBOURS = 6
+LEAST_UNITS = 3
+LEAST_LETTERS = 2
 CHUNK = 2_000
 
 Vectors = NDArray[np.float32]
@@ -46,17 +48,15 @@ def reduce(vectors: Vectors, dimensions: int) -> Vectors:
 
 
 def documentation_words(base: Path) -> set[str]:
-    """The most used spelling of every stem in a knowledge base."""
+    """The most used spelling of every stem in a knowledge base that is no name made up for one place."""
+    sql = "SELECT word FROM vocabulary JOIN postings USING (stem) WHERE level = 0 AND df >= ?"
     with sqlite3.connect(f"file:{base}?mode=ro", uri=True) as connection:
-        return {
-            word
-            for (word,) in connection.execute("SELECT word FROM vocabulary")
-            if word.isalpha() and word.isascii()
-        }
+        rows = connection.execute(sql, (LEAST_UNITS,))
+        return {word for (word,) in rows if word.isalpha() and word.isascii() and len(word) > LEAST_LETTERS}
 
 
 def neighbours(words: list[str], vectors: Vectors, targets: set[str]) -> dict[str, list[tuple[str, float]]]:
-    """word → the nearest documentation words with another stem, nearest first."""
+    """word → the nearest documentation words with another stem, nearest first; () for a word that has none."""
     columns = [number for number, word in enumerate(words) if word in targets]
     matrix = vectors[columns].T
     found: dict[str, list[tuple[str, float]]] = {}
@@ -72,8 +72,7 @@ def neighbours(words: list[str], vectors: Vectors, targets: set[str]) -> dict[st
                 if stem(other) not in seen and other not in STOP_WORDS:
                     seen.add(stem(other))
                     kept.append((other, float(values[column])))
-            if kept:
-                found[word] = kept
+            found[word] = kept
     return found
 
 
@@ -91,13 +90,14 @@ def main() -> int:
     general = {
         word
         for word in options.words.read_text().split()
-        if word.isalpha() and word.isascii() and len(word) > 2
+        if word.isalpha() and word.isascii() and len(word) > LEAST_LETTERS
     }
     words = sorted((general | targets) - STOP_WORDS)
     table = neighbours(words, reduce(encode(words, options.model), DIMENSIONS), targets)
     lines = [
         "# English words and the words of Blender's documentation that mean nearly the same, with the cosine in",
-        "# hundredths. Made by bench/near_words.py from all-MiniLM-L6-v2 (Apache-2.0).",
+        "# hundredths; a word alone is known, and near to none. Made by bench/near_words.py from all-MiniLM-L6-v2",
+        "# (Apache-2.0).",
     ]
     for word, near in sorted(table.items()):
         lines.append(" ".join([word, *(f"{other} {round(100 * similarity)}" for other, similarity in near)]))

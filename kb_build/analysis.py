@@ -40,7 +40,7 @@ def words(text: str) -> list[str]:
     """Lower-case words; identifiers are taken apart at ``_``, at dots and at CamelCase humps."""
     found: list[str] = []
     for token in _WORD.findall(text):
-        if token.isascii() and not token.islower() and not token.isdigit():
+        if token.isascii() and token[0].isalpha() and not token.islower():
             found.extend(part.lower() for part in _CAMEL.findall(token))
         else:
             found.append(token.lower())

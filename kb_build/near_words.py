@@ -31,12 +31,14 @@ def load_near_words() -> dict[str, Near]:
 
 
 def near_stems(table: Mapping[str, Near], stems: Container[str]) -> Iterator[tuple[str, str]]:
-    """(word, stems of the corpus with their similarities): rows of the table ``near`` (see schema.DDL)."""
+    """(word, stems of the corpus with their similarities): rows of the table ``near`` (see schema.DDL).
+
+    A word that is near to nothing is kept: it is an English word, not a misspelling.
+    """
     for word, near in table.items():
         own, kept = stem(word), dict[str, int]()
         for other, similarity in near:
             stemmed = stem(other)
             if stemmed != own and stemmed in stems:
                 kept.setdefault(stemmed, similarity)
-        if kept:
-            yield word, " ".join(f"{stemmed} {similarity}" for stemmed, similarity in kept.items())
+        yield word, " ".join(f"{stemmed} {similarity}" for stemmed, similarity in kept.items())

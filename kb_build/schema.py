@@ -94,7 +94,8 @@ CREATE TABLE postings (
 -- The corpus' words: stem and most used spelling.
 CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWID;
 
--- English words → stems of the corpus that mean nearly the same, each followed by the similarity in hundredths.
+-- English words → stems of the corpus that mean nearly the same, each followed by the similarity in hundredths;
+-- empty for a word that is known and near to none.
 CREATE TABLE near (word TEXT PRIMARY KEY, stems TEXT NOT NULL) WITHOUT ROWID;
 """
 

@@ -185,10 +185,15 @@ class Reader:
         rows = self.rows("SELECT version FROM since WHERE path = ?", path)
         return rows[0][0] if rows else ""
 
-    def near(self, word: str) -> list[tuple[str, float]]:
-        """Stems of the corpus that mean nearly what an English word means, with the similarity, nearest first."""
+    def near(self, word: str) -> list[tuple[str, float]] | None:
+        """Stems of the corpus that mean nearly what an English word means, with the similarity, nearest first.
+
+        None for what is no English word: a name, or a misspelling.
+        """
         rows = self.rows("SELECT stems FROM near WHERE word = ?", word)
-        parts = rows[0][0].split() if rows else []
+        if not rows:
+            return None
+        parts = rows[0][0].split()
         return [(parts[i], int(parts[i + 1]) / 100) for i in range(0, len(parts), 2)]
 
     def links_from(self, source: str, kind: str) -> list[str]:

@@ -33,6 +33,7 @@ Scores = NDArray[np.float32]
 
 K1 = 1.2
 NEAR_WEIGHT = 1.0  # a near word counts by its similarity, times this
+RARE = 3.0  # idf from which on a word's near words are looked at: a common one is Blender's own already
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
@@ -161,9 +162,11 @@ class Searcher:
     def _concept(self, word: str, own: str) -> Concept:
         idf = self.idf(own)
         stems: dict[str, float] = {own: 1.0} if idf else {}
-        for near, similarity in self._reader.near(word):
-            stems.setdefault(near, NEAR_WEIGHT * similarity)
-        if not stems and (corrected := self.correction(word)):
+        near = self._reader.near(word)
+        if not idf or idf >= RARE:
+            for other, similarity in near or ():
+                stems.setdefault(other, NEAR_WEIGHT * similarity)
+        if not stems and near is None and (corrected := self.correction(word)):
             stems[stem(corrected)] = 0.95
         if not idf:
             idf = max((self.idf(term) for term in stems), default=UNKNOWN_IDF)
