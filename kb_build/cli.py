@@ -17,7 +17,9 @@ from kb_build.settings import base_path, built_bases, corpora_folder, home_folde
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from kb_build.extract import Extract
     from kb_build.pipeline import BuildReport
+    from kb_build.progress import Progress
 
 _ROLES = ("manual", "guides")
 _INTERRUPTED = 130
@@ -79,9 +81,10 @@ def _roles(_context: click.Context, _parameter: click.Parameter, value: str | No
 @click.option("--out", type=_PATH, help="Write the base to this file.")
 @reports_errors
 def build(version: str | None, **given: Any) -> None:
-    """Build the knowledge base of Blender VERSION (5.1, 5.1.2), if it is not there already.
+    """Build a Blender's knowledge base.
 
-    Without VERSION: the Blender of this environment, else the newest known.
+    VERSION is 5.1 or 5.1.2; without it, the Blender of this environment, else the newest known. Nothing is
+    done when nothing has changed.
     """
     from kb_build import pipeline  # noqa: PLC0415 - other commands do without
     from kb_build.progress import shown_progress  # noqa: PLC0415
@@ -126,7 +129,10 @@ def _tell(report: BuildReport) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Everything that the base knows of itself, as JSON.")
 @reports_errors
 def info(version: str | None, as_json: bool) -> None:
-    """What is in the knowledge base of VERSION; without VERSION, which bases there are."""
+    """Tell what is in a base.
+
+    VERSION is 5.1, or a base's path; without it, all bases are listed.
+    """
     from kb_build.report import base_facts, base_lines, bases_lines  # noqa: PLC0415 - only here
 
     home = home_folder()
@@ -156,7 +162,10 @@ def _base(version: str) -> Path:
 @click.option("--json", "as_json", is_flag=True, help="The findings as JSON.")
 @reports_errors
 def verify(version: str | None, reference: Path | None, as_json: bool) -> None:
-    """Check the knowledge base of VERSION (default: the newest). Exit code 1 when something is wrong."""
+    """Check that a base is whole.
+
+    VERSION is 5.1, or a base's path (default: the newest base). The exit code is 1 when something is wrong.
+    """
     from kb_build.verify import verify_base  # noqa: PLC0415 - only here
 
     bases = list(built_bases(home_folder()).values())
@@ -167,6 +176,46 @@ def verify(version: str | None, reference: Path | None, as_json: bool) -> None:
     sys.exit(0 if found.sound else 1)
 
 
+@kb.command("diff")
+@click.argument("old")
+@click.argument("new")
+@click.option("--prefix", default="", help="Only what is below this: bpy.types.Mesh, bpy.ops, …")
+@click.option("--interface", is_flag=True, help="Panels, menus and their like, too.")
+@click.option("--limit", type=click.IntRange(min=1), help="So many lines of each kind at most.")
+@click.option("--json", "as_json", is_flag=True, help="The differences as JSON.")
+@reports_errors
+def diff_command(old: str, new: str, **given: Any) -> None:
+    """Compare two Blenders' APIs.
+
+    Tells what NEW has added, removed and changed since OLD. Each is a version, or the path of a Blender
+    executable. A bpy package that is not at hand is installed, 350 MB.
+    """
+    from kb_build.diff import diff, format_diff  # noqa: PLC0415 - only here
+    from kb_build.progress import shown_progress  # noqa: PLC0415
+
+    signal.signal(signal.SIGTERM, _terminated)
+    with shown_progress() as progress:
+        found = diff(_ask(old, progress), _ask(new, progress), interface=given["interface"])
+    if given["prefix"]:
+        found = found.under(given["prefix"])
+    as_json = given["as_json"]
+    click.echo(json.dumps(found.to_json(), indent=2) if as_json else format_diff(found, limit=given["limit"]))
+
+
+def _ask(name: str, progress: Progress) -> Extract:
+    """The API of a Blender that is named by its version or by its executable."""
+    from kb_build.extract import read_extract  # noqa: PLC0415 - only here
+    from kb_build.extraction import extract_api  # noqa: PLC0415
+    from kb_build.runtime import find_runtime  # noqa: PLC0415
+
+    home, executable = home_folder(), Path(name)
+    if executable.is_file():
+        runtime = find_runtime(None, home=home, blender_exe=executable, progress=progress)
+    else:
+        runtime = find_runtime(name, home=home, progress=progress)
+    return read_extract(extract_api(runtime, home=home, progress=progress))
+
+
 @kb.command()
 @click.argument("versions", nargs=-1)
 @click.option("--blender-exe", "blender_exes", type=_PATH, multiple=True, help="A Blender to ask, too.")
@@ -174,7 +223,7 @@ def verify(version: str | None, reference: Path | None, as_json: bool) -> None:
 @click.option("--force", is_flag=True, help="Write even if the file says more than is found now.")
 @reports_errors
 def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path | None, force: bool) -> None:
-    """Write down which symbol exists in which Blender version.
+    """Write down since when symbols exist.
 
     Asks VERSIONS (default: all that a bpy package is known of); each is installed on first use, 350 MB.
     """
@@ -202,7 +251,10 @@ def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path
 @click.argument("file", type=click.Path(path_type=Path, exists=True, dir_okay=False))
 @reports_errors
 def merge_summaries(file: Path) -> None:
-    """Take over the summaries in a colleague's FILE, so that they are not paid for twice."""
+    """Take over a colleague's summaries.
+
+    Those in FILE that are new are kept, so that they are not paid for twice.
+    """
     from kb_build.summaries import SummaryStore  # noqa: PLC0415 - only here
 
     store = SummaryStore(summaries_path(home_folder()))

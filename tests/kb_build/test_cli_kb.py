@@ -166,6 +166,27 @@ def test_verify_tells_its_findings_as_json(built: Built, tmp_path: Path) -> None
     ]
 
 
+@pytest.mark.blender
+def test_two_blenders_are_compared(built: Built) -> None:
+    """A program that passes an altered copy of this Blender's own description off as another Blender's."""
+    extract = next((built.home / "extracts").glob("*.jsonl"))
+    other = built.home / "blender"
+    other.write_text(
+        '#!/bin/sh\n[ "$1" = --version ] && echo "Blender 4.9.1" && exit\nfor word; do last=$word; done\n'
+        f'sed -e \'s/bpy.types.Mesh.vertices/bpy.types.Mesh.corners/g\' -e \'s/"version":"[0-9.]*"/'
+        f'"version":"4.9.1"/\' {extract} > "$last"\n'
+    )
+    other.chmod(0o755)
+    words = ("kb", "diff", str(other), built.report.version, "--prefix", "bpy.types.Mesh")
+    text = run(built.home, *words).stdout
+    assert text.startswith(f"# Blender 4.9.1 → {built.report.version}")
+    assert "`corners`" in text[text.index("## Removed") : text.index("## Added")]
+    found = json.loads(run(built.home, *words, "--json").stdout)
+    assert [one["path"] for one in found["removed"]] == ["bpy.types.Mesh.corners"]
+    assert [one["path"] for one in found["added"]] == ["bpy.types.Mesh.vertices"]
+    assert found["changed"] == []
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -178,6 +199,7 @@ def test_verify_tells_its_findings_as_json(built: Built, tmp_path: Path) -> None
         (("kb", "verify"), "there is no knowledge base yet"),
         (("kb", "verify", "../../etc/passwd"), "not a Blender version"),
         (("kb", "merge-summaries", "/nowhere"), "does not exist"),
+        (("kb", "diff", "nonsense", "5.1"), "'nonsense' is not a Blender version"),
     ],
 )
 def test_what_cannot_be_done_is_one_message_and_code_2(
