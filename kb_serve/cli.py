@@ -135,25 +135,30 @@ def serve(  # noqa: PLR0913 - one for each option
     ]
     if for_http and not over_http:
         raise click.UsageError("--host, --port and --allow-host go with --http.")
-    # Nothing of what is loaded is garbage, and looking for it would take a tenth of the time to start.
+    # Nothing of what is loaded is garbage: looking for it would take a tenth of the time to start.
     gc.disable()
     service = _service(blender, blender_exe, rebuild=not no_rebuild)
     try:
         if over_http:
             from kb_serve.http import Address, run_http  # noqa: PLC0415 - loads the MCP package
 
-            gc.enable()
+            _loaded()
             run_http(service, Address(host, port, token or "", allow_host))
         else:
             from kb_serve.server import run_stdio  # noqa: PLC0415 - loads the MCP package
 
-            gc.enable()
+            _loaded()
             run_stdio(service)
     except KBServeError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
     finally:
         service.bases.close()
+
+
+def _loaded() -> None:
+    gc.freeze()
+    gc.enable()
 
 
 def _service(blender: str | None, blender_exe: Path | None, *, rebuild: bool) -> Service:

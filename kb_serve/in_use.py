@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-_SECONDS = 60.0
+_SECONDS = 20.0
 _VERSION = re.compile(r"^Blender (\d+\.\d+\.\d+)", re.MULTILINE)
 
 

@@ -71,12 +71,13 @@ class Upkeep:
         have, in_use = meta.get("blender", ""), self.bases.in_use
         if in_use is None or not _newer(in_use, have) or (asked and minor(in_use) != minor(have)):
             return ""
-        then = {
-            "idle": f"Build its base: simworlds kb build {minor(in_use)}",
-            "running": "Its base is being built in the background; until then this one answers.",
-            "failed": f"Building its base failed: {self.reason}",
-        }
-        return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then[self.state]}"
+        if self.state == "failed":
+            then = f"Building its base failed: {self.reason}"
+        elif self.enabled:
+            then = "Its base is being built in the background; until then this one answers."
+        else:
+            then = f"Build its base: simworlds kb build {minor(in_use)}"
+        return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then}"
 
     def building(self, version: str | None) -> bool:
         """Whether the base of this version (None: of whichever is in use) is being built."""

@@ -111,6 +111,7 @@ def make_server(service: Service) -> Server[None]:
         title="SimWorlds: Blender documentation",
         instructions=INSTRUCTIONS,
         lifespan=lifespan,
+        get_tool_input_schema=lambda name: tool().input_schema if name == NAME else None,
         on_list_tools=list_tools,
         on_call_tool=call_tool,
         on_list_resources=list_resources,

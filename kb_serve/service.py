@@ -30,9 +30,9 @@ class Service:
         self.upkeep = upkeep
 
     def warm(self) -> None:
-        """Loads what the first answer needs."""
+        """Loads and finds out what the first answer needs."""
         with contextlib.suppress(KBServeError):
-            self.bases.pick()
+            self.upkeep.note(self.bases.pick().meta, None)
 
     def ask(
         self, query: str, *, blender: str | None, limit: int, max_tokens: int, part: int

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 from mcp_types import Tool, ToolAnnotations
@@ -76,6 +77,7 @@ class Reply(BaseModel):
     blender: str = Field(description="The Blender version that the answer holds for.")
 
 
+@cache
 def tool() -> Tool:
     """The tool's entry in the list of tools."""
     return Tool(

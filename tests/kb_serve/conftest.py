@@ -51,19 +51,19 @@ def make_base(base: Path, home: Path) -> MakeBase:
 
 
 @pytest.fixture
-def serve_from() -> Iterator[Callable[[Path], Service]]:
-    """Makes services over home folders, which build nothing by themselves; closes their bases."""
+def serve_from() -> Iterator[Callable[..., Service]]:
+    """Makes services over home folders, which build nothing unless told to; closes their bases."""
     with ExitStack() as opened:
 
-        def make(home: Path) -> Service:
-            bases = Bases(home)
+        def make(home: Path, *, blender_exe: Path | None = None, rebuild: bool = False) -> Service:
+            bases = Bases(home, blender_exe=blender_exe)
             opened.callback(bases.close)
-            return Service(bases, Upkeep(bases, enabled=False))
+            return Service(bases, Upkeep(bases, blender_exe, enabled=rebuild))
 
         yield make
 
 
 @pytest.fixture
-def service(home: Path, serve_from: Callable[[Path], Service]) -> Service:
+def service(home: Path, serve_from: Callable[..., Service]) -> Service:
     """The service over ``home``."""
     return serve_from(home)

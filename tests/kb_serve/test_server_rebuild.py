@@ -17,7 +17,6 @@ from running import COMMAND, REPO, Wire, environment
 from kb_serve.budget import tokens
 from kb_serve.errors import BaseMissing
 from kb_serve.in_use import blender_in_use, minor
-from kb_serve.rebuild import Upkeep
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from kb_serve.service import Service
 
     MakeBase = Callable[..., Path]
+    ServeFrom = Callable[..., Service]
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="executables are shell scripts here")
 
@@ -51,38 +51,39 @@ def stopping_blender(home: Path, version: str, then: str) -> Path:
 
 
 @pytest.fixture
-def upkeep(service: Service) -> Upkeep:
-    service.upkeep = Upkeep(service.bases)
-    return service.upkeep
+def service(home: Path, serve_from: ServeFrom) -> Service:
+    return serve_from(home, rebuild=True)
 
 
-def test_an_up_to_date_base_is_left_alone(service: Service, upkeep: Upkeep) -> None:
+def test_an_up_to_date_base_is_left_alone(service: Service) -> None:
     before = service.bases.pick().path.stat().st_ino
-    upkeep.run()
-    assert (upkeep.state, service.bases.pick().path.stat().st_ino) == ("idle", before)
+    service.upkeep.run()
+    assert (service.upkeep.state, service.bases.pick().path.stat().st_ino) == ("idle", before)
     assert ask(service)[0].notes == ()
 
 
-def test_a_blender_of_a_newer_minor_version_gets_a_base_of_its_own(service: Service, home: Path) -> None:
+def test_a_blender_of_a_newer_minor_version_gets_a_base_of_its_own(serve_from: ServeFrom, home: Path) -> None:
     blender = stopping_blender(home, "98.1.2", "exit 7")
-    service.bases.__init__(home, blender_exe=blender)
-    service.upkeep = Upkeep(service.bases, blender)
-    assert "simworlds kb build 98.1" in ask(service)[0].notes[0]
+    service = serve_from(home, blender_exe=blender, rebuild=True)
+    assert "98.1.2" in ask(service)[0].notes[0]
     assert ask(service, blender=MINOR)[0].notes == (), "who names a version wants that one"
     service.upkeep.run()
     assert service.upkeep.state == "failed"
     assert "98.1.2" in service.upkeep.reason
 
 
-def test_an_older_blender_changes_nothing(service: Service, upkeep: Upkeep, make_base: MakeBase) -> None:
+def test_an_older_blender_changes_nothing(service: Service, make_base: MakeBase) -> None:
     path = make_base(f"{MINOR}.99")
     before = path.stat().st_ino
-    upkeep.run()
-    assert (upkeep.state, path.stat().st_ino) == ("idle", before)
+    service.upkeep.run()
+    assert (service.upkeep.state, path.stat().st_ino) == ("idle", before)
     assert ask(service)[0].notes == ()
 
 
-def test_without_leave_to_build_the_note_says_how(service: Service, make_base: MakeBase) -> None:
+def test_without_leave_to_build_the_note_says_how(
+    home: Path, make_base: MakeBase, serve_from: ServeFrom
+) -> None:
+    service = serve_from(home)
     before = make_base(OLD).stat().st_ino
     service.upkeep.run()
     answer, version = ask(service)
@@ -102,12 +103,11 @@ def test_the_note_is_within_the_budget(service: Service, make_base: MakeBase, ma
 
 
 def test_a_build_that_fails_is_noted_and_the_old_base_answers_on(
-    service: Service, home: Path, make_base: MakeBase
+    serve_from: ServeFrom, home: Path, make_base: MakeBase
 ) -> None:
     make_base(OLD, **WITHOUT_PAGES)
     blender = stopping_blender(home, f"{MINOR}.98", "echo 'no library libfoo' >&2; exit 7")
-    service.bases.__init__(home, blender_exe=blender)
-    service.upkeep = Upkeep(service.bases, blender)
+    service = serve_from(home, blender_exe=blender, rebuild=True)
     service.upkeep.run()
     assert service.upkeep.state == "failed"
     answer, version = ask(service)
@@ -117,15 +117,14 @@ def test_a_build_that_fails_is_noted_and_the_old_base_answers_on(
 
 
 def test_a_build_under_way_is_ended_with_the_server_and_its_children_too(
-    service: Service, home: Path, make_base: MakeBase
+    serve_from: ServeFrom, home: Path, make_base: MakeBase
 ) -> None:
     before = make_base(OLD, **WITHOUT_PAGES).stat().st_ino
     running = home / "running"
     blender = stopping_blender(
         home, f"{MINOR}.98", f"sleep 1; echo $$ > {running}.new; mv {running}.new {running}; sleep 600"
     )
-    service.bases.__init__(home, blender_exe=blender)
-    service.upkeep = Upkeep(service.bases, blender)
+    service = serve_from(home, blender_exe=blender, rebuild=True)
     thread = threading.Thread(target=service.upkeep.run)
     thread.start()
     deadline = time.monotonic() + SECONDS
@@ -143,11 +142,10 @@ def test_a_build_under_way_is_ended_with_the_server_and_its_children_too(
 
 
 def test_a_base_that_is_being_built_is_named_as_such(
-    service: Service, home: Path, make_base: MakeBase
+    serve_from: ServeFrom, home: Path, make_base: MakeBase
 ) -> None:
     make_base("4.5.3")
-    service.bases.__init__(home, blender_exe=stopping_blender(home, "98.1.2", ""))
-    service.upkeep = Upkeep(service.bases)
+    service = serve_from(home, blender_exe=stopping_blender(home, "98.1.2", ""), rebuild=True)
     service.upkeep.state = "running"
     with pytest.raises(BaseMissing, match="being built"):
         ask(service, blender="98.1")
