@@ -29,6 +29,9 @@ TYPES = "bpy.types."
 PAGE_KINDS = frozenset({"manual", "guide", "template"})
 FIELDS = ("name", "heading", "context", "body", "related")
 FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.25}
+# What is rarely asked for: how the manual itself is written, single add-ons, what Blender keeps for old files.
+ASIDE = ("contribute/", "addons/", "freestyle.", "legacy")
+ASIDE_WEIGHT = 0.7
 UNIT_B = 0.35  # how much a unit's length counts: most are a sentence
 TOPIC_B = 0.4
 
@@ -70,7 +73,7 @@ class Postings:
 
 def _indexed(symbol: Symbol, owner: Symbol | None) -> bool:
     """Whether a script works with the symbol: panels, menus and RNA's own bookkeeping are left out."""
-    if symbol.kind == "enum" or symbol.name.startswith("bl_rna_get_subclass"):
+    if symbol.kind == "enum" or symbol.name.startswith(("bl_rna_get_subclass", "__")):
         return False
     if symbol.name in {"input_template", "output_template", "is_registered_node_type"}:
         return False
@@ -235,6 +238,11 @@ def make_postings(docs: Sequence[Doc], b: float) -> Postings:
             postings.numbers[term].append(number)
             postings.weights[term].append(weight)
     return postings
+
+
+def weight_of(doc: Doc) -> float:
+    """How much a document counts before any query: what is rarely asked for stands aside."""
+    return ASIDE_WEIGHT if any(part in doc.ref for part in ASIDE) else 1.0
 
 
 def vocabulary(units: Iterable[Doc]) -> Iterator[tuple[str, str]]:

@@ -77,13 +77,18 @@ CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;
 
 -- What is retrieved (kb_build.index): units (level 0) and topics (level 1), numbered from 0 within their level.
--- ``ref`` is the id a document counts for, ``topic`` the number of its topic or -1, ``chapter`` a number that
--- documents of one chapter of the manual share.
+-- ``ref`` is the id a document counts for.
 CREATE TABLE docs (
     level INTEGER NOT NULL, number INTEGER NOT NULL, ref TEXT NOT NULL, kind TEXT NOT NULL,
-    title TEXT NOT NULL, anchor TEXT NOT NULL, topic INTEGER NOT NULL, chapter INTEGER NOT NULL,
-    PRIMARY KEY (level, number)
+    title TEXT NOT NULL, anchor TEXT NOT NULL, PRIMARY KEY (level, number)
 ) WITHOUT ROWID;
+
+-- For each level, by document number: the number of its topic or -1 and a number that documents of one chapter of
+-- the manual share (int32), and how much it counts (float32).
+CREATE TABLE levels (
+    level INTEGER PRIMARY KEY, count INTEGER NOT NULL, topics BLOB NOT NULL, chapters BLOB NOT NULL,
+    weights BLOB NOT NULL
+);
 
 -- The inverted index: df document numbers as uint32, then df weighted term frequencies as float16.
 CREATE TABLE postings (

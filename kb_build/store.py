@@ -7,12 +7,13 @@ import sqlite3
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sqlite_utils
 
 from kb_build.analysis import key
 from kb_build.errors import StoreError
 from kb_build.former import Former
-from kb_build.index import TOPIC_B, UNIT_B, Doc, make_postings, make_units, topic_docs, vocabulary
+from kb_build.index import TOPIC_B, UNIT_B, Doc, make_postings, make_units, topic_docs, vocabulary, weight_of
 from kb_build.lines import member_line
 from kb_build.near_words import load_near_words, near_stems
 from kb_build.records import Link, Page, Symbol, to_json
@@ -165,15 +166,16 @@ def _write_level(
     connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int]
 ) -> set[str]:
     """One level of the retrieval index; returns its stems."""
+    rows = ((level, number, doc.ref, doc.kind, doc.title, doc.anchor) for number, doc in enumerate(docs))
+    _insert(connection, "docs", rows, 6)
     chapters: dict[str, int] = {}
-    rows = (
-        (
-            level, number, doc.ref, doc.kind, doc.title, doc.anchor, topics.get(doc.topic, -1),
-            chapters.setdefault(doc.chapter, len(chapters)),
-        )
-        for number, doc in enumerate(docs)
-    )  # fmt: skip
-    _insert(connection, "docs", rows, 8)
+    arrays = (
+        np.array([topics.get(doc.topic, -1) for doc in docs], np.int32),
+        np.array([chapters.setdefault(doc.chapter, len(chapters)) for doc in docs], np.int32),
+        np.array([weight_of(doc) for doc in docs], np.float32),
+    )
+    row = (level, len(docs), *(array.tobytes() for array in arrays))
+    connection.execute("INSERT INTO levels VALUES (?,?,?,?,?)", row)
     postings = make_postings(docs, TOPIC_B if level else UNIT_B)
     _insert(connection, "postings", ((level, *row) for row in postings.packed()), 4)
     return set(postings.numbers)

@@ -38,12 +38,11 @@ COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 CHAPTER_WEIGHT = 0.3
-# What is rarely asked for: how the manual itself is written, single add-ons, what Blender keeps for old files.
-ASIDE = ("contribute/", "addons/", "freestyle.", "legacy")
-ASIDE_WEIGHT = 0.7
 UNKNOWN_IDF = 6.0
 _MAX_WORDS = 40
+_KEPT_POSTINGS = 1_500
 _CANDIDATES = 400
+_READ_AHEAD = 80
 _FEEDBACK = 100
 _FEEDBACK_POWER = 3  # the weaker half of the feedback documents hardly votes
 
@@ -71,12 +70,9 @@ class Concept:
 
 @dataclass(frozen=True, slots=True)
 class _Level:
-    """The documents of one level, by number."""
+    """The documents of one level, by number: their topics, chapters and weights."""
 
-    refs: list[str]
-    kinds: list[str]
-    titles: list[str]
-    anchors: list[str]
+    count: int
     topics: NDArray[np.int32]
     chapters: NDArray[np.int32]
     weights: Scores
@@ -87,25 +83,21 @@ class Searcher:
 
     def __init__(self, reader: Reader) -> None:
         self._reader = reader
-        self._postings = lru_cache(maxsize=4_000)(self._read_postings)
+        self._postings = lru_cache(maxsize=_KEPT_POSTINGS)(self._read_postings)
 
     @cached_property
     def _levels(self) -> tuple[_Level, _Level]:
         return self._read_level(0), self._read_level(1)
 
     def _read_level(self, level: int) -> _Level:
-        sql = "SELECT ref, kind, title, anchor, topic, chapter FROM docs WHERE level = ? ORDER BY number"
-        rows = self._reader.rows(sql, level)
-        if not rows:
-            return _Level(
-                [], [], [], [], np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.float32)
-            )
-        refs, kinds, titles, anchors, topics, chapters = (list(column) for column in zip(*rows, strict=True))
-        weights = [ASIDE_WEIGHT if any(part in ref for part in ASIDE) else 1.0 for ref in refs]
+        sql = "SELECT count, topics, chapters, weights FROM levels WHERE level = ?"
+        ((count, topics, chapters, weights),) = self._reader.rows(sql, level)
         return _Level(
-            refs, kinds, titles, anchors,
-            np.asarray(topics, np.int32), np.asarray(chapters, np.int32), np.asarray(weights, np.float32),
-        )  # fmt: skip
+            count,
+            np.frombuffer(topics, np.int32),
+            np.frombuffer(chapters, np.int32),
+            np.frombuffer(weights, np.float32),
+        )
 
     def _read_postings(self, level: int, term: str) -> tuple[NDArray[np.uint32], Scores] | None:
         rows = self._reader.rows("SELECT df, data FROM postings WHERE level = ? AND stem = ?", level, term)
@@ -121,7 +113,7 @@ class Searcher:
         found = self._postings(0, term)
         if found is None:
             return 0.0
-        total, df = len(self._levels[0].refs), len(found[0])
+        total, df = self._levels[0].count, len(found[0])
         return math.log(1 + (total - df + 0.5) / (df + 0.5))
 
     # The query
@@ -176,7 +168,7 @@ class Searcher:
 
     def _score(self, level: int, concepts: Sequence[Concept]) -> tuple[Scores, Scores]:
         """(scores, coverages) of every document of a level."""
-        count = len(self._levels[level].refs)
+        count = self._levels[level].count
         scores, covered = np.zeros(count, np.float32), np.zeros(count, np.float32)
         total = sum(concept.idf for concept in concepts) or 1.0
         for concept in concepts:
@@ -197,7 +189,7 @@ class Searcher:
     def search(self, text: str, limit: int = 50) -> list[Found]:
         """The best documents for a text, best first, each id once."""
         concepts = list(self.concepts(text))
-        if not self._levels[0].refs or not any(concept.stems for concept in concepts):
+        if not self._levels[0].count or not any(concept.stems for concept in concepts):
             return []
         units, _ = self._levels
         own, covered = self._score(0, concepts)
@@ -223,21 +215,27 @@ class Searcher:
         later: list[Found] = []
         refs: set[str] = set()
         topics: set[int] = set()
-        for number in order.tolist():
-            if scores[number] <= 0:
-                break
-            ref, topic = units.refs[number], int(units.topics[number])
+        for number, ref, kind, title, anchor in self._documents(order[scores[order] > 0].tolist()):
             if ref in refs:
                 continue
             refs.add(ref)
-            found = Found(
-                ref, units.kinds[number], units.titles[number], units.anchors[number],
-                float(scores[number]), float(covered[number]),
-            )  # fmt: skip
+            topic = int(units.topics[number])
+            found = Found(ref, kind, title, anchor, float(scores[number]), float(covered[number]))
             (later if topic in topics else first).append(found)
             if topic >= 0:
                 topics.add(topic)
+            if len(first) == limit:
+                break
         return (first + later)[:limit]
+
+    def _documents(self, numbers: Sequence[int]) -> Iterator[tuple[int, str, str, str, str]]:
+        """(number, ref, kind, title, anchor) of units, in the order given, read as far as they are wanted."""
+        for start in range(0, len(numbers), _READ_AHEAD):
+            wanted = numbers[start : start + _READ_AHEAD]
+            marks = ",".join("?" * len(wanted))
+            sql = f"SELECT number, ref, kind, title, anchor FROM docs WHERE level = 0 AND number IN ({marks})"  # noqa: S608
+            rows = {row[0]: row for row in self._reader.rows(sql, *wanted)}
+            yield from (rows[number] for number in wanted)
 
 
 def _top(scores: Scores, count: int) -> NDArray[np.intp]:
