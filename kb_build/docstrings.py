@@ -7,11 +7,11 @@ import re
 import textwrap
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from docutils import nodes
 from docutils.frontend import get_default_settings
-from docutils.parsers.rst import Parser, roles
+from docutils.parsers.rst import Directive, Parser, directives, roles
 from docutils.utils import new_document
 
 from kb_build.records import Default, Parameter
@@ -19,9 +19,20 @@ from kb_build.records import Default, Parameter
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_DIRECTIVE = re.compile(
-    r"\.\. (?:function|method|classmethod|staticmethod|class|data|attribute|property|exception)::[ \t]*(.*)"
+_DECLARATIONS = (
+    *("function", "method", "classmethod", "staticmethod"),
+    *("class", "data", "attribute", "property", "exception"),
 )
+_REMARKS = {
+    "seealso": "See also",
+    "versionadded": "Added in",
+    "versionchanged": "Changed in",
+    "deprecated": "Deprecated since",
+}
+_DIRECTIVE = re.compile(rf"\.\. (?:{'|'.join(_DECLARATIONS)})::[ \t]*(.*)")
+_OWN = "docstring-"  # Sphinx has these directives too, in a registry that all of docutils shares
+_SPHINX = re.compile(rf"^(\s*\.\. )(?={'|'.join((*_DECLARATIONS, *_REMARKS))}::)", re.MULTILINE)
+_CALL = re.compile(r"\w+\s*\(")
 _REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "ref", "exc", "const", "obj", "doc")
 _QUIET = 5
 
@@ -35,6 +46,16 @@ class Docstring:
     type: str = ""
     parameters: tuple[Parameter, ...] = ()
     returns: tuple[Parameter, ...] = ()
+    members: tuple[Member, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A method or attribute that the docstring of its class describes. ``kind`` as in ``.. method::``."""
+
+    kind: str
+    name: str
+    docstring: Docstring
 
 
 @dataclass(slots=True)
@@ -57,8 +78,50 @@ def _literal_role(
     return [nodes.literal(rawtext, shown.lstrip("~!"))], []
 
 
+class _Declared(nodes.General, nodes.Element):
+    """A method or attribute within the docstring of a class; ``calls`` are its signatures."""
+
+
+class _Declaration(Directive):
+    """``.. method:: f(a)`` with what is said below it; several signatures stand on a line each."""
+
+    has_content = True
+    required_arguments = 1
+    final_argument_whitespace = True
+    option_spec: ClassVar[Any] = {"noindex": directives.flag}
+
+    def run(self) -> list[nodes.Node]:
+        lines = re.sub(r"\s*\\\s*\n\s*", " ", self.arguments[0]).split("\n")
+        calls = [lines[0].strip(), *(line.strip() for line in lines[1:] if _CALL.match(line.strip()))]
+        node = _Declared(kind=self.name.removeprefix(_OWN), calls=calls)
+        if said := [line for line in lines[1:] if not _CALL.match(line.strip())]:
+            node += nodes.paragraph("", "\n".join(said))
+        self.state.nested_parse(self.content, self.content_offset, node)
+        return [node]
+
+
+class _Remark(Directive):
+    """``.. seealso::`` and its like: an admonition that docutils alone does not know."""
+
+    has_content = True
+    optional_arguments = 1
+    final_argument_whitespace = True
+
+    def run(self) -> list[nodes.Node]:
+        node = nodes.admonition(title=_REMARKS[self.name.removeprefix(_OWN)])
+        if self.arguments:
+            inline, messages = self.state.inline_text(self.arguments[0], self.lineno)
+            node += nodes.paragraph("", "", *inline, *messages)
+        self.state.nested_parse(self.content, self.content_offset, node)
+        return [node]
+
+
 @cache
 def _parser() -> tuple[Parser, Any]:
+    for name in _DECLARATIONS:
+        directives.register_directive(_OWN + name, _Declaration)
+    for name in _REMARKS:
+        directives.register_directive(_OWN + name, _Remark)
     for role in _REFERENCE_ROLES:
         roles.register_local_role(role, cast("Any", _literal_role))
     settings: Any = get_default_settings(Parser())
@@ -98,12 +161,19 @@ def _block(node: nodes.Node) -> str:  # noqa: PLR0911 - one return a kind of nod
             if item.children
         )
     if isinstance(node, nodes.Admonition):
-        return f"**{type(node).__name__.title()}:** {_blocks(node.children)}"
+        return f"**{_title(node)}:** {_blocks(node.children)}"
     if isinstance(node, nodes.section | nodes.block_quote):
         return _blocks(node.children)
-    if isinstance(node, nodes.system_message | nodes.comment | nodes.substitution_definition | nodes.target):
+    if isinstance(node, nodes.system_message):  # a directive nobody knows: its source
+        return _blocks([child for child in node.children if isinstance(child, nodes.literal_block)])
+    if isinstance(node, nodes.comment | nodes.substitution_definition | nodes.target):
         return ""
     return _inline(node) if node.children else node.astext()
+
+
+def _title(node: nodes.Admonition) -> str:
+    given = node["title"] if isinstance(node, nodes.admonition) else ""
+    return given or type(node).__name__.title()
 
 
 def _blocks(children: Sequence[nodes.Node]) -> str:
@@ -217,13 +287,37 @@ def parse_docstring(text: str, signature: str = "") -> Docstring:
     body, slots = _bmesh_results(body) if text.startswith("BMeshOpFunc ") else (body, ())
     parser, settings = _parser()
     document = new_document("docstring", settings)
-    parser.parse(body, document)
+    parser.parse(_SPHINX.sub(rf"\1{_OWN}", body), document)
+    parsed = _interpreted(document.children, written, slots)
+    made = next((member.docstring for member in parsed.members if member.name == "__init__"), None)
+    if made and not written:
+        return replace(parsed, signature=made.signature, parameters=made.parameters)
+    return parsed
+
+
+def _member(node: _Declared) -> Member:
+    """Of several signatures the longest one counts, the others are mentioned."""
+    call, *others = sorted(node["calls"], key=len, reverse=True)
+    parsed = _interpreted(node.children, call)
+    if others:
+        also = "Also " + ", ".join(f"`{other}`" for other in others) + "."
+        parsed = replace(parsed, description=f"{parsed.description}\n\n{also}".strip())
+    return Member(node["kind"], call.partition("(")[0].strip(), parsed)
+
+
+def _interpreted(
+    children: Sequence[nodes.Node], written: str, slots: tuple[Parameter, ...] = ()
+) -> Docstring:
+    """The body of a docstring, or of a method within it; ``slots`` are results known beforehand."""
     found = _Fields()
     described: list[nodes.Node] = []
-    for node in document.children:
+    members: list[Member] = []
+    for node in children:
         if isinstance(node, nodes.field_list):
             for row in node.children:
                 _read_field(row.children[0].astext(), _blocks(row.children[1].children), found)
+        elif isinstance(node, _Declared):
+            members.append(_member(node))
         else:
             described.append(node)
     returns = slots
@@ -235,4 +329,5 @@ def parse_docstring(text: str, signature: str = "") -> Docstring:
         type=found.own_type or (found.return_type if not written.endswith(")") else ""),
         parameters=_parameters(written, found),
         returns=returns,
+        members=tuple(members),
     )

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 SCRIPT = Path(__file__).parent / "inside" / "extract.py"
 _INDEXABLE = re.compile(r"[\[*?]")
+_SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
+_SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
+_METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
     "bpy.types.FreestyleLineStyle.node_tree": "ShaderNodeTree",
@@ -104,6 +107,14 @@ def _read(path: Path) -> _Raw:
     return raw
 
 
+def _substitute(rows: Iterable[dict[str, Any]]) -> None:
+    """Puts the texts that a module's docstring defines (``.. |NAME| replace::``) where its members name them."""
+    documented = [row for row in rows if "|" in row.get("docstring", "")]
+    texts = {name: text for row in documented for name, text in _SUBSTITUTION.findall(row["docstring"])}
+    for row in documented:
+        row["docstring"] = _SUBSTITUTED.sub(lambda m: texts.get(m[1], m[0]), row["docstring"])
+
+
 def python_value(value: Default) -> str:
     """A default as Python source."""
     if isinstance(value, list):
@@ -147,6 +158,26 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     elif written.startswith("("):
         symbol = replace(symbol, signature=symbol.name + written)
     return symbol
+
+
+def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
+    """Methods that only the docstring of their class knows, as Freestyle's: the reference lists them."""
+    for row in rows:
+        if row["kind"] == "class" and row.get("docstring"):
+            for member in parse_docstring(row["docstring"], row.get("signature", "")).members:
+                told, call = member.docstring, member.docstring.signature
+                is_call = "(" in call
+                yield Symbol(
+                    path=f"{row['path']}.{member.name}",
+                    kind="function" if is_call else "property",
+                    owner=row["path"],
+                    description=told.description,
+                    type=told.type,
+                    signature=call if is_call else "",
+                    parameters=told.parameters,
+                    returns=told.returns,
+                    flags=_METHOD_FLAGS.get(member.kind, ()),
+                )
 
 
 def _subclass_lookups(classes: Iterable[Symbol], prototypes: list[Symbol]) -> Iterator[Symbol]:
@@ -201,7 +232,11 @@ def read_extract(path: Path) -> Extract:
     for holder, tree in _TREES.items():
         if holder in raw.symbols:
             raw.symbols[holder]["target"] = tree
+    _substitute(raw.symbols.values())
+    described = [*_described_members(raw.symbols.values())]
     symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}
+    for member in described:
+        symbols.setdefault(member.path, member)
     prototypes = [
         symbol
         for name in ("bl_rna_get_subclass", "bl_rna_get_subclass_py")
