@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 import os
+from contextlib import closing
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.extract import Extract
+    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import Reader
 
 REPO = Path(__file__).resolve().parent.parent
 
@@ -33,3 +42,29 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
     mini = REPO / "tests" / "corpora_mini"
     options = BuildOptions(manual=mini / "manual", guides=mini / "guides", offline=True)
     return build(None, options=options, home=tmp_path_factory.mktemp("home")).path
+
+
+@pytest.fixture(scope="session")
+def extract(base: Path) -> Extract:
+    """What this environment's Blender said of its API when ``base`` was built."""
+    from kb_build.extract import read_extract
+
+    return read_extract(next((base.parent.parent / "extracts").glob("*.jsonl")))
+
+
+@pytest.fixture(scope="session")
+def reader(base: Path) -> Iterator[Reader]:
+    """Look-ups in ``base``."""
+    from kb_serve.reader import Reader
+
+    with closing(Reader(base)) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="session")
+def kb(base: Path) -> Iterator[KnowledgeBase]:
+    """``base`` as a caller sees it."""
+    from kb_serve.knowledge_base import KnowledgeBase
+
+    with KnowledgeBase(base) as opened:
+        yield opened

@@ -1,0 +1,93 @@
+"""Text becomes the same terms whoever writes it, and in whatever spelling."""
+
+from __future__ import annotations
+
+import random
+import string
+
+import pytest
+
+from kb_build.analysis import STOP_WORDS, key, stem, terms, words
+
+
+@pytest.mark.parametrize(
+    "spellings",
+    [
+        (
+            "quality_steps",
+            "qualitySteps",
+            "quality steps",
+            "Quality Steps",
+            "QUALITY-STEPS",
+            " quality.steps ",
+        ),
+        ("bpy.types.ClothSettings", "bpy types cloth settings", "BPY.TYPES.CLOTH_SETTINGS"),
+        ('inputs["Specular IOR Level"]', "inputs['specular ior level']", "inputsSpecularIorLevel"),
+        ("OBJECT_OT_modifier_add", "object ot modifier add"),
+        ("Größe", "GRÖßE", "größe"),
+    ],
+)
+def test_spellings_of_one_name_have_one_key(spellings: tuple[str, ...]) -> None:
+    assert len({key(spelling) for spelling in spellings}) == 1
+    assert key(spellings[0])
+
+
+@pytest.mark.parametrize(
+    "spellings",
+    [
+        ("quality_steps", "qualitySteps", "QualitySteps", "quality steps"),
+        ("use_self_collision", "useSelfCollision"),
+    ],
+)
+def test_spellings_of_one_name_have_the_same_terms(spellings: tuple[str, ...]) -> None:
+    assert len({tuple(terms(spelling)) for spelling in spellings}) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("ClothSettings.quality", ["cloth", "settings", "quality"]),
+        ("use_self_collision", ["use", "self", "collision"]),
+        ("ShaderNodeBsdfPrincipled", ["shader", "node", "bsdf", "principled"]),
+        ("UVProjectModifier", ["uv", "project", "modifier"]),
+        ("SceneEEVEE", ["scene", "eevee"]),
+        ("Specular IOR Level", ["specular", "ior", "level"]),
+        ("version 5.1", ["version", "5.1"]),
+        ("", []),
+        ("!?*\"'()[]{}\x00", []),
+    ],
+)
+def test_identifiers_are_taken_apart_at_their_joints(text: str, expected: list[str]) -> None:
+    assert words(text) == expected
+
+
+def test_words_keep_every_letter_and_digit_of_what_is_plain() -> None:
+    random.seed(11)
+    for _ in range(500):
+        text = "".join(random.choices(string.ascii_letters + string.digits + "_ .-[]\"'", k=30))
+        letters = "".join(char for char in text.lower() if char.isalpha())
+        assert "".join(char for word in words(text) for char in word if char.isalpha()) == letters
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [("collisions", "collision"), ("baking", "bake"), ("simulated", "simulate"), ("modifiers", "modifier"),
+     ("particles", "particle")],
+)  # fmt: skip
+def test_forms_of_one_word_meet_in_one_stem(one: str, other: str) -> None:
+    assert stem(one) == stem(other)
+
+
+def test_words_that_only_frame_a_question_are_left_out() -> None:
+    assert terms("How do I make the cloth with its own collisions?") == terms("cloth collisions")
+    assert terms(" ".join(sorted(STOP_WORDS))) == []
+
+
+def test_any_text_is_taken() -> None:
+    random.seed(3)
+    for _ in range(300):
+        text = "".join(
+            chr(random.choice((random.randrange(0x300), random.randrange(0x11000)))) for _ in range(40)
+        )
+        assert all(term == term.lower() for term in terms(text) if term.isascii())
+        assert " " not in key(text)

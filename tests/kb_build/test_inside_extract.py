@@ -1,0 +1,382 @@
+"""What the extractor gets out of the Blender of this environment."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.extraction import extract_api
+from kb_build.runtime import find_runtime
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+    from kb_build.extract import Extract
+    from kb_build.records import Symbol
+
+pytestmark = pytest.mark.blender
+
+MODULES = (
+    "mathutils", "mathutils.bvhtree", "mathutils.geometry", "mathutils.interpolate", "mathutils.kdtree",
+    "mathutils.noise", "bmesh", "bmesh.ops", "bmesh.types", "bmesh.utils", "bmesh.geometry", "gpu",
+    "gpu.types", "gpu.state", "gpu.shader", "gpu.texture", "gpu_extras", "gpu_extras.batch", "bpy.app",
+    "bpy.app.handlers", "bpy.app.timers", "bpy.app.translations", "bpy.props", "bpy.utils", "bpy.utils.units",
+    "bpy.utils.previews", "bpy.path", "bpy.msgbus", "bpy_extras", "bpy_extras.anim_utils",
+    "bpy_extras.io_utils", "bpy_extras.view3d_utils", "aud", "blf", "bl_math", "idprop", "idprop.types",
+    "imbuf", "imbuf.types", "freestyle", "freestyle.types", "freestyle.functions", "freestyle.utils",
+)  # fmt: skip
+
+# Run by this interpreter: asks Blender itself for what the extract claims.
+ASK_SOCKETS = """
+import json, os, sys, bpy
+claims, answers = json.load(open(sys.argv[1])), {}
+for identifier, tree, sockets in claims:
+    node = bpy.data.node_groups.new("scratch", tree).nodes.new(identifier)
+    for side, key in sockets:
+        try:
+            answers[f"{identifier}.{side}[{key}]"] = getattr(node, side)[key].identifier
+        except KeyError:
+            answers[f"{identifier}.{side}[{key}]"] = None
+json.dump(answers, open(sys.argv[2], "w"))
+os._exit(0)
+"""
+ASK_PROPERTIES = """
+import json, os, sys, bpy
+rows = {}
+for name in dir(bpy.types):
+    rna = getattr(getattr(bpy.types, name), "bl_rna", None)
+    if rna is not None:
+        rows[name] = [prop.identifier for prop in rna.properties if prop.identifier != "rna_type"]
+json.dump(rows, open(sys.argv[2], "w"))
+os._exit(0)
+"""
+
+
+def ask_blender(script: str, folder: Path, claims: object = None) -> dict[str, object]:
+    """What a script prints into a file when Blender's interpreter runs it."""
+    program, asked, told = folder / "ask.py", folder / "asked.json", folder / "told.json"
+    program.write_text(script)
+    asked.write_text(json.dumps(claims))
+    subprocess.run([sys.executable, str(program), str(asked), str(told)], check=True, capture_output=True)
+    return json.loads(told.read_text())
+
+
+@pytest.fixture(scope="module")
+def symbols(extract: Extract) -> dict[str, Symbol]:
+    return {symbol.path: symbol for symbol in extract.symbols}
+
+
+@pytest.fixture(scope="module")
+def rna_classes(extract: Extract) -> dict[str, Symbol]:
+    """The classes that RNA describes: those that descend from bpy_struct."""
+    bases = {symbol.path: symbol.base for symbol in extract.symbols if symbol.kind == "class"}
+
+    def root(path: str) -> str:
+        return root(bases[path]) if bases.get(path) else path
+
+    return {
+        symbol.path: symbol
+        for symbol in extract.symbols
+        if symbol.kind == "class"
+        and symbol.owner == "bpy.types"
+        and root(symbol.path) == "bpy.types.bpy_struct"
+        and symbol.base
+    }
+
+
+def lineage(path: str, symbols: Mapping[str, Symbol]) -> Iterable[Symbol]:
+    while path in symbols:
+        yield symbols[path]
+        path = symbols[path].base
+
+
+def test_every_step_ran_without_a_fault(extract: Extract) -> None:
+    assert extract.faults == ()
+    assert extract.version.startswith("5.")
+    assert len(extract.build) == 12
+    assert "cycles" in extract.addons
+
+
+def test_no_class_is_missing_and_the_three_groups_are_told_apart(rna_classes: dict[str, Symbol]) -> None:
+    groups = Counter(symbol.group for symbol in rna_classes.values())
+    assert sum(groups.values()) >= 3_900
+    assert groups["data"] >= 1_645
+    assert groups["ui"] >= 1_972
+    assert groups["operator"] >= 283
+
+
+@pytest.mark.parametrize(
+    ("name", "group"),
+    [("Object", "data"), ("Panel", "data"), ("UILayout", "data"), ("CyclesRenderSettings", "data"),
+     ("VIEW3D_MT_object", "ui"), ("OBJECT_PT_transform", "ui"), ("VIEW3D_HT_header", "ui"), ("MESH_UL_vgroups", "ui"),
+     ("OBJECT_OT_select_hierarchy", "operator")],
+)  # fmt: skip
+def test_a_class_is_of_the_group_that_a_reader_expects(
+    symbols: dict[str, Symbol], name: str, group: str
+) -> None:
+    assert symbols[f"bpy.types.{name}"].group == group
+
+
+def test_no_property_of_a_data_type_is_missing(
+    extract: Extract, rna_classes: dict[str, Symbol], tmp_path: Path
+) -> None:
+    """RNA's own count has ``rna_type`` on every class without a base, which says nothing and is left out."""
+    data = {path for path, symbol in rna_classes.items() if symbol.group == "data"}
+    own = sum(symbol.kind == "property" and symbol.owner in data for symbol in extract.symbols)
+    roots = sum(rna_classes[path].base == "bpy.types.bpy_struct" for path in data)
+    assert own + roots >= 10_553
+    paths = {symbol.path for symbol in extract.symbols}
+    bases = {path: symbol.base for path, symbol in rna_classes.items()}
+
+    def has(cls: str, name: str) -> bool:
+        return f"{cls}.{name}" in paths or (cls in bases and has(bases[cls], name))
+
+    missing = [
+        f"{cls}.{name}"
+        for cls, names in ask_blender(ASK_PROPERTIES, tmp_path).items()
+        for name in names
+        if not has(f"bpy.types.{cls}", name)
+    ]
+    assert missing == []
+
+
+def test_every_operator_is_there_with_its_call(extract: Extract) -> None:
+    operators = [symbol for symbol in extract.symbols if symbol.kind == "operator"]
+    assert len(operators) >= 2_452
+    for symbol in operators:
+        assert symbol.signature.startswith(f"{symbol.path}(")
+        assert "_OT_" in symbol.target
+        for parameter in symbol.parameters:
+            assert f"{parameter.name}=" in symbol.signature or parameter.required
+
+
+def test_operators_are_described_and_their_arguments_labelled(extract: Extract) -> None:
+    operators = [symbol for symbol in extract.symbols if symbol.kind == "operator"]
+    arguments = [parameter for symbol in operators for parameter in symbol.parameters]
+    assert sum(bool(symbol.description) for symbol in operators) > 0.95 * len(operators)
+    assert sum(bool(argument.label or argument.description) for argument in arguments) > 0.9 * len(arguments)
+
+
+def test_items_that_blender_computes_are_listed(symbols: dict[str, Symbol]) -> None:
+    parameters = {p.name: p for p in symbols["bpy.ops.object.modifier_add"].parameters}
+    assert {"SUBSURF", "CLOTH", "NODES", "ARRAY"} <= {
+        item.identifier for item in parameters["type"].enum_items
+    }
+    engines = {item.identifier for item in symbols["bpy.types.RenderSettings.engine"].enum_items}
+    assert {"CYCLES", "BLENDER_WORKBENCH"} <= engines
+    views = {
+        item.identifier for item in symbols["bpy.types.ColorManagedViewSettings.view_transform"].enum_items
+    }
+    assert {"AgX", "Standard", "Filmic"} <= views
+
+
+def test_a_property_carries_everything_a_coder_needs(symbols: dict[str, Symbol]) -> None:
+    quality = symbols["bpy.types.ClothSettings.quality"]
+    assert (quality.type, quality.default, quality.hard_min, quality.hard_max) == ("int", 5, 1, None)
+    assert (quality.soft_min, quality.soft_max) == (1, 80)
+    assert quality.label == "Quality"
+    assert "simulation" in quality.description
+    mass = symbols["bpy.types.RigidBodyObject.mass"]
+    assert (mass.unit, mass.hard_max) == ("MASS", None)
+    assert symbols["bpy.types.Object.location"].array == (3,)
+    assert symbols["bpy.types.Object.matrix_world"].array == (4, 4)
+    assert symbols["bpy.types.Object.rotation_euler"].unit == "ROTATION"
+    assert "readonly" in symbols["bpy.types.Object.type"].flags
+    assert [item.identifier for item in symbols["bpy.types.ParticleSettings.type"].enum_items] == [
+        "EMITTER",
+        "HAIR",
+    ]
+    assert symbols["bpy.types.Object.modifiers"].collection == "ObjectModifiers"
+    assert symbols["bpy.types.ClothModifier.settings"].target == "ClothSettings"
+
+
+def test_deprecation_is_told_with_versions(extract: Extract) -> None:
+    deprecated = [symbol for symbol in extract.symbols if symbol.deprecation]
+    assert deprecated
+    for symbol in deprecated:
+        assert symbol.deprecation is not None
+        assert symbol.deprecation.note
+        assert symbol.deprecation.since.count(".") <= 1
+
+
+def test_classes_that_hang_only_on_pointers_are_there(symbols: dict[str, Symbol]) -> None:
+    cycles = [
+        symbol
+        for cls in lineage("bpy.types.CyclesRenderSettings", symbols)
+        for symbol in symbols.values()
+        if symbol.owner == cls.path and symbol.kind == "property"
+    ]
+    assert len({symbol.name for symbol in cycles} - {"id_data"}) + len(["rna_type"]) >= 106
+    for owner, target in (
+        ("Scene", "CyclesRenderSettings"), ("Object", "CyclesObjectSettings"), ("Light", "CyclesLightSettings"),
+        ("Material", "CyclesMaterialSettings"), ("World", "CyclesWorldSettings"), ("Mesh", "CyclesMeshSettings"),
+        ("ViewLayer", "CyclesRenderLayerSettings"),
+    ):  # fmt: skip
+        assert symbols[f"bpy.types.{owner}.cycles"].target == target
+        assert f"bpy.types.{target}" in symbols
+
+
+def test_methods_written_in_c_or_python_are_there_with_their_call(symbols: dict[str, Symbol]) -> None:
+    for path, argument in (
+        ("bpy_struct.keyframe_insert", "data_path"), ("bpy_struct.driver_add", "path"),
+        ("bpy_struct.path_resolve", "path"), ("bpy_prop_collection.foreach_get", "attr"),
+        ("bpy_prop_collection.find", "key"), ("Context.temp_override", "window"),
+        ("Mesh.from_pydata", "vertices"),
+    ):  # fmt: skip
+        symbol = symbols[f"bpy.types.{path}"]
+        assert symbol.kind == "function"
+        assert argument in {parameter.name for parameter in symbol.parameters}, path
+        assert symbol.signature.startswith(f"{symbol.name}(")
+        assert symbol.description
+    returned = symbols["bpy.types.ID.evaluated_get"].returns
+    assert returned[0].type == "ID"
+
+
+def test_functions_know_what_they_take_and_give(symbols: dict[str, Symbol]) -> None:
+    ray = symbols["bpy.types.Object.ray_cast"]
+    assert [p.name for p in ray.parameters][:3] == ["origin", "direction", "distance"]
+    assert [p.required for p in ray.parameters][:3] == [True, True, False]
+    assert [p.name for p in ray.returns] == ["result", "location", "normal", "index"]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_a_module_is_there_with_its_contents(extract: Extract, symbols: dict[str, Symbol], name: str) -> None:
+    assert symbols[name].kind == "module"
+    assert any(symbol.owner == name for symbol in extract.symbols)
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["mathutils.Vector.lerp", "mathutils.Matrix.Rotation", "mathutils.geometry.intersect_line_plane",
+     "mathutils.kdtree.KDTree.find_n", "bmesh.ops.create_cube", "bmesh.types.BMVert.co", "bmesh.types.BMesh.from_mesh",
+     "gpu.types.GPUShader", "gpu.state.blend_set", "gpu_extras.batch.batch_for_shader",
+     "bpy.app.handlers.frame_change_post", "bpy.app.timers.register", "bpy.app.version", "bpy.props.FloatProperty", "bpy.utils.register_class",
+     "bpy.path.abspath", "bpy.msgbus.subscribe_rna", "bpy_extras.io_utils.ImportHelper",
+     "bpy_extras.object_utils.world_to_camera_view", "aud.Sound.file", "blf.draw", "bl_math.clamp",
+     "idprop.types.IDPropertyArray", "imbuf.load", "freestyle.types.Stroke",
+     "freestyle.functions.DensityF1D.__call__",
+     "freestyle.shaders.SmoothingShader.shade"],
+)  # fmt: skip
+def test_a_name_of_a_module_is_there(symbols: dict[str, Symbol], path: str) -> None:
+    assert path in symbols
+
+
+def test_docstrings_are_read_as_markup(symbols: dict[str, Symbol]) -> None:
+    lerp = symbols["mathutils.Vector.lerp"]
+    assert [parameter.name for parameter in lerp.parameters] == ["other", "factor"]
+    assert lerp.returns[0].type == "Vector"
+    for symbol in symbols.values():
+        assert ":arg " not in symbol.description, symbol.path
+        assert ".. function::" not in symbol.description, symbol.path
+
+
+def test_types_are_words_and_not_memory(extract: Extract) -> None:
+    assert [symbol.path for symbol in extract.symbols if "<" in symbol.type or " at 0x" in symbol.type] == []
+
+
+def test_deferred_properties_of_mixins_are_read(symbols: dict[str, Symbol]) -> None:
+    filepath = symbols["bpy_extras.io_utils.ImportHelper.filepath"]
+    assert (filepath.type, filepath.label, filepath.subtype) == ("string", "File Path", "FILE_PATH")
+
+
+def test_context_members_have_types(symbols: dict[str, Symbol]) -> None:
+    expected = {
+        "active_bone": ("pointer", "EditBone"), "selected_objects": ("collection", "Object"),
+        "active_object": ("pointer", "Object"), "scene": ("pointer", "Scene"), "view_layer": ("pointer", "ViewLayer"),
+        "selected_pose_bones": ("collection", "PoseBone"), "object": ("pointer", "Object"),
+        "evaluated_depsgraph_get": None, "visible_objects": ("collection", "Object"), "mode": ("enum", ""),
+    }  # fmt: skip
+    for name, told in expected.items():
+        member = symbols.get(f"bpy.context.{name}")
+        if told is None:
+            assert f"bpy.types.Context.{name}" in symbols
+        elif name == "active_bone":
+            assert member is not None
+            assert member.target in {"EditBone", "Bone"}
+        else:
+            assert member is not None
+            assert (member.type, member.target) == told
+
+
+def test_templates_and_manual_links_come_along(extract: Extract) -> None:
+    assert len(extract.templates) >= 38
+    for page in extract.templates:
+        assert page.slug.startswith("templates_py/")
+        assert page.text.startswith(f"# {page.title}\n\n```python\n")
+        assert page.text.endswith("\n```")
+    manual = {link.source: link.target for link in extract.links if link.kind == "manual"}
+    assert len(manual) > 15_000
+    assert manual["bpy.types.ClothSettings.quality"].startswith("physics/cloth/settings/index")
+    assert manual["bpy.ops.object.modifier_add"] == (
+        "scene_layout/object/editing/modifiers#bpy-ops-object-modifier-add"
+    )
+
+
+def test_links_lead_to_symbols_that_exist(extract: Extract, symbols: dict[str, Symbol]) -> None:
+    for link in extract.links:
+        assert link.source in symbols
+        assert link.kind == "manual" or link.target in symbols, link
+
+
+def test_everything_has_an_owner_that_exists_and_a_path_of_its_own(extract: Extract) -> None:
+    paths = [symbol.path for symbol in extract.symbols]
+    assert len(paths) == len(set(paths))
+    known = set(paths)
+    for symbol in extract.symbols:
+        assert not symbol.owner or symbol.owner in known, symbol.path
+        assert not symbol.base or symbol.base in known, symbol.path
+        assert symbol.kind == "enum" or symbol.path.startswith(symbol.owner), symbol.path
+
+
+def test_nodes_have_their_sockets(extract: Extract, symbols: dict[str, Symbol]) -> None:
+    nodes = [symbol for symbol in extract.symbols if symbol.trees]
+    assert len(nodes) >= 526
+    trees = Counter(tree for node in nodes for tree in node.trees)
+    assert set(trees) == {"ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree"}
+    specular = symbols['bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular IOR Level"]']
+    assert (specular.type, specular.default) == ("value", 0.5)
+    assert (specular.soft_min, specular.soft_max) == (0, 1)
+    assert "identifier:Specular IOR Level" in specular.flags
+
+
+def test_sockets_tell_in_which_modes_they_show(symbols: dict[str, Symbol]) -> None:
+    mix = {
+        symbol.flags[0]: symbol.modes
+        for symbol in symbols.values()
+        if symbol.owner == "bpy.types.ShaderNodeMix" and symbol.kind == "socket"
+    }
+    assert mix["identifier:A_Float"] == ("data_type=FLOAT",)
+    assert mix["identifier:A_Color"] == ("data_type=RGBA",)
+    clamped = symbols['bpy.types.ShaderNodeMath.inputs["Value_001"]']
+    assert clamped.modes[0].startswith("operation=ADD|SUBTRACT|")
+    assert "SQRT" not in clamped.modes[0].split("|")
+
+
+def test_a_socket_path_is_python_that_finds_the_socket(extract: Extract, tmp_path: Path) -> None:
+    """``node.inputs["X"]``, evaluated by Blender, is the socket that the extract describes under that path."""
+    trees = {symbol.path: symbol.trees[0] for symbol in extract.symbols if symbol.trees}
+    expected: dict[str, str] = {}
+    claims: dict[str, tuple[str, str, list[tuple[str, str]]]] = {}
+    for symbol in extract.symbols:
+        if symbol.kind == "socket" and "hidden-by-default" not in symbol.flags and not symbol.modes:
+            identifier = symbol.owner.removeprefix("bpy.types.")
+            side = symbol.path[len(symbol.owner) + 1 :].partition("[")[0]
+            row = claims.setdefault(symbol.owner, (identifier, trees[symbol.owner], []))
+            row[2].append((side, symbol.name))
+            expected[f"{identifier}.{side}[{symbol.name}]"] = symbol.flags[0].removeprefix("identifier:")
+    answers = ask_blender(ASK_SOCKETS, tmp_path, list(claims.values()))
+    assert len(answers) > 1_500
+    assert {name: answer for name, answer in answers.items() if answer != expected[name]} == {}
+
+
+def test_asking_blender_twice_gives_the_same_bytes(base: Path, tmp_path: Path) -> None:
+    again = extract_api(find_runtime(None, home=tmp_path), home=tmp_path)
+    first = next((base.parent.parent / "extracts").glob("*.jsonl"))
+    assert again.read_bytes() == first.read_bytes()
+    assert not [line for line in first.read_text(encoding="utf-8").splitlines() if " at 0x" in line]

@@ -1,0 +1,89 @@
+"""How a class lists its members: one line each, short whatever Blender puts into them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.lines import first_sentence, literal, member_line, type_text
+from kb_build.records import EnumItem, Symbol
+
+if TYPE_CHECKING:
+    from kb_build.extract import Extract
+
+OWNER = "bpy.types.A"
+
+
+def line(kind: str = "property", **fields: object) -> str:
+    return member_line(Symbol(f"{OWNER}.x", kind, OWNER, **fields))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("fields", "expected"),
+    [
+        ({}, "`x`"),
+        ({"type": "int", "default": 5}, "`x` int = 5"),
+        ({"type": "float", "default": 0}, "`x` float = 0"),
+        ({"type": "boolean", "default": False}, "`x` boolean = False"),
+        ({"type": "float", "array": (3,), "default": [0, 1, 0.5]}, "`x` float[3] = (0, 1, 0.5)"),
+        ({"type": "float", "array": (4, 4)}, "`x` float[4][4]"),
+        ({"type": "string", "default": "a'b"}, '`x` string = "a\'b"'),
+        ({"type": "pointer", "target": "Mesh"}, "`x` pointer → Mesh"),
+        ({"type": "collection", "target": "Modifier"}, "`x` collection of Modifier"),
+        ({"type": "int", "flags": ("readonly",)}, "`x` int read-only"),
+        ({"type": "enum", "flags": ("enum-flag",), "default": ["A"]}, "`x` set of enum items = ('A')"),
+        ({"type": "int", "description": "One. Two."}, "`x` int — One"),
+        ({"type": "int", "label": "Ex"}, "`x` int — Ex"),
+        ({"type": "int", "label": "x"}, "`x` int"),
+        ({"type": "int", "modes": ("m=A|B", "n=C")}, "`x` int when m=A|B and n=C"),
+        ({"kind": "function", "signature": "x(a, b=1)", "description": "Does."}, "`x(a, b=1)` — Does"),
+        ({"kind": "function"}, "`x()`"),
+        ({"kind": "operator", "signature": "bpy.ops.m.x(a=(1, 2))"}, "`x(a=(1, 2))`"),
+    ],
+)
+def test_a_line_says_type_default_and_use(fields: dict[str, object], expected: str) -> None:
+    assert line(**fields) == expected
+
+
+def test_of_many_enum_items_the_first_are_shown() -> None:
+    items = tuple(EnumItem(f"I{n}") for n in range(9))
+    assert line(type="enum", enum_items=items[:8]).endswith("I0|I1|I2|I3|I4|I5|I6|I7")
+    assert line(type="enum", enum_items=items).endswith("|I7|…")
+
+
+def test_a_socket_is_listed_as_python_reaches_it() -> None:
+    symbol = Symbol(f'{OWNER}.inputs["B c"]', "socket", OWNER, type="value", default=0.5)
+    assert member_line(symbol) == '`inputs["B c"]` value = 0.5'
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(None, "None"), ("a", "'a'"), ([1, ["b"]], "(1, ('b'))"), (list(range(17)), None)]
+)
+def test_a_literal_is_python_and_short(value: object, text: str | None) -> None:
+    shown = literal(value)
+    assert shown == text if text else shown.endswith("15, …)")
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", ""),
+        ("One.", "One"),
+        ("One\ntwo. Three.", "One two"),
+        ("v1.5 is new. Then", "v1.5 is new"),
+        (". x", ". x"),
+    ],
+)
+def test_the_first_sentence_ends_at_a_full_stop_before_a_blank(text: str, sentence: str) -> None:
+    assert first_sentence(text) == sentence
+
+
+def test_every_symbol_of_blender_has_a_line_of_its_own(extract: Extract) -> None:
+    for symbol in extract.symbols:
+        text = member_line(symbol)
+        assert "\n" not in text, symbol.path
+        assert text.startswith("`"), symbol.path
+        assert type_text(symbol) in text or not symbol.type
+        if symbol.kind == "property":
+            assert f"`{symbol.name}`" in text
