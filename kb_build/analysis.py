@@ -55,3 +55,8 @@ def terms(text: str) -> list[str]:
 def key(text: str) -> str:
     """Spelling folded away: ``quality_steps``, ``qualitySteps`` and ``Quality Steps`` have one key."""
     return _NOT_KEY.sub("", text).lower()
+
+
+def topic_key(text: str) -> str:
+    """One key for a topic in any grammatical number: ``lights``, ``Lighting`` and ``light``."""
+    return "~" + "".join(terms(text))

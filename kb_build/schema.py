@@ -14,7 +14,7 @@ SCHEMA_VERSION = 1
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's own place for telling whose file it is
 
 # How a key came about, in the order in which an answer prefers them.
-FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL = range(4)
+FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
 DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;

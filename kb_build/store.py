@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sqlite_utils
 
-from kb_build.analysis import key
+from kb_build.analysis import key, topic_key
 from kb_build.errors import StoreError
 from kb_build.former import Former
 from kb_build.index import TOPIC_B, UNIT_B, Doc, make_postings, make_units, topic_docs, vocabulary, weight_of
@@ -24,6 +24,7 @@ from kb_build.schema import (
     FORM_NAME,
     FORM_PATH,
     FORM_SHORT,
+    FORM_TOPIC,
     INDEXES,
     SCHEMA_VERSION,
     pack,
@@ -83,6 +84,7 @@ def page_names(page: Page) -> Iterator[tuple[str, int, str]]:
     yield key(page.slug.removesuffix("/index")), FORM_SHORT, page.slug
     yield key(page.slug.removesuffix("/index").rpartition("/")[2]), FORM_NAME, page.slug
     yield key(page.title), FORM_LABEL, page.slug
+    yield topic_key(page.title), FORM_TOPIC, page.slug
 
 
 def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:

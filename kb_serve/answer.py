@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
@@ -88,11 +89,11 @@ class Answerer:
 
     def _make_draft(self, text: str, limit: int) -> _Draft:
         ranking = self._ranker.rank(text)
-        topic = self._topics.find(text)
+        topic = "" if self._reader.entry(text) else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)
         hits = tuple(self._hit(row) for row in ranking.ranked[:limit])
-        notes = tuple(ranking.notes)
+        notes = (*ranking.notes, *self._source_notes(ranking, hits))
         if not hits:
             text = "Nothing in this knowledge base fits the query. Try other words, or a name as Blender writes it."
             return _Draft("none", (), notes, (Block(text),))
@@ -101,6 +102,17 @@ class Answerer:
             return _Draft("page" if self._is_page(hits[0].id) else "schema", hits, notes, blocks)
         blocks = (*self._excerpt(ranking, hits[0]), *self._others(hits[1:]))
         return _Draft("candidates", hits, notes, blocks)
+
+    def _source_notes(self, ranking: Ranking, hits: Sequence[Hit]) -> Iterator[str]:
+        """What the caller should know of the documentation behind the answer."""
+        meta = self._reader.meta
+        minor = meta.get("minor", "")
+        pages = [page for hit in hits if (page := self._reader.page_entry(hit.id))]
+        for version in sorted({page.version for page in pages} - {minor, ""}):
+            yield f"These pages are of the documentation for Blender {version}, not {minor}."
+        if not ranking.named:
+            for missing in json.loads(meta.get("missing", "[]")):
+                yield f"Answered without the {missing['role']}, which this base lacks: {missing['reason']}"
 
     def _is_page(self, identifier: str) -> bool:
         return self._reader.page_entry(identifier) is not None
@@ -160,7 +172,7 @@ class Answerer:
         overview = self._topics.overview(topic)
         ids = dict.fromkeys((topic, *overview.members, *(row.id for row in ranking.ranked)))
         hits = tuple(self._hit(Ranked(i, 1.0 - 0.02 * n, "topic")) for n, i in enumerate(list(ids)[:limit]))
-        return _Draft("page", hits, tuple(ranking.notes), tuple(overview.blocks))
+        return _Draft("page", hits, tuple(self._source_notes(ranking, hits)), overview.blocks)
 
 
 def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> Answer:

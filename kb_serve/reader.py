@@ -8,7 +8,6 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from kb_build.analysis import key
 from kb_build.records import Page, Section, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, unpack
 from kb_serve.errors import BaseMissing, BaseUnreadable
@@ -213,17 +212,20 @@ class Reader:
         rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE parent = ? ORDER BY position", slug)
         return [PageEntry(*row) for row in rows]
 
-    def pages_ending_in(self, name: str) -> list[PageEntry]:
-        """Pages whose slug's last part, ``index`` left out, is ``name``."""
-        rows = self.rows(
-            f"SELECT {_PAGE} FROM pages WHERE slug IN (SELECT id FROM names WHERE key = ? AND form = 2)",
-            key(name),
-        )
-        return [PageEntry(*row) for row in rows]
-
     def symbols_of_page(self, slug: str) -> list[str]:
         """The symbols that Blender's own table explains on a page."""
         return [row[0] for row in self.rows("SELECT symbol FROM explained WHERE slug = ?", slug)]
+
+    def classes_named(self, prefix: str) -> list[str]:
+        """Paths of the data classes whose names begin with a key: ``fluid`` → FluidModifier, …"""
+        sql = """SELECT DISTINCT path FROM names JOIN symbols ON symbols.path = names.id
+            WHERE form = 2 AND key >= ? AND key < ? AND kind = 'class' AND grp = 'data'"""
+        return [row[0] for row in self.rows(sql, prefix, prefix + "\uffff")] if prefix else []
+
+    def operators_of(self, module: str) -> list[str]:
+        """Paths of the operators in a module of ``bpy.ops``, named by its key."""
+        sql = "SELECT path FROM symbols WHERE kind = 'operator' AND owner = ? ORDER BY path"
+        return [row[0] for row in self.rows(sql, f"bpy.ops.{module}")]
 
     def page(self, slug: str) -> Page | None:
         """A page with its sections, or None."""

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.analysis import key
-from kb_build.schema import FORM_LABEL, FORM_SHORT
+from kb_build.analysis import key, terms, topic_key
 from kb_serve.budget import Block
 from kb_serve.render import first_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_serve.reader import PageEntry, Reader
+    from kb_serve.reader import Entry, PageEntry, Reader
 
+ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _MAX_WORDS = 4
 _MOST = 40
 
@@ -34,24 +34,28 @@ class Topics:
         self._reader = reader
 
     def find(self, text: str) -> str:
-        """The slug of the chapter that a few words name; empty when they name none.
+        """The slug of the part of the manual that a few plain words name; empty when they name none.
 
-        A chapter is a page with pages below it; of several with one title, the one with most below it.
+        Of several pages with the title, whatever its grammatical number, the one that most hangs on; a page that
+        nothing hangs on is no topic.
         """
-        plain = text.strip().strip("`'\"?!.").lower()
-        if len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]="):
+        plain = text.strip().strip("`'\"?!.")
+        if (
+            plain != plain.lower()
+            or len(plain.split()) > _MAX_WORDS
+            or any(char in plain for char in "._()[]=/")
+        ):
             return ""
-        chapters = [
-            (self._size(slug), slug)
-            for form, slug in self._reader.by_key(key(plain))
-            if form in {FORM_LABEL, FORM_SHORT} and self._reader.page_entry(slug) and self._children(slug)
-        ]
-        chapters += [
-            (self._size(entry.slug), entry.slug)
-            for entry in self._reader.pages_ending_in(plain.replace(" ", "_"))
-            if self._children(entry.slug)
-        ]
-        return max(chapters)[1] if chapters else ""
+        slugs = {slug for _, slug in self._reader.by_key(topic_key(plain))}
+        slugs |= {slug for _, slug in self._reader.by_key(key(plain)) if self._children(slug)}
+        sizes = {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}
+        return max(sizes, key=lambda slug: (sizes[slug], slug)) if sizes else ""
+
+    def _is_topic(self, slug: str) -> bool:
+        page = self._reader.page_entry(slug)
+        if page is None or page.source != "manual" or slug.startswith(ASIDE_PAGES):
+            return False
+        return bool(self._children(slug) or self._reader.symbols_of_page(slug))
 
     def _children(self, slug: str) -> list[PageEntry]:
         return self._reader.page_children(slug)
@@ -68,35 +72,44 @@ class Topics:
         return slugs
 
     def overview(self, slug: str) -> Overview:
-        """The chapter, its pages, and the classes, operators and modifiers that belong to it."""
+        """The page, those below it, and the classes and operators that belong to it."""
         page = self._reader.page_entry(slug)
         assert page is not None
-        symbols = list(
-            dict.fromkeys(
-                path for below in self._subtree(slug) for path in self._reader.symbols_of_page(below)
-            )
-        )
-        entries = [entry for path in symbols if (entry := self._reader.entry(path))]
+        words = set(terms(page.title))
+        names = {key(page.title), key(slug.removesuffix("/index").rpartition("/")[2])}
+        explained = [path for below in self._subtree(slug) for path in self._reader.symbols_of_page(below)]
+        named = [path for name in sorted(names) for path in self._reader.classes_named(name)]
+        named += [path for name in sorted(names) for path in self._reader.operators_of(name)]
+        entries = [
+            entry for path in dict.fromkeys((*explained, *named)) if (entry := self._reader.entry(path))
+        ]
         classes = [entry for entry in entries if entry.kind == "class" and entry.group == "data"]
-        classes.sort(key=lambda entry: ("Modifier" not in entry.name, -len(self._reader.members(entry.path))))
+        classes.sort(key=lambda entry: self._order(entry, words))
         operators = [entry for entry in entries if entry.kind == "operator"]
+        operators.sort(key=lambda entry: key(entry.owner.rpartition(".")[2]) not in names)
         blocks = [Block(f"## {page.title}\n\n{page.summary}\n\n{page.url}", "summary")]
-        blocks += _listed(
-            "Classes",
-            [f"`{e.path}` — {first_sentence(e.line.partition(' — ')[2]) or e.label}" for e in classes],
-        )
-        blocks += _listed(
-            "Operators",
-            [f"`{e.path}` — {first_sentence(e.line.partition(' — ')[2]) or e.label}" for e in operators],
-        )
+        blocks += _listed("Classes", [_told(entry) for entry in classes])
+        blocks += _listed("Operators", [_told(entry) for entry in operators])
         blocks += _listed("Pages", list(self._page_lines(slug)))
         return Overview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
+
+    def _order(self, entry: Entry, words: set[str]) -> tuple[bool, bool, int]:
+        """Classes that bear the topic's name come first, modifiers before the settings they lead to."""
+        return (
+            not words <= set(terms(entry.name)),
+            not entry.name.endswith("Modifier"),
+            -len(self._reader.members(entry.path)),
+        )
 
     def _page_lines(self, slug: str, depth: int = 2) -> Iterator[str]:
         for child in self._children(slug):
             yield f"`{child.slug}` ({child.title}) {first_sentence(child.summary)}"
             if depth > 1:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
+
+
+def _told(entry: Entry) -> str:
+    return f"`{entry.path}` — {first_sentence(entry.line.partition(' — ')[2]) or entry.label}"
 
 
 def _listed(title: str, lines: list[str]) -> list[Block]:
