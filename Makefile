@@ -71,8 +71,9 @@ $(STAMP): requirements.lock pyproject.toml | $(UV)
 	@echo "Setting up .venv (CPython $(PYTHON_VERSION), pinned dependencies) ..."
 	@test ! -L .venv || rm .venv  # a link leads to somebody else's environment
 	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
-	@$(UV_ENV) "$(UV)" pip sync --quiet --python $(PY) --require-hashes requirements.lock
+	@$(UV_ENV) "$(UV)" pip sync --quiet --compile-bytecode --python $(PY) --require-hashes requirements.lock
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
+	@$(PY) -m compileall -q kb_build kb_serve agents
 	@touch $(STAMP)
 
 # The lock pins uv too, since the project depends on it: that very version is fetched, its hashes checked.

@@ -102,6 +102,8 @@ def _strangeness(text: str, identifier: str) -> int:
     """How far an identifier is from what was typed, of those that share its key (see analysis.key)."""
     if "_OT_" in text:  # its class says nothing that the operator does not
         return 0 if identifier.startswith("bpy.ops.") else 1
+    if identifier == f"bpy.ops.{text}":  # a module of operators is rarely what a bare word means
+        return 2
     if f".{identifier}".endswith(f".{text}"):
         return 0
     if f".{identifier}".lower().endswith(f".{text.lower()}"):
