@@ -47,7 +47,7 @@ CREATE TABLE enum_items (
     PRIMARY KEY (key, owner, identifier)
 ) WITHOUT ROWID;
 
--- One row a page; ``record`` is the Page without its sections' texts.
+-- One row a page; ``record`` is the whole Page, packed.
 CREATE TABLE pages (
     slug TEXT PRIMARY KEY, source TEXT NOT NULL, version TEXT NOT NULL, title TEXT NOT NULL,
     parent TEXT NOT NULL, position INTEGER NOT NULL, url TEXT NOT NULL, content_hash TEXT NOT NULL,
@@ -56,7 +56,7 @@ CREATE TABLE pages (
 
 CREATE TABLE sections (
     id INTEGER PRIMARY KEY, slug TEXT NOT NULL, position INTEGER NOT NULL, anchor TEXT NOT NULL,
-    title TEXT NOT NULL, level INTEGER NOT NULL, text TEXT NOT NULL
+    title TEXT NOT NULL, level INTEGER NOT NULL
 );
 
 -- source and target are ids; a manual link's target may carry an anchor.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -148,16 +148,16 @@ def _write_pages(
     places = _places(pages)
     for page in pages:
         text, method = summaries.get(page.slug, ("", ""))
-        record = pack({k: v for k, v in to_json(replace(page, sections=())).items() if k != "sections"})
+        record = pack(to_json(page))
         row = (
             page.slug, page.source, page.version, page.title, *places.get(page.slug, ("", 0)), page.url,
             page.content_hash, text, method, record,
         )  # fmt: skip
         connection.execute("INSERT OR IGNORE INTO pages VALUES (?,?,?,?,?,?,?,?,?,?,?)", row)
         connection.executemany(
-            "INSERT INTO sections (slug, position, anchor, title, level, text) VALUES (?,?,?,?,?,?)",
+            "INSERT INTO sections (slug, position, anchor, title, level) VALUES (?,?,?,?,?)",
             (
-                (page.slug, position, section.anchor, section.title, section.level, section.text)
+                (page.slug, position, section.anchor, section.title, section.level)
                 for position, section in enumerate(page.sections)
             ),
         )

@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from kb_build.records import Page, Section, Symbol, page_from_json, symbol_from_json
+from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, unpack
 from kb_serve.errors import BaseMissing, BaseUnreadable
 
@@ -230,15 +230,4 @@ class Reader:
     def page(self, slug: str) -> Page | None:
         """A page with its sections, or None."""
         rows = self.rows("SELECT record FROM pages WHERE slug = ?", slug)
-        if not rows:
-            return None
-        sections = self.rows(
-            "SELECT anchor, title, level, text FROM sections WHERE slug = ? ORDER BY position", slug
-        )
-        record = unpack(rows[0][0])
-        record["sections"] = []
-        page = page_from_json(record)
-        return Page(
-            page.slug, page.source, page.version, page.title, tuple(Section(*row) for row in sections),
-            page.breadcrumbs, page.children, page.links, page.url, page.warnings,
-        )  # fmt: skip
+        return page_from_json(unpack(rows[0][0])) if rows else None
