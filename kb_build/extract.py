@@ -230,7 +230,7 @@ def read_extract(path: Path) -> Extract:
         if owner in raw.symbols:
             raw.symbols[owner]["trees"] = trees
     for holder, tree in _TREES.items():
-        if holder in raw.symbols:
+        if holder in raw.symbols and f"bpy.types.{tree}" in raw.symbols:
             raw.symbols[holder]["target"] = tree
     _substitute(raw.symbols.values())
     described = [*_described_members(raw.symbols.values())]
