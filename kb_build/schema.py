@@ -52,7 +52,7 @@ CREATE TABLE pages (
     slug TEXT PRIMARY KEY, source TEXT NOT NULL, version TEXT NOT NULL, title TEXT NOT NULL,
     parent TEXT NOT NULL, position INTEGER NOT NULL, url TEXT NOT NULL, content_hash TEXT NOT NULL,
     summary TEXT NOT NULL, summary_method TEXT NOT NULL, record BLOB NOT NULL
-) WITHOUT ROWID;
+);
 
 CREATE TABLE sections (
     id INTEGER PRIMARY KEY, slug TEXT NOT NULL, position INTEGER NOT NULL, anchor TEXT NOT NULL,
@@ -92,9 +92,8 @@ CREATE TABLE levels (
 
 -- The inverted index: df document numbers as uint32, then df weighted term frequencies as float16.
 CREATE TABLE postings (
-    level INTEGER NOT NULL, stem TEXT NOT NULL, df INTEGER NOT NULL, data BLOB NOT NULL,
-    PRIMARY KEY (level, stem)
-) WITHOUT ROWID;
+    level INTEGER NOT NULL, stem TEXT NOT NULL, df INTEGER NOT NULL, data BLOB NOT NULL, UNIQUE (level, stem)
+);
 
 -- The corpus' words: stem and most used spelling.
 CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWID;
