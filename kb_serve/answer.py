@@ -110,9 +110,9 @@ class Answerer:
         pages = [page for hit in hits if (page := self._reader.page_entry(hit.id))]
         for version in sorted({page.version for page in pages} - {minor, ""}):
             yield f"These pages are of the documentation for Blender {version}, not {minor}."
-        if not ranking.named:
-            for missing in json.loads(meta.get("missing", "[]")):
-                yield f"Answered without the {missing['role']}, which this base lacks: {missing['reason']}"
+        missing = [row["role"] for row in json.loads(meta.get("missing", "[]"))]
+        if missing and not ranking.named:
+            yield f"This base lacks the {' and the '.join(missing)}; `simworlds kb info` says why."
 
     def _is_page(self, identifier: str) -> bool:
         return self._reader.page_entry(identifier) is not None
