@@ -1,0 +1,223 @@
+"""What the script inside Blender wrote is read whole, or refused."""
+
+from __future__ import annotations
+
+import ast
+import fnmatch
+import json
+import random
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.errors import ExtractError
+from kb_build.extract import call_text, manual_links, python_value, read_extract
+from kb_build.records import Parameter, Symbol
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_build.extract import Extract
+
+HEADER = {"record": "blender", "version": "5.1.2", "build": "abc", "addons": ["cycles"]}
+STRUCT = {"record": "symbol", "path": "bpy.types.bpy_struct", "kind": "class", "owner": "bpy.types"}
+
+
+def write(path: Path, *rows: dict[str, object], lines: int | None = None) -> Path:
+    count = len(rows) if lines is None else lines
+    texts = [json.dumps(row) for row in (*rows, {"record": "end", "lines": count})]
+    path.write_text("\n".join(texts) + "\n", encoding="utf-8")
+    return path
+
+
+def symbol(path: str, kind: str = "class", **more: object) -> dict[str, object]:
+    return {"record": "symbol", "path": path, "kind": kind, "owner": path.rpartition(".")[0], **more}
+
+
+def read(tmp_path: Path, *rows: dict[str, object]) -> Extract:
+    return read_extract(write(tmp_path / "x.jsonl", HEADER, *rows))
+
+
+def test_the_header_says_which_blender_it_was(tmp_path: Path) -> None:
+    extract = read(tmp_path, STRUCT)
+    assert (extract.version, extract.build, extract.addons) == ("5.1.2", "abc", ("cycles",))
+    assert [row.path for row in extract.symbols] == ["bpy.types.bpy_struct"]
+
+
+@pytest.mark.parametrize("lines", [0, 1, 3, 99])
+def test_an_extract_whose_end_counts_otherwise_is_refused(tmp_path: Path, lines: int) -> None:
+    with pytest.raises(ExtractError, match=r"x\.jsonl.*run the build again"):
+        read_extract(write(tmp_path / "x.jsonl", HEADER, STRUCT, lines=lines))
+
+
+def test_an_extract_cut_off_anywhere_is_refused(tmp_path: Path) -> None:
+    whole = write(tmp_path / "x.jsonl", HEADER, STRUCT, symbol("bpy.types.A")).read_bytes()
+    random.seed(4)
+    for size in [0, 1, *random.sample(range(2, len(whole) - 1), 60)]:
+        (tmp_path / "cut.jsonl").write_bytes(whole[:size])
+        with pytest.raises(ExtractError, match="stopped half-way"):
+            read_extract(tmp_path / "cut.jsonl")
+
+
+def test_a_step_that_failed_is_told_and_the_rest_is_there(tmp_path: Path) -> None:
+    extract = read(tmp_path, STRUCT, {"record": "fault", "step": "nodes", "traceback": "Boom"})
+    assert extract.faults == ("nodes: Boom",)
+    assert len(extract.symbols) == 1
+
+
+def test_the_first_of_two_records_with_one_path_counts(tmp_path: Path) -> None:
+    extract = read(tmp_path, STRUCT, symbol("bpy.types.A", label="one"), symbol("bpy.types.A", label="two"))
+    assert [row.label for row in extract.symbols if row.path == "bpy.types.A"] == ["one"]
+
+
+def test_items_that_an_instance_listed_take_the_place_of_a_placeholder(tmp_path: Path) -> None:
+    placeholder = [{"identifier": "NONE", "name": "None"}]
+    extract = read(
+        tmp_path,
+        symbol("bpy.types.A.view", "property", type="enum", enum_items=placeholder),
+        {"record": "enum_items", "path": "bpy.types.A.view", "items": ["NONE", "AgX"]},
+        {"record": "enum_items", "path": "bpy.types.Gone.view", "items": ["X"]},
+    )
+    assert [(item.identifier, item.name) for item in extract.symbols[0].enum_items] == [
+        ("NONE", "None"),
+        ("AgX", ""),
+    ]
+
+
+def test_a_template_becomes_a_page_with_its_code(tmp_path: Path) -> None:
+    extract = read(tmp_path, {"record": "template", "name": "ui_panel_simple", "text": "import bpy\n"})
+    page = extract.templates[0]
+    assert (page.slug, page.title, page.version) == ("templates_py/ui_panel_simple", "Ui panel simple", "5.1")
+    assert page.sections[0].text == "```python\nimport bpy\n```"
+
+
+def test_a_pointer_to_a_node_tree_says_which_kind(tmp_path: Path) -> None:
+    extract = read(
+        tmp_path,
+        symbol("bpy.types.ShaderNodeTree"),
+        symbol("bpy.types.Material.node_tree", "property", type="pointer", target="NodeTree"),
+        symbol("bpy.types.NodesModifier.node_group", "property", type="pointer", target="NodeTree"),
+    )
+    assert {row.name: row.target for row in extract.symbols if row.kind == "property"} == {
+        "node_tree": "ShaderNodeTree",
+        "node_group": "NodeTree",  # this Blender has no such tree
+    }
+
+
+def test_every_data_class_has_the_look_up_that_the_reference_lists_on_it(tmp_path: Path) -> None:
+    extract = read(
+        tmp_path,
+        STRUCT,
+        symbol("bpy.types.bpy_struct.bl_rna_get_subclass", "function", docstring="Look up."),
+        symbol("bpy.types.A", group="data"),
+        symbol("bpy.types.A_PT_b", group="ui"),
+    )
+    owners = [row.owner for row in extract.symbols if row.name == "bl_rna_get_subclass"]
+    assert owners == ["bpy.types.bpy_struct", "bpy.types.A"]
+
+
+def test_texts_that_a_module_defines_are_put_where_its_members_name_them(tmp_path: Path) -> None:
+    extract = read(
+        tmp_path,
+        symbol("m", "module", docstring=".. |NOTE| replace:: Take :class:`Care`.\n"),
+        symbol("m.f", "function", docstring="Does.\n\n|NOTE| Then x|y."),
+    )
+    assert extract.symbols[1].description == "Does.\n\nTake `Care`. Then x|y."
+
+
+def test_methods_that_only_a_docstring_knows_are_symbols(tmp_path: Path) -> None:
+    docstring = (
+        "Smooths.\n\n.. method:: __init__(a=1)\n\n   Makes.\n\n.. staticmethod:: shade(s)\n\n   Shades."
+    )
+    extract = read(
+        tmp_path,
+        symbol("m.A", docstring=docstring),
+        symbol("m.A.shade", "function", docstring="Its own words."),
+    )
+    found = {row.path: row for row in extract.symbols}
+    assert found["m.A"].signature == "A(a=1)"
+    assert (found["m.A.__init__"].signature, found["m.A.__init__"].owner) == ("__init__(a=1)", "m.A")
+    assert found["m.A.shade"].description == "Its own words."
+
+
+# The manual's table
+
+
+def test_the_first_pattern_that_fits_counts_whatever_its_case(tmp_path: Path) -> None:
+    extract = read(
+        tmp_path,
+        symbol("bpy.types.ClothSettings.quality", "property"),
+        symbol("bpy.types.Other", "class"),
+        symbol("mathutils.Vector", "class"),
+        {"record": "manual", "pattern": "bpy.types.ClothSettings.q*", "page": "a/b.html#bpy-x"},
+        {"record": "manual", "pattern": "bpy.types.clothsettings*", "page": "never.html"},
+        {"record": "manual", "pattern": "*vector*", "page": "never.html"},
+    )
+    assert [link for link in extract.links if link.kind == "manual"] == [
+        next(link for link in extract.links if link.target == "a/b#bpy-x")
+    ]
+
+
+def test_the_table_is_applied_as_blender_itself_does(extract: Extract, base: Path) -> None:
+    """Blender goes through its patterns one by one; the indexed way finds the same for a sample."""
+    rows = [
+        json.loads(line)
+        for line in next((base.parent.parent / "extracts").glob("*.jsonl")).read_text("utf-8").splitlines()
+        if line.startswith('{"record":"manual"')
+    ]
+    table = [(row["pattern"], row["page"]) for row in rows]
+    random.seed(9)
+    sample = random.sample(
+        [row for row in extract.symbols if row.path.startswith("bpy.") and row.kind != "socket"], 150
+    )
+    found = {link.source: link.target for link in manual_links(sample, table)}
+    for row in sample:
+        path = row.path.lower()
+        page = next((page for pattern, page in table if fnmatch.fnmatchcase(path, pattern.lower())), "")
+        assert found.get(row.path, "") == page.replace(".html", ""), row.path
+
+
+# Calls
+
+
+@pytest.mark.parametrize(
+    "value", [None, True, 0, -1.5, "it's", 'say "x"', [], [1], [1, 2.5, "x"], [[1, 2], [3, 4]], "é\n"]
+)
+def test_a_default_is_python_that_means_the_same(value: object) -> None:
+    def as_tuple(item: object) -> object:
+        return tuple(map(as_tuple, item)) if isinstance(item, list) else item
+
+    assert ast.literal_eval(python_value(value)) == as_tuple(value)  # type: ignore[arg-type]
+
+
+def test_a_call_shows_required_arguments_bare_and_the_others_with_defaults() -> None:
+    parameters = [
+        Parameter("a", "int", required=True),
+        Parameter("b", "enum", default="X"),
+        Parameter("c", "enum", default=["P"]),
+        Parameter("d", "enum", default=[]),
+        Parameter("e", "float[2]", default=[0, 1]),
+    ]
+    assert call_text("f", parameters) == "f(a, b='X', c={'P'}, d=set(), e=(0, 1))"
+    assert call_text("f", []) == "f()"
+
+
+def test_the_call_of_every_operator_is_python(extract: Extract) -> None:
+    checked = 0
+    for row in extract.symbols:
+        if row.kind == "operator":
+            call = ast.parse(row.signature, mode="eval").body
+            assert isinstance(call, ast.Call)
+            assert [word.arg for word in call.keywords] == [p.name for p in row.parameters if not p.required]
+            checked += 1
+    assert checked > 2_400
+
+
+def test_symbols_without_a_docstring_keep_what_rna_says(tmp_path: Path) -> None:
+    row = symbol(
+        "bpy.types.A.f", "function", description="Does.", parameters=[{"name": "a", "required": True}]
+    )
+    assert read(tmp_path, row).symbols[0] == Symbol(
+        "bpy.types.A.f", "function", "bpy.types.A", description="Does.", signature="f(a)",
+        parameters=(Parameter("a", required=True),),
+    )  # fmt: skip

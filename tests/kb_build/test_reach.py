@@ -1,0 +1,141 @@
+"""How an instance of a class is reached: an expression that leads there, by the way a script would go."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.reach import reached_expressions
+from kb_build.records import Symbol
+
+if TYPE_CHECKING:
+    from kb_build.extract import Extract
+
+TYPES = "bpy.types."
+
+
+def cls(name: str, base: str = "bpy_struct", **more: object) -> Symbol:
+    return Symbol(TYPES + name, "class", "bpy.types", base=TYPES + base, **more)  # type: ignore[arg-type]
+
+
+def prop(path: str, target: str, kind: str = "pointer") -> Symbol:
+    owner = path.rpartition(".")[0]
+    return Symbol(TYPES + path, "property", TYPES + owner, type=kind, target=target)
+
+
+def name_of(owner: str) -> Symbol:
+    return Symbol(f"{TYPES}{owner}.name", "property", TYPES + owner, type="string")
+
+
+def member(name: str, target: str) -> Symbol:
+    return Symbol(f"bpy.context.{name}", "context", "bpy.context", type="pointer", target=target)
+
+
+SMALL = [
+    cls("Context"), cls("BlendData"), cls("ID"), cls("Object", "ID", label="Object"), cls("Mesh", "ID", label="Mesh"),
+    cls("Modifier"), cls("ClothModifier", "Modifier", label="Cloth Modifier"), cls("ClothSettings"),
+    cls("Vertex"), cls("Far"),
+    name_of("ID"), name_of("Modifier"),
+    member("object", "Object"), member("active_nla_strip", "Far"),
+    prop("BlendData.objects", "Object", "collection"), prop("BlendData.meshes", "Mesh", "collection"),
+    prop("Object.modifiers", "Modifier", "collection"), prop("Object.data", "ID"),
+    prop("ClothModifier.settings", "ClothSettings"), prop("Mesh.vertices", "Vertex", "collection"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "expression"),
+    [
+        ("Object", "bpy.context.object"),
+        ("ClothModifier", 'bpy.context.object.modifiers["Cloth"]'),
+        ("ClothSettings", 'bpy.context.object.modifiers["Cloth"].settings'),
+        ("Mesh", 'bpy.data.meshes["Mesh"]'),
+        ("Vertex", 'bpy.data.meshes["Mesh"].vertices[0]'),
+        ("Context", "bpy.context"),
+        ("BlendData", "bpy.data"),
+    ],
+)
+def test_the_shortest_way_is_taken(name: str, expression: str) -> None:
+    assert reached_expressions(SMALL)[name] == expression
+
+
+def test_what_no_pointer_leads_to_has_no_expression() -> None:
+    assert "Far" not in reached_expressions(SMALL)  # a context member that only an editor has
+
+
+def test_classes_in_a_circle_end() -> None:
+    found = reached_expressions(
+        [*SMALL, prop("ClothSettings.again", "Object"), prop("Object.self", "Object")]
+    )
+    assert found["Object"] == "bpy.context.object"
+
+
+def test_a_node_is_reached_through_a_tree_that_takes_it() -> None:
+    symbols = [
+        *SMALL,
+        cls("Scene", "ID"), cls("NodesModifier", "Modifier", label="Nodes Modifier"), cls("NodeTree", "ID"),
+        cls("CompositorNodeTree", "NodeTree"), cls("GeometryNodeTree", "NodeTree"), cls("Node"), name_of("Node"),
+        cls("GeometryNodeCube", "Node", label="Cube", trees=("GeometryNodeTree",)),
+        cls("CompositorNodeBlur", "Node", label="Blur", trees=("CompositorNodeTree",)), cls("Items"),
+        member("scene", "Scene"), prop("Scene.compositing_node_group", "CompositorNodeTree"),
+        prop("NodesModifier.node_group", "GeometryNodeTree"), prop("NodeTree.nodes", "Node", "collection"),
+        prop("GeometryNodeCube.items", "Items"),
+    ]  # fmt: skip
+    found = reached_expressions(symbols)
+    cube = 'bpy.context.object.modifiers["Nodes"].node_group.nodes["Cube"]'
+    assert found["GeometryNodeCube"] == cube
+    assert found["Items"] == f"{cube}.items"
+    assert found["CompositorNodeBlur"] == 'bpy.context.scene.compositing_node_group.nodes["Blur"]'
+
+
+# Of Blender itself
+
+
+@pytest.fixture(scope="module")
+def reached(extract: Extract) -> dict[str, str]:
+    return {
+        row.path.removeprefix(TYPES): row.reached
+        for row in extract.symbols
+        if row.kind == "class" and row.reached
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "expression"),
+    [
+        ("ClothSettings", 'bpy.context.object.modifiers["Cloth"].settings'),
+        ("ClothCollisionSettings", 'bpy.context.object.modifiers["Cloth"].collision_settings'),
+        ("RigidBodyObject", "bpy.context.object.rigid_body"),
+        ("RigidBodyWorld", "bpy.context.scene.rigidbody_world"),
+        ("CyclesRenderSettings", "bpy.context.scene.cycles"),
+        ("RenderSettings", "bpy.context.scene.render"),
+        ("ViewLayer", "bpy.context.view_layer"),
+        ("ShaderNodeBsdfPrincipled", 'bpy.context.object.active_material.node_tree.nodes["Principled BSDF"]'),
+    ],
+)
+def test_blenders_classes_are_reached_as_scripts_reach_them(
+    reached: dict[str, str], name: str, expression: str
+) -> None:
+    assert reached[name] == expression
+
+
+def test_every_expression_is_python_from_a_root(reached: dict[str, str]) -> None:
+    assert len(reached) > 1_350
+    for expression in reached.values():
+        compile(expression, "reached", "eval")
+        assert expression.startswith(("bpy.context", "bpy.data"))
+
+
+def test_no_node_is_said_to_live_in_a_tree_that_refuses_it(extract: Extract, reached: dict[str, str]) -> None:
+    holders = {
+        "ShaderNodeTree": (".node_tree.",), "GeometryNodeTree": (".node_group.",),
+        "CompositorNodeTree": (".compositing_node_group.", "scene.node_tree."), "TextureNodeTree": (".node_tree.",),
+    }  # fmt: skip
+    for row in extract.symbols:
+        if row.trees:
+            expression = reached[row.path.removeprefix(TYPES)]
+            assert any(part in expression for tree in row.trees for part in holders[tree]), (
+                row.path,
+                expression,
+            )

@@ -1,0 +1,92 @@
+"""Whatever ends a write half-way, the old base stands, answers, and is alone in its folder."""
+
+from __future__ import annotations
+
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from kb_serve.knowledge_base import KnowledgeBase
+
+REPO = Path(__file__).resolve().parent.parent.parent
+QUERY = "ClothSettings.quality"
+
+# Reads everything that a base of Blender needs, says so, then writes it.
+WRITER = """
+import sys, pathlib
+from kb_build.errors import StoreError
+from kb_build.extract import read_extract
+from kb_build.store import Contents, write_base
+extract = read_extract(pathlib.Path(sys.argv[1]))
+print("ready", flush=True)
+try:
+    write_base(pathlib.Path(sys.argv[2]), Contents(extract.symbols, (), extract.links, {"fingerprint": "new"}))
+except StoreError as error:
+    sys.exit(f"StoreError: {error}")
+print("written", flush=True)
+"""
+
+pytestmark = pytest.mark.blender
+
+
+@pytest.fixture
+def old(base: Path, tmp_path: Path) -> Path:
+    """A base that answers, in a folder of its own."""
+    return Path(shutil.copy(base, tmp_path / "blender-5.1.sqlite"))
+
+
+def start(base: Path, target: Path, limit: int | None = None) -> subprocess.Popen[str]:
+    def bound() -> None:
+        if limit is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    extract = next((base.parent.parent / "extracts").glob("*.jsonl"))
+    return subprocess.Popen(
+        [sys.executable, "-c", WRITER, str(extract), str(target)],
+        env=os.environ | {"PYTHONPATH": str(REPO)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        preexec_fn=bound,
+    )  # fmt: skip
+
+
+def assert_stands(path: Path, before: bytes) -> None:
+    assert path.read_bytes() == before
+    with KnowledgeBase(path) as kb:
+        assert kb.query(QUERY).hits[0].id == f"bpy.types.{QUERY}"
+
+
+def parts_of(path: Path) -> list[Path]:
+    return [other for other in path.parent.iterdir() if other != path]
+
+
+def test_a_writer_that_is_killed_leaves_the_old_base_whole(base: Path, old: Path) -> None:
+    before = old.read_bytes()
+    random.seed(8)
+    for _ in range(2):
+        size = random.randrange(1, 12_000_000)
+        with start(base, old) as process:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "ready\n"
+            while not any(part.stat().st_size >= size for part in parts_of(old)):
+                assert process.poll() is None, "the write ended before it could be killed"
+            process.send_signal(signal.SIGKILL)
+        assert_stands(old, before)
+
+
+@pytest.mark.parametrize("limit", [4_096, 15_000_000])
+def test_a_disk_that_is_full_is_named_and_the_old_base_stands(base: Path, old: Path, limit: int) -> None:
+    before = old.read_bytes()
+    with start(base, old, limit) as process:
+        _, errors = process.communicate()
+    assert process.returncode == 1
+    assert errors.startswith("StoreError: ")
+    assert str(old) in errors
+    assert "The old one, if any, stands" in errors
+    assert_stands(old, before)
+    assert parts_of(old) == []
