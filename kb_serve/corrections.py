@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
 _CONTAINED = 0.8  # of a name whose words are all in the other: ``select`` and ``select_set``
 _ROUNDS = 3
+_LONG = 8  # letters of a name that is looked for among all others
+_CLOSE = 0.85
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +79,8 @@ class Corrector:
     def _roots(self) -> dict[str, str]:
         """key → name for everything that code starts with: classes and modules."""
         rows = self._reader.rows(
-            "SELECT name, path FROM symbols WHERE kind IN ('class', 'module') AND grp NOT IN ('ui', 'operator')"
+            "SELECT name, path FROM symbols WHERE kind IN ('class', 'module') AND grp NOT IN ('ui', 'operator') "
+            "ORDER BY kind DESC"  # of ``bpy.ops.collection`` and ``Collection`` the class stays
         )
         return {key(name): path.removeprefix(TYPES) for name, path in rows}
 
@@ -89,6 +92,23 @@ class Corrector:
             key(written), self._roots.keys(), scorer=OSA.normalized_similarity, score_cutoff=0.8
         )
         return Correction(written, self._roots[found[0]], found[1]) if found else None
+
+    @cached_property
+    def _members(self) -> dict[str, str]:
+        """key → name for everything that has an owner, and a name of several words."""
+        rows = self._reader.rows(
+            "SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function', 'operator')"
+        )
+        return {key(name): name for (name,) in rows if len(name) >= _LONG and "_" in name}
+
+    def member(self, written: str) -> Correction | None:
+        """A name of several words, ``use_self_colision``, whose owner was not given."""
+        if len(written) < _LONG or "_" not in written:
+            return None
+        found = process.extractOne(
+            key(written), self._members.keys(), scorer=OSA.normalized_similarity, score_cutoff=_CLOSE
+        )
+        return Correction(written, self._members[found[0]], found[1]) if found else None
 
     def member_names(self, owner: str) -> list[str]:
         """The names that may follow after ``owner``: own, inherited, and its contents for a module."""
@@ -103,7 +123,7 @@ class Corrector:
         """A chain read with its wrong names replaced by likely ones; None when nothing likely was found."""
         corrections: list[Correction] = []
         readings = self._walker.walk(chain)
-        if not (readings and readings[0].complete) and (not readings or readings[0].fit < 1.0):
+        if not readings or readings[0].fit < 1.0:
             root = self.root(chain.root)
             if root and root.similarity < 1.0 and chain.root[:1].isupper():
                 corrections.append(root)

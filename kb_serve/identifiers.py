@@ -37,6 +37,8 @@ _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 
 _FEW = 3
+_NEARLY = 0.9  # how alike a class must be for a name to be its misspelling, not a variable's
+_OTHERWISE = 0.85  # how sure a name is that shares only its key with what was typed
 _CLEAR = 0.85  # a variable's name that hardly means another class
 _OWN_CLASS = 0.2  # from this fit on, a variable's name speaks for the class at all
 _FITTING = 0.5  # how far the words around a bare value must fit the property that takes it
@@ -175,14 +177,22 @@ class Identifier:
         """Symbols and pages that share the key of what was typed; the fuller the spelling, the surer."""
         dotted = "." in text
         plain = " " not in text.strip()
-        for form, identifier in sorted(rows, key=lambda row: _strangeness(text, row[1])):
+        strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
+        typed = 0 in strange.values() or self._is_enum_item(text)
+        for form, identifier in sorted(rows, key=lambda row: strange[row[1]]):
             if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
-                found.add(identifier, 1.0, "exact")
+                # ``view_layers`` and ``ViewLayers`` share a key: what is written otherwise was hardly meant.
+                found.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")
             elif form in {FORM_NAME, FORM_LABEL} and not dotted:
                 same = self._last_part(identifier) == text
                 found.add(identifier, 0.9 if same and plain and "_" in text else 0.7, "name")
             else:
                 found.add(identifier, 0.75, "title")
+
+    def _is_enum_item(self, text: str) -> bool:
+        if not (text.isupper() and "_" in text):
+            return False
+        return any(text == identifier for _, identifier, _ in self._reader.enum_owners(key(text)))
 
     @staticmethod
     def _last_part(identifier: str) -> str:
@@ -194,7 +204,9 @@ class Identifier:
         for pattern in (_HAS_NO, _MODULE_HAS_NO):
             for match in pattern.finditer(query):
                 owner = self._class_path(match["owner"])
-                if owner and not self._walker.member(owner, match["name"]):
+                if former := self._former_owner(match["owner"], match["name"], owner):
+                    found.drifts.extend(former)
+                elif owner and not self._walker.member(owner, match["name"]):
                     found.missing.append(Missing(match["name"], owner))
                     found.add(owner, 0.6, "error message")
         for match in _POLL.finditer(query):
@@ -207,6 +219,13 @@ class Identifier:
                 break
         for match in _BAD_KEYWORD.finditer(query):
             found.missing.append(Missing(match["name"]))
+
+    def _former_owner(self, written: str, name: str, owner: str) -> list[Drift]:
+        """The members, or else the classes, that other versions had under a name that is not a class here."""
+        if self._reader.entry(TYPES + written):
+            return []
+        members = [*self._drifts.spelled(f"{written}.{name}")]
+        return members if members or owner else [*self._drifts.spelled(written)]
 
     def _class_path(self, name: str) -> str:
         for candidate in (TYPES + name, name):
@@ -229,7 +248,11 @@ class Identifier:
             if self._former(chain, readings, found):
                 continue
             broken = max((walked for walked in readings if walked.missing), key=lambda w: w.fit, default=None)
-            if readings and self._trusted(chain, readings[0], broken):
+            if (
+                readings
+                and self._trusted(chain, readings[0], broken)
+                and not self._misspelt(chain, readings[0])
+            ):
                 self._reading(chain, readings, later, found)
             elif not self._corrected(chain, later, found):
                 if broken:
@@ -248,6 +271,13 @@ class Identifier:
         if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and walked.fit < 0.5:
             return False
         return walked.fit >= 1.0 or len(chain.attributes) >= (1 if walked.fit >= _OWN_CLASS else 2)
+
+    def _misspelt(self, chain: Chain, walked: Walked) -> bool:
+        """Whether what looks like a class is nearly one: ``PoimtLight`` is no variable that holds a light."""
+        if walked.fit >= 1.0 or not chain.root[:1].isupper():
+            return False
+        meant = self._corrector.root(chain.root)
+        return meant is not None and _NEARLY <= meant.similarity < 1.0
 
     def _former(self, chain: Chain, readings: list[Walked], found: Identified) -> bool:
         """Whether the chain names what another version had: on the likeliest class, or under its own path."""
@@ -327,6 +357,9 @@ class Identifier:
             for form, identifier in self._reader.by_key(key(name))
             if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
         ]
+        if not rows and not name.isupper() and (mended := self._corrector.member(name)):
+            found.corrections.append(mended)
+            rows = [entry for entry in self._reader.by_name(mended.meant) if entry.group != "ui"]
         if chain.attributes and len(rows) > _FEW:
             return  # a common name whose owner was given, and does not have it
         for rank, entry in enumerate(sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]):
