@@ -34,6 +34,7 @@ _BOILERPLATE = re.compile(
 )
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
+_MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 
 _FEW = 3
@@ -102,7 +103,7 @@ class Identified:
 
 def _strangeness(text: str, identifier: str) -> int:
     """How far an identifier is from what was typed, of those that share its key (see analysis.key)."""
-    if "_OT_" in text:  # its class says nothing that the operator does not
+    if "_OT_" in text.upper():  # its class says nothing that the operator does not
         return 0 if identifier.startswith("bpy.ops.") else 1
     if identifier == f"bpy.ops.{text}":  # a module of operators is rarely what a bare word means
         return 2
@@ -167,6 +168,7 @@ class Identifier:
             found.add(text, 1.0, "exact")
             return
         called = text[: text.index("(")] if text.endswith(")") and "(" in text else text
+        called = _MEMBER.sub(".", called)
         rows = self._reader.by_key(key(called))
         if rows:
             self._spelled(called, rows, found)
@@ -178,7 +180,7 @@ class Identifier:
         dotted = "." in text
         plain = " " not in text.strip()
         strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
-        typed = 0 in strange.values() or self._is_enum_item(text)
+        typed = 0 in strange.values() or self._is_enum_item(text) or self._is_former(text)
         for form, identifier in sorted(rows, key=lambda row: strange[row[1]]):
             if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
                 # ``view_layers`` and ``ViewLayers`` share a key: what is written otherwise was hardly meant.
@@ -193,6 +195,9 @@ class Identifier:
         if not (text.isupper() and "_" in text):
             return False
         return any(text == identifier for _, identifier, _ in self._reader.enum_owners(key(text)))
+
+    def _is_former(self, text: str) -> bool:
+        return any(self._reader.removed(path) for path in (text, TYPES + text))
 
     @staticmethod
     def _last_part(identifier: str) -> str:
@@ -364,7 +369,7 @@ class Identifier:
             return  # a common name whose owner was given, and does not have it
         for rank, entry in enumerate(sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]):
             sure = 0.9 if len(rows) == 1 else 0.84
-            if chain.attributes:
+            if chain.attributes and (len(rows) > 1 or "_" not in name):
                 sure = 0.55
             elif entry.kind == "class" and chain.steps:
                 sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
