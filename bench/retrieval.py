@@ -5,13 +5,9 @@ from __future__ import annotations
 import json
 import random
 import re
-import shutil
-import sqlite3
-import tempfile
 import time
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unittest import mock
 
@@ -24,6 +20,7 @@ from kb_serve.reader import Reader
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
 
     from bench.setting import Setting
     from kb_serve.answer import Answer
@@ -167,18 +164,7 @@ def _words_only(base: Path, stack: ExitStack) -> Callable[[str], Sequence[str]]:
     return lambda text: [found.ref for found in searcher.search(text, LIMIT)]
 
 
-def _changed(base: Path, folder: Path, name: str, sql: str) -> Path:
-    """A copy of the base from which something was taken."""
-    copy = folder / f"{name}.sqlite"
-    shutil.copyfile(base, copy)
-    with closing(sqlite3.connect(copy, isolation_level=None)) as connection:
-        connection.execute(sql)
-    return copy
-
-
-def compared(
-    base: Path, folder: Path, *, quick: bool
-) -> Iterator[tuple[str, Callable[[str], Sequence[str]]]]:
+def compared(base: Path, *, quick: bool) -> Iterator[tuple[str, Callable[[str], Sequence[str]]]]:
     """(name, what answers) for every system, ours first. Each is closed when the next is asked for."""
     with ExitStack() as stack:
         yield "SimWorlds", _ours(base, stack)
@@ -186,16 +172,15 @@ def compared(
         return
     with ExitStack() as stack:
         yield "… words only, no names or topics", _words_only(base, stack)
-    if hasattr(search, "COVERAGE"):
-        with ExitStack() as stack:
-            stack.enter_context(mock.patch.object(search, "COVERAGE", 0.0))
-            yield "… without coverage", _ours(base, stack)
-    for name, sql in (
-        ("… without near words", "DELETE FROM near"),
-        ("… without the topic around a unit", "UPDATE docs SET topic = -1 WHERE level = 0"),
+    for name, constant in (
+        ("… without coverage", "COVERAGE"),
+        ("… without the topic around a unit", "TOPIC_WEIGHT"),
+        ("… without the chapters' votes", "CHAPTER_WEIGHT"),
+        ("… without near words", "NEAR_WEIGHT"),
     ):
         with ExitStack() as stack:
-            yield name, _ours(_changed(base, folder, str(abs(hash(name))), sql), stack)
+            stack.enter_context(mock.patch.object(search, constant, 0.0))
+            yield name, _ours(base, stack)
     from bench.baselines import CANDIDATES, Baselines, read_units  # noqa: PLC0415 - takes seconds and memory
 
     say("making the flat indexes of the same documents")
@@ -212,10 +197,9 @@ def measure(setting: Setting) -> Part:
     """Every system on every set. The first set is judged."""
     sets = {path.stem: read_queries(path) for path in setting.queries}
     results: dict[str, dict[str, list[Outcome]]] = {}
-    with tempfile.TemporaryDirectory(prefix="simworlds-bench-") as folder:
-        for name, ask in compared(setting.base, Path(folder), quick=setting.quick):
-            say(f"retrieval: {name}")
-            results[name] = {title: ask_all(ask, queries) for title, queries in sets.items()}
+    for name, ask in compared(setting.base, quick=setting.quick):
+        say(f"retrieval: {name}")
+        results[name] = {title: ask_all(ask, queries) for title, queries in sets.items()}
     ours = next(iter(results.values()))
     judged = next(iter(sets))
     unknown = [label for queries in sets.values() for label in unknown_labels(queries, setting.base)]
