@@ -34,6 +34,7 @@ _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _CUSTOMISABLE = frozenset({"ID", "Bone", "EditBone", "PoseBone", "PropertyGroup", "Strip", "ViewLayer"})
 _COLLECTION_FIT = 0.7  # a variable called like a collection property and indexed is likely that collection
 _MAX_BRANCHES = 60
+_OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,6 +237,9 @@ class Walker:
             found = self.member(place.container, name) or self.member(COLLECTION, name)
             if found:
                 yield self._place(found, place.cls)
+            return
+        if name in _OPERATOR_METHODS and place.symbol.startswith("bpy.ops."):
+            yield place
             return
         socket = place.symbol if "puts[" in place.symbol else ""
         found = self.member(place.cls, name) if place.cls else self._reader.members(place.symbol).get(name)
