@@ -81,11 +81,10 @@ def _indexed(symbol: Symbol, owner: Symbol | None) -> bool:
 
 
 def _topic_of(symbol: Symbol) -> str:
+    """The class or module around a symbol. Modules of operators hold too much of everything to be a topic."""
     if symbol.kind == "class":
         return symbol.path
-    if symbol.owner.startswith(TYPES) and symbol.kind in {"property", "function", "socket"}:
-        return symbol.owner
-    return ""
+    return symbol.owner if symbol.kind in {"property", "function", "socket", "data"} else ""
 
 
 def definitions(page: Page) -> Iterator[tuple[str, str]]:

@@ -38,6 +38,7 @@ _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 
 _FEW = 3
+_SHORTEST_NAME = 4
 _NEARLY = 0.9  # how alike a class must be for a name to be its misspelling, not a variable's
 _OTHERWISE = 0.85  # how sure a name is that shares only its key with what was typed
 _CLEAR = 0.85  # a variable's name that hardly means another class
@@ -133,6 +134,7 @@ class Identifier:
             chains = find_chains(_BOILERPLATE.sub(" ", query))
             self._chains(chains, found)
             self._class_with_member(chains, found)
+            self._api_words(chains, found)
             self._enum_values(query, found)
             self._explain_missing(found)
         found.matches.sort(key=lambda match: -match.sure)
@@ -374,6 +376,26 @@ class Identifier:
             elif entry.kind == "class" and chain.steps:
                 sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
             found.add(entry.path, sure - 0.03 * rank, "name")
+
+    def _api_words(self, chains: list[Chain], found: Identified) -> None:
+        """Words among prose that are names and no English (``fcurves``, ``depsgraph``): likely what it is about."""
+        prose = {stem(word) for chain in chains for word in words(chain.root)}
+        for chain in chains:
+            name = chain.root
+            if chain.is_code or len(name) < _SHORTEST_NAME or not name.islower() or self._is_english(name):
+                continue
+            rows = [
+                entry
+                for entry in self._reader.by_name(name)
+                if entry.group != "ui" and entry.kind != "module"
+            ]
+            ranked = sorted(rows, key=lambda entry: -self._affinity(entry, prose))
+            for rank, entry in enumerate(ranked[:_FEW]):
+                found.add(entry.path, 0.79 - 0.03 * rank, "name")
+
+    def _is_english(self, word: str) -> bool:
+        forms = (word, word.removesuffix("s"))
+        return word in STOP_WORDS or any(self._reader.near(form) is not None for form in forms)
 
     def _affinity(self, entry: Entry, prose: set[str]) -> float:
         """How many of the words around a name belong to its owner, and how usual the owner is."""
