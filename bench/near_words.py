@@ -93,14 +93,15 @@ def main() -> int:
         if word.isalpha() and word.isascii() and len(word) > LEAST_LETTERS
     }
     words = sorted((general | targets) - STOP_WORDS)
-    table = neighbours(words, reduce(encode(words, options.model), DIMENSIONS), targets)
+    near = neighbours(words, reduce(encode(words, options.model), DIMENSIONS), targets)
+    table = {word: found for word, found in near.items() if word in general}
     lines = [
         "# English words and the words of Blender's documentation that mean nearly the same, with the cosine in",
         "# hundredths; a word alone is known, and near to none. Made by bench/near_words.py from all-MiniLM-L6-v2",
         "# (Apache-2.0).",
     ]
-    for word, near in sorted(table.items()):
-        lines.append(" ".join([word, *(f"{other} {round(100 * similarity)}" for other, similarity in near)]))
+    for word, found in sorted(table.items()):
+        lines.append(" ".join([word, *(f"{other} {round(100 * similarity)}" for other, similarity in found)]))
     options.output.write_text("\n".join(lines) + "\n", encoding="utf-8")
     print(f"{len(table)} words, {options.output.stat().st_size / 1e6:.2f} MB", file=sys.stderr)
     return 0
