@@ -6,6 +6,7 @@ What only describes something is left to the search.
 
 from __future__ import annotations
 
+import builtins
 import re
 from collections import defaultdict
 from dataclasses import dataclass, field
@@ -32,6 +33,7 @@ _POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 _BOILERPLATE = re.compile(
     r"bpy_struct: item\.attr\s*=\s*val:|bpy_prop_collection\[key\]:|has no attribute '\w+'"
 )
+_FILE_PATH = re.compile(r"""(['"])[^'"\n]*/[^'"\n]*\1""")
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
@@ -46,19 +48,7 @@ _OWN_CLASS = 0.2  # from this fit on, a variable's name speaks for the class at 
 _FITTING = 0.5  # how far the words around a bare value must fit the property that takes it
 
 # Python's own names, which are nobody's API.
-_NOT_API = frozenset(
-    [
-        "NoneType",
-        "AttributeError",
-        "TypeError",
-        "ValueError",
-        "RuntimeError",
-        "KeyError",
-        "IndexError",
-        "NameError",
-        "ReferenceError",
-    ]
-)
+_NOT_API = frozenset({*dir(builtins), "NoneType"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +121,7 @@ class Identifier:
         self._whole(query, found)
         if found.best is None or found.best.sure < 1:
             self._errors(query, found)
-            chains = find_chains(_BOILERPLATE.sub(" ", query))
+            chains = find_chains(_FILE_PATH.sub(" ", _BOILERPLATE.sub(" ", query)))
             self._chains(chains, found)
             self._class_with_member(chains, found)
             self._api_words(chains, found)
