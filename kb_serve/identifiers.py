@@ -40,6 +40,7 @@ _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 
 _FEW = 3
+_MANY = 12
 _SHORTEST_NAME = 4
 _NEARLY = 0.9  # how alike a class must be for a name to be its misspelling, not a variable's
 _OTHERWISE = 0.85  # how sure a name is that shares only its key with what was typed
@@ -342,9 +343,26 @@ class Identifier:
                 found.add(target, sure - 0.05 * min(place, 3), "replacement")
         for missing in found.missing:
             names = self._corrector.member_names(missing.owner) if missing.owner else []
-            for name, alike in nearest(missing.name, names):
+            similar = nearest(missing.name, names)
+            for name, alike in similar:
                 if member := self._walker.member(missing.owner, name):
                     found.add(member.path, 0.95 * alike, "similar name")
+            if missing.owner and not similar:
+                self._elsewhere(missing, found)
+
+    def _elsewhere(self, missing: Missing, found: Identified) -> None:
+        """The same name on other classes, those called most alike first: ``CollectionObjects.link``."""
+        rows = [
+            entry
+            for entry in self._reader.by_name(missing.name)
+            if entry.group != "ui" and "." in entry.owner
+        ]
+        if not 0 < len(rows) <= _MANY:
+            return
+        about = set(terms(missing.owner.removeprefix(TYPES)))
+        rows.sort(key=lambda entry: -len(about & set(terms(entry.owner.removeprefix(TYPES)))))
+        for rank, entry in enumerate(rows[:_FEW]):
+            found.add(entry.path, 0.82 - 0.03 * rank, "same name")
 
     def _loose_name(self, chain: Chain, prose: set[str], found: Identified) -> None:
         """A name of code without its owner (``thickness_outer``): its owners, by the words around it."""
