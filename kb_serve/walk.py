@@ -29,7 +29,7 @@ _ROOTS = {
 }
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _NUMBERED = re.compile(r"\.\d{3}$")
-_CLASS_NAME = re.compile(r"\b[A-Z]\w+")
+_CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _CUSTOMISABLE = frozenset({"ID", "Bone", "EditBone", "PoseBone", "PropertyGroup", "Strip", "ViewLayer"})
 _COLLECTION_FIT = 0.7  # a variable called like a collection property and indexed is likely that collection
@@ -135,13 +135,10 @@ class Walker:
                     yield self._place(entry), 0, _COLLECTION_FIT
         if chain.steps and first:
             for entry in self._reader.by_name(first)[:_MAX_BRANCHES]:
-                if entry.owner.startswith(TYPES) and entry.owner not in seen:
+                owner = self._reader.entry(entry.owner)
+                if owner and owner.kind == "class" and entry.owner not in seen:
                     seen.add(entry.owner)
-                    yield (
-                        Place(entry.owner, entry.owner),
-                        0,
-                        0.3 * variable_fit(chain.root, entry.owner[len(TYPES) :]),
-                    )
+                    yield Place(owner.path, owner.path), 0, 0.3 * variable_fit(chain.root, owner.name)
 
     def _rooted(self, chain: Chain) -> tuple[Place, int, float] | None:
         """The longest leading part that is a path of its own: a module, a class, ``bpy.context``."""
@@ -179,7 +176,7 @@ class Walker:
         if entry.kind in {"module", "class"}:
             return Place(entry.path, entry.path)
         if entry.kind == "socket":
-            return Place(entry.path, TYPES + entry.target)
+            return Place(entry.path, self._socket_class(entry))
         if entry.type == "collection":
             container = TYPES + entry.collection if entry.collection else COLLECTION
             return Place(entry.path, TYPES + entry.target, many=True, container=container)
@@ -187,7 +184,18 @@ class Walker:
             return Place(entry.path, TYPES + entry.target)
         if entry.kind == "function":
             return Place(entry.path, container=came_from)
+        if found := self._classes_in(entry.type, entry.path):
+            return self._sequence(entry.path, found)
         return Place(entry.path, self._value_class(entry))
+
+    def _socket_class(self, entry: Entry) -> str:
+        """A socket's own class: what the record calls its target may be the data-block that it takes."""
+        own = f"{TYPES}NodeSocket{entry.type.title()}"
+        return (
+            own
+            if not entry.target.startswith("NodeSocket") and self._reader.entry(own)
+            else TYPES + entry.target
+        )
 
     def _value_class(self, entry: Entry) -> str:
         """The class of a plain property's value: mathutils for coordinates and colours."""
@@ -195,6 +203,29 @@ class Walker:
         if symbol and symbol.subtype in _MATH:
             return f"mathutils.{_MATH[symbol.subtype]}"
         return ""
+
+    def _classes_in(self, text: str, path: str) -> list[str]:
+        """The classes that a type in words names, ``BMElemSeq[BMEdge]``; those nearest to ``path`` first."""
+        found: list[str] = []
+        for name in _CLASS_NAME.findall(text):
+            places = [path[:at] for at in range(len(path), 0, -1) if path[at : at + 1] == "."]
+            last = name.rpartition(".")[2]
+            candidates = (name, *(f"{place}.{last}" for place in places), TYPES + last)
+            classes = (
+                entry for one in candidates if (entry := self._reader.entry(one)) and entry.kind == "class"
+            )
+            if first := next(classes, None):
+                found.append(first.path)
+        return found
+
+    def _sequence(self, symbol: str, classes: list[str]) -> Place:
+        """An instance of the first class; where that is a sequence, its elements are what it names or makes."""
+        first, *others = classes
+        if first.endswith("Seq"):
+            makes = self.member(first, "new")
+            element = others[0] if others else self._returned(makes.path) if makes else ""
+            return Place(symbol, element, many=True, container=first)
+        return Place(symbol, first)
 
     def _follow(self, place: Place, steps: tuple[Step, ...]) -> Walked:
         """One step after the other; alternatives are tried where a base class stands for its descendants."""
@@ -306,8 +337,6 @@ class Walker:
     def _returned_class(self, path: str) -> str:
         symbol = self._reader.symbol(path)
         for result in symbol.returns if symbol else ():
-            for name in _CLASS_NAME.findall(result.type.rpartition(".")[2] or result.type):
-                for candidate in (TYPES + name, f"{path.rpartition('.')[0].rpartition('.')[0]}.{name}"):
-                    if self._reader.entry(candidate):
-                        return candidate
+            if found := self._classes_in(result.type, path):
+                return found[0]
         return ""
