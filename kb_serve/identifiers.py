@@ -33,7 +33,7 @@ _POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 _BOILERPLATE = re.compile(
     r"bpy_struct: item\.attr\s*=\s*val:|bpy_prop_collection\[key\]:|has no attribute '\w+'"
 )
-_FILE_PATH = re.compile(r"""(['"])[^'"\n]*/[^'"\n]*\1""")
+_FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n]*/[^'"\n]*\1""")
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
@@ -106,6 +106,23 @@ def _strangeness(text: str, identifier: str) -> int:
     return 2 if identifier.removeprefix(TYPES).count(".") == text.removeprefix(TYPES).count(".") else 3
 
 
+def _is_api(chain: Chain) -> bool:
+    """Whether a chain may be Blender's; ``object.location`` is, though Python has an ``object`` too."""
+    return chain.root not in _NOT_API or bool(chain.attributes)
+
+
+def _called(text: str) -> str:
+    """``f`` of ``f(a, b)``; the text itself where it is no call, or more follows upon it."""
+    start, depth = text.find("("), 0
+    if start < 0 or not text.endswith(")"):
+        return text
+    for position, char in enumerate(text[start:], start):
+        depth += (char == "(") - (char == ")")
+        if depth == 0 and position + 1 < len(text):
+            return text
+    return text[:start]
+
+
 class Identifier:
     """Recognises names against one base."""
 
@@ -160,8 +177,7 @@ class Identifier:
         if self._reader.page_entry(text):
             found.add(text, 1.0, "exact")
             return
-        called = text[: text.index("(")] if text.endswith(")") and "(" in text else text
-        called = _MEMBER.sub(".", called)
+        called = _MEMBER.sub(".", _called(text))
         rows = self._reader.by_key(key(called))
         if rows:
             self._spelled(called, rows, found)
@@ -238,7 +254,7 @@ class Identifier:
     # Code
 
     def _chains(self, chains: list[Chain], found: Identified) -> None:
-        code = [chain for chain in chains if chain.is_code and chain.root not in _NOT_API]
+        code = [chain for chain in chains if chain.is_code and _is_api(chain)]
         prose = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
         for position, chain in enumerate(code):
             later = 0.02 * min(position, 5)

@@ -184,7 +184,7 @@ class Walker:
             return Place(entry.path, TYPES + entry.target)
         if entry.kind == "function":
             return Place(entry.path, container=came_from)
-        if found := self._classes_in(entry.type, entry.path):
+        if found := self._classes_in(entry.type, entry.path, whole=True):
             return self._sequence(entry.path, found)
         return Place(entry.path, self._value_class(entry))
 
@@ -204,9 +204,14 @@ class Walker:
             return f"mathutils.{_MATH[symbol.subtype]}"
         return ""
 
-    def _classes_in(self, text: str, path: str) -> list[str]:
-        """The classes that a type in words names, ``BMElemSeq[BMEdge]``; those nearest to ``path`` first."""
+    def _classes_in(self, text: str, path: str, *, whole: bool = False) -> list[str]:
+        """The classes that a type in words names, ``BMElemSeq[BMEdge]``; those nearest to ``path`` first.
+
+        ``whole`` asks for a type that is a class itself, not Python's list or tuple of one.
+        """
         found: list[str] = []
+        if whole and not _CLASS_NAME.match(text):
+            return found
         for name in _CLASS_NAME.findall(text):
             places = [path[:at] for at in range(len(path), 0, -1) if path[at : at + 1] == "."]
             last = name.rpartition(".")[2]
@@ -277,10 +282,16 @@ class Walker:
         if found:
             yield replace(self._place(found, place.cls), symbol=socket or found.path, origin=place.cls)
             return
+        if not place.cls and hasattr(list, name) and self._is_list(place.symbol):
+            yield place
         if place.cls.startswith(TYPES):
             for entry in self._reader.by_name(name):
                 if entry.kind != "socket" and self._descends(entry.owner, place.cls):
                     yield self._place(entry, entry.owner)
+
+    def _is_list(self, path: str) -> bool:
+        entry = self._reader.entry(path)
+        return entry is not None and entry.type.startswith("list")
 
     def _descends(self, cls: str, ancestor: str) -> bool:
         return any(entry.path == ancestor for entry in self._reader.lineage(cls))
@@ -303,7 +314,10 @@ class Walker:
         if len(nodes) < 2:
             return nodes
         name = tree.removeprefix(TYPES)
-        return [path for path in nodes if (node := self._reader.symbol(path)) and name in node.trees] or nodes
+        trees = {
+            path: node.trees for path in nodes if (node := self._reader.symbol(path)) and name in node.trees
+        }
+        return sorted(trees, key=lambda path: len(trees[path])) or nodes
 
     def _named_classes(self, cls: str, text: str) -> Iterator[str]:
         """Descendants of ``cls`` (or itself) whose elements are called ``text`` by default."""
