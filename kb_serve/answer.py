@@ -24,6 +24,7 @@ MAX_LIMIT = 50
 MAX_TOKENS = 1_500
 LEAST_TOKENS = 150
 _FOOTER_TOKENS = 70
+_ASKED_TOKENS = 20
 _EXCERPT_SHARE = 0.4
 _LINE_TOKENS = 60
 
@@ -73,7 +74,8 @@ class Answerer:
 
     def answer(self, query: str, limit: int, max_tokens: int, part: int) -> Answer:
         """Answers a query. Raises BadQuery for an empty one, or a part that does not exist."""
-        text = " ".join(query.replace("\0", " ").split())
+        # Half a character (a lone surrogate) can be part of nothing that a base holds.
+        text = " ".join(query.encode(errors="ignore").decode().replace("\0", " ").split())
         if not text:
             raise BadQuery(
                 "The query is empty. Ask for a name (ClothSettings.quality) or say what you want to do."
@@ -177,22 +179,23 @@ class Answerer:
 
 def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> Answer:
     """Cuts a draft into parts and adds to each what is missing from it and how to get it."""
-    notes = "\n".join(f"> {note}" for note in draft.notes)
-    room = max_tokens - _FOOTER_TOKENS - min(tokens(notes), max_tokens // 3)
-    pages = paginate(draft.blocks, max(40, room))
+    notes = clip("\n".join(f"> {note}" for note in draft.notes), max_tokens // 3)
+    room = max_tokens - _FOOTER_TOKENS - (tokens(notes) + 1 if notes else 0)
+    pages = paginate(draft.blocks, room)
     if part > len(pages):
         raise BadQuery(
             f"part={part} does not exist: this answer has {len(pages)} part(s) of {max_tokens} tokens."
         )
     text, left = pages[part - 1]
-    pieces = [clip(notes, max_tokens // 3)] if notes and part == 1 else []
-    pieces.append(text)
+    pieces = [notes, text] if notes and part == 1 else [text]
     if part < len(pages):
-        names = clip(", ".join(dict.fromkeys(left)), _FOOTER_TOKENS // 2)
-        asked = clip(query, 16)
-        pieces.append(
-            f'_Part {part} of {len(pages)}. Left: {names}. Next: blender_docs("{asked}", part={part + 1})_'
-        )
-    return Answer(
-        draft.kind, clip("\n\n".join(pieces), max_tokens), draft.hits, draft.notes, part, len(pages)
-    )
+        pieces.append(_footer(query, part, len(pages), left))
+    return Answer(draft.kind, "\n\n".join(pieces), draft.hits, draft.notes, part, len(pages))
+
+
+def _footer(query: str, part: int, parts: int, left: Sequence[str]) -> str:
+    """What is left, and the call that fetches it; with the blank line above it, within ``_FOOTER_TOKENS``."""
+    head = f"_Part {part} of {parts}. Left: "
+    tail = f'. Next: blender_docs("{clip(query, _ASKED_TOKENS)}", part={part + 1})_'
+    names = clip(", ".join(dict.fromkeys(left)), _FOOTER_TOKENS - 1 - tokens(head + tail))
+    return head + names + tail

@@ -26,7 +26,7 @@ def clip(text: str, budget: int) -> str:
         return text
     room = max(0, budget * _BYTES_PER_TOKEN - 4)
     cut = text.encode(errors="replace")[:room].decode(errors="ignore")
-    return (cut.rsplit(None, 1)[0] if " " in cut else cut) + " …"
+    return (cut[: cut.rindex(" ")] if " " in cut else cut) + " …"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +39,17 @@ class Block:
 
 def _split(text: str, room: int) -> tuple[str, str]:
     """(what fits into ``room`` tokens, the rest), cut between lines; between words where one line is too long."""
-    lines, taken, used = text.split("\n"), 0, 0
-    for line in lines:
-        cost = len(line.encode(errors="replace")) + 1
-        if used + cost > room * _BYTES_PER_TOKEN:
+    limit = room * _BYTES_PER_TOKEN
+    start = text[: limit + 1]  # no character takes less than a byte: what fits is in here
+    position = used = 0
+    for line in start.split("\n"):
+        used += len(line.encode(errors="replace")) + 1
+        if used > limit:
             break
-        taken, used = taken + 1, used + cost
-    if taken:
-        return "\n".join(lines[:taken]), "\n".join(lines[taken:])
-    head = text.encode(errors="replace")[: room * _BYTES_PER_TOKEN].decode(errors="ignore")
+        position += len(line) + 1
+    if position:
+        return text[: position - 1], text[position:]
+    head = start.encode(errors="replace")[:limit].decode(errors="ignore")
     at = head.rfind(" ")
     head = head[:at] if at > len(head) // 2 else head
     return head, text[len(head) :].lstrip(" ")
@@ -66,7 +68,7 @@ def paginate(blocks: Sequence[Block], budget: int) -> list[tuple[str, list[str]]
         rest = block.text
         while rest:
             room = budget - tokens(f"{current}\n\n") if current else budget
-            if tokens(rest) <= room:
+            if len(rest) <= room * _BYTES_PER_TOKEN and tokens(rest) <= room:
                 current = f"{current}\n\n{rest}" if current else rest
                 break
             if room >= _WORTH_FILLING * budget:

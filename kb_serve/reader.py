@@ -114,6 +114,8 @@ class Reader:
         """Runs one query. A file that turns out damaged is BaseUnreadable."""
         try:
             return self._connection.execute(sql, values).fetchall()
+        except UnicodeEncodeError:
+            return []  # half a character, which is in no base
         except sqlite3.DatabaseError as error:
             raise BaseUnreadable(f"{self.path}: damaged ({error}). {_REBUILD}") from error
 
