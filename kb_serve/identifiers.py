@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
+from kb_serve.addresses import addressed, page_named
 from kb_serve.chains import Chain, find_chains
 from kb_serve.corrections import Correction, Corrector, Drift, Drifts, nearest
 from kb_serve.reader import TYPES, Entry, Reader
@@ -22,8 +23,6 @@ from kb_serve.walk import Walked, Walker
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-_URL = re.compile(r"https?://[\w.]*blender\.org/(?:manual|api)/[^\s'\"<>)]*")
-_HTML = re.compile(r"(?P<page>[\w./-]+?)\.html(?:#(?P<anchor>[\w.-]+))?$")
 _HAS_NO = re.compile(r"['\"](?P<owner>[\w.]+)['\"] object has no attribute ['\"](?P<name>\w+)['\"]")
 _MODULE_HAS_NO = re.compile(r"module ['\"](?P<owner>[\w.]+)['\"] has no attribute ['\"](?P<name>\w+)['\"]")
 _BAD_KEY = re.compile(r"\bkey \"(?P<name>[^\"]+)\" not found")
@@ -135,7 +134,8 @@ class Identifier:
     def identify(self, query: str) -> Identified:
         """Everything that ``query`` names, surest first."""
         found = Identified()
-        self._addresses(query, found)
+        for identifier in addressed(query, self._reader):
+            found.add(identifier, 1.0, "address")
         self._whole(query, found)
         if found.best is None or found.best.sure < 1:
             self._errors(query, found)
@@ -148,20 +148,7 @@ class Identifier:
         found.matches.sort(key=lambda match: -match.sure)
         return found
 
-    # Addresses and whole spellings
-
-    def _addresses(self, query: str, found: Identified) -> None:
-        for url in _URL.findall(query):
-            match = _HTML.search(url.split("?")[0])
-            if not match:
-                continue
-            if anchor := match["anchor"]:
-                self._symbol(anchor, found, "address")
-            page = match["page"].partition("/manual/")[2] or match["page"].partition("/api/")[2]
-            slug = "/".join(page.split("/")[2:] if "/manual/" in url else page.split("/")[1:])
-            self._symbol(slug, found, "address")
-            if self._reader.page_entry(slug):
-                found.add(slug, 1.0, "address")
+    # Whole spellings
 
     def _symbol(self, path: str, found: Identified, why: str) -> None:
         if path and self._reader.entry(path):
@@ -174,8 +161,8 @@ class Identifier:
             if self._reader.entry(path):
                 found.add(path, 1.0, "exact")
                 return
-        if self._reader.page_entry(text):
-            found.add(text, 1.0, "exact")
+        if slug := page_named(text, self._reader):
+            found.add(slug, 1.0, "exact")
             return
         called = _MEMBER.sub(".", _called(text))
         rows = self._reader.by_key(key(called))

@@ -40,16 +40,19 @@ class Topics:
         nothing hangs on is no topic.
         """
         plain = text.strip().strip("`'\"?!.")
-        if (
-            plain != plain.lower()
-            or len(plain.split()) > _MAX_WORDS
-            or any(char in plain for char in "._()[]=/")
-        ):
+        if len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
+            return ""
+        if plain != plain.lower() and self._is_class(plain):
             return ""
         slugs = {slug for _, slug in self._reader.by_key(topic_key(plain))}
         slugs |= {slug for _, slug in self._reader.by_key(key(plain)) if self._children(slug)}
         sizes = {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}
         return max(sizes, key=lambda slug: (sizes[slug], slug)) if sizes else ""
+
+    def _is_class(self, text: str) -> bool:
+        """Whether a capital may mean a class: ``Camera``, ``Particle System``, unlike ``Rigid Body``."""
+        entries = (self._reader.entry(identifier) for _, identifier in self._reader.by_key(key(text)))
+        return any(entry is not None and entry.kind == "class" for entry in entries)
 
     def _is_topic(self, slug: str) -> bool:
         page = self._reader.page_entry(slug)

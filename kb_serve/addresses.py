@@ -1,0 +1,36 @@
+"""Addresses in a query: of the manual and the reference on the web, and of pages in a base."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.reader import Reader
+
+_URL = re.compile(r"https?://[\w.]*blender\.org/(manual|api)/([^\s'\"<>)]*)")
+_BEFORE_SLUG = {"manual": 2, "api": 1}  # language and version; version
+
+
+def addressed(query: str, reader: Reader) -> Iterator[str]:
+    """The symbols and pages whose web addresses stand in a query; of one address, the closest first."""
+    for site, rest in _URL.findall(query):
+        page, _, anchor = rest.rstrip(".,;:!?").partition("#")
+        parts = page.partition("?")[0].removesuffix(".html").strip("/").split("/")
+        path = "/".join(parts[_BEFORE_SLUG[site] :])
+        for symbol in (anchor, path):
+            if symbol and reader.entry(symbol):
+                yield symbol
+        if slug := page_named(path, reader):
+            yield slug
+
+
+def page_named(text: str, reader: Reader) -> str:
+    """The slug of the page that a text names: as it is, without ``/index``, or with a suffix; "" for none."""
+    if reader.page_entry(text):
+        return text
+    slug = text.strip("/").removesuffix(".html").removesuffix(".rst").strip("/")
+    candidates = (slug, f"{slug}/index") if "/" in text else (slug,)
+    return next((candidate for candidate in candidates if reader.page_entry(candidate)), "")
