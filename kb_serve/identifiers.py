@@ -165,6 +165,8 @@ class Identifier:
             found.add(slug, 1.0, "exact")
             return
         called = _MEMBER.sub(".", _called(text))
+        if " " in text:
+            self._labelled(text, found)
         rows = self._reader.by_key(key(called))
         if rows:
             self._spelled(called, rows, found)
@@ -186,6 +188,18 @@ class Identifier:
                 found.add(identifier, 0.9 if same and plain and "_" in text else 0.7, "name")
             else:
                 found.add(identifier, 0.75, "title")
+
+    def _labelled(self, text: str, found: Identified) -> None:
+        """The classes and operators that the interface calls just so; of modifiers, what Blender names new ones."""
+        entries = [
+            entry
+            for label in (f"{text} Modifier", f"{text} Constraint", text)
+            for form, identifier in self._reader.by_key(key(label))
+            if form == FORM_LABEL and (entry := self._reader.entry(identifier)) and entry.label == label
+        ]
+        named = [entry for entry in entries if entry.kind in {"class", "operator"}]
+        for rank, entry in enumerate(named[:_FEW]):
+            found.add(entry.path, 0.9 if len(named) == 1 else 0.83 - 0.01 * rank, "label")
 
     def _is_enum_item(self, text: str) -> bool:
         if not (text.isupper() and "_" in text):
