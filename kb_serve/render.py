@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
-_SHOWN_ITEMS = 60
+_NAMED_ITEMS = 40  # of an argument, beside it; all of them follow
 _UNITS = {
     "LENGTH": "metres", "ROTATION": "radians", "TIME": "frames", "TIME_ABSOLUTE": "seconds", "MASS": "kg",
     "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
@@ -60,13 +60,13 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield "shown when " + " and ".join(symbol.modes)
 
 
-def _items(items: Sequence[EnumItem], shown: int = _SHOWN_ITEMS) -> str:
+def _items(items: Sequence[EnumItem]) -> str:
     lines: list[str] = []
     for item in items:
         said = item.name if item.name and item.name != item.identifier else ""
         text = " — ".join(part for part in (said, item.description) if part)
         lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else ""))
-    return "\n".join(lines[:shown] if shown else lines)
+    return "\n".join(lines)
 
 
 def _parameter_line(parameter: Parameter) -> str:
@@ -87,8 +87,8 @@ def _parameter_line(parameter: Parameter) -> str:
         text += f": {parameter.label}"
     if parameter.enum_items:
         names = [repr(item.identifier) for item in parameter.enum_items]
-        more = f", … {len(names)} in all" if len(names) > 40 else ""
-        text += "\n  one of " + ", ".join(names[:40]) + more
+        more = f", … {len(names)} in all" if len(names) > _NAMED_ITEMS else ""
+        text += "\n  one of " + ", ".join(names[:_NAMED_ITEMS]) + more
     return text
 
 
@@ -100,9 +100,10 @@ def _parameters(symbol: Symbol) -> Iterator[Block]:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield Block(f"**Returns**\n{lines}", "returns")
     for parameter in symbol.parameters:
-        if len(parameter.enum_items) > 3 and any(item.description for item in parameter.enum_items):
+        items = parameter.enum_items
+        if len(items) > _NAMED_ITEMS or (len(items) > 3 and any(item.description for item in items)):
             yield Block(
-                f"**Values of `{parameter.name}`**\n{_items(parameter.enum_items, 0)}",
+                f"**Values of `{parameter.name}`**\n{_items(items)}",
                 f"values of {parameter.name}",
             )
 
@@ -123,7 +124,7 @@ class Renderer:
         elif symbol.kind in {"module", "data"} and self.reader.members(symbol.path):
             yield from self._module(symbol)
         if symbol.enum_items:
-            yield Block(f"**Values**\n{_items(symbol.enum_items, 0)}", "values")
+            yield Block(f"**Values**\n{_items(symbol.enum_items)}", "values")
         definition = self.manual_definition(symbol)
         if definition:
             yield Block(definition, "the manual on it")
