@@ -53,7 +53,8 @@ PAGE = Page(
         Section("a", "Cloth Simulation", 1, "Lead \x00 text 🎨."), Section("b", "More", 2, "x" * 40_000),
         Section("c", "None", 3, ""),
     ),
-    ("Physics",), (), ("glossary/index",), "https://docs.blender.org/manual/en/5.1/physics/cloth/index.html", ("odd markup",),
+    ("Physics",), (), ("glossary/index",),
+    "https://docs.blender.org/manual/en/5.1/physics/cloth/index.html", ("odd markup",),
 )  # fmt: skip
 SYMBOLS = (CLOTH, STEPS, ADD, SOCKET, PANEL)
 FORMER = Former(

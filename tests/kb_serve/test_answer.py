@@ -1,0 +1,174 @@
+"""Answers: what they say of a symbol, a page, candidates; within the budget, in parts, with nothing lost."""
+
+from __future__ import annotations
+
+import random
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+from asking import SEED, classes, of_data, paths
+
+from kb_serve.answer import LEAST_TOKENS, MAX_LIMIT
+from kb_serve.budget import tokens
+from kb_serve.errors import BadQuery
+
+if TYPE_CHECKING:
+    from kb_serve.answer import Answer
+    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import Reader
+
+QUERIES = (
+    "bpy.types.Object", "bpy.types.ID", "bpy.ops.object.modifier_add", "bpy.types", "mathutils.Matrix", "bpy.ops.mesh",
+    "bpy.types.Action.fcurves", "bpy.types.ClothSettings.qualiti", "cloth", "rigid body",
+    "physics/cloth/settings/index",
+    "how do I stop cloth from passing through its collider?", "Subdivision Surface", "templates_py/operator_modal",
+    'mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]', "rna_enum_icon_items", "xyzzy plugh",
+    "AttributeError: 'Action' object has no attribute 'fcurves'", "bpy.types.UILayout.label", "EEVEE bloom",
+)  # fmt: skip
+FOOTER = re.compile(r"\n\n_Part \d+ of \d+\. Left: .*\. Next: blender_docs\(.*\)_$", re.DOTALL)
+
+
+def body(answer: Answer) -> str:
+    """What a part says, without the notes before it and the footer behind it; white space left out."""
+    text = FOOTER.sub("", answer.text) if answer.part < answer.parts else answer.text
+    if answer.part == 1 and answer.notes:
+        text = text.partition("\n\n")[2]
+    return "".join(text.split())
+
+
+def whole(kb: KnowledgeBase, query: str, max_tokens: int) -> list[Answer]:
+    first = kb.query(query, max_tokens=max_tokens)
+    return [first, *(kb.query(query, max_tokens=max_tokens, part=n) for n in range(2, first.parts + 1))]
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_no_part_exceeds_the_budget_and_together_they_say_everything(kb: KnowledgeBase, query: str) -> None:
+    chance = random.Random(query)
+    everything = kb.query(query, max_tokens=1_000_000)
+    assert everything.parts == 1
+    for budget in (LEAST_TOKENS, *(chance.randrange(LEAST_TOKENS, 3_000) for _ in range(4))):
+        parts = whole(kb, query, budget)
+        assert max(tokens(answer.text) for answer in parts) <= budget
+        assert "".join(map(body, parts)) == body(everything)
+        assert {(answer.kind, answer.hits, answer.notes, answer.parts) for answer in parts} == {
+            (everything.kind, everything.hits, everything.notes, len(parts))
+        }
+
+
+def test_the_budget_holds_for_any_symbol_and_any_budget(kb: KnowledgeBase, reader: Reader) -> None:
+    chance = random.Random(SEED)
+    sample = paths(reader, "class", 60) + paths(reader, "operator", 60) + of_data(reader, "property", 60)
+    sample += paths(reader, "module", 40) + [f"{path}x" for path in of_data(reader, "property", 40)]
+    for query in sample:
+        budget = chance.randrange(LEAST_TOKENS, 1_500)
+        answer = kb.query(query, max_tokens=budget)
+        assert tokens(answer.text) <= budget
+        last = kb.query(query, max_tokens=budget, part=answer.parts)
+        assert tokens(last.text) <= budget
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_the_footer_names_what_is_left_and_the_call_that_fetches_it(kb: KnowledgeBase, query: str) -> None:
+    first = kb.query(query, max_tokens=LEAST_TOKENS)
+    if first.parts == 1:
+        assert "_Part" not in first.text
+        return
+    assert f"_Part 1 of {first.parts}. Left: " in first.text
+    assert re.search(r"Next: blender_docs\(\".+\", part=2\)_$", first.text)
+    last = kb.query(query, max_tokens=LEAST_TOKENS, part=first.parts)
+    assert "_Part" not in last.text
+
+
+def test_a_short_query_can_be_asked_again_as_the_footer_says(kb: KnowledgeBase) -> None:
+    first = kb.query("bpy.types.Object", max_tokens=300)
+    match = re.search(r'blender_docs\("(.+)", part=(\d+)\)', first.text)
+    assert match is not None
+    assert kb.query(match[1], max_tokens=300, part=int(match[2])).part == 2
+
+
+@pytest.mark.parametrize(
+    "query", ["bpy.types.Object", "bpy.types.ClothSettings.quality", "how to bake cloth"]
+)
+def test_a_part_beyond_the_last_is_refused_with_the_number_there_is(kb: KnowledgeBase, query: str) -> None:
+    parts = kb.query(query).parts
+    with pytest.raises(BadQuery, match=f"part={parts + 1} does not exist: this answer has {parts} part"):
+        kb.query(query, part=parts + 1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"limit": 0}, "limit=0"), ({"limit": -1}, "limit=-1"), ({"part": 0}, "part=0"), ({"part": -3}, "part=-3"),
+        ({"max_tokens": 149}, "at least 150"), ({"max_tokens": 0}, "max_tokens=0"), ({"max_tokens": -5},
+        "max_tokens=-5"),
+    ],
+)  # fmt: skip
+def test_numbers_out_of_range_are_refused_with_what_to_give(
+    kb: KnowledgeBase, arguments: dict[str, int], said: str
+) -> None:
+    with pytest.raises(BadQuery, match=said):
+        kb.query("cloth", **arguments)
+
+
+@pytest.mark.parametrize("limit", [1, 2, 8, MAX_LIMIT, 10_000])
+def test_no_more_hits_than_asked_for_and_none_twice(kb: KnowledgeBase, limit: int) -> None:
+    for query in ("quality", "cloth", "modifier", "how to bake a simulation", "bpy.types.Object.location"):
+        hits = kb.query(query, limit=limit).hits
+        assert len(hits) <= min(limit, MAX_LIMIT)
+        assert len({hit.id for hit in hits}) == len(hits)
+
+
+def test_hits_are_ranked_and_exist(kb: KnowledgeBase, reader: Reader) -> None:
+    for query in QUERIES:
+        answer = kb.query(query, limit=MAX_LIMIT)
+        assert (answer.kind == "none") == (answer.hits == ())
+        for hit in answer.hits:
+            assert reader.entry(hit.id) or reader.page_entry(hit.id), hit.id
+            assert hit.title
+            assert 0 <= hit.score <= 1
+        if answer.hits:
+            assert answer.hits[0].id in answer.text or answer.hits[0].title in answer.text
+
+
+@pytest.mark.parametrize(
+    ("query", "kind"),
+    [
+        ("bpy.types.ClothSettings.quality", "schema"), ("physics/cloth/settings/index", "page"), ("cloth", "page"),
+        ("how do I make the simulation finer", "candidates"), ("qwrtzpsdfg xkcdvbn", "none"),
+        ("SoftBodySettings.use_self_colision", "schema"),
+    ],
+)  # fmt: skip
+def test_the_kind_tells_what_sort_of_answer_it_is(kb: KnowledgeBase, query: str, kind: str) -> None:
+    assert kb.query(query).kind == kind
+
+
+def test_candidates_show_the_best_and_list_the_others(kb: KnowledgeBase) -> None:
+    answer = kb.query("how do I make the cloth simulation finer", max_tokens=3_000)
+    assert answer.kind == "candidates"
+    assert "**Also**" in answer.text
+    for hit in answer.hits[1:]:
+        assert f"`{hit.id}`" in answer.text
+
+
+def test_a_correction_is_said_before_everything_else(kb: KnowledgeBase) -> None:
+    answer = kb.query("ClothSettings.qualiti")
+    assert answer.text.startswith("> `qualiti` does not exist; read as `quality`.")
+    assert kb.query("ClothSettings.qualiti").notes == answer.notes
+
+
+def test_asking_twice_or_with_other_blanks_gives_the_same(kb: KnowledgeBase) -> None:
+    for query in QUERIES:
+        assert kb.query(query) == kb.query(f"  {query.replace(' ', '   ')}\n")
+
+
+def test_a_long_note_does_not_crowd_out_the_answer(kb: KnowledgeBase) -> None:
+    code = "\n".join(f"obj.rigid_body.no_such_thing_{n} = {n}" for n in range(30))
+    answer = kb.query(code, max_tokens=LEAST_TOKENS)
+    assert tokens(answer.text) <= LEAST_TOKENS
+    assert "RigidBodyObject" in answer.text
+
+
+def test_classes_of_the_interface_are_answered_too(kb: KnowledgeBase, reader: Reader) -> None:
+    for path in classes(reader, "ui", 30) + classes(reader, "operator", 30):
+        assert kb.query(path).hits[0].id == path

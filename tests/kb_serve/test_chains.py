@@ -1,0 +1,98 @@
+"""Code in any text is found as chains of steps; nothing that is typed makes the reader stumble."""
+
+from __future__ import annotations
+
+import random
+import string
+import time
+
+import pytest
+
+from kb_serve.chains import MAX_QUERY, Step, find_chains
+
+
+def steps(text: str) -> list[tuple[str, str]]:
+    (chain,) = find_chains(text)
+    return [(step.kind, step.text) for step in chain.steps]
+
+
+@pytest.mark.parametrize(
+    ("text", "root", "expected"),
+    [
+        ("obj", "obj", []),
+        ("obj.name", "obj", [("attr", "name")]),
+        ("obj . name", "obj", [("attr", "name")]),
+        ("obj->name", "obj", [("attr", "name")]),
+        ("Obj::name", "Obj", [("attr", "name")]),
+        ('a["Key"]', "a", [("key", "Key")]),
+        ("a['Key']", "a", [("key", "Key")]),
+        ('a[u"Key"]', "a", [("key", "Key")]),
+        ("a[ 'Ke]y' ]", "a", [("key", "Ke]y")]),
+        ("a[0]", "a", [("index", "0")]),
+        ("a[i + 1]", "a", [("index", "i + 1")]),
+        ("a[f(x)[0]].b", "a", [("index", "f(x)[0]"), ("attr", "b")]),
+        ("a()", "a", [("call", "")]),
+        ("a.b(c, d=(1, 2)).e", "a", [("attr", "b"), ("call", "c, d=(1, 2)"), ("attr", "e")]),
+        ("a.b(", "a", [("attr", "b"), ("call", "")]),
+        ('a["unclosed', "a", [("index", '"unclosed')]),
+        ("größe.länge", "größe", [("attr", "länge")]),
+        (r'a["say \"x\""]', "a", [("key", r"say \"x\"")]),
+    ],
+)
+def test_steps_are_read_as_python_reads_them(text: str, root: str, expected: list[tuple[str, str]]) -> None:
+    (chain,) = find_chains(text)
+    assert (chain.root, chain.source) == (root, text)
+    assert steps(text) == expected
+
+
+def test_every_expression_of_a_text_is_found_in_order() -> None:
+    text = "Why does `bpy.context.object.location` not follow obj.parent['x'] in Blender?"
+    found = [chain.source for chain in find_chains(text) if chain.steps]
+    assert found == ["bpy.context.object.location", "obj.parent['x']"]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [("cloth", False), ("Cloth", False), ("use_self", True), ("ClothSettings", True), ("a.b", True), ("f()", True),
+     ("_", False), ("__init__", False), ("UV", False), ("qualitySteps", True)],
+)  # fmt: skip
+def test_a_lone_word_of_prose_is_no_code(text: str, code: bool) -> None:
+    assert find_chains(text)[0].is_code is code
+
+
+def test_the_dotted_part_ends_at_the_first_call_or_index() -> None:
+    (chain,) = find_chains('bpy.data.objects["Cube"].modifiers.new(name="x")')
+    assert chain.dotted == "bpy.data.objects"
+    assert chain.attributes == ("data", "objects", "modifiers", "new")
+
+
+def test_a_full_stop_between_sentences_is_no_attribute() -> None:
+    assert [chain.steps for chain in find_chains("It is a cube. 3 faces")] == [()] * 5
+
+
+def test_a_page_of_code_is_read_up_to_a_limit_and_fast() -> None:
+    code = "\n".join(f"obj{n}.modifiers['M{n}'].settings.quality = {n}" for n in range(5_000))
+    start = time.perf_counter()
+    found = find_chains(code)
+    assert len(found) <= MAX_QUERY
+    assert len([chain for chain in found if chain.is_code]) <= 12
+    assert time.perf_counter() - start < 1
+
+
+@pytest.mark.parametrize(
+    "piece", ["(", "[", '["', "a(", "a[", "a.", "a->", "'", '"', "\\", "a['\\", ")", "]", "(((["]
+)
+def test_brackets_without_end_take_no_time_of_note(piece: str) -> None:
+    start = time.perf_counter()
+    find_chains(piece * 10_000)
+    assert time.perf_counter() - start < 2
+
+
+def test_any_text_is_read() -> None:
+    chance = random.Random(1)
+    alphabet = string.printable + "éß→🎨\x00\ud800"
+    for _ in range(2_000):
+        text = "".join(chance.choices(alphabet, k=60))
+        for chain in find_chains(text):
+            assert chain.source in text
+            assert all(isinstance(step, Step) for step in chain.steps)

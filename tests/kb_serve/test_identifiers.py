@@ -1,0 +1,449 @@
+"""Names in every spelling: whoever types one gets exactly that symbol first.
+
+The cases are samples of what the base holds, not hand-picked queries.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter, defaultdict
+from typing import TYPE_CHECKING
+
+import pytest
+from asking import SEED, TYPES, camel, classes, misspelt, of_data, owner_and_name, paths, spaced, wrong
+
+from kb_build.analysis import key
+from kb_build.schema import FORM_SHORT
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import Reader
+
+KINDS = ("module", "class", "property", "function", "operator", "socket", "data", "context", "enum")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_full_path_is_that_symbol_and_its_whole_answer(
+    kb: KnowledgeBase, reader: Reader, kind: str
+) -> None:
+    sample = paths(reader, kind)
+    assert len(sample) > 100
+    for path in sample:
+        answer = kb.query(path)
+        assert (answer.kind, answer.hits[0].id, answer.hits[0].kind) == ("schema", path, kind)
+        assert f"`{path}`" in answer.text
+
+
+@pytest.mark.parametrize("around", ["`{}`", "'{}'", '"{}"', " {} ", "{}?", "{}.", "{}:", "{},", "\n{}\n"])
+def test_what_stands_around_a_name_does_not_matter(kb: KnowledgeBase, reader: Reader, around: str) -> None:
+    sample = of_data(reader, "property", 60) + paths(reader, "operator", 60)
+    assert wrong(kb, [(around.format(path), path) for path in sample]) == []
+
+
+@pytest.mark.parametrize(
+    "arguments", ["()", "(a, b=1)", '(type="X", size=(1, 2))', "('INVOKE_DEFAULT')", "(f(x), [1])"]
+)
+def test_a_call_is_the_function_or_operator_called(kb: KnowledgeBase, reader: Reader, arguments: str) -> None:
+    sample = of_data(reader, "function", 100) + paths(reader, "operator", 100)
+    sample += paths(reader, "function", 100, "path NOT LIKE 'bpy.%'")
+    assert wrong(kb, [(path + arguments, path) for path in sample]) == []
+
+
+def only(reader: Reader, spelled: str) -> bool:
+    """Whether nothing else has these letters: ``Annotation layers`` may be AnnotationLayers too."""
+    return len({identifier for form, identifier in reader.by_key(key(spelled)) if form <= FORM_SHORT}) == 1
+
+
+DOTTED = {
+    "without prefix",
+    "types. only",
+    "class in words",
+    "name in words",
+    "camel case",
+    "arrow",
+    "double colon",
+}
+SPELLINGS = {
+    "without prefix": lambda owner, name: f"{owner}.{name}",
+    "types. only": lambda owner, name: f"types.{owner}.{name}",
+    "class in words": lambda owner, name: f"{spaced(owner)}.{name}",
+    "name in words": lambda owner, name: f"{owner}.{name.replace('_', ' ')}",
+    "camel case": lambda owner, name: f"{owner}.{camel(name)}",
+    "small letters": lambda owner, name: f"bpy.types.{owner}.{name}".lower(),
+    "capitals": lambda owner, name: f"{owner}.{name}".upper(),
+    "side by side": lambda owner, name: f"{owner} {name}",
+    "arrow": lambda owner, name: f"{owner}->{name}",
+    "double colon": lambda owner, name: f"{owner}::{name}",
+    "hash": lambda owner, name: f"{owner}#{name}",
+}
+
+
+@pytest.mark.parametrize("spelling", SPELLINGS)
+@pytest.mark.parametrize("kind", ["property", "function"])
+def test_a_member_is_found_in_every_usual_spelling(
+    kb: KnowledgeBase, reader: Reader, kind: str, spelling: str
+) -> None:
+    cases = [(SPELLINGS[spelling](*owner_and_name(path)), path) for path in of_data(reader, kind)]
+    clear = [
+        case for case in cases if only(reader, case[0]) or (spelling in DOTTED and not case[0].isupper())
+    ]
+    assert len(clear) > 250
+    assert wrong(kb, clear) == []
+
+
+@pytest.mark.parametrize(
+    "spell",
+    [
+        lambda name: name,
+        lambda name: f"types.{name}",
+        spaced,
+        str.upper,
+        lambda name: f"bpy.types.{name}".lower(),
+    ],
+    ids=["without prefix", "types. only", "in words", "capitals", "small letters"],
+)
+def test_a_class_is_found_in_every_usual_spelling(kb: KnowledgeBase, reader: Reader, spell: object) -> None:
+    assert callable(spell)
+    modules = {path.rpartition(".")[2] for path in paths(reader, "module", 1_000)}
+    cases = [(spell(path.removeprefix(TYPES)), path) for path in classes(reader)]
+    # ``SCENE`` may be the module of operators too.
+    assert (
+        wrong(kb, [case for case in cases if case[0].lower() not in modules or case[0][1:2].islower()]) == []
+    )
+
+
+@pytest.mark.parametrize("group", ["ui"])
+def test_a_panel_or_menu_is_found_by_its_name(kb: KnowledgeBase, reader: Reader, group: str) -> None:
+    assert wrong(kb, [(path.removeprefix(TYPES), path) for path in classes(reader, group)]) == []
+
+
+OPERATOR_SPELLINGS = {
+    "without prefix": lambda path, target: path.removeprefix("bpy.ops."),
+    "ops. only": lambda path, target: path.removeprefix("bpy."),
+    "class": lambda path, target: target,
+    "class with prefix": lambda path, target: f"bpy.types.{target}",
+    "class in small letters": lambda path, target: target.lower(),
+    "asked for its poll": lambda path, target: f"{path}.poll()",
+    "assigned": lambda path, target: f"result = {path}(x=1)",
+    "in a sentence": lambda path, target: f"Please run {path} with the right arguments",
+}
+
+
+@pytest.mark.parametrize("spelling", OPERATOR_SPELLINGS)
+def test_an_operator_is_found_by_its_call_and_by_its_class(
+    kb: KnowledgeBase, reader: Reader, spelling: str
+) -> None:
+    registered = set(classes(reader, "operator", 1_000))
+    cases: list[tuple[str, str]] = []
+    for path in paths(reader, "operator"):
+        entry = reader.entry(path)
+        assert entry is not None
+        query = OPERATOR_SPELLINGS[spelling](path, entry.target)
+        module, _, name = query.partition(".")
+        if query not in registered and not reader.entry(f"{TYPES}{module.title()}.{name}"):
+            cases.append((query, path))
+    assert len(cases) > 200
+    assert wrong(kb, cases) == []
+
+
+@pytest.mark.parametrize("form", ["{}", "{}.default_value", "{}.default_value = 0.5", "node.{}"])
+def test_a_socket_is_found_by_class_and_name(kb: KnowledgeBase, reader: Reader, form: str) -> None:
+    cases: list[tuple[str, str]] = []
+    for path in paths(reader, "socket", 150):
+        entry = reader.entry(path)
+        assert entry is not None
+        valued = reader.entry(f"{TYPES}{entry.target}.default_value") is not None
+        if form == "{}":
+            cases += [(path.removeprefix(TYPES), path), (path.replace('"', "'"), path)]
+        elif form.startswith("{}") and valued:
+            cases.append((form.format(path.removeprefix(TYPES)), path))
+    assert wrong(kb, cases) == []
+
+
+def test_context_and_data_are_abbreviated_as_in_blenders_console(kb: KnowledgeBase, reader: Reader) -> None:
+    cases: list[tuple[str, str]] = []
+    for path in paths(reader, "context", where="owner = 'bpy.context'"):
+        name = path.rpartition(".")[2]
+        cases += [(f"C.{name}", path), (f"context.{name}", path), (path, path)]
+    for entry in reader.members("bpy.types.BlendData").values():
+        if entry.kind == "property":
+            cases += [(f"D.{entry.name}", entry.path), (f"bpy.data.{entry.name}", entry.path)]
+    assert len(cases) > 400
+    assert wrong(kb, cases) == []
+
+
+def test_what_a_class_inherits_is_found_at_the_class_that_has_it(kb: KnowledgeBase, reader: Reader) -> None:
+    chance = random.Random(SEED)
+    cases: list[tuple[str, str]] = []
+    for path in classes(reader, count=400):
+        own = reader.members(path)
+        inherited: dict[str, str] = {}
+        for ancestor in [entry.path for entry in reader.lineage(path)][1:-1]:
+            for name, member in reader.members(ancestor).items():
+                if name not in own and member.kind in {"property", "function"}:
+                    inherited.setdefault(name, member.path)
+        if inherited:
+            name = chance.choice(sorted(inherited))
+            cases += [
+                (f"{path}.{name}", inherited[name]),
+                (f"{path.removeprefix(TYPES)}.{name}", inherited[name]),
+            ]
+    assert len(cases) > 300
+    assert wrong(kb, cases) == []
+
+
+def test_names_that_share_a_key_are_told_apart_by_how_they_are_written(kb: KnowledgeBase) -> None:
+    for name, path in (
+        ("BlendDataMovieClips", "bpy.types.BlendDataMovieClips"),
+        ("BlendData.movieclips", "bpy.types.BlendData.movieclips"),
+        ("blf.rotation(1)", "blf.rotation"),
+        ("blf.ROTATION", "blf.ROTATION"),
+        ("view_layers", "bpy.types.Scene.view_layers"),
+        ("ViewLayers", "bpy.types.ViewLayers"),
+        ("mathutils.Matrix.identity()", "mathutils.Matrix.identity"),
+        ("mathutils.Matrix.Identity(4)", "mathutils.Matrix.Identity"),
+    ):
+        assert kb.query(name).hits[0].id == path
+
+
+# A name without its owner
+
+
+def unique_names(reader: Reader) -> list[tuple[str, str]]:
+    """(name, path) of members whose name, of several words, nothing else has."""
+    counts = Counter(row[0] for row in reader.rows("SELECT name FROM symbols"))
+    found = [(path.rpartition(".")[2], path) for path in of_data(reader, "property", 5_000)]
+    return [(name, path) for name, path in found if counts[name] == 1 and "_" in name][:200]
+
+
+@pytest.mark.parametrize("sentence", ["{}", "what does {} do?", "the `{}` setting", "x.{} = 1"])
+def test_a_name_that_only_one_symbol_has_is_that_symbol(
+    kb: KnowledgeBase, reader: Reader, sentence: str
+) -> None:
+    assert wrong(kb, [(sentence.format(name), path) for name, path in unique_names(reader)]) == []
+
+
+def test_a_label_that_only_one_symbol_has_leads_there(kb: KnowledgeBase, reader: Reader) -> None:
+    counts = Counter(row[0].lower() for row in reader.rows("SELECT label FROM symbols"))
+    cases: list[tuple[str, str]] = []
+    for path in of_data(reader, "property", 3_000) + paths(reader, "operator", 2_500):
+        entry = reader.entry(path)
+        if (
+            entry
+            and entry.label.replace(" ", "").isalpha()
+            and " " in entry.label
+            and counts[entry.label.lower()] == 1
+        ):
+            cases.append((entry.label, path))
+    cases = cases[::10]
+    assert len(cases) > 100
+    assert len(wrong(kb, cases, within=5)) <= 0.02 * len(cases)
+
+
+# Misspellings
+
+
+@pytest.mark.parametrize("prefix", [TYPES, ""])
+def test_a_misspelt_member_is_corrected_and_said_to_be(
+    kb: KnowledgeBase, reader: Reader, prefix: str
+) -> None:
+    chance = random.Random(SEED)
+    checked = 0
+    for path in of_data(reader, "property"):
+        owner, name = owner_and_name(path)
+        if len(name) >= 10:
+            written = misspelt(name, chance)
+            answer = kb.query(f"{prefix}{owner}.{written}")
+            assert answer.hits[0].id == path, written
+            said = any(f"`{written}` does not exist; read as `{name}`" in note for note in answer.notes)
+            assert said or key(written) == key(name)  # another spelling is no mistake
+            checked += 1
+    assert checked > 100
+
+
+def test_a_misspelt_class_is_corrected(kb: KnowledgeBase, reader: Reader) -> None:
+    chance = random.Random(SEED)
+    cases = [
+        (f"{misspelt(owner, chance)}.{name}", path)
+        for path in of_data(reader, "property", 400)
+        for owner, name in [owner_and_name(path)]
+        if len(owner) >= 12 and not owner.startswith(("NodeTreeInterface", "NodeSocket", "FunctionNode"))
+    ]
+    assert len(cases) > 150
+    assert len(wrong(kb, cases)) <= 0.03 * len(cases)
+
+
+def test_a_misspelt_operator_is_corrected(kb: KnowledgeBase, reader: Reader) -> None:
+    chance = random.Random(SEED)
+    cases: list[tuple[str, str]] = []
+    for path in paths(reader, "operator"):
+        module, _, name = path.rpartition(".")
+        if len(name) >= 10:
+            cases.append((f"{module}.{misspelt(name, chance)}()", path))
+    assert len(cases) > 150
+    assert len(wrong(kb, cases)) <= 0.01 * len(cases)
+
+
+def test_a_misspelt_lone_name_is_corrected(kb: KnowledgeBase, reader: Reader) -> None:
+    chance = random.Random(SEED)
+    cases = [(misspelt(name, chance), path) for name, path in unique_names(reader) if len(name) >= 12]
+    assert len(cases) > 50
+    assert len(wrong(kb, cases)) <= 0.03 * len(cases)
+
+
+def test_a_right_name_is_not_corrected(kb: KnowledgeBase, reader: Reader) -> None:
+    for path in (
+        of_data(reader, "property", 200) + paths(reader, "operator", 100) + paths(reader, "class", 100)
+    ):
+        assert kb.query(path).notes == ()
+
+
+# Enumerations
+
+
+def enum_items(reader: Reader) -> list[tuple[str, str]]:
+    """(item, owner) of items that only one enumeration has."""
+    owners: dict[str, set[str]] = defaultdict(set)
+    for owner, item in reader.rows("SELECT owner, identifier FROM enum_items ORDER BY owner"):
+        owners[item].add(owner.partition("(")[0])
+    named = {row[0].upper() for row in reader.rows("SELECT name FROM symbols")}
+    found = [
+        (item, next(iter(of)))
+        for item, of in owners.items()
+        if len(of) == 1 and len(item) > 6 and "_" in item and item.isupper() and item not in named
+    ]
+    found = [
+        (item, owner)
+        for item, owner in found
+        if (entry := reader.entry(owner)) and not _of_ui(reader, entry.owner)
+    ]
+    return random.Random(SEED).sample(found, 250)
+
+
+def _of_ui(reader: Reader, owner: str) -> bool:
+    entry = reader.entry(owner)
+    return entry is not None and entry.group in {"ui", "operator"}
+
+
+@pytest.mark.parametrize("form", ["{}", "'{}'", '"{}"', "{}?"])
+def test_an_enum_item_leads_to_what_takes_it(kb: KnowledgeBase, reader: Reader, form: str) -> None:
+    assert wrong(kb, [(form.format(item), owner) for item, owner in enum_items(reader)]) == []
+
+
+def test_an_item_assigned_leads_to_the_property_assigned(kb: KnowledgeBase, reader: Reader) -> None:
+    cases: list[tuple[str, str]] = []
+    for item, owner in enum_items(reader):
+        entry = reader.entry(owner)
+        if entry and entry.kind == "property":
+            cases.append((f"{owner.removeprefix(TYPES)} = '{item}'", owner))
+    assert len(cases) > 50
+    assert wrong(kb, cases) == []
+
+
+# Error messages
+
+
+def test_an_attribute_error_leads_to_the_attribute_that_was_meant(kb: KnowledgeBase, reader: Reader) -> None:
+    chance = random.Random(SEED)
+    cases: list[tuple[str, str]] = []
+    for path in of_data(reader, "property"):
+        owner, name = owner_and_name(path)
+        if len(name) >= 10:
+            written = misspelt(name, chance)
+            if written not in reader.members(TYPES + owner):
+                cases.append((f"AttributeError: '{owner}' object has no attribute '{written}'", path))
+    assert len(cases) > 100
+    assert wrong(kb, cases, within=5) == []
+
+
+def test_an_enum_error_leads_to_the_property_with_those_items(kb: KnowledgeBase, reader: Reader) -> None:
+    checked: list[tuple[str, str]] = []
+    for item, owner in enum_items(reader):
+        symbol = reader.symbol(owner)
+        if symbol and symbol.kind == "property" and len(symbol.enum_items) > 2:
+            items = ", ".join(f"'{one.identifier}'" for one in symbol.enum_items)
+            text = f'TypeError: bpy_struct: item.attr = val: enum "X{item}" not found in ({items})'
+            checked.append((text, owner))
+    assert len(checked) > 50
+    assert wrong(kb, checked, within=2) == []
+
+
+def test_a_failed_poll_leads_to_the_operator(kb: KnowledgeBase, reader: Reader) -> None:
+    message = "RuntimeError: Operator {}.poll() failed, context is incorrect"
+    assert wrong(kb, [(message.format(path), path) for path in paths(reader, "operator", 100)]) == []
+
+
+def test_an_unknown_keyword_leads_to_the_operator_called(kb: KnowledgeBase, reader: Reader) -> None:
+    message = 'TypeError: Converting py args to operator properties: : keyword "foo" unrecognized\n{}(foo=1)'
+    assert wrong(kb, [(message.format(path), path) for path in paths(reader, "operator", 100)]) == []
+
+
+# Other versions
+
+
+def former(reader: Reader, where: str, count: int = 250) -> list[str]:
+    rows = reader.rows(f"SELECT path FROM removed WHERE {where} ORDER BY path")
+    return random.Random(SEED).sample([row[0] for row in rows], count)
+
+
+@pytest.mark.parametrize("prefix", [True, False])
+def test_what_another_version_had_is_said_to_be_gone_since_when(
+    kb: KnowledgeBase, reader: Reader, prefix: bool
+) -> None:
+    for path in former(reader, "path LIKE 'bpy.types.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%(%'"):
+        answer = kb.query(path if prefix else path.removeprefix(TYPES))
+        span = reader.removed(path)
+        assert span is not None
+        note = next(note for note in answer.notes if f"`{path}` does not exist" in note)
+        assert span[1] in note, note
+
+
+def test_what_this_version_has_instead_comes_first(kb: KnowledgeBase, reader: Reader) -> None:
+    checked = 0
+    for path in former(reader, "path NOT LIKE '%:%' AND path NOT LIKE '%(%'", 400):
+        instead = {target for target, _ in reader.replacements(path)}
+        if instead:
+            assert {hit.id for hit in kb.query(path).hits[:3]} & instead, path
+            checked += 1
+    assert checked > 100
+
+
+def test_a_former_item_or_argument_is_known_too(kb: KnowledgeBase, reader: Reader) -> None:
+    for path in former(reader, "path LIKE '%:%'", 150):
+        answer = kb.query(path)
+        assert any(f"`{path}` does not exist" in note for note in answer.notes), path
+
+
+def test_an_attribute_error_of_a_former_class_says_so(kb: KnowledgeBase, reader: Reader) -> None:
+    where = (
+        "path LIKE 'bpy.types.%.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%[%' AND path NOT LIKE '%(%'"
+    )
+    checked = 0
+    for path in former(reader, where):
+        owner, name = owner_and_name(path)
+        if reader.entry(TYPES + owner) is None:
+            answer = kb.query(f"AttributeError: '{owner}' object has no attribute '{name}'")
+            assert any("does not exist in Blender" in note for note in answer.notes), path
+            checked += 1
+    assert checked > 50
+
+
+@pytest.mark.parametrize(
+    ("query", "gone", "instead"),
+    [
+        ("action.fcurves.new('location')", "bpy.types.Action.fcurves", "ActionChannelbagFCurves.new"),
+        ("scene.node_tree.nodes", "bpy.types.Scene.node_tree", "Scene.compositing_node_group"),
+        ("mesh.use_auto_smooth = True", "bpy.types.Mesh.use_auto_smooth", ""),
+        (
+            "bpy.context.scene.sequence_editor.sequences",
+            "bpy.types.SequenceEditor.sequences",
+            "SequenceEditor.strips",
+        ),
+        ("bpy.context.scene.eevee.use_bloom", "bpy.types.SceneEEVEE.use_bloom", ""),
+    ],
+)
+def test_code_of_older_versions_is_recognised(kb: KnowledgeBase, query: str, gone: str, instead: str) -> None:
+    answer = kb.query(query)
+    assert any(f"`{gone}` does not exist" in note for note in answer.notes)
+    if instead:
+        assert f"bpy.types.{instead}" in {hit.id for hit in answer.hits[:3]}

@@ -1,0 +1,78 @@
+"""Which file answers for which version."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.errors import BaseMissing
+from kb_serve.knowledge_base import KnowledgeBase
+from kb_serve.locate import find_base
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A home folder with three bases, and things that are none."""
+    (tmp_path / "kb").mkdir()
+    for name in ("blender-4.2.sqlite", "blender-4.10.sqlite", "blender-4.5.sqlite", ".blender-9.9.sqlite.12.part",
+                 "blender-5.sqlite", "blender-6.0.sqlite.old", "notes.txt"):  # fmt: skip
+        (tmp_path / "kb" / name).touch()
+    (tmp_path / "kb" / "blender-7.0.sqlite").mkdir()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("asked", "name"),
+    [("4.2", "4.2"), ("4.2.3", "4.2"), ("v4.5", "4.5"), (" 4.5.0 ", "4.5"), ("4.10", "4.10"), (None, "4.10")],
+)
+def test_a_version_is_found_however_it_is_written(folder: Path, asked: str | None, name: str) -> None:
+    assert find_base(asked, folder) == folder / "kb" / f"blender-{name}.sqlite"
+
+
+@pytest.mark.parametrize("asked", ["5.1", "4.20", "7.0", "0.0"])
+def test_a_version_that_was_not_built_is_missing_with_those_that_were(folder: Path, asked: str) -> None:
+    with pytest.raises(BaseMissing) as refused:
+        find_base(asked, folder)
+    assert f"simworlds kb build {asked}" in str(refused.value)
+    assert "4.2, 4.5, 4.10" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "asked", ["", "newest", "5", "5.x", "5.1.2.3", "../../etc", "5.1\n5.2", "5,1", "-1.2"]
+)
+def test_what_is_no_version_is_refused(folder: Path, asked: str) -> None:
+    with pytest.raises(BaseMissing, match=r"no Blender version.*Write it as 5\.1|No knowledge base"):
+        find_base(asked, folder)
+
+
+def test_an_empty_home_says_how_to_begin(tmp_path: Path) -> None:
+    with pytest.raises(BaseMissing, match="simworlds kb build"):
+        find_base(None, tmp_path)
+    with pytest.raises(BaseMissing, match="none"):
+        find_base("5.1", tmp_path / "nowhere")
+
+
+def test_a_base_is_opened_by_its_version(base: Path) -> None:
+    version = base.stem.removeprefix("blender-")
+    with KnowledgeBase.open(version, home=base.parent.parent) as kb:
+        assert kb.path == base
+        assert kb.meta["minor"] == version
+    with KnowledgeBase.open(home=base.parent.parent) as newest:
+        assert newest.path == base
+
+
+def test_the_folder_that_the_environment_names_is_the_home(base: Path) -> None:
+    before = os.environ.get("SIMWORLDS_HOME")
+    os.environ["SIMWORLDS_HOME"] = str(base.parent.parent)
+    try:
+        assert find_base(None) == base
+    finally:
+        if before is None:
+            del os.environ["SIMWORLDS_HOME"]
+        else:
+            os.environ["SIMWORLDS_HOME"] = before

@@ -1,0 +1,70 @@
+"""Names and prose in one order."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from asking import paths
+
+from kb_serve.rank import SURE, Ranker
+
+if TYPE_CHECKING:
+    from kb_serve.reader import Reader
+
+
+@pytest.fixture(scope="module")
+def ranker(reader: Reader) -> Ranker:
+    return Ranker(reader)
+
+
+def test_an_exact_name_needs_no_search(ranker: Ranker, reader: Reader) -> None:
+    for path in paths(reader, "operator", 30):
+        ranking = ranker.rank(path)
+        assert ranking.named
+        assert ranking.ranked[0].id == path
+        assert {row.why for row in ranking.ranked} == {"exact"}
+
+
+@pytest.mark.parametrize(
+    "query", ["make the cloth finer", "bake a simulation to disk", "smooth the mesh surface"]
+)
+def test_prose_names_nothing(ranker: Ranker, query: str) -> None:
+    ranking = ranker.rank(query)
+    assert not ranking.named
+    assert ranking.ranked
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "why does obj.rigid_body.mass matter for falling",
+        "ClothSettings.quality and how it slows the simulation",
+    ],
+)
+def test_what_is_named_comes_before_what_is_found(ranker: Ranker, query: str) -> None:
+    ranking = ranker.rank(query)
+    whys = [row.why for row in ranking.ranked]
+    assert ranking.ranked[0].score >= SURE
+    assert "found" not in whys[:1]
+    assert "found" in whys
+
+
+def test_no_id_is_ranked_twice_and_scores_are_shares(ranker: Ranker) -> None:
+    for query in (
+        "quality",
+        "cloth",
+        "obj.modifiers['Cloth'].settings.quality cloth",
+        "EMITTER particles",
+        "Object",
+    ):
+        rows = ranker.rank(query).ranked
+        assert len({row.id for row in rows}) == len(rows)
+        assert all(0 < row.score <= 1 for row in rows)
+
+
+def test_notes_are_said_once_each(ranker: Ranker) -> None:
+    notes = ranker.rank("action.fcurves action.fcurves action.fcurves").notes
+    assert len(notes) == len(set(notes)) == 1
+    assert "`bpy.types.Action.fcurves` does not exist in Blender" in notes[0]
+    assert "Closest in" in notes[0]

@@ -1,0 +1,229 @@
+"""What an answer shows of a symbol or a page: everything that a coder needs in one look."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from asking import classes, of_data, paths
+
+from kb_build.records import Deprecation, EnumItem, Parameter, Section, Symbol
+from kb_serve.render import Renderer, definition_of, facts
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import Reader
+
+ALL = 1_000_000
+
+
+@pytest.fixture(scope="module")
+def renderer(reader: Reader) -> Renderer:
+    return Renderer(reader)
+
+
+def shown(renderer: Renderer, symbol: Symbol) -> str:
+    return "\n\n".join(block.text for block in renderer.symbol(symbol))
+
+
+def test_a_property_in_one_look(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.ClothSettings.quality").text
+    for part in (
+        "## `bpy.types.ClothSettings.quality`", "**Quality**", "type: `int`", "default: `5`",
+        "range: 1 … ∞ (slider 1 … 80)",
+        'reached as `bpy.context.object.modifiers["Cloth"].settings.quality`', "manual: https://docs.blender.org/",
+    ):  # fmt: skip
+        assert part in text
+
+
+@pytest.mark.parametrize(
+    ("symbol", "expected"),
+    [
+        (Symbol("a", "property", type="float", unit="MASS", hard_min=0.0),
+         ["type: `float`", "range: 0 … ∞ (slider −∞ … ∞)", "unit: kg"]),
+        (Symbol("a", "property", type="float", unit="ROTATION", hard_min=0, hard_max=1, soft_min=0, soft_max=1),
+         ["type: `float`", "range: 0 … 1", "unit: radians"]),
+        (Symbol("a", "property", type="float", soft_min=0.5), ["type: `float`", "slider: 0.5 … ∞"]),
+        (Symbol("a", "property", type="float", array=(3,), default=[1, 2, 3], subtype="XYZ"),
+         ["type: `float[3]`", "default: `(1, 2, 3)`", "subtype: XYZ"]),
+        (Symbol("a", "property", type="boolean", default=False, flags=("readonly", "library-editable")),
+         ["type: `boolean`", "default: `False`", "readonly"]),
+        (Symbol("a", "socket", type="value", modes=("m=A", "n=B")), ["type: `value`", "shown when m=A and n=B"]),
+        (Symbol("a", "property", type="float", unit="UNHEARD_OF"), ["type: `float`", "unit: unheard_of"]),
+        (Symbol("a", "property"), []),
+    ],
+)  # fmt: skip
+def test_facts_are_what_is_known(symbol: Symbol, expected: list[str]) -> None:
+    assert list(facts(symbol)) == expected
+
+
+def test_every_fact_of_every_property_is_shown(renderer: Renderer, reader: Reader) -> None:
+    for path in of_data(reader, "property", 300):
+        symbol = reader.symbol(path)
+        assert symbol is not None
+        text = shown(renderer, symbol)
+        assert f"`{path}`" in text
+        assert symbol.description.strip() in text
+        assert not symbol.label or f"**{symbol.label}**" in text
+        assert symbol.default is None or "default: `" in text
+        assert "readonly" not in symbol.flags or "readonly" in text
+        for item in symbol.enum_items:
+            assert f"`{item.identifier!r}`" in text
+            assert item.description in text
+
+
+def test_an_operator_shows_its_call_with_defaults_and_every_argument(
+    kb: KnowledgeBase, reader: Reader
+) -> None:
+    for path in paths(reader, "operator", 100):
+        symbol = reader.symbol(path)
+        assert symbol is not None
+        text = kb.query(path, max_tokens=ALL).text
+        assert f"```python\n{symbol.signature}\n```" in text
+        for parameter in symbol.parameters:
+            assert f"- `{parameter.name}` (" in text
+            assert parameter.description in text
+            assert all(repr(item.identifier) in text for item in parameter.enum_items), parameter.name
+
+
+def test_a_function_shows_what_it_takes_and_gives(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.Object.ray_cast").text
+    assert "```python\nObject.ray_cast(origin, direction, " in text
+    for part in ("**Parameters**", "- `origin` (float[3], required)", "**Returns**", "- `location`"):
+        assert part in text
+    text = kb.query("mathutils.Vector.lerp").text
+    assert "mathutils.Vector.lerp(other, factor" in text
+    assert "- (Vector)" in text
+
+
+def test_a_class_lists_its_own_members_and_names_inherited_ones(kb: KnowledgeBase, reader: Reader) -> None:
+    for path in classes(reader, count=80):
+        text = kb.query(path, max_tokens=ALL).text
+        for entry in reader.members(path).values():
+            if not entry.name.startswith("bl_rna_get_subclass") and entry.kind != "class":
+                assert f"- {entry.line}" in text, entry.path
+        lineage = list(reader.lineage(path))[1:]
+        assert not lineage or "base classes: " + ", ".join(f"`{base.name}`" for base in lineage) in text
+        for ancestor in lineage[:-1]:
+            own = [e.name for e in reader.members(ancestor.path).values() if e.kind == "property"]
+            assert all(name in text for name in own)
+
+
+def test_a_base_class_names_its_subclasses(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.Modifier", max_tokens=ALL).text
+    assert "**Subclasses**: " in text
+    assert "ClothModifier" in text.split("**Subclasses**: ")[1]
+
+
+def test_a_node_shows_its_sockets_and_its_trees(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.ShaderNodeBsdfPrincipled", max_tokens=ALL).text
+    assert "**Inputs and outputs**" in text
+    assert '- `inputs["Specular IOR Level"]` value = 0.5' in text
+    assert "node of: ShaderNodeTree" in text
+
+
+def test_a_module_lists_its_contents(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.ops.rigidbody", max_tokens=ALL).text
+    assert "**Contents**" in text
+    assert "- `bake_to_keyframes(" in text
+
+
+def test_a_context_member_says_which_editors_provide_it(kb: KnowledgeBase) -> None:
+    assert "provided by: " in kb.query("bpy.context.active_bone").text
+
+
+def test_deprecation_is_said_with_versions(renderer: Renderer) -> None:
+    symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b.", "5.0", "6.0"))
+    assert "**Deprecated** since 5.0, removal planned for 6.0: Use b." in shown(renderer, symbol)
+    symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b."))
+    assert "**Deprecated**: Use b." in shown(renderer, symbol)
+
+
+def test_arguments_tell_type_default_range_unit_and_choices(renderer: Renderer) -> None:
+    items = tuple(EnumItem(f"I{n}", f"Item {n}", f"Meaning {n}") for n in range(50))
+    symbol = Symbol(
+        "m.f", "function", "m", signature="f(a, b=1)",
+        parameters=(
+            Parameter("a", "float", "How big", required=True, hard_min=0, unit="LENGTH"),
+            Parameter("b", "enum", default="I0", label="Kind", enum_items=items),
+        ),
+    )  # fmt: skip
+    text = shown(renderer, symbol)
+    assert "- `a` (float, required, range 0 … ∞, metres): How big" in text
+    assert "- `b` (enum, default `'I0'`): Kind" in text
+    assert "… 50 in all" in text
+    assert all(f"Meaning {n}" in text for n in range(50))
+
+
+def test_choices_that_nothing_is_said_of_are_all_named_too(renderer: Renderer) -> None:
+    items = tuple(EnumItem(f"ICON_{n}") for n in range(300))
+    symbol = Symbol("m.f", "function", "m", parameters=(Parameter("icon", "enum", enum_items=items),))
+    text = shown(renderer, symbol)
+    assert [item.identifier for item in items if repr(item.identifier) not in text] == []
+
+
+def test_a_page_shows_where_it_stands_and_every_section(kb: KnowledgeBase) -> None:
+    page = kb.page("physics/cloth/settings/collisions")
+    assert page is not None
+    text = kb.query(page.slug, max_tokens=ALL).text
+    assert "## Physics › Cloth › Settings › Collisions" in text
+    assert page.url in text
+    for section in page.sections:
+        assert section.title in text
+        assert section.text in text
+
+
+def test_the_section_asked_for_comes_first(renderer: Renderer, kb: KnowledgeBase) -> None:
+    page = kb.page("physics/cloth/settings/collisions")
+    assert page is not None
+    last = page.sections[-1]
+    blocks = list(renderer.page(page.slug, last.anchor))
+    assert blocks[1].text.endswith(last.text)
+    assert sorted(block.text for block in blocks) == sorted(block.text for block in renderer.page(page.slug))
+
+
+def test_what_is_not_there_is_shown_as_nothing(renderer: Renderer) -> None:
+    assert list(renderer.page("nowhere")) == []
+    assert renderer.manual_page("bpy.types.Nothing") == ""
+
+
+def test_pages_below_are_listed(kb: KnowledgeBase) -> None:
+    text = kb.query("physics/cloth/index", max_tokens=ALL).text
+    assert "**Pages below**" in text
+    assert "- `physics/cloth/introduction` (Introduction)" in text
+
+
+DEFINITIONS = (
+    "Lead.\n\n**Distance**\n  The gap.\n\n  > **Note:** Half.\n\n**Size (m)**:\n  How big.\n\nAfter."
+)
+
+
+@pytest.mark.parametrize(
+    ("label", "text"),
+    [("Distance", "  The gap.\n\n  > **Note:** Half.\n"), ("distance",
+     "  The gap.\n\n  > **Note:** Half.\n"), ("Lead", ""),
+     ("Gap", ""), ("", "")],
+)  # fmt: skip
+def test_what_the_manual_says_of_a_property_is_found_by_its_label(label: str, text: str) -> None:
+    sections = [Section("", "A", 1, "No list."), Section("b", "B", 2, DEFINITIONS)]
+    assert definition_of(label, sections).strip() == text.strip()
+
+
+def test_no_symbol_of_any_kind_fails_to_be_shown(renderer: Renderer, reader: Reader) -> None:
+    for kind in ("module", "class", "property", "function", "operator", "socket", "data", "context", "enum"):
+        for path in paths(reader, kind, 150):
+            symbol = reader.symbol(path)
+            assert symbol is not None
+            text = shown(renderer, symbol)
+            assert text.startswith(f"## `{path}`")
+            assert "None" not in text.splitlines()[0]
+            assert "\n\n\n\n" not in text
+
+
+def test_how_a_member_is_reached_is_that_of_its_class(kb: KnowledgeBase, reader: Reader) -> None:
+    for path in of_data(reader, "property", 60):
+        cls = reader.symbol(path.rpartition(".")[0])
+        if cls and cls.reached:
+            assert (
+                f"reached as `{cls.reached}.{path.rpartition('.')[2]}`" in kb.query(path, max_tokens=ALL).text
+            )

@@ -1,0 +1,118 @@
+"""Plain words: what is found, and that the order follows from what was said."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import TYPE_CHECKING
+
+import pytest
+from asking import SEED, of_data
+
+from kb_build.analysis import STOP_WORDS, stem, terms
+from kb_serve.search import Searcher
+
+if TYPE_CHECKING:
+    from kb_serve.reader import Reader
+
+
+@pytest.fixture(scope="module")
+def searcher(reader: Reader) -> Searcher:
+    return Searcher(reader)
+
+
+def test_a_description_finds_its_own_symbol(reader: Reader, searcher: Searcher) -> None:
+    found, asked = 0, 0
+    for path in of_data(reader, "property", 400):
+        symbol = reader.symbol(path)
+        assert symbol is not None
+        said = terms(symbol.description)
+        if len(set(said)) < 7:
+            continue
+        asked += 1
+        twins = {
+            row[0]
+            for row in reader.rows(
+                "SELECT path FROM symbols WHERE line LIKE ?", f"%{symbol.description[:60]}%"
+            )
+        }
+        found += bool({path, *twins} & {row.ref for row in searcher.search(symbol.description, 5)})
+    assert asked > 50
+    assert found >= 0.9 * asked
+
+
+@pytest.mark.parametrize(
+    ("query", "slug"),
+    [
+        ("the gap between two parts of one cloth", "physics/cloth/settings/collisions"),
+        ("what is a rigid body", "physics/rigid_body/introduction"),
+    ],
+)
+def test_a_question_finds_the_page_that_answers_it(searcher: Searcher, query: str, slug: str) -> None:
+    assert slug in [row.ref for row in searcher.search(query, 10)]
+
+
+def test_scores_fall_and_no_id_comes_twice(searcher: Searcher) -> None:
+    for query in ("cloth", "bake the simulation", "render image size", "bone constraint target"):
+        found = searcher.search(query, 100)
+        assert len({row.ref for row in found}) == len(found)
+        assert all(row.score > 0 and 0 < row.coverage <= 1.001 for row in found)
+        assert len(found) <= 100
+
+
+def test_one_class_gives_one_hit_before_others_had_theirs(searcher: Searcher) -> None:
+    refs = [row.ref for row in searcher.search("fluid domain resolution", 20)]
+    owners = [ref.rpartition(".")[0] for ref in refs if ref.startswith("bpy.types.")]
+    assert len(set(owners[:4])) == len(owners[:4])
+
+
+@pytest.mark.parametrize("limit", [1, 3, 50])
+def test_the_limit_holds_and_the_beginning_is_the_same(searcher: Searcher, limit: int) -> None:
+    assert searcher.search("cloth collision", limit) == searcher.search("cloth collision", 60)[:limit]
+
+
+def test_order_case_and_small_words_do_not_matter(searcher: Searcher) -> None:
+    one = [row.ref for row in searcher.search("self collision distance of cloth", 20)]
+    assert one == [
+        row.ref for row in searcher.search("How does the CLOTH have its self-collision distance?", 20)
+    ]
+
+
+@pytest.mark.parametrize("query", ["", " ", "the of and", "qqqqxxxx", "!!!", "🎨", "\x00", ", . ; :"])
+def test_what_says_nothing_finds_nothing(searcher: Searcher, query: str) -> None:
+    assert searcher.search(query) == []
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"), [("colision", "collision"), ("rendr", "render"), ("simualtion", "simulation")]
+)
+def test_an_unknown_word_is_read_as_one_of_the_corpus(searcher: Searcher, written: str, meant: str) -> None:
+    assert stem(searcher.correction(written)) == stem(meant)
+    assert {row.ref for row in searcher.search(f"cloth {written}", 10)} & {
+        row.ref for row in searcher.search(f"cloth {meant}", 10)
+    }
+
+
+@pytest.mark.parametrize("word", ["", "abc", "x1y2z3", "zzzzzzzz", "a b", "é" * 9])
+def test_a_word_near_to_none_is_left(searcher: Searcher, word: str) -> None:
+    assert searcher.correction(word) == ""
+
+
+def test_rare_words_tell_more(searcher: Searcher) -> None:
+    assert searcher.idf(stem("cloth")) > searcher.idf(stem("object")) > 0
+    assert searcher.idf("qqqqxxxx") == 0
+    assert all(math.isfinite(searcher.idf(term)) for term in list(searcher.vocabulary)[:500])
+
+
+def test_a_query_is_its_distinct_words_without_the_framing_ones(searcher: Searcher) -> None:
+    words = [
+        concept.word for concept in searcher.concepts("How do I bake the cloth, the cloths and the bake?")
+    ]
+    assert words == ["bake", "cloth"]
+    assert not STOP_WORDS & set(words)
+
+
+def test_any_words_in_any_number_are_searched(searcher: Searcher) -> None:
+    chance, words = random.Random(SEED), list(searcher.vocabulary.values())
+    for size in (1, 2, 5, 20, 60, 400):
+        assert isinstance(searcher.search(" ".join(chance.choices(words, k=size))), list)

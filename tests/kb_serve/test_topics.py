@@ -1,0 +1,100 @@
+"""Topic words, as a coder asks at the start of a stage."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.topics import Topics
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import Reader
+
+
+@pytest.fixture(scope="module")
+def topics(reader: Reader) -> Topics:
+    return Topics(reader)
+
+
+@pytest.mark.parametrize(
+    ("text", "slug"),
+    [
+        ("cloth", "physics/cloth/index"), ("Cloth", "physics/cloth/index"), (" cloth? ", "physics/cloth/index"),
+        ("rigid body", "physics/rigid_body/index"), ("rigid bodies", "physics/rigid_body/index"),
+        ("rigid_body", ""), ("Rigid Body", "physics/rigid_body/index"), ("physics", "physics/index"),
+        ("modifiers", "modeling/modifiers/index"), ("modifier", "modeling/modifiers/index"),
+        ("subdivision surface", "modeling/modifiers/generate/subdivision_surface"),
+        ("", ""), ("   ", ""), ("xyzzy", ""), ("Camera", ""), ("how do i make a cloth fall", ""), ("cloth.quality", ""),
+        ("cloth()", ""), ("a/b", ""), ("\x00", ""), ("🎨", ""),
+    ],
+)  # fmt: skip
+def test_a_few_words_name_a_part_of_the_manual(topics: Topics, text: str, slug: str) -> None:
+    assert topics.find(text) == slug
+
+
+def test_an_overview_tells_the_page_its_classes_operators_and_pages_below(kb: KnowledgeBase) -> None:
+    answer = kb.query("cloth", max_tokens=3_000)
+    assert answer.kind == "page"
+    assert answer.hits[0].id == "physics/cloth/index"
+    for part in (
+        "## Cloth", "**Classes**", "`bpy.types.ClothModifier`", "`bpy.types.ClothSettings`", "**Operators**",
+        "**Pages**",
+        "`physics/cloth/settings/index` (Settings)", "  - `physics/cloth/settings/collisions` (Collisions)",
+    ):  # fmt: skip
+        assert part in answer.text
+
+
+def test_the_hits_of_an_overview_are_what_it_names(kb: KnowledgeBase) -> None:
+    ids = [hit.id for hit in kb.query("rigid body").hits]
+    assert ids[0] == "physics/rigid_body/index"
+    assert "bpy.types.RigidBodyObject" in ids[:5]
+    assert any(identifier.startswith("bpy.ops.rigidbody.") for identifier in ids)
+
+
+def test_everything_an_overview_names_exists(topics: Topics, reader: Reader) -> None:
+    for (slug,) in reader.rows("SELECT slug FROM pages WHERE source = 'manual'"):
+        overview = topics.overview(slug)
+        assert len(set(overview.members)) == len(overview.members)
+        for identifier in overview.members:
+            assert reader.entry(identifier)
+        assert overview.blocks[0].text.startswith("## ")
+
+
+@pytest.mark.parametrize(
+    ("query", "slug"),
+    [
+        ("physics/cloth/settings/index", "physics/cloth/settings/index"), ("physics/cloth", "physics/cloth/index"),
+        ("/physics/cloth/", "physics/cloth/index"), ("physics/cloth/index.html", "physics/cloth/index"),
+        ("physics/cloth/introduction.rst", "physics/cloth/introduction"), ("info_overview", "info_overview"),
+        ("templates_py/operator_modal", "templates_py/operator_modal"), ("info_traps.html", "info_traps"),
+        ("https://docs.blender.org/manual/en/latest/physics/cloth/settings/index.html", "physics/cloth/settings/index"),
+        ("https://docs.blender.org/manual/en/5.1/physics/cloth/", "physics/cloth/index"),
+        ("see https://docs.blender.org/manual/de/4.2/physics/cloth/settings/collisions.html#self-collisions.",
+         "physics/cloth/settings/collisions"),
+        ("(https://docs.blender.org/manual/en/dev/physics/cloth/index.html?highlight=cloth)", "physics/cloth/index"),
+        ("https://docs.blender.org/api/current/info_overview.html", "info_overview"),
+        ("https://docs.blender.org/api/current/bpy.types.ClothSettings.html", "bpy.types.ClothSettings"),
+        ("https://docs.blender.org/api/5.1/bpy.types.ClothSettings.html#bpy.types.ClothSettings.quality",
+         "bpy.types.ClothSettings.quality"),
+        ("https://docs.blender.org/api/current/bpy.ops.object.html#bpy.ops.object.modifier_add",
+         "bpy.ops.object.modifier_add"),
+        ("https://docs.blender.org/api/current/mathutils.html#mathutils.Vector.lerp", "mathutils.Vector.lerp"),
+    ],
+)  # fmt: skip
+def test_addresses_and_slugs_lead_to_the_page_or_symbol(kb: KnowledgeBase, query: str, slug: str) -> None:
+    assert kb.query(query).hits[0].id == slug
+
+
+def test_every_page_is_found_by_its_slug_its_url_and_among_its_title(
+    kb: KnowledgeBase, reader: Reader
+) -> None:
+    pages = reader.rows("SELECT slug, title, url, source FROM pages ORDER BY slug")
+    assert len(pages) > 50
+    for slug, title, url, source in pages:
+        assert kb.query(slug).hits[0].id == slug
+        if source != "template":
+            assert slug in {hit.id for hit in kb.query(title, limit=50).hits}
+        if url and source == "manual":
+            assert kb.query(url).hits[0].id == slug
