@@ -13,7 +13,7 @@ import pytest
 
 from kb_build.errors import SourceError
 from kb_build.pipeline import BuildOptions, build
-from kb_build.records import symbol_from_json
+from kb_build.records import page_from_json, symbol_from_json
 from kb_build.schema import unpack
 
 if TYPE_CHECKING:
@@ -78,8 +78,9 @@ def test_a_changed_page_makes_a_new_base_without_asking_blender_again(built: Bui
     page.write_text(page.read_text() + "\nWobbling jelly is simulated, too.\n")
     report = build(None, options=built.options, home=built.home)
     assert report.built
-    assert rows(built.path, "SELECT slug FROM sections WHERE text LIKE '%Wobbling jelly%'") == [
-        ("physics/index",)
+    records = rows(built.path, "SELECT slug, record FROM pages")
+    assert [slug for slug, record in records if "Wobbling jelly" in page_from_json(unpack(record)).text] == [
+        "physics/index"
     ]
     assert stamp(extract) == before
 
