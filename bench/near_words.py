@@ -44,7 +44,7 @@ def reduce(vectors: Vectors, dimensions: int) -> Vectors:
     centred = vectors - vectors.mean(0)
     left, scale, _ = np.linalg.svd(centred, full_matrices=False)
     reduced = left[:, :dimensions] * scale[:dimensions]
-    return reduced / (np.linalg.norm(reduced, axis=1, keepdims=True) + 1e-9)
+    return np.asarray(reduced / (np.linalg.norm(reduced, axis=1, keepdims=True) + 1e-9), np.float32)
 
 
 def documentation_words(base: Path) -> set[str]:
