@@ -347,7 +347,10 @@ class Identifier:
         """As far as a chain could be followed."""
         found.missing.append(Missing(walked.missing, walked.owner))
         for step, symbol in enumerate(reversed(walked.symbols)):
-            found.add(symbol, 0.45 - 0.05 * step - later, "on the way")
+            socket = step == 0 and symbol.endswith(
+                '"]'
+            )  # one that takes no value of its own is still what was meant
+            found.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
 
     def _explain_missing(self, found: Identified) -> None:
         """What stands in for names that do not exist: replacements of former ones, similar members."""

@@ -215,6 +215,12 @@ def test_what_breaks_off_tells_where_and_what_there_is(kb: KnowledgeBase) -> Non
     assert any("`bpy.types.RigidBodyObject` has no `wobbliness`" in note for note in answer.notes)
 
 
+def test_a_socket_that_takes_no_value_is_that_socket_all_the_same(kb: KnowledgeBase) -> None:
+    answer = kb.query('mat.node_tree.nodes["Background"].outputs["Background"].default_value')
+    assert answer.hits[0].id == 'bpy.types.ShaderNodeBackground.outputs["Background"]'
+    assert any("`bpy.types.NodeSocketShader` has no `default_value`" in note for note in answer.notes)
+
+
 def test_a_socket_that_does_not_exist_is_answered_with_those_that_do(kb: KnowledgeBase) -> None:
     answer = kb.query('mat.node_tree.nodes["Principled BSDF"].inputs["Specular"].default_value')
     ids = [hit.id for hit in answer.hits[:4]]
