@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_serve.identifiers import Identified, Identifier
+from kb_serve.identifiers import Identifier
 from kb_serve.search import Found, Searcher
 
 if TYPE_CHECKING:
     from kb_serve.corrections import Drift
+    from kb_serve.identified import Identified
     from kb_serve.reader import Reader
 
 SURE = 0.8  # from here on, what was named comes before what was found

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _MAX_WORDS = 4
-_MOST = 40
+_MOST = 200  # of one list: an overview has parts, but must end
 
 
 @dataclass(frozen=True, slots=True)
