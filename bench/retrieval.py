@@ -177,6 +177,7 @@ def compared(base: Path, *, quick: bool) -> Iterator[tuple[str, Callable[[str], 
         ("… without the topic around a unit", "TOPIC_WEIGHT"),
         ("… without the chapters' votes", "CHAPTER_WEIGHT"),
         ("… without near words", "NEAR_WEIGHT"),
+        ("… without looking for code", "CODE_WEIGHT"),
     ):
         with ExitStack() as stack:
             stack.enter_context(mock.patch.object(search, constant, 0.0))

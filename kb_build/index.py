@@ -244,6 +244,13 @@ def weight_of(doc: Doc) -> float:
     return ASIDE_WEIGHT if any(part in doc.ref for part in ASIDE) else 1.0
 
 
+def is_code(doc: Doc) -> bool:
+    """Whether a document is about calling something rather than about Blender's data: functions, modules, guides."""
+    if doc.kind == "class":
+        return not doc.ref.startswith(TYPES)
+    return doc.kind in {"function", "data", "module", "guide"}
+
+
 def vocabulary(units: Iterable[Doc]) -> Iterator[tuple[str, str]]:
     """(stem, most used spelling) for every word of the corpus."""
     spellings: dict[str, Counter[str]] = defaultdict(Counter)

@@ -84,10 +84,10 @@ CREATE TABLE docs (
 ) WITHOUT ROWID;
 
 -- For each level, by document number: the number of its topic or -1 and a number that documents of one chapter of
--- the manual share (int32), and how much it counts (float32).
+-- the manual share (int32), how much it counts (float32), and whether it is about code (bool).
 CREATE TABLE levels (
     level INTEGER PRIMARY KEY, count INTEGER NOT NULL, topics BLOB NOT NULL, chapters BLOB NOT NULL,
-    weights BLOB NOT NULL
+    weights BLOB NOT NULL, code BLOB NOT NULL
 );
 
 -- The inverted index: df document numbers as uint32, then df weighted term frequencies as float16.

@@ -13,7 +13,17 @@ import sqlite_utils
 from kb_build.analysis import key, topic_key
 from kb_build.errors import StoreError
 from kb_build.former import Former
-from kb_build.index import TOPIC_B, UNIT_B, Doc, make_postings, make_units, topic_docs, vocabulary, weight_of
+from kb_build.index import (
+    TOPIC_B,
+    UNIT_B,
+    Doc,
+    is_code,
+    make_postings,
+    make_units,
+    topic_docs,
+    vocabulary,
+    weight_of,
+)
 from kb_build.lines import member_line
 from kb_build.near_words import load_near_words, near_stems
 from kb_build.records import Link, Page, Symbol, to_json
@@ -175,9 +185,10 @@ def _write_level(
         np.array([topics.get(doc.topic, -1) for doc in docs], np.int32),
         np.array([chapters.setdefault(doc.chapter, len(chapters)) for doc in docs], np.int32),
         np.array([weight_of(doc) for doc in docs], np.float32),
+        np.array([is_code(doc) for doc in docs], np.bool_),
     )
     row = (level, len(docs), *(array.tobytes() for array in arrays))
-    connection.execute("INSERT INTO levels VALUES (?,?,?,?,?)", row)
+    connection.execute("INSERT INTO levels VALUES (?,?,?,?,?,?)", row)
     postings = make_postings(docs, TOPIC_B if level else UNIT_B)
     _insert(connection, "postings", ((level, *row) for row in postings.packed()), 4)
     return set(postings.numbers)

@@ -1,13 +1,14 @@
 """Ranks what the base holds for a query in plain words.
 
-BM25F over two levels (a unit and the topic around it), with four additions, each measured in ``make bench``:
+BM25F over two levels (a unit and the topic around it), with five additions, each measured in ``make bench``:
 
 - *Concepts*: a word stands for itself and, less, for the corpus' words that mean nearly the same; the best of them
   counts, once.
 - *Coverage*: a document's score is scaled by how much of the query, by rarity, it speaks of at all.
 - *Chapters*: what the best documents mostly come from is probably what the query is about (pseudo-relevance
   feedback); the rest of that chapter gains by it.
-- *Variety*: one class or page gives one hit before the others had theirs.
+- *Code*: a query that speaks of functions or scripts is rather about functions, modules and guides.
+- *Variety*: one class or page gives one hit before the others had theirs, and so do the members of one name.
 """
 
 from __future__ import annotations
@@ -38,11 +39,18 @@ COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 CHAPTER_WEIGHT = 0.3
+# Who says one of these asks what to call, not where to click.
+CODE_WORDS = frozenset(
+    """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
+    variable""".split()  # noqa: SIM905
+)
+CODE_WEIGHT = 0.6
 UNKNOWN_IDF = 6.0
 _MAX_WORDS = 40
 _KEPT_POSTINGS = 1_500
 _CANDIDATES = 400
 _READ_AHEAD = 80
+_MEMBERS = frozenset({"property", "function", "socket"})
 _FEEDBACK = 100
 _FEEDBACK_POWER = 3  # the weaker half of the feedback documents hardly votes
 
@@ -70,12 +78,13 @@ class Concept:
 
 @dataclass(frozen=True, slots=True)
 class _Level:
-    """The documents of one level, by number: their topics, chapters and weights."""
+    """The documents of one level, by number: their topics, chapters, weights, and which are about code."""
 
     count: int
     topics: NDArray[np.int32]
     chapters: NDArray[np.int32]
     weights: Scores
+    code: NDArray[np.bool_]
 
 
 class Searcher:
@@ -90,13 +99,14 @@ class Searcher:
         return self._read_level(0), self._read_level(1)
 
     def _read_level(self, level: int) -> _Level:
-        sql = "SELECT count, topics, chapters, weights FROM levels WHERE level = ?"
-        ((count, topics, chapters, weights),) = self._reader.rows(sql, level)
+        sql = "SELECT count, topics, chapters, weights, code FROM levels WHERE level = ?"
+        ((count, topics, chapters, weights, code),) = self._reader.rows(sql, level)
         return _Level(
             count,
             np.frombuffer(topics, np.int32),
             np.frombuffer(chapters, np.int32),
             np.frombuffer(weights, np.float32),
+            np.frombuffer(code, np.bool_),
         )
 
     def _read_postings(self, level: int, term: str) -> tuple[NDArray[np.uint32], Scores] | None:
@@ -196,6 +206,8 @@ class Searcher:
         topical, _ = self._score(1, concepts)
         around = np.where(units.topics >= 0, topical[units.topics], ALONE * own)
         scores = np.where(own > 0, own + TOPIC_WEIGHT * around, 0) * units.weights
+        if not CODE_WORDS.isdisjoint(words(text)):
+            scores = np.where(units.code, (1 + CODE_WEIGHT) * scores, scores)
         scores *= 1 + CHAPTER_WEIGHT * self._chapter_votes(scores)
         order = _top(scores, _CANDIDATES)
         return self._varied(order, scores, covered, limit)
@@ -209,19 +221,22 @@ class Searcher:
         return (votes / max(float(votes.max()), 1e-9))[chapters]
 
     def _varied(self, order: NDArray[np.intp], scores: Scores, covered: Scores, limit: int) -> list[Found]:
-        """The order with every topic's first document before any topic's second."""
+        """The order with every topic's first document before any topic's second; likewise for members of one name."""
         units, _ = self._levels
         first: list[Found] = []
         later: list[Found] = []
         refs: set[str] = set()
         topics: set[int] = set()
+        names: set[str] = set()
         for number, ref, kind, title, anchor in self._documents(order[scores[order] > 0].tolist()):
             if ref in refs:
                 continue
             refs.add(ref)
             topic = int(units.topics[number])
             found = Found(ref, kind, title, anchor, float(scores[number]), float(covered[number]))
-            (later if topic in topics else first).append(found)
+            name = ref.rpartition(".")[2] if kind in _MEMBERS else ref
+            (later if topic in topics or name in names else first).append(found)
+            names.add(name)
             if topic >= 0:
                 topics.add(topic)
             if len(first) == limit:
