@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sqlite3
+import zlib
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import quote
 
 from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
@@ -13,8 +14,10 @@ from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, unpack
 from kb_serve.errors import BaseMissing, BaseUnreadable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
+
+_Record = TypeVar("_Record")
 
 TYPES = "bpy.types."
 STRUCT = "bpy.types.bpy_struct"
@@ -117,7 +120,17 @@ class Reader:
         except UnicodeEncodeError:
             return []  # half a character, which is in no base
         except sqlite3.DatabaseError as error:
-            raise BaseUnreadable(f"{self.path}: damaged ({error}). {_REBUILD}") from error
+            raise self.damaged(error) from error
+
+    def damaged(self, why: object) -> BaseUnreadable:
+        """The error to raise where the file turns out not to hold what it should."""
+        return BaseUnreadable(f"{self.path}: damaged ({why}). {_REBUILD}")
+
+    def _record(self, make: Callable[[dict[str, Any]], _Record], data: bytes) -> _Record:
+        try:
+            return make(unpack(data))
+        except (zlib.error, ValueError, TypeError, KeyError, AttributeError) as error:
+            raise self.damaged(error) from error
 
     @cached_property
     def meta(self) -> dict[str, str]:
@@ -152,7 +165,7 @@ class Reader:
     def symbol(self, path: str) -> Symbol | None:
         """The whole record of an identifier."""
         rows = self.rows("SELECT record FROM symbols WHERE path = ?", path)
-        return symbol_from_json(unpack(rows[0][0])) if rows else None
+        return self._record(symbol_from_json, rows[0][0]) if rows else None
 
     def by_name(self, name: str) -> list[Entry]:
         """Every symbol whose last part is exactly ``name``."""
@@ -232,4 +245,4 @@ class Reader:
     def page(self, slug: str) -> Page | None:
         """A page with its sections, or None."""
         rows = self.rows("SELECT record FROM pages WHERE slug = ?", slug)
-        return page_from_json(unpack(rows[0][0])) if rows else None
+        return self._record(page_from_json, rows[0][0]) if rows else None

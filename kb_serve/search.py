@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,26 +96,42 @@ class Searcher:
 
     @cached_property
     def _levels(self) -> tuple[_Level, _Level]:
-        return self._read_level(0), self._read_level(1)
+        units, topics = self._read_level(0), self._read_level(1)
+        if not _within(units.topics, -1, topics.count):
+            raise self._reader.damaged("its index points at topics that it has not")
+        return units, topics
 
     def _read_level(self, level: int) -> _Level:
         sql = "SELECT count, topics, chapters, weights, code FROM levels WHERE level = ?"
-        ((count, topics, chapters, weights, code),) = self._reader.rows(sql, level)
-        return _Level(
-            count,
-            np.frombuffer(topics, np.int32),
-            np.frombuffer(chapters, np.int32),
-            np.frombuffer(weights, np.float32),
-            np.frombuffer(code, np.bool_),
-        )
+        try:
+            ((count, topics, chapters, weights, code),) = self._reader.rows(sql, level)
+            read = _Level(
+                count,
+                np.frombuffer(topics, np.int32),
+                np.frombuffer(chapters, np.int32),
+                np.frombuffer(weights, np.float32),
+                np.frombuffer(code, np.bool_),
+            )
+        except (ValueError, TypeError) as error:
+            raise self._reader.damaged(error) from error
+        arrays = (read.topics, read.chapters, read.weights, read.code)
+        sound = all(len(array) == count for array in arrays) and np.isfinite(read.weights).all()
+        if not (sound and _within(read.chapters, 0, count)):
+            raise self._reader.damaged(f"level {level} of its index")
+        return read
 
     def _read_postings(self, level: int, term: str) -> tuple[NDArray[np.uint32], Scores] | None:
         rows = self._reader.rows("SELECT df, data FROM postings WHERE level = ? AND stem = ?", level, term)
         if not rows:
             return None
         count, data = rows[0]
-        numbers = np.frombuffer(data, np.uint32, count)
-        weights = np.frombuffer(data, np.float16, count, offset=4 * count).astype(np.float32)
+        try:
+            numbers = np.frombuffer(data, np.uint32, count)
+            weights = np.frombuffer(data, np.float16, count, offset=4 * count).astype(np.float32)
+        except (ValueError, TypeError) as error:
+            raise self._reader.damaged(error) from error
+        if not (_within(numbers, 0, self._levels[level].count) and np.isfinite(weights).all()):
+            raise self._reader.damaged(f"the postings of {term!r}")
         return numbers, np.asarray(weights * (K1 + 1) / (weights + K1), np.float32)
 
     def idf(self, term: str) -> float:
@@ -250,7 +266,13 @@ class Searcher:
             marks = ",".join("?" * len(wanted))
             sql = f"SELECT number, ref, kind, title, anchor FROM docs WHERE level = 0 AND number IN ({marks})"  # noqa: S608
             rows = {row[0]: row for row in self._reader.rows(sql, *wanted)}
+            if len(rows) < len(wanted):
+                raise self._reader.damaged("documents of its index are gone")
             yield from (rows[number] for number in wanted)
+
+
+def _within(numbers: NDArray[Any], low: int, high: int) -> bool:
+    return not len(numbers) or (int(numbers.min()) >= low and int(numbers.max()) < high)
 
 
 def _top(scores: Scores, count: int) -> NDArray[np.intp]:
