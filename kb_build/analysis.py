@@ -10,6 +10,7 @@ import snowballstemmer
 
 _WORD = re.compile(r"\d+[dD]\b|[A-Za-z]+|\d+(?:\.\d+)?|[^\W\d_]+")
 _CAMEL = re.compile(r"[A-Z]{2,}s\b|[A-Z]{2,}(?=[A-Z][a-z])|[A-Z]{2}[a-z]+|[A-Z]?[a-z]+|[A-Z]+")
+_PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
 _NOT_KEY = re.compile(r"[\W_]+")
 
 # Words that say nothing about Blender: they join sentences or frame a question.
@@ -55,6 +56,14 @@ def terms(text: str) -> list[str]:
 def key(text: str) -> str:
     """Spelling folded away: ``quality_steps``, ``qualitySteps`` and ``Quality Steps`` have one key."""
     return _NOT_KEY.sub("", text).lower()
+
+
+def short_path(path: str) -> str:
+    """A path without the prefix that people leave out: ``ClothSettings.quality``, ``object.modifier_add``."""
+    for prefix in _PREFIXES:
+        if path.startswith(prefix):
+            return path[len(prefix) :]
+    return path
 
 
 def topic_key(text: str) -> str:

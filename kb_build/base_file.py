@@ -6,10 +6,9 @@ import json
 import sqlite3
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
 
 from kb_build.errors import StoreError
-from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION
+from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, read_only_uri
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,7 +21,7 @@ def open_base(path: Path) -> sqlite3.Connection:
     if not path.is_file():
         raise StoreError(f"{path}: no knowledge base here. Build it first: simworlds kb build")
     try:
-        connection = sqlite3.connect(f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1", uri=True)
+        connection = sqlite3.connect(read_only_uri(path), uri=True)
     except sqlite3.Error as error:
         raise StoreError(f"{path}: cannot be opened ({error}). {_AGAIN}") from error
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.analysis import key
+from kb_build.analysis import key, short_path
 from kb_build.replacements import find_replacements, is_asked_for
 
 if TYPE_CHECKING:
@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
     from kb_build.history import History
     from kb_build.records import Symbol
-
-_PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +29,8 @@ def _keys(path: str) -> Iterator[str]:
     yield key(path)
     if path.endswith('"]'):  # a socket is also asked for on a node whose class is not known
         yield key(path.partition('["')[0].rpartition(".")[2] + path.partition('["')[2])
-    for prefix in _PREFIXES:
-        if path.startswith(prefix):
-            yield key(path[len(prefix) :])
-            return
+    if (short := short_path(path)) != path:
+        yield key(short)
 
 
 def former_symbols(symbols: Sequence[Symbol], history: History, version: str) -> Former:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kb_build.analysis import STOP_WORDS, key, stem, terms, words
+from kb_build.lines import definitions_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from kb_build.records import Link, Page, Symbol
 
 TYPES = "bpy.types."
-PAGE_KINDS = frozenset({"manual", "guide", "template"})
 FIELDS = ("name", "heading", "context", "body", "related")
 FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.25}
 # What is rarely asked for: how the manual itself is written, single add-ons, what Blender keeps for old files.
@@ -34,6 +34,7 @@ ASIDE = ("contribute/", "addons/", "freestyle.", "legacy")
 ASIDE_WEIGHT = 0.7
 UNIT_B = 0.35  # how much a unit's length counts: most are a sentence
 TOPIC_B = 0.4
+_LONGEST_TERM = 90  # letters: what is longer is a sentence in bold
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,18 +91,9 @@ def _topic_of(symbol: Symbol) -> str:
 def definitions(page: Page) -> Iterator[tuple[str, str]]:
     """(key of the term, text) for every definition-list entry of a page."""
     for section in page.sections:
-        lines = section.text.split("\n")
-        for number, line in enumerate(lines):
-            term = line.strip()
-            if not (term.startswith("**") and term.rstrip(":").endswith("**") and len(term) < 90):
-                continue
-            depth = len(line) - len(line.lstrip())
-            body: list[str] = []
-            for following in lines[number + 1 :]:
-                if following.strip() and len(following) - len(following.lstrip()) <= depth:
-                    break
-                body.append(following.strip())
-            yield key(term.strip("*:").partition("(")[0]), " ".join(body)
+        for term, below in definitions_in(section.text):
+            if len(term) < _LONGEST_TERM:
+                yield key(term.strip("*:").partition("(")[0]), " ".join(line.strip() for line in below)
 
 
 def chapter_of(slug: str) -> str:

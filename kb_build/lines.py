@@ -1,10 +1,12 @@
-"""A symbol on one line: how a class lists its members. Written into the base when it is built."""
+"""Lines of text: a symbol told on one, as its owner lists it; the definition lists among a page's."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from kb_build.records import Symbol
 
 _SHOWN_VALUES = 8
@@ -58,3 +60,20 @@ def member_line(symbol: Symbol) -> str:
         notes.append("when " + " and ".join(symbol.modes))
     said = first_sentence(symbol.description) or (symbol.label if symbol.label != symbol.name else "")
     return " ".join([head, *notes]) + (f" — {said}" if said else "")
+
+
+def definitions_in(text: str) -> Iterator[tuple[str, Iterator[str]]]:
+    """(term line, the lines indented below it, read when wanted) of every definition in a section's Markdown."""
+    lines = text.split("\n")
+    for number, line in enumerate(lines):
+        term = line.strip()
+        if term.startswith("**") and term.rstrip(":").endswith("**"):
+            yield term, _indented_after(lines, number)
+
+
+def _indented_after(lines: Sequence[str], number: int) -> Iterator[str]:
+    depth = len(lines[number]) - len(lines[number].lstrip())
+    for line in lines[number + 1 :]:
+        if line.strip() and len(line) - len(line.lstrip()) <= depth:
+            return
+        yield line

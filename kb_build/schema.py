@@ -8,7 +8,11 @@ from __future__ import annotations
 
 import json
 import zlib
-from typing import Any
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 SCHEMA_VERSION = 1
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's own place for telling whose file it is
@@ -111,6 +115,11 @@ CREATE INDEX sections_slug ON sections (slug, position);
 CREATE INDEX links_source ON links (source, kind);
 CREATE INDEX pages_parent ON pages (parent, position);
 """
+
+
+def read_only_uri(path: Path) -> str:
+    """How SQLite opens a base: read-only, and unchanging as long as it is open."""
+    return f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1"
 
 
 def pack(record: dict[str, Any]) -> bytes:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sqlite_utils
 
-from kb_build.analysis import key, topic_key
+from kb_build.analysis import key, short_path, topic_key
 from kb_build.errors import StoreError
 from kb_build.former import Former
 from kb_build.index import (
@@ -45,8 +45,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-_PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
-
 
 @dataclass(frozen=True, slots=True)
 class Contents:
@@ -61,14 +59,6 @@ class Contents:
     meta: Mapping[str, str]
     summaries: Mapping[str, tuple[str, str]] = field(default_factory=dict[str, tuple[str, str]])
     former: Callable[[], Former] = Former
-
-
-def short_path(path: str) -> str:
-    """A path without the prefix that people leave out: ``ClothSettings.quality``, ``object.modifier_add``."""
-    for prefix in _PREFIXES:
-        if path.startswith(prefix):
-            return path[len(prefix) :]
-    return path
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:

@@ -169,13 +169,12 @@ class Drifts:
         """A former socket, ``inputs["Subsurface"]``, of a node below ``owner``: the variable may tell which."""
         paths = [path for path in self._reader.removed_by_key(key(name)) if '["' in path]
         below = [
-            path for path in paths if self._descends(path.partition('puts["')[0].rpartition(".")[0], owner)
+            path
+            for path in paths
+            if self._reader.descends(path.partition('puts["')[0].rpartition(".")[0], owner)
         ]
         below.sort(key=lambda path: (key(variable) not in key(path), path))
         return self.of_path(below[0]) if below else None
-
-    def _descends(self, cls: str, ancestor: str) -> bool:
-        return any(entry.path == ancestor for entry in self._reader.lineage(cls))
 
     def of_path(self, path: str) -> Drift | None:
         """A symbol of another version by its exact path."""

@@ -7,10 +7,9 @@ import zlib
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar
-from urllib.parse import quote
 
 from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
-from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, unpack
+from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, read_only_uri, unpack
 from kb_serve.errors import BaseMissing, BaseUnreadable
 
 if TYPE_CHECKING:
@@ -67,9 +66,8 @@ def open_file(path: Path) -> sqlite3.Connection:
     """Opens a base read-only and checks that it is one. Raises BaseMissing or BaseUnreadable."""
     if not path.is_file():
         raise BaseMissing(f"{path}: no knowledge base here. Build it first: simworlds kb build")
-    uri = f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1"
     try:
-        connection = sqlite3.connect(uri, uri=True, check_same_thread=False)
+        connection = sqlite3.connect(read_only_uri(path), uri=True, check_same_thread=False)
     except sqlite3.Error as error:
         raise BaseUnreadable(f"{path}: cannot be opened ({error}). {_REBUILD}") from error
     try:
@@ -161,6 +159,10 @@ class Reader:
         while entry is not None:
             yield entry
             entry = self.entry(entry.base) if entry.base else None
+
+    def descends(self, cls: str, ancestor: str) -> bool:
+        """Whether a class is ``ancestor`` or derives from it."""
+        return any(entry.path == ancestor for entry in self.lineage(cls))
 
     def symbol(self, path: str) -> Symbol | None:
         """The whole record of an identifier."""

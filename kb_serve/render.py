@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.lines import first_sentence, literal, type_text
+from kb_build.lines import definitions_in, first_sentence, literal, type_text
 from kb_serve.budget import Block
 from kb_serve.reader import STRUCT, TYPES, Entry, Reader
 
@@ -253,21 +253,7 @@ def definition_of(label: str, sections: Iterable[Section]) -> str:
     """The definition-list entry of a manual page whose term is ``label``; empty when there is none."""
     wanted = label.lower()
     for section in sections:
-        lines = section.text.split("\n")
-        for number, line in enumerate(lines):
-            term = line.strip()
-            if (
-                term.startswith("**")
-                and term.rstrip(":").endswith("**")
-                and term.strip("*: ").lower() == wanted
-            ):
-                return "\n".join(_indented_after(lines, number))
+        for term, below in definitions_in(section.text):
+            if term.strip("*: ").lower() == wanted:
+                return "\n".join(below)
     return ""
-
-
-def _indented_after(lines: Sequence[str], number: int) -> Iterator[str]:
-    depth = len(lines[number]) - len(lines[number].lstrip())
-    for line in lines[number + 1 :]:
-        if line.strip() and len(line) - len(line.lstrip()) <= depth:
-            return
-        yield line.strip("\n")

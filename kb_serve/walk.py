@@ -286,15 +286,12 @@ class Walker:
             yield place
         if place.cls.startswith(TYPES):
             for entry in self._reader.by_name(name):
-                if entry.kind != "socket" and self._descends(entry.owner, place.cls):
+                if entry.kind != "socket" and self._reader.descends(entry.owner, place.cls):
                     yield self._place(entry, entry.owner)
 
     def _is_list(self, path: str) -> bool:
         entry = self._reader.entry(path)
         return entry is not None and entry.type.startswith("list")
-
-    def _descends(self, cls: str, ancestor: str) -> bool:
-        return any(entry.path == ancestor for entry in self._reader.lineage(cls))
 
     def _item(self, place: Place, step: Step) -> Iterator[Place]:
         """An element of a collection; the name in the brackets may tell its class or its socket."""
@@ -324,14 +321,14 @@ class Walker:
         wanted = key(_NUMBERED.sub("", text))
         for suffix in ("", *_ELEMENT_SUFFIXES):
             for _, identifier in self._reader.by_key(wanted + suffix):
-                if identifier.startswith(TYPES) and self._descends(identifier, cls):
+                if identifier.startswith(TYPES) and self._reader.descends(identifier, cls):
                     yield identifier
 
     def _socket(self, owner: str, side: str, name: str) -> Iterator[Place]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""
         for entry in self._reader.by_name(name):
             on_side = entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
-            if on_side and self._descends(entry.owner, owner):
+            if on_side and self._reader.descends(entry.owner, owner):
                 yield self._place(entry)
 
     def _call(self, place: Place) -> Place:

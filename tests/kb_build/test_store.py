@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.analysis import key
+from kb_build.analysis import key, short_path
 from kb_build.errors import StoreError
 from kb_build.former import Former
 from kb_build.records import Deprecation, EnumItem, Link, Page, Parameter, Section, Symbol
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, pack, unpack
-from kb_build.store import Contents, short_path, write_base
+from kb_build.store import Contents, write_base
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import Reader
 
