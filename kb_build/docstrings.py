@@ -207,7 +207,9 @@ def _literal(expression: ast.expr | None) -> Default:
         value = ast.literal_eval(expression) if expression else None
     except ValueError:
         return None
-    return list(value) if isinstance(value, tuple | set) else value
+    if isinstance(value, set):
+        return sorted(value, key=repr)
+    return list(value) if isinstance(value, tuple) else value
 
 
 def call_parameters(signature: str) -> list[Parameter]:

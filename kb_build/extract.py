@@ -129,7 +129,8 @@ def call_text(name: str, parameters: Iterable[Parameter]) -> str:
         if parameter.required:
             shown.append(parameter.name)
         elif isinstance(parameter.default, list) and parameter.type == "enum":
-            shown.append(f"{parameter.name}={set(parameter.default) or 'set()'}")
+            chosen = ", ".join(map(repr, parameter.default))  # a list in order, which a set would lose
+            shown.append(f"{parameter.name}={{{chosen}}}" if chosen else f"{parameter.name}=set()")
         else:
             shown.append(f"{parameter.name}={python_value(parameter.default)}")
     return f"{name}({', '.join(shown)})"
