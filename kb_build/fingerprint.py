@@ -23,7 +23,7 @@ _PACKAGE = Path(__file__).resolve().parent
 _DATA = _PACKAGE.parent / "corpora"
 # Packages whose versions show in the text of pages or in the index.
 _READERS = ("sphinx", "docutils", "beautifulsoup4", "lxml")
-_WRITERS = ("sqlite-utils", "snowballstemmer")
+_WRITERS = ("sqlite-utils", "snowballstemmer", "pystemmer")
 # What is asked of a base or shown of a build leaves the base as it is.
 _ONLOOKERS = frozenset(
     {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -25,8 +26,10 @@ class Former:
     since: tuple[tuple[str, str], ...] = ()
 
 
-def _keys(path: str) -> Iterator[str]:
+def _keys(path: str, items: Counter[str]) -> Iterator[str]:
     yield key(path)
+    if (item := path.partition(":")[2]) and items[item] == 1:  # one that only one enumeration had
+        yield key(item)
     if path.endswith('"]'):  # a socket is also asked for on a node whose class is not known
         yield key(path.partition('["')[0].rpartition(".")[2] + path.partition('["')[2])
     if (short := short_path(path)) != path:
@@ -38,12 +41,13 @@ def former_symbols(symbols: Sequence[Symbol], history: History, version: str) ->
 
     A symbol that extraction found is never called removed, whatever the history says.
     """
+    items = Counter(path.partition(":")[2] for path, _, _ in history.removed_from(version))
     known = {symbol.path for symbol in symbols}
     removed = [row for row in history.removed_from(version) if row[0] not in known and is_asked_for(row[0])]
     since = history.since(version)
     return Former(
         removed=tuple(removed),
-        names=tuple((spelled, path) for path, _, _ in removed for spelled in _keys(path)),
+        names=tuple((spelled, path) for path, _, _ in removed for spelled in _keys(path, items)),
         replacements=tuple(find_replacements(symbols, history, version)),
         since=tuple((path, first) for path, first in since.items() if path in known),
     )

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from kb_build.records import Link, Page, Symbol
 
 TYPES = "bpy.types."
-FIELDS = ("name", "heading", "context", "body", "related")
-FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.25}
+FIELDS = ("name", "heading", "context", "body", "related", "uses")
+FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.25, "uses": 1.5}
 # What is rarely asked for: how the manual itself is written, single add-ons, what Blender keeps for old files.
 ASIDE = ("contribute/", "addons/", "freestyle.", "legacy")
 ASIDE_WEIGHT = 0.7
@@ -39,7 +39,7 @@ _LONGEST_TERM = 90  # letters: what is longer is a sentence in bold
 
 @dataclass(frozen=True, slots=True)
 class Doc:
-    """One unit or topic: the id it counts for, what it is called, and the texts of its five fields.
+    """One unit or topic: the id it counts for, what it is called, and the texts of its fields.
 
     ``chapter`` is the part of the manual it belongs to (``physics/cloth``); a symbol's is its manual page's.
     """
@@ -55,6 +55,7 @@ class Doc:
     context: tuple[str, ...] = ()
     body: tuple[str, ...] = ()
     related: tuple[str, ...] = ()
+    uses: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
@@ -124,7 +125,10 @@ def _manual_texts(
 
 
 def symbol_docs(
-    symbols: Sequence[Symbol], said: Mapping[str, tuple[str, ...]], explained_on: Mapping[str, str]
+    symbols: Sequence[Symbol],
+    said: Mapping[str, tuple[str, ...]],
+    explained_on: Mapping[str, str],
+    uses: Mapping[str, str],
 ) -> Iterator[Doc]:
     """A unit for every symbol that a script works with."""
     by_path = {symbol.path: symbol for symbol in symbols}
@@ -152,11 +156,31 @@ def symbol_docs(
             context=(symbol.owner.removeprefix(TYPES).removeprefix("bpy."), owner.label if owner else ""),
             body=(symbol.description, *items, *arguments, *results),
             related=(*sockets.get(symbol.path, ()), *said.get(symbol.path, ())),
+            uses=(_uses_of(symbol, explained_on, uses),),
         )
 
 
+def _uses_of(symbol: Symbol, explained_on: Mapping[str, str], uses: Mapping[str, str]) -> str:
+    """What a symbol is asked for: its own phrases, and those of the page that explains the whole of it."""
+    own = uses.get(symbol.path, "")
+    if symbol.kind not in {"class", "operator"}:
+        return own
+    return f"{own}; {uses.get(explained_on.get(symbol.path, ''), '')}".strip("; ")
+
+
+def _uses_of_pages(explained_on: Mapping[str, str], uses: Mapping[str, str]) -> dict[str, str]:
+    """Page → what it is asked for: its own phrases, and those of every symbol that it explains."""
+    phrases: dict[str, list[str]] = defaultdict(list)
+    for topic, text in uses.items():
+        phrases[explained_on.get(topic, topic)].append(text)
+    return {slug: "; ".join(texts) for slug, texts in phrases.items()}
+
+
 def page_docs(
-    pages: Sequence[Page], summaries: Mapping[str, tuple[str, str]], explains: Mapping[str, list[str]]
+    pages: Sequence[Page],
+    summaries: Mapping[str, tuple[str, str]],
+    explains: Mapping[str, list[str]],
+    uses: Mapping[str, str],
 ) -> Iterator[Doc]:
     """A unit for every section of every page."""
     for page in pages:
@@ -176,6 +200,7 @@ def page_docs(
                 context=(above,) if first else (above, page.title),
                 body=(section.text,),
                 related=(summary, *explains.get(page.slug, ())) if first else (),
+                uses=(uses.get(page.slug, ""),) if first else (),
             )
 
 
@@ -189,7 +214,8 @@ def topic_docs(units: Sequence[Doc]) -> Iterator[Doc]:
         head = next((part for part in parts if part.ref == topic and not part.anchor), parts[0])
         rest = [part for part in parts if part is not head]
         texts = [text for part in rest for text in (*part.heading, *part.heading, *part.body)]
-        yield replace(head, ref=topic, body=(*head.body, *texts))
+        uses = [text for part in rest for text in part.uses]
+        yield replace(head, ref=topic, body=(*head.body, *texts), uses=(*head.uses, *uses))
 
 
 def make_units(
@@ -197,11 +223,13 @@ def make_units(
     pages: Sequence[Page],
     links: Sequence[Link],
     summaries: Mapping[str, tuple[str, str]],
+    uses: Mapping[str, str],
 ) -> list[Doc]:
-    """Every unit of retrieval, pages first."""
+    """Every unit of retrieval, pages first. ``uses``: see :mod:`kb_build.uses`."""
     said, explains = _manual_texts(symbols, pages, links)
     explained_on = {link.source: link.target.partition("#")[0] for link in links if link.kind == "manual"}
-    return [*page_docs(pages, summaries, explains), *symbol_docs(symbols, said, explained_on)]
+    asked = _uses_of_pages(explained_on, uses)
+    return [*page_docs(pages, summaries, explains, asked), *symbol_docs(symbols, said, explained_on, uses)]
 
 
 def make_postings(docs: Sequence[Doc], b: float) -> Postings:

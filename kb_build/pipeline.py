@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from kb_build.base_file import read_meta
@@ -23,13 +24,12 @@ from kb_build.forked import beside
 from kb_build.progress import silent
 from kb_build.runtime import find_runtime
 from kb_build.settings import base_path, cache_folder, summaries_path
-from kb_build.sources import find_sources
+from kb_build.sources import Origin, find_sources
 from kb_build.staging import remove_unfinished_files
 from kb_build.versions import ROLES, minor_of
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping, Sequence
-    from pathlib import Path
 
     from kb_build.extract import Extract
     from kb_build.former import Former
@@ -152,6 +152,7 @@ def _find_sources(work: _Build) -> None:
         manual=options.manual,
         guides=options.guides,
         corpora=options.corpora,
+        before=_sources_before(work.path),
         allow_download=not options.offline,
         progress=work.progress,
     )
@@ -166,6 +167,15 @@ def _find_sources(work: _Build) -> None:
                 f"the {source.role} at {source.origin} is of Blender {source.version}, not {minor}: answers "
                 "drawn from it will say so"
             )
+
+
+def _sources_before(path: Path) -> dict[str, Origin]:
+    """Role → where the base that is there now had its pages from."""
+    try:
+        rows = json.loads(read_meta(path).get("sources", "[]"))
+        return {row["role"]: Origin(Path(row["origin"]), bool(row["given"])) for row in rows}
+    except (StoreError, ValueError, TypeError, KeyError):
+        return {}
 
 
 def _fingerprint(work: _Build) -> str:

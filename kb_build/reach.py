@@ -26,6 +26,7 @@ _DETOURS = frozenset(
     }
 )  # fmt: skip
 _DETOUR_COST = 6
+_TOLD_COST = 5  # of what Blender tells how to reach: the preferences of an add-on
 
 
 @dataclass(slots=True)
@@ -38,6 +39,7 @@ class _Graph:
     label: dict[str, str] = field(default_factory=dict)
     trees: dict[str, tuple[str, ...]] = field(default_factory=dict)
     named: set[str] = field(default_factory=set)
+    told: dict[str, str] = field(default_factory=dict)
 
 
 def _graph(symbols: Iterable[Symbol]) -> _Graph:
@@ -47,6 +49,8 @@ def _graph(symbols: Iterable[Symbol]) -> _Graph:
             name, base = symbol.path.removeprefix(TYPES), symbol.base.removeprefix(TYPES)
             graph.base[name] = base
             graph.label[name] = symbol.label
+            if symbol.reached:
+                graph.told[name] = symbol.reached
             if symbol.trees:
                 graph.trees[name] = symbol.trees
             if base != "bpy_struct":
@@ -99,6 +103,8 @@ def reached_expressions(symbols: Iterable[Symbol]) -> dict[str, str]:
     order = 0
     for root, cls, cost in _ROOTS:
         heapq.heappush(queue, (cost, order := order + 1, cls, root))
+    for cls, expression in graph.told.items():
+        heapq.heappush(queue, (_TOLD_COST, order := order + 1, cls, expression))
     while queue:
         cost, _, cls, expression = heapq.heappop(queue)
         if cls in found:

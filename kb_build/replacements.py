@@ -13,7 +13,7 @@ from collections import Counter, defaultdict
 from functools import cache
 from typing import TYPE_CHECKING
 
-from kb_build.analysis import stem, words
+from kb_build.analysis import key, stem, words
 from kb_build.feature_index import Bag, FeatureIndex, Mentions
 from kb_build.history import split_path, version_key
 from kb_build.versions import minor_of
@@ -44,10 +44,17 @@ _OWNERS_REPLACEMENT = 0.45
 _CAME_THEN = 0.15
 _CAME_BEFORE = 0.1
 _LONG_ELSEWHERE = 0.85
-_CAME_TO_OWNER = 2.7
+_CAME_TO_OWNER = 1.8
 _SAME_KIND = 0.1
 _ITEM_CAME_THEN = 0.5
 _VERSIONS_BEFORE = 2
+_WHERE_IT_STOOD = 1.2
+_RIVAL = 0.7  # of the best, from which on a second one may be an owner's replacement too
+_HOLDER = 0.25
+_FEW_HOLDERS = 2
+_OF_MODULES = 0.2
+_TYPES = "bpy.types."
+_THEME = "bpy.types.Theme"  # colours of the interface stand for nothing but each other
 # Words that took the place of others: seen in so many pairs of alike symbols, and in this share of them.
 _ALIKE = 0.5
 _LEAST_INSIDE = 3
@@ -98,6 +105,22 @@ def _directly_below(paths: Iterable[str]) -> dict[str, list[str]]:
     return dict(found)
 
 
+def _holders(symbols: Iterable[Symbol]) -> dict[str, list[str]]:
+    """Class → the classes that have a collection of it: MeshEdge → Mesh. Of what many hold, none is the holder."""
+    found: defaultdict[str, set[str]] = defaultdict(set)
+    for symbol in symbols:
+        if symbol.type == "collection" and symbol.target:
+            found[_TYPES + symbol.target].add(symbol.owner)
+    return {
+        target: sorted(owners - {target}) for target, owners in found.items() if len(owners) <= _FEW_HOLDERS
+    }
+
+
+def _is_of_module(path: str) -> bool:
+    """Whether a path is of a Python module, ``gpu.state.blend_set``, rather than of Blender's data or operators."""
+    return not path.startswith((_TYPES, "bpy.ops.", "bpy.context.", "bpy.data."))
+
+
 def _text(symbol: Symbol) -> str:
     """What a symbol says of itself, its enum items included."""
     items = (f"{item.identifier} {item.name}" for item in symbol.enum_items)
@@ -118,6 +141,10 @@ class Replacements:
         self._members: defaultdict[str, list[int]] = defaultdict(list)
         for number, symbol in enumerate(self._candidates):
             self._members[symbol.owner].append(number)
+        self._led_to = {symbol.path: symbol.collection or symbol.target for symbol in symbols}
+        self._holders = _holders(symbols)
+        self._themes = [symbol.path.startswith(_THEME) for symbol in self._candidates]
+        self._of_modules = [_is_of_module(symbol.path) for symbol in self._candidates]
         self._found_items: dict[tuple[str, str, int], list[tuple[str, float]]] = {}
         order = {name: number for number, name in enumerate(history.versions)}
         self._order = order
@@ -161,7 +188,10 @@ class Replacements:
         if kind == "class":
             alike = [number for number in scores if self._kinds[number] == kind]
             self._names.add_common(names, alike, scores)
+            if instance := self._known.get(self._instance_of(path)):
+                scores[instance] += _WHERE_IT_STOOD
         ranked: list[tuple[float, int]] = []
+        of_theme, of_module = path.startswith(_THEME), _is_of_module(path)
         for number in scores.keys() | at_home.keys() | mentions.keys():
             came = self._came[number]
             total = scores[number]
@@ -173,6 +203,9 @@ class Replacements:
                 total *= _LONG_ELSEWHERE
             total += at_home.get(number, 0.0) + _MENTION * mentions.get(number, 0.0)
             total += _SAME_KIND if self._kinds[number] == kind else 0.0
+            total += _OF_MODULES if of_module and self._of_modules[number] else 0.0
+            if self._themes[number] and not of_theme:
+                continue
             if total >= _LEAST:
                 ranked.append((total, -number))
         best = heapq.nlargest(KEPT, ranked)
@@ -238,13 +271,32 @@ class Replacements:
         if owner in {"", "bpy.types", "bpy.ops"}:
             return
         if owner in self._missing:
-            for replacement, score in self.closest(owner)[:2]:
-                worth = _OWNERS_REPLACEMENT * min(1.0, score)
+            found = [row for row in self.closest(owner)[:2] if row[1] >= _RIVAL * self.closest(owner)[0][1]]
+            for replacement, score in found:
+                worth = _OWNERS_REPLACEMENT * min(1.0, score) * score / found[0][1]
                 yield replacement, worth
                 yield from ((base, worth * 0.8) for base in self._ancestors(replacement))
             return
         yield owner, _SAME_OWNER
+        yield from ((holder, _HOLDER) for holder in self._holders.get(owner, ()))
         yield from ((base, _OWNERS_BASE) for base in self._ancestors(owner))
+
+    def _instance_of(self, path: str) -> str:
+        """For a missing collection class, ``NodeTreeInputs``: the class that stands where it stood.
+
+        Such classes are called after the owner and its property; what took the property's place leads there.
+        """
+        name = path.removeprefix(_TYPES)
+        for cut in range(1, len(name)):
+            owner, end = _TYPES + name[:cut], key(name[cut:])
+            if not name[cut].isupper() or owner not in self._below:
+                continue
+            for entry in self._below[owner]:
+                if entry[0] == "." and key(entry) == end:
+                    there = owner + entry
+                    found = self.closest(there)[:1] if there in self._missing else [(there, 1.0)]
+                    return _TYPES + self._led_to.get(found[0][0], "") if found else ""
+        return ""
 
     def _ancestors(self, path: str) -> Iterator[str]:
         seen = {path, "bpy.types.bpy_struct"}

@@ -86,7 +86,7 @@ def run_inside(runtime: Runtime, script: Path, args: list[str], *, timeout: floa
     with tempfile.TemporaryDirectory(prefix="simworlds-") as settings:
         command = runtime.command(script.absolute(), args)
         try:
-            run_group(command, environment=_clean_environment(Path(settings)), timeout=timeout, log=log)
+            run_group(command, environment=clean_environment(Path(settings)), timeout=timeout, log=log)
         except CommandFailed as error:
             raise ExtractError(
                 f"Blender {runtime.version} ({runtime.executable}) did not finish {script.name}: {error}. "
@@ -94,7 +94,8 @@ def run_inside(runtime: Runtime, script: Path, args: list[str], *, timeout: floa
             ) from error
 
 
-def _clean_environment(settings: Path) -> dict[str, str]:
+def clean_environment(settings: Path) -> dict[str, str]:
+    """Variables for a Blender: none of the user's secrets, and ``settings`` (a folder) in place of their Blender's."""
     passed = {name: value for name, value in os.environ.items() if name in _PASSED_ON}
     own = {
         f"BLENDER_USER_{name}": str(settings)

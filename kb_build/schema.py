@@ -110,6 +110,7 @@ CREATE TABLE near (word TEXT PRIMARY KEY, stems TEXT NOT NULL) WITHOUT ROWID;
 INDEXES = """
 CREATE INDEX symbols_owner ON symbols (owner, name);
 CREATE INDEX symbols_name ON symbols (name);
+CREATE INDEX symbols_target ON symbols (target) WHERE target != '';
 CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
 CREATE INDEX sections_slug ON sections (slug, position);
 CREATE INDEX links_source ON links (source, kind);

@@ -13,7 +13,7 @@ from kb_build.errors import SourceError
 from kb_build.versions import ROLES, Role, address, archive_suffixes, minor_of, source_names
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path, PurePosixPath
 
     from kb_build.archives import Progress
@@ -44,6 +44,14 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a source was had from, and whether the user had named it."""
+
+    path: Path
+    given: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Missing:
     """A source that could not be had: what was tried, and what to do."""
 
@@ -58,6 +66,7 @@ def find_sources(  # noqa: PLR0913 - each names one place to look in
     manual: Path | None = None,
     guides: Path | None = None,
     corpora: Path | None = None,
+    before: Mapping[str, Origin] | None = None,
     allow_download: bool = True,
     base_url: str | None = None,
     patience: Patience | None = None,
@@ -66,12 +75,15 @@ def find_sources(  # noqa: PLR0913 - each names one place to look in
     """The manual and the guides of a Blender version: those found, and those that could not be had.
 
     ``manual`` and ``guides`` are folders or archives named by the user, taken whatever their version;
-    ``corpora`` is a folder with sources of several versions; ``cache`` keeps downloads, unpacked archives and
+    ``corpora`` is a folder with sources of several versions; ``before`` tells by role where the last build had
+    them from; ``cache`` keeps downloads, unpacked archives and
     digests; ``base_url`` replaces the official site; silent addresses cost what ``patience`` allows
     (ten seconds), both roles together. Raises SourceError when a path that the user named cannot be used.
     """
     waits = patience or Patience()
-    search = _Search(minor_of(version), cache, corpora, allow_download, base_url, waits, progress)
+    search = _Search(
+        minor_of(version), cache, corpora, before or {}, allow_download, base_url, waits, progress
+    )
     given = {"manual": manual, "guides": guides}
     found = [search.find(role, given[role]) for role in ROLES]
     search.digests.save()
@@ -85,6 +97,7 @@ class _Search:
     version: str
     cache: Path
     corpora: Path | None
+    before: Mapping[str, Origin]
     allow_download: bool
     base_url: str | None
     patience: Patience
@@ -102,7 +115,8 @@ class _Search:
         if given is not None:
             return self._open(role, given.expanduser().absolute(), given=True)
         faults: list[str] = []
-        for attempt in (self._among_corpora, self._among_downloads, self._from_site):
+        attempts = (self._among_corpora, self._among_downloads, self._as_before, self._from_site)
+        for attempt in attempts:
             if source := attempt(role, faults):
                 return source
         name = "manual" if role == "manual" else "API guides"
@@ -120,6 +134,17 @@ class _Search:
 
     def _among_downloads(self, role: Role, faults: list[str]) -> Source | None:
         return self._among(self.downloads, role, faults)
+
+    def _as_before(self, role: Role, faults: list[str]) -> Source | None:
+        """Where the last build had it from: a build that names nothing must not lose what the base has."""
+        origin = self.before.get(role)
+        if self.corpora is not None or origin is None or not origin.path.exists():
+            return None
+        try:
+            return self._open(role, origin.path, given=origin.given)
+        except SourceError as error:
+            faults.append(str(error))
+            return None
 
     def _among(self, folder: Path, role: Role, faults: list[str]) -> Source | None:
         """The first usable source of this version that lies in ``folder`` under one of the usual names."""

@@ -40,6 +40,7 @@ from kb_build.schema import (
     pack,
 )
 from kb_build.staging import staged_file
+from kb_build.uses import load_uses
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -219,7 +220,7 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA application_id={APPLICATION_ID};"
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
-        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries)
+        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, load_uses())
         with connection:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)

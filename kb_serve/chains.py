@@ -5,14 +5,17 @@ Reads any text, Python or not; what is no code is simply not found.
 
 from __future__ import annotations
 
+import builtins
 import re
 from dataclasses import dataclass
 from typing import Literal
 
+_BUILTINS = frozenset(dir(builtins))
 MAX_QUERY = 4_000
 _MAX_CHAINS = 12
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
+_ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
 _CLOSING = {"(": ")", "[": "]"}
 _QUOTED = re.compile(r"""^\s*[bru]?(["'])(.*)\1\s*$""", re.DOTALL)
 
@@ -29,11 +32,15 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed."""
+    """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
+
+    ``assigned`` tells whether it stands left of an assignment.
+    """
 
     root: str
     steps: tuple[Step, ...]
     source: str
+    assigned: bool = False
 
     @property
     def dotted(self) -> str:
@@ -102,7 +109,11 @@ def find_chains(text: str) -> list[Chain]:
         while taken := _step(text, position):
             step, position = taken
             steps.append(step)
-        chain = Chain(match.group(), tuple(steps), text[start:position])
+        assigned = _ASSIGNMENT.match(text, position) is not None
+        if steps and steps[0].kind == "call" and match.group() in _BUILTINS:
+            position = match.end() + 1  # what Python's own functions are given is what it is about
+            continue
+        chain = Chain(match.group(), tuple(steps), text[start:position], assigned)
         found.append(chain)
         code += chain.is_code
         if code >= _MAX_CHAINS:

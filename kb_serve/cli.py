@@ -6,6 +6,7 @@ import gc
 import json
 import sys
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -139,16 +140,18 @@ def serve(  # noqa: PLR0913 - one for each option
     gc.disable()
     service = _service(blender, blender_exe, rebuild=not no_rebuild)
     try:
+        from kb_serve.server import make_app, make_server  # noqa: PLC0415 - loads the MCP package
+
         if over_http:
-            from kb_serve.http import Address, run_http  # noqa: PLC0415 - loads the MCP package
+            from kb_serve.http import Address, run_http  # noqa: PLC0415 - not for stdio
 
             _loaded()
-            run_http(service, Address(host, port, token or "", allow_host))
+            run_http(partial(make_app, service), Address(host, port, token or "", allow_host), "blender_docs")
         else:
-            from kb_serve.server import run_stdio  # noqa: PLC0415 - loads the MCP package
+            from kb_serve.stdio import run_stdio  # noqa: PLC0415 - not for HTTP
 
             _loaded()
-            run_stdio(service)
+            run_stdio(make_server(service), service.upkeep.stop)
     except KBServeError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)

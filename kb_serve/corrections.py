@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rapidfuzz import process
@@ -176,13 +177,28 @@ class Drifts:
         below.sort(key=lambda path: (key(variable) not in key(path), path))
         return self.of_path(below[0]) if below else None
 
+    def of_variables_socket(self, chain: Chain) -> Drift | None:
+        """A former socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells of."""
+        for before, step in pairwise(chain.steps[:2]):
+            if step.kind == "key" and before.text in {"inputs", "outputs"}:
+                paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
+                named = [path for path in paths if key(chain.root) in key(path.partition('puts["')[0])]
+                return self.of_path(named[0]) if named else None
+        return None
+
     def of_path(self, path: str) -> Drift | None:
         """A symbol of another version by its exact path."""
         span = self._reader.removed(path)
         return Drift(path, *span, tuple(self._reader.replacements(path))) if span else None
 
     def spelled(self, text: str) -> Iterator[Drift]:
-        """Symbols of other versions under any usual spelling."""
+        """Symbols of other versions under any usual spelling; enum items alone only as code writes them."""
         for path in self._reader.removed_by_key(key(text)):
+            if (
+                ":" in path
+                and "." not in text
+                and not (text.isupper() and not self._reader.enum_owners(key(text)))
+            ):
+                continue
             if drift := self.of_path(path):
                 yield drift

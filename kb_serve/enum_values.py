@@ -30,7 +30,7 @@ class EnumValues:
         """Adds the properties and parameters that take the values in a query, and classes that are quoted."""
         text = _ERROR.sub(" ", query)
         quoted = [a or b for a, b in _QUOTED.findall(text)]
-        values = list(dict.fromkeys([*quoted, *_CAPITALS.findall(text)]))
+        values = self.values(query)
         if not values:
             return
         for value in quoted:
@@ -49,18 +49,28 @@ class EnumValues:
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             found.add(owner.partition("(")[0], sure, "enum item")
 
+    @staticmethod
+    def values(query: str) -> list[str]:
+        """What may be a value: what is quoted, and words in capitals."""
+        text = _ERROR.sub(" ", query)
+        return list(dict.fromkeys([*(a or b for a, b in _QUOTED.findall(text)), *_CAPITALS.findall(text)]))
+
     def owners(self, values: Iterable[str], around: set[str] | None = None) -> Iterator[tuple[str, float]]:
         """(owner, share of the values it has), the fullest first, then the one the other words fit."""
         wanted = list(values)
         held: dict[str, set[str]] = defaultdict(set)
         for value in wanted:
             for owner, identifier, name in self._reader.enum_owners(key(value)):
-                if value in {identifier, name}:
+                if value == identifier or (value == name and not self._is_class(value)):
                     held[owner].add(value)
         for owner in sorted(
             held, key=lambda o: (-len(held[o]), -self._owner_fit(o, around or set()), len(o), o)
         ):
             yield owner, len(held[owner]) / max(1, len(wanted))
+
+    def _is_class(self, value: str) -> bool:
+        """Whether a label, ``Matrix``, is a class's own name: then it was hardly meant as an item."""
+        return any(entry.kind == "class" for entry in self._reader.by_name(value))
 
     def _owner_fit(self, owner: str, around: set[str]) -> float:
         path, _, parameter = owner.partition("(")

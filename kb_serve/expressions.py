@@ -21,6 +21,7 @@ _FEW = 3
 _SHORTEST_NAME = 4
 _NEARLY = 0.9  # how alike a class must be for a name to be its misspelling, not a variable's
 _CLEAR = 0.85  # a variable's name that hardly means another class
+_LIKELY = 0.5  # readings that fit less well than this share of the best are no readings
 _OWN_CLASS = 0.2  # from this fit on, a variable's name speaks for the class at all
 
 # Python's own names, which are nobody's API.
@@ -64,7 +65,7 @@ class Expressions:
                 self._reading(chain, readings, later, found)
             elif not self._corrected(chain, later, found):
                 if broken:
-                    self._broken_off(broken, later, found)
+                    self._broken_off(chain, broken, later, found)
                 self._loose_name(chain, prose, found)
 
     @staticmethod
@@ -90,11 +91,16 @@ class Expressions:
     def _former(self, chain: Chain, readings: list[Walked], found: Identified) -> bool:
         """Whether the chain names what another version had: on the likeliest class, or under its own path."""
         if not (readings and readings[0].complete and readings[0].fit >= 0.85):
+            if drift := self._drifts.of_variables_socket(chain):
+                found.drifts.append(drift)  # beside what else has a socket of the name
+            if whole := self._drifts.of_path(chain.dotted) if chain.steps else None:
+                found.drifts.append(whole)
+                return True
             for walked in readings:
                 if drift := self._drift(chain, walked):
                     found.drifts.append(drift)
                     return True
-            for drift in self._drifts.spelled(chain.dotted) if chain.steps or "_" in chain.root else ():
+            for drift in self._drifts.spelled(chain.dotted) if chain.is_code else ():
                 found.drifts.append(drift)
                 return True
         return False
@@ -113,7 +119,10 @@ class Expressions:
     def _reading(self, chain: Chain, readings: list[Walked], later: float, found: Identified) -> None:
         """The best reading of one chain, and what lies on the way to it."""
         bare = not chain.attributes  # a class with a call or an index behind it
-        for rank, walked in enumerate(reading for reading in readings[:4] if reading.complete):
+        likely = [
+            walked for walked in readings[:4] if walked.complete and walked.fit >= _LIKELY * readings[0].fit
+        ]
+        for rank, walked in enumerate(likely):
             sure = 0.78 if bare and chain.steps else 0.97
             found.add(walked.symbols[-1], sure - 0.04 * rank - later, "expression")
         for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
@@ -136,9 +145,10 @@ class Expressions:
         return True
 
     @staticmethod
-    def _broken_off(walked: Walked, later: float, found: Identified) -> None:
+    def _broken_off(chain: Chain, walked: Walked, later: float, found: Identified) -> None:
         """As far as a chain could be followed."""
-        found.missing.append(Missing(walked.missing, walked.owner))
+        assigned = chain.assigned and walked.steps_left == 1
+        found.missing.append(Missing(walked.missing, walked.owner, assigned))
         for step, symbol in enumerate(reversed(walked.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'
@@ -153,6 +163,7 @@ class Expressions:
             for form, identifier in self._reader.by_key(key(name))
             if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
         ]
+        rows = [entry for entry in rows if entry.name == name] or rows  # before the same letters
         if not rows and not name.isupper() and (mended := self._corrector.member(name)):
             found.corrections.append(mended)
             rows = [entry for entry in self._reader.by_name(mended.meant) if entry.group != "ui"]

@@ -1,4 +1,4 @@
-"""Streamable HTTP: who may reach the server, and who may ask."""
+"""Streamable HTTP for any MCP server: who may reach it, and who may ask."""
 
 from __future__ import annotations
 
@@ -17,18 +17,16 @@ from starlette.datastructures import Headers
 from starlette.responses import Response
 
 from kb_serve.errors import KBServeError
-from kb_serve.server import make_server
 
 if TYPE_CHECKING:
-    from starlette.types import ASGIApp, Receive, Scope, Send
+    from collections.abc import Callable
 
-    from kb_serve.service import Service
+    from starlette.types import ASGIApp, Receive, Scope, Send
 
 PATH = "/mcp"
 _LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 _ANY = {"0.0.0.0", "::"}  # noqa: S104 - compared with, not bound to
 _BACKLOG = 1024
-_LARGEST_REQUEST = 1024 * 1024
 _GRACE_SECONDS = 3
 
 
@@ -50,19 +48,25 @@ class Address:
     names: tuple[str, ...] = ()
 
 
-def run_http(service: Service, address: Address) -> None:
-    """Serves until Ctrl-C or SIGTERM. Raises CannotServe, saying what to do."""
+def run_http(
+    make_app: Callable[[str, TransportSecuritySettings], ASGIApp], address: Address, what: str
+) -> None:
+    """Serves until Ctrl-C or SIGTERM. Raises CannotServe, saying what to do.
+
+    ``make_app`` makes the application from the path where it is to answer, and the host names and origins that it
+    is to let in. ``what`` is served, in words for stderr.
+    """
     check(address)
     listener = _listen(address)
     config = uvicorn.Config(
-        make_app(service, address),
+        _guarded(make_app(PATH, _security(address)), address),
         log_level="warning",
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=_GRACE_SECONDS,
     )
     server = uvicorn.Server(config)
-    sys.stderr.write(f"Serving blender_docs at {url(address.host, listener)}\n")
+    sys.stderr.write(f"Serving {what} at {url(address.host, listener)}\n")
     sys.stderr.flush()
     # uvicorn raises the signal that ended it once more, when all is done; that must not look like a crash.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -92,15 +96,7 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
-def make_app(service: Service, address: Address) -> ASGIApp:
-    """The ASGI application. Sessions are not kept: every request can be answered by itself."""
-    app = make_server(service).streamable_http_app(
-        streamable_http_path=PATH,
-        json_response=True,
-        stateless_http=True,
-        max_request_body_size=_LARGEST_REQUEST,
-        transport_security=_security(address),
-    )
+def _guarded(app: ASGIApp, address: Address) -> ASGIApp:
     return RequireToken(app, address.token) if address.token else app
 
 

@@ -20,20 +20,28 @@ class Match:
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty."""
+    """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty.
+
+    ``assigned`` tells whether a value was to be given to it.
+    """
 
     name: str
     owner: str = ""
+    assigned: bool = False
 
 
 @dataclass(slots=True)
 class Identified:
-    """What was recognised: ``matches`` best first, and what was wrong with the names that were typed."""
+    """What was recognised: ``matches`` best first, and what was wrong with the names that were typed.
+
+    ``said`` is what else the caller should know.
+    """
 
     matches: list[Match] = field(default_factory=list)
     missing: list[Missing] = field(default_factory=list)
     corrections: list[Correction] = field(default_factory=list)
     drifts: list[Drift] = field(default_factory=list)
+    said: list[str] = field(default_factory=list)
 
     def add(self, identifier: str, sure: float, why: str) -> None:
         """Adds a match, or raises the certainty of the same one."""

@@ -10,19 +10,27 @@ import re
 
 from kb_build.analysis import terms
 from kb_serve.addresses import addressed
-from kb_serve.chains import find_chains
+from kb_serve.calls import NO_OVERRIDE, OVERRIDE, wrong_arguments
+from kb_serve.chains import Chain, find_chains
 from kb_serve.corrections import Corrector, Drifts, nearest
 from kb_serve.enum_values import EnumValues
 from kb_serve.expressions import Expressions
 from kb_serve.identified import Identified, Missing
-from kb_serve.messages import Messages, without_boilerplate
+from kb_serve.message_forms import without_callers_names, without_wording
+from kb_serve.messages import Messages
 from kb_serve.reader import TYPES, Reader
 from kb_serve.spellings import Spellings
 from kb_serve.walk import Walker
 
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n]*/[^'"\n]*\1""")
 _FEW = 3
+_SURE = 0.9
 _MANY = 12
+_OWNER_ALONE = 0.81  # how sure it is that who asks for a member that nobody knows is helped by its class
+
+
+def _name(chain: Chain) -> str:
+    return chain.attributes[-1] if chain.attributes else chain.root
 
 
 class Identifier:
@@ -46,11 +54,37 @@ class Identifier:
         self._spellings.recognise(query, found)
         if found.best is None or found.best.sure < 1:
             self._messages.recognise(query, found)
-            self._expressions.recognise(find_chains(_FILE_PATH.sub(" ", without_boilerplate(query))), found)
-            self._enum_values.recognise(query, found)
+            text = without_callers_names(without_wording(query))
+            self._expressions.recognise(find_chains(_FILE_PATH.sub(" ", text)), found)
+            self._enum_values.recognise(text, found)
+            self._former_values(text, found)
+            self._messages.explain(query, found)
             self._explain_missing(found)
+        self._check_calls(query, found)
         found.matches.sort(key=lambda match: -match.sure)
         return found
+
+    def _check_calls(self, query: str, found: Identified) -> None:
+        """What is wrong with the arguments of the calls that were recognised."""
+        chains = [chain for chain in find_chains(query) if chain.steps and chain.steps[-1].kind == "call"]
+        for chain in chains:
+            paths = [
+                match.id
+                for match in found.matches
+                if match.sure >= _SURE and match.id.endswith(f".{_name(chain)}")
+            ]
+            if paths and (symbol := self._reader.symbol(paths[0])):
+                said = list(wrong_arguments(chain, symbol))
+                found.said += said
+                if NO_OVERRIDE in said and found.matches:
+                    found.add(OVERRIDE, 0.85, "error message")
+
+    def _former_values(self, text: str, found: Identified) -> None:
+        """Values that a property named in the query had in other versions, and has no more."""
+        for value in self._enum_values.values(text):
+            for match in [match for match in found.matches if match.sure >= _SURE]:
+                if drift := self._drifts.of_path(f"{match.id}:{value}"):
+                    found.drifts.append(drift)
 
     def _explain_missing(self, found: Identified) -> None:
         """What stands in for names that do not exist: replacements of former ones, similar members."""
@@ -64,22 +98,30 @@ class Identifier:
         for missing in found.missing:
             names = self._corrector.member_names(missing.owner) if missing.owner else []
             similar = nearest(missing.name, names)
-            for name, alike in similar:
+            if missing.assigned:  # of ``select_get`` and ``select_set``, who assigns means the latter
+                similar.sort(
+                    key=lambda row: (-row[1], not row[0].startswith("set_") and not row[0].endswith("_set"))
+                )
+            for place, (name, alike) in enumerate(similar):
                 if member := self._walker.member(missing.owner, name):
-                    found.add(member.path, 0.95 * alike, "similar name")
-            if missing.owner and not similar:
-                self._elsewhere(missing, found)
+                    found.add(member.path, 0.95 * alike - 0.01 * place, "similar name")
+            if missing.owner and not similar and not self._elsewhere(missing, found):
+                found.add(missing.owner, _OWNER_ALONE, "owner")
 
-    def _elsewhere(self, missing: Missing, found: Identified) -> None:
-        """The same name on other classes, those called most alike first: ``CollectionObjects.link``."""
+    def _elsewhere(self, missing: Missing, found: Identified) -> bool:
+        """The same name on other classes (``CollectionObjects.link``), those called most alike first.
+
+        Returns whether there is one.
+        """
         rows = [
             entry
             for entry in self._reader.by_name(missing.name)
             if entry.group != "ui" and "." in entry.owner
         ]
         if not 0 < len(rows) <= _MANY:
-            return
+            return False
         about = set(terms(missing.owner.removeprefix(TYPES)))
         rows.sort(key=lambda entry: -len(about & set(terms(entry.owner.removeprefix(TYPES)))))
         for rank, entry in enumerate(rows[:_FEW]):
             found.add(entry.path, 0.82 - 0.03 * rank, "same name")
+        return True

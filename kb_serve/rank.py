@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_serve.identifiers import Identifier
+from kb_serve.message_forms import is_message, prose_of
 from kb_serve.search import Found, Searcher
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 SURE = 0.8  # from here on, what was named comes before what was found
 _FOUND = 40
+_CLOSE = 0.6  # share of the closest one's score down to which others are said to be close too
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +59,8 @@ class Ranker:
         best = identified.best
         if best is not None and best.sure >= 1.0:
             ranked = [Ranked(match.id, match.sure, match.why) for match in identified.matches]
-            return Ranking(ranked, identified, named=True)
-        found = self.searcher.search(query, _FOUND)
+            return Ranking(ranked, identified, named=True, notes=self._notes(identified))
+        found = self.searcher.search(prose_of(query), _FOUND, failed=is_message(query))
         ranked = self._merged(identified, found)
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         return Ranking(ranked, identified, named, self._notes(identified))
@@ -71,14 +73,17 @@ class Ranker:
             if correction.similarity < 1:
                 notes.append(f"`{correction.written}` does not exist; read as `{correction.meant}`.")
         for drift in identified.drifts:
-            instead = ", ".join(f"`{target}`" for target, _ in drift.instead[:3])
+            close = _CLOSE * max((score for _, score in drift.instead), default=0.0)
+            instead = ", ".join(f"`{target}`" for target, score in drift.instead[:3] if score >= close)
             closest = f" Closest in {version}: {instead}." if instead else ""
             notes.append(f"`{drift.path}` does not exist in Blender {version}; {_span_text(drift)}.{closest}")
         former = {drift.path.rpartition(".")[2] for drift in identified.drifts}
+        similar = [f"`{match.id}`" for match in identified.matches if match.why == "similar name"][:3]
+        closest = f" Closest: {', '.join(similar)}." if similar else ""
         for missing in identified.missing:
             if missing.owner and missing.name not in former:
-                notes.append(f"`{missing.owner}` has no `{missing.name}`.")
-        return list(dict.fromkeys(notes))
+                notes.append(f"`{missing.owner}` has no `{missing.name}`.{closest}")
+        return list(dict.fromkeys((*notes, *identified.said)))
 
     @staticmethod
     def _merged(identified: Identified, found: list[Found]) -> list[Ranked]:

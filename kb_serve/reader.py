@@ -173,6 +173,12 @@ class Reader:
         """Every symbol whose last part is exactly ``name``."""
         return [Entry(*row) for row in self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ?", name)]
 
+    def pointing_at(self, cls: str) -> list[Entry]:
+        """The pointer properties whose value is a class, given by its name."""
+        sql = f"""SELECT {_ENTRY} FROM symbols
+            WHERE target = ? AND target != '' AND kind = 'property' AND type = 'pointer' ORDER BY path"""
+        return [Entry(*row) for row in self.rows(sql, cls)]
+
     def by_key(self, key: str) -> list[tuple[int, str]]:
         """(form, id) of everything spelled like ``key`` (see analysis.key), preferred forms first."""
         return self.rows("SELECT form, id FROM names WHERE key = ? ORDER BY form, id", key)

@@ -8,7 +8,8 @@ BM25F over two levels (a unit and the topic around it), with five additions, eac
 - *Chapters*: what the best documents mostly come from is probably what the query is about (pseudo-relevance
   feedback); the rest of that chapter gains by it.
 - *Code*: a query that speaks of functions or scripts is rather about functions, modules and guides.
-- *Variety*: one class or page gives one hit before the others had theirs, and so do the members of one name.
+- *Variety*: one class or page gives one hit before the others had theirs, and so do the members of one name, and a
+  class with the page that explains it.
 """
 
 from __future__ import annotations
@@ -32,25 +33,28 @@ if TYPE_CHECKING:
 
 Scores = NDArray[np.float32]
 
-K1 = 1.2
-NEAR_WEIGHT = 1.0  # a near word counts by its similarity, times this
+K1 = 2.2
+NEAR_WEIGHT = 0.7  # a near word counts by its similarity, times this
 RARE = 3.0  # idf from which on a word's near words are looked at: a common one is Blender's own already
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
-CHAPTER_WEIGHT = 0.3
+CHAPTER_WEIGHT = 0.2
 # Who says one of these asks what to call, not where to click.
 CODE_WORDS = frozenset(
     """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
     variable""".split()  # noqa: SIM905
 )
 CODE_WEIGHT = 0.6
+FAILED_WEIGHT = 0.3  # the same for an error's message, which a setting may be to blame for too
 UNKNOWN_IDF = 6.0
 _MAX_WORDS = 40
 _KEPT_POSTINGS = 1_500
 _CANDIDATES = 400
 _READ_AHEAD = 80
 _MEMBERS = frozenset({"property", "function", "socket"})
+_EXPLAINED_WHOLE = frozenset({"class", "operator"})  # by the page that Blender's table links them to
+_DIFFERENT = 5
 _FEEDBACK = 100
 _FEEDBACK_POWER = 3  # the weaker half of the feedback documents hardly votes
 
@@ -212,8 +216,8 @@ class Searcher:
         covered /= total
         return np.asarray(scores * covered**COVERAGE, np.float32), covered
 
-    def search(self, text: str, limit: int = 50) -> list[Found]:
-        """The best documents for a text, best first, each id once."""
+    def search(self, text: str, limit: int = 50, *, failed: bool = False) -> list[Found]:
+        """The best documents for a text, best first, each id once. ``failed`` where it is an error's message."""
         concepts = list(self.concepts(text))
         if not self._levels[0].count or not any(concept.stems for concept in concepts):
             return []
@@ -224,6 +228,8 @@ class Searcher:
         scores = np.where(own > 0, own + TOPIC_WEIGHT * around, 0) * units.weights
         if not CODE_WORDS.isdisjoint(words(text)):
             scores = np.where(units.code, (1 + CODE_WEIGHT) * scores, scores)
+        elif failed:
+            scores = np.where(units.code, (1 + FAILED_WEIGHT) * scores, scores)
         scores *= 1 + CHAPTER_WEIGHT * self._chapter_votes(scores)
         order = _top(scores, _CANDIDATES)
         return self._varied(order, scores, covered, limit)
@@ -237,34 +243,42 @@ class Searcher:
         return (votes / max(float(votes.max()), 1e-9))[chapters]
 
     def _varied(self, order: NDArray[np.intp], scores: Scores, covered: Scores, limit: int) -> list[Found]:
-        """The order with every topic's first document before any topic's second; likewise for members of one name."""
+        """The order with every topic's first document before any topic's second; likewise for members of one name.
+
+        A class or operator and the page that explains it say the same: the second of them waits until the first
+        few different things have been named.
+        """
         units, _ = self._levels
         first: list[Found] = []
+        same: list[Found] = []
         later: list[Found] = []
-        refs: set[str] = set()
-        topics: set[int] = set()
-        names: set[str] = set()
-        for number, ref, kind, title, anchor in self._documents(order[scores[order] > 0].tolist()):
-            if ref in refs:
+        seen: set[str | int] = set()
+        for number, ref, kind, title, anchor, page in self._documents(order[scores[order] > 0].tolist()):
+            if ref in seen:
                 continue
-            refs.add(ref)
             topic = int(units.topics[number])
             found = Found(ref, kind, title, anchor, float(scores[number]), float(covered[number]))
-            name = ref.rpartition(".")[2] if kind in _MEMBERS else ref
-            (later if topic in topics or name in names else first).append(found)
-            names.add(name)
-            if topic >= 0:
-                topics.add(topic)
+            name = f".{ref.rpartition('.')[2]}" if kind in _MEMBERS else ref
+            explained = page.partition("#")[0] if kind in _EXPLAINED_WHOLE else ref
+            if topic in seen or name in seen:
+                later.append(found)
+            elif f"/{explained}" in seen:
+                same.append(found)
+            else:
+                first.append(found)
+            seen.update((ref, name, f"/{explained}", *((topic,) if topic >= 0 else ())))
             if len(first) == limit:
                 break
-        return (first + later)[:limit]
+        return (first[:_DIFFERENT] + same + first[_DIFFERENT:] + later)[:limit]
 
-    def _documents(self, numbers: Sequence[int]) -> Iterator[tuple[int, str, str, str, str]]:
-        """(number, ref, kind, title, anchor) of units, in the order given, read as far as they are wanted."""
+    def _documents(self, numbers: Sequence[int]) -> Iterator[tuple[int, str, str, str, str, str]]:
+        """(number, ref, kind, title, anchor, manual page) of units, in the order given, read as far as wanted."""
         for start in range(0, len(numbers), _READ_AHEAD):
             wanted = numbers[start : start + _READ_AHEAD]
             marks = ",".join("?" * len(wanted))
-            sql = f"SELECT number, ref, kind, title, anchor FROM docs WHERE level = 0 AND number IN ({marks})"  # noqa: S608
+            sql = f"""SELECT number, ref, kind, title, anchor,
+                ifnull((SELECT target FROM links WHERE source = ref AND links.kind = 'manual'), '')
+                FROM docs WHERE level = 0 AND number IN ({marks})"""  # noqa: S608
             rows = {row[0]: row for row in self._reader.rows(sql, *wanted)}
             if len(rows) < len(wanted):
                 raise self._reader.damaged("documents of its index are gone")

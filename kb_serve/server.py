@@ -1,23 +1,18 @@
-"""The MCP server: the tool ``blender_docs``, resources for symbols and pages, and stdio to carry them."""
+"""The MCP server: the tool ``blender_docs``, and resources for symbols and pages."""
 
 from __future__ import annotations
 
 import json
 import logging
-import os
-import signal
-import sys
 from contextlib import asynccontextmanager
 from dataclasses import asdict
 from importlib import metadata
-from io import TextIOWrapper
 from typing import TYPE_CHECKING, Any
 
 import anyio
 import anyio.to_thread
 import mcp_types as types
 from mcp.server.lowlevel import Server
-from mcp.server.stdio import stdio_server
 from mcp.shared.exceptions import MCPError
 from mcp.shared.uri_template import UriTemplate
 
@@ -29,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import AsyncGenerator
 
     from mcp.server.context import ServerRequestContext
+    from mcp.server.transport_security import TransportSecuritySettings
+    from starlette.types import ASGIApp
 
     from kb_serve.service import Service
 
@@ -47,6 +44,7 @@ INSTRUCTIONS = (
 
 _LOG = logging.getLogger(__name__)
 _JSON, _MARKDOWN = "application/json", "text/markdown"
+_LARGEST_REQUEST = 1024 * 1024
 
 
 def make_server(service: Service) -> Server[None]:
@@ -120,6 +118,17 @@ def make_server(service: Service) -> Server[None]:
     )
 
 
+def make_app(service: Service, path: str, security: TransportSecuritySettings) -> ASGIApp:
+    """The server as an ASGI application. Sessions are not kept: every request can be answered by itself."""
+    return make_server(service).streamable_http_app(
+        streamable_http_path=path,
+        json_response=True,
+        stateless_http=True,
+        max_request_body_size=_LARGEST_REQUEST,
+        transport_security=security,
+    )
+
+
 def _own_version() -> str:
     try:
         return metadata.version("simworlds")
@@ -187,33 +196,3 @@ def _resource(service: Service, uri: str) -> tuple[str, str]:
         "blender://5.1/symbol/bpy.types.ClothSettings.quality, blender://5.1/page/physics/cloth/introduction",
         {"uri": uri[:500]},
     )
-
-
-# stdio
-
-
-def run_stdio(service: Service) -> None:
-    """Serves one client on stdin and stdout until it closes them; whatever else is printed goes to stderr."""
-    # Kept from here on, not only while serving: importing and shutting down may print too.
-    wire = os.fdopen(os.dup(1), "wb", closefd=False)
-    os.dup2(2, 1)
-    _end_on_signals(service)
-    anyio.run(_serve_stdio, service, TextIOWrapper(wire, encoding="utf-8"))
-
-
-async def _serve_stdio(service: Service, out: TextIOWrapper) -> None:
-    server = make_server(service)
-    async with stdio_server(stdout=anyio.wrap_file(out)) as (read, write):
-        await server.run(read, write, server.create_initialization_options())
-
-
-def _end_on_signals(service: Service) -> None:
-    """Ends at once, and a build with it: the thread that waits for a line on stdin cannot be interrupted."""
-
-    def end(_number: int, _frame: object) -> None:
-        service.upkeep.stop()
-        sys.stderr.flush()
-        os._exit(0)
-
-    signal.signal(signal.SIGINT, end)
-    signal.signal(signal.SIGTERM, end)

@@ -33,6 +33,7 @@ _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _CUSTOMISABLE = frozenset({"ID", "Bone", "EditBone", "PoseBone", "PropertyGroup", "Strip", "ViewLayer"})
 _COLLECTION_FIT = 0.7  # a variable called like a collection property and indexed is likely that collection
+_USUAL = 0.05
 _MAX_BRANCHES = 60
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
@@ -129,16 +130,30 @@ class Walker:
             if cls not in seen:
                 seen.add(cls)
                 yield Place(cls, cls), 0, fit
-        if chain.steps and chain.steps[0].kind in {"key", "index"}:
+        if chain.steps:
             for entry in self._reader.by_name(chain.root)[:_MAX_BRANCHES]:
-                if entry.kind == "property" and entry.type == "collection":
-                    yield self._place(entry), 0, _COLLECTION_FIT
+                if (
+                    entry.kind == "property"
+                    and (place := self._place(entry)).many
+                    and self._has(place, chain)
+                ):
+                    usual = self._reader.descends(
+                        entry.owner, f"{TYPES}ID"
+                    )  # an Object's modifiers, not an FCurve's
+                    yield place, 0, _COLLECTION_FIT + (_USUAL if usual else 0.0)
         if chain.steps and first:
             for entry in self._reader.by_name(first)[:_MAX_BRANCHES]:
                 owner = self._reader.entry(entry.owner)
                 if owner and owner.kind == "class" and entry.owner not in seen:
                     seen.add(entry.owner)
                     yield Place(owner.path, owner.path), 0, 0.3 * variable_fit(chain.root, owner.name)
+
+    def _has(self, place: Place, chain: Chain) -> bool:
+        """Whether a collection can be what a variable of its name is: indexed, or asked for what only it has."""
+        step = chain.steps[0]
+        return step.kind in {"key", "index"} or (
+            step.kind == "attr" and self.member(place.container, step.text) is not None
+        )
 
     def _rooted(self, chain: Chain) -> tuple[Place, int, float] | None:
         """The longest leading part that is a path of its own: a module, a class, ``bpy.context``."""

@@ -104,6 +104,11 @@ def parameter(prop):
     return result
 
 
+def addon_preferences():
+    """The preferences of add-ons by class name: they are in no ``bpy.types``, and pointers know only their base."""
+    return {cls.__name__: cls for cls in bpy.types.AddonPreferences.__subclasses__() if cls.is_registered}
+
+
 def all_structs():
     """Every RNA class by identifier: those of ``bpy.types``, and those that hang only on pointers."""
     structs = {}
@@ -112,6 +117,7 @@ def all_structs():
         rna = getattr(getattr(bpy.types, name), "bl_rna", None)
         if rna is not None:
             queue.append(rna)
+    queue.extend(cls.bl_rna for cls in addon_preferences().values())
     while queue:
         rna = queue.pop()
         if rna.identifier in structs:
@@ -177,6 +183,7 @@ def write_function(write, owner, function, flags):
 def write_struct(write, identifier, rna):
     """One class, its own properties and its own functions."""
     path = f"bpy.types.{identifier}"
+    addon = addon_preferences().get(identifier)
     write(
         "symbol",
         path=path,
@@ -186,6 +193,7 @@ def write_struct(write, identifier, rna):
         description=rna.description,
         base=f"bpy.types.{rna.base.identifier}" if rna.base is not None else "bpy.types.bpy_struct",
         group=group_of(rna),
+        reached=f'bpy.context.preferences.addons["{addon.bl_idname}"].preferences' if addon else "",
     )
     for prop in own(rna, "properties"):
         write("symbol", path=f"{path}.{prop.identifier}", kind="property", owner=path, **describe(prop))
@@ -244,7 +252,7 @@ def subclass_lookups():
 def write_added(write, structs, write_member):
     """Methods and attributes that RNA does not list, for the classes that the reference has."""
     for identifier, rna in structs.items():
-        cls = getattr(bpy.types, identifier, None)
+        cls = getattr(bpy.types, identifier, None) or addon_preferences().get(identifier)
         group = group_of(rna)
         if cls is None or group == "operator" or (group == "ui" and not is_described(identifier)):
             continue

@@ -28,7 +28,7 @@ from anthropic.types.messages import MessageBatch
 from pydantic import BaseModel, ValidationError
 
 from kb_build.errors import SummaryError
-from kb_build.summaries.prompt import Answer  # noqa: TC001 - pydantic reads it
+from kb_build.summaries.prompt import Answer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence

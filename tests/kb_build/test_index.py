@@ -39,7 +39,7 @@ LINK = Link(QUALITY.path, "physics/cloth/index#bpy-types-cloth-quality", "manual
 
 
 def units(*symbols: Symbol, pages: tuple[Page, ...] = (), links: tuple[Link, ...] = ()) -> list[Doc]:
-    return make_units(symbols, pages, links, {})
+    return make_units(symbols, pages, links, {}, {})
 
 
 def test_a_symbol_is_a_unit_with_what_is_said_of_it_anywhere() -> None:

@@ -64,6 +64,9 @@ def finder(symbols: Sequence[Symbol], history: History) -> Replacements:
             "bpy.types.ShaderNodeTexSky.sky_type:MULTIPLE_SCATTERING",
         ),
         ("bpy.types.LineartGpencilModifier", "bpy.types.GreasePencilLineartModifier"),
+        ("bpy.types.NodeTreeInputs", "bpy.types.NodeTreeInterface"),
+        ("bpy.types.NodeTreeInputs.new", "bpy.types.NodeTreeInterface.new_socket"),
+        ("bpy.types.MeshEdge.crease", "bpy.types.Mesh.edge_creases"),
     ],
 )
 def test_the_closest_symbol_is_offered_for_what_was_removed(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import KBBuildError, SourceError
-from kb_build.sources import Missing, Source, find_sources
+from kb_build.sources import Missing, Origin, Source, find_sources
 from kb_build.versions import releases, source_names
 
 if TYPE_CHECKING:
@@ -210,6 +210,16 @@ def test_a_damaged_archive_in_the_corpora_folder_is_named_and_the_next_one_used(
     assert "is damaged" in reason(look("5.1", tmp_path, corpora=folder)["manual"])
     tar(folder / "manual-5.1-html.tar.xz", "blender_manual_v510_en.html", html_manual("5.1"))
     assert source(look("5.1", tmp_path, corpora=folder)["manual"]).form == "html"
+
+
+def test_what_the_last_build_used_is_used_again_where_nothing_is_named(tmp_path: Path, folder: Path) -> None:
+    archive = tar(folder / "somewhere.tar.xz", "manual", RST_MANUAL)
+    before = {"manual": Origin(archive, given=True), "guides": Origin(folder / "gone.zip", given=False)}
+    found, missing = find_sources("5.1", cache=tmp_path / "cache", before=before, allow_download=False)
+    assert [(source.role, source.origin, source.given) for source in found] == [
+        ("manual", str(archive), True)
+    ]
+    assert [one.role for one in missing] == ["guides"]
 
 
 def test_a_corpora_folder_that_is_not_there_is_named(tmp_path: Path) -> None:

@@ -38,7 +38,7 @@ def test_a_description_finds_its_own_symbol(reader: Reader, searcher: Searcher) 
         }
         found += bool({path, *twins} & {row.ref for row in searcher.search(symbol.description, 5)})
     assert asked > 50
-    assert found >= 0.9 * asked
+    assert found >= 0.85 * asked
 
 
 @pytest.mark.parametrize(

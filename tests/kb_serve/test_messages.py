@@ -1,0 +1,165 @@
+"""Error messages, in the forms in which Blender 5.1 raises them: what they lead to, and what is said of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.message_forms import prose_of
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+SPHERE = "bpy.ops.mesh.primitive_uv_sphere_add"
+FIRST = {
+    f'TypeError: Converting py args to operator properties:: keyword "segs" unrecognized, {SPHERE}(segs=12)': SPHERE,
+    "TypeError: Converting py args to operator properties: MESH_OT_primitive_uv_sphere_add.segments expected an int "
+    "type, not str": SPHERE,
+    "RuntimeError: Operator bpy.ops.uv.unwrap.poll() failed, context is incorrect": "bpy.ops.uv.unwrap",
+    "RuntimeError: Operator bpy.ops.object.mode_set.poll() Context missing active object": "bpy.ops.object.mode_set",
+    'TypeError: ObjectModifiers.new(): error with argument 2, "type" -  enum "SMOKE" not found in (\'DATA_TRANSFER\', '
+    "'MESH_CACHE', 'UV_PROJECT')": "bpy.types.ObjectModifiers.new",
+    'TypeError: NodeLinks.new(): error with argument 1, "input" -  Function.input expected a NodeSocket type, not '
+    "ShaderNodeBsdfPrincipled": "bpy.types.NodeLinks.new",
+    "TypeError: bpy_struct: item.attr = val: Object.data expected a Mesh type, not Object": "bpy.types.Object.data",
+    'AttributeError: bpy_struct: attribute "type" from "Object" is read-only': "bpy.types.Object.type",
+    "AttributeError: 'Context' object has no attribute 'active_objct'": "bpy.types.Context.active_object",
+    "AttributeError: 'NoneType' object has no attribute 'key_blocks'": "bpy.types.Curve.shape_keys",
+    "TypeError: bpy_struct: item.attr = val: enum \"CYCLE\" not found in ('BLENDER_EEVEE', 'BLENDER_WORKBENCH', "
+    "'CYCLES')": "bpy.types.RenderSettings.engine",
+    "ValueError: edges.new(): this edge exists": "bmesh.types.BMEdgeSeq.new",
+    'AttributeError: BMeshOpsModule: operator "extrude" doesn\'t exist': "bmesh.ops.extrude_edge_only",
+    "RuntimeError: Error: Node type ShaderNodeTexImageX undefined": None,
+    "ValueError: 1-2 args execution context is supported": "bpy.types.Context.temp_override",
+    "ReferenceError: BMesh data of type BMesh has been removed": "bmesh.types.BMesh.free",
+    "ReferenceError: StructRNA of type Object has been removed": "bpy.types.BlendDataObjects.remove",
+}
+
+
+@pytest.mark.parametrize("message", FIRST)
+def test_a_message_leads_to_the_api_at_hand(kb: KnowledgeBase, message: str) -> None:
+    hits = [hit.id for hit in kb.query(message).hits]
+    named = [hit for hit in hits if not hit.startswith("info_")]
+    assert FIRST[message] is None or named[0] == FIRST[message]
+
+
+def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
+    line = "AttributeError: 'Mesh' object has no attribute 'calc_loop_triangle'"
+    pasted = (
+        f'Traceback (most recent call last):\n  File "/tmp/bpy.types.Scene.py", line 3, in <module>\n{line}'
+    )
+    assert kb.query(pasted).hits[0].id == kb.query(line).hits[0].id == "bpy.types.Mesh.calc_loop_triangles"
+    (note,) = kb.query(pasted).notes
+    assert note.startswith(
+        "`bpy.types.Mesh` has no `calc_loop_triangle`. Closest: `bpy.types.Mesh.calc_loop_t"
+    )
+
+
+@pytest.mark.parametrize(
+    ("message", "said"),
+    [
+        (
+            f'keyword "segs" unrecognized {SPHERE}(segs=12)',
+            f"`{SPHERE}` takes no `segs`; closest: `segments`.",
+        ),
+        ("RuntimeError: Operator bpy.ops.uv.unwrap.poll() failed, context is incorrect", "temp_override"),
+        ("AttributeError: 'NoneType' object has no attribute 'mass'", "`.mass` is None"),
+        ("ReferenceError: StructRNA of type Object has been removed", "outlived its data"),
+        ('AttributeError: bpy_struct: attribute "type" from "Object" is read-only', "not assigned"),
+        ("KeyError: 'bpy_prop_collection[key]: key \"Cub\" not found'", "no element `Cub`"),
+    ],
+)
+def test_it_is_said_what_a_message_means_there(kb: KnowledgeBase, message: str, said: str) -> None:
+    assert said in "\n".join(kb.query(message).notes)
+
+
+@pytest.mark.parametrize(
+    ("message", "former"),
+    [
+        ("KeyError: 'bpy_prop_collection[key]: key \"Specular\" not found'", 'inputs["Specular"]'),
+        ("RuntimeError: Error: Node type ShaderNodeTexMusgrave undefined", "ShaderNodeTexMusgrave"),
+        (
+            "item.attr = val: enum \"BLENDER_EEVEE_NEXT\" not found in ('BLENDER_EEVEE', 'CYCLES')",
+            "EEVEE_NEXT",
+        ),
+        ('Calling operator "bpy.ops.export_mesh.stl" error, could not be found', "bpy.ops.export_mesh.stl"),
+    ],
+)
+def test_what_another_version_had_is_told_from_a_message(
+    kb: KnowledgeBase, message: str, former: str
+) -> None:
+    note = next(note for note in kb.query(message).notes if "does not exist" in note)
+    assert former in note
+    assert "Closest" in note
+
+
+def test_names_of_the_callers_data_are_not_searched_for() -> None:
+    assert prose_of("RuntimeError: Error: Object 'Cloth' already in collection 'Smoke'").split() == [
+        "Object", "already", "in", "collection",
+    ]  # fmt: skip
+    assert prose_of("stop 'cloth' from tearing") == "stop 'cloth' from tearing"
+
+
+@pytest.mark.parametrize(
+    "call", ["{'object': o}", "override", "dict(area=a), action='SELECT'", "context.copy()"]
+)
+def test_a_context_given_to_an_operator_is_told_its_place(kb: KnowledgeBase, call: str) -> None:
+    answer = kb.query(f"bpy.ops.object.select_all({call})")
+    assert answer.hits[0].id == "bpy.ops.object.select_all"
+    assert "bpy.types.Context.temp_override" in [hit.id for hit in answer.hits]
+    assert any("temp_override" in note for note in answer.notes)
+
+
+@pytest.mark.parametrize(
+    "call", ["'INVOKE_DEFAULT'", "action='SELECT'", "", "'EXEC_DEFAULT', True, action='SELECT'"]
+)
+def test_a_right_call_is_left_alone(kb: KnowledgeBase, call: str) -> None:
+    assert kb.query(f"bpy.ops.object.select_all({call})").notes == ()
+
+
+def test_an_argument_that_an_operator_does_not_take_is_told(kb: KnowledgeBase) -> None:
+    (note,) = kb.query("bpy.ops.mesh.primitive_cube_add(radius=1, location=(0, f(a=1), 0))").notes
+    assert note == "`bpy.ops.mesh.primitive_cube_add` takes no `radius`."
+
+
+@pytest.mark.parametrize(
+    ("written", "first"),
+    [
+        ("obj.select = True", "select_set"),
+        ("obj.select == True", "select_get"),
+        ("print(obj.select)", "select_get"),
+    ],
+)
+def test_who_assigns_to_a_missing_name_is_shown_the_setter(
+    kb: KnowledgeBase, written: str, first: str
+) -> None:
+    assert kb.query(written).hits[0].id == f"bpy.types.Object.{first}"
+
+
+@pytest.mark.parametrize(
+    ("written", "first"),
+    [
+        ("modifiers.new('Cloth', 'CLOTH')", "bpy.types.ObjectModifiers.new"),
+        ("faces.new(corners)", "bmesh.types.BMFaceSeq.new"),
+        ("links.new(a, b)", "bpy.types.NodeLinks.new"),
+    ],
+)
+def test_a_variable_called_like_a_collection_is_that_collection(
+    kb: KnowledgeBase, written: str, first: str
+) -> None:
+    assert kb.query(written).hits[0].id == first
+
+
+def test_a_value_that_a_property_had_is_told(kb: KnowledgeBase) -> None:
+    answer = kb.query("sky.sky_type = 'NISHITA'")
+    assert answer.hits[0].id == "bpy.types.ShaderNodeTexSky.sky_type"
+    assert any("NISHITA" in note and "MULTIPLE_SCATTERING" in note for note in answer.notes)
+
+
+def test_preferences_of_an_add_on_are_reached_through_it(kb: KnowledgeBase) -> None:
+    reached = 'bpy.context.preferences.addons["cycles"].preferences'
+    answer = kb.query(f"{reached}.compute_device_type = 'CUDA'")
+    assert answer.hits[0].id == "bpy.types.CyclesPreferences.compute_device_type"
+    assert f"`{reached}.compute_device_type`" in answer.text
+    assert kb.query(f"{reached}.get_devices()").hits[0].id == "bpy.types.CyclesPreferences.get_devices"
