@@ -15,9 +15,26 @@ class _Command(NamedTuple):
 
 
 _COMMANDS = {
+    "bench": _Command("bench.cli", "bench", "Score scenes of any system: 4DBuildBench."),
+    "demo": _Command(
+        "agents.pipeline.cli", "demo", "Play a session without a key: real Blender, written answers."
+    ),
     "docs": _Command("kb_serve.cli", "docs", "Ask the knowledge base."),
+    "doctor": _Command("agents.blender.doctor", "doctor", "Find out whether a live Blender can work here."),
+    "edit": _Command("agents.pipeline.cli", "edit", "Change a scene as told, and leave the rest alone."),
     "kb": _Command("kb_build.cli", "kb", "Build, look into, check and compare knowledge bases."),
+    "make": _Command("agents.pipeline.cli", "make", "Make a scene from a sentence."),
+    "mcp": _Command("agents.blender.cli", "mcp", "Serve a live Blender and blender_docs over MCP."),
+    "replay": _Command(
+        "agents.pipeline.cli", "replay", "Play a run's recorded answers, as a run of its own."
+    ),
+    "resume": _Command("agents.pipeline.cli", "resume", "Go on with a run."),
+    "runs": _Command("agents.pipeline.cli", "runs", "List the runs."),
     "serve": _Command("kb_serve.cli", "serve", "Serve blender_docs over MCP."),
+    "show": _Command("agents.pipeline.cli", "show", "Show how a run stands."),
+    "verify": _Command(
+        "agents.blender.verify_cli", "verify", "Check a .blend by the scene protocol and a plan."
+    ),
 }
 
 
@@ -49,4 +66,4 @@ class _Lazy(click.Group):
 @click.group(cls=_Lazy, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="simworlds", prog_name="simworlds")
 def main() -> None:
-    """A knowledge base of Blender's Python API and manual: build it, ask it, serve it to coding agents."""
+    """From a sentence to a simulated scene, and what that needs: a knowledge base, a live Blender, a verifier."""

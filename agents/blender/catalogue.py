@@ -1,0 +1,37 @@
+"""Every tool of the suite, in the order in which clients list them (paper, Table "Tool suite")."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from agents.blender.tools import (
+    bake,
+    execute,
+    files,
+    group,
+    motion_sheet,
+    previews,
+    render,
+    scene_state,
+    tag,
+    verify,
+)
+
+if TYPE_CHECKING:
+    from agents.blender.tools.base import Tool
+
+TOOLS: tuple[Tool, ...] = (
+    scene_state.TOOL,
+    *previews.TOOLS,
+    motion_sheet.TOOL,
+    execute.TOOL,
+    tag.TOOL,
+    group.TOOL,
+    verify.TOOL,
+    files.SAVE,
+    files.LOAD,
+    bake.TOOL,
+    render.TOOL,
+)
+BY_NAME = {tool.name: tool for tool in TOOLS}
+assert len(BY_NAME) == len(TOOLS), "a tool is listed twice"

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evaluated geometry as Blender has it: the meshes of objects, and of the instances that they make. Changes nothing."""
+
+import contextlib
+import itertools
+
+import numpy
+
+AS_MESH = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+MOST_INSTANCES = 50_000
+_FARTHEST = 1e9  # what overflows becomes the largest number that there is
+
+
+class TooManyInstances(Exception):  # noqa: N818 - reads as the state it names
+    """The scene has more instances than are looked at."""
+
+
+class Shape:
+    """A mesh in its own space: ``points`` (n × 3) and ``triangles`` (m × 3, numbers of points)."""
+
+    def __init__(self, mesh):
+        self.points = coordinates(mesh)
+        mesh.calc_loop_triangles()
+        found = numpy.empty(3 * len(mesh.loop_triangles), numpy.int32)
+        mesh.loop_triangles.foreach_get("vertices", found)
+        self.triangles = found.reshape(-1, 3)
+        self.polygons = len(mesh.polygons)
+
+    @property
+    def corners(self):
+        """Those of the box around it (8 × 3)."""
+        return numpy.array(
+            list(itertools.product(*zip(self.points.min(axis=0), self.points.max(axis=0), strict=True)))
+        )
+
+    def placed(self, matrix):
+        """(points, triangles) where ``matrix`` puts them. A mirror turns no triangle inside out."""
+        points = transformed(self.points, matrix)
+        mirrored = numpy.linalg.det(numpy.array(matrix, dtype=float)[:3, :3]) < 0
+        return points, self.triangles[:, ::-1] if mirrored else self.triangles
+
+
+def coordinates(mesh):
+    """The places of a mesh's vertices (n × 3)."""
+    found = numpy.empty(3 * len(mesh.vertices), numpy.float32)
+    mesh.vertices.foreach_get("co", found)
+    return found.reshape(-1, 3).astype(float)
+
+
+def are_numbers(points):
+    """Whether places are numbers that can be reckoned with."""
+    return bool((numpy.abs(points) < _FARTHEST).all())
+
+
+def transformed(points, matrix):
+    """Points (n × 3) that a 4 × 4 matrix has moved."""
+    turn = numpy.array(matrix, dtype=float)
+    with numpy.errstate(all="ignore"):
+        return points @ turn[:3, :3].T + turn[:3, 3]
+
+
+@contextlib.contextmanager
+def mesh_of(evaluated):
+    """The mesh that an evaluated object looks like, also while it is being edited; None for one without vertices."""
+    if evaluated.type not in AS_MESH:
+        yield None
+        return
+    try:
+        mesh = evaluated.to_mesh()
+    except RuntimeError:
+        mesh = None
+    try:
+        yield mesh if mesh is not None and len(mesh.vertices) else None
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def instances_of(graph):
+    """{full name of what makes them: [(shape, matrix), …]} of all instances that have faces, but of particles.
+
+    Raises TooManyInstances.
+    """
+    found, shapes, count, twice = {}, {}, 0, []
+    if not any(map(may_instance, graph.objects)):
+        return found
+    for one in graph.object_instances:
+        if not one.is_instance or one.object is None or one.parent is None or one.particle_system is not None:
+            continue
+        thing, maker = one.object, one.parent.original
+        if thing.type not in AS_MESH or thing.data is None:
+            continue
+        count += 1
+        if count > MOST_INSTANCES:
+            raise TooManyInstances(f"the scene has more than {MOST_INSTANCES} instances")
+        matrix = one.matrix_world.copy()
+        if thing.original == maker and maker.type != "MESH" and matrix == one.parent.matrix_world:
+            continue  # what a text or curve looks like, not what it makes
+        key = thing.data.as_pointer()
+        if key not in shapes:
+            with mesh_of(thing) as mesh:
+                shapes[key] = Shape(mesh) if mesh is not None and len(mesh.polygons) else None
+        if shapes[key] is None:
+            continue
+        # A text or curve comes as what it is, and once more as the mesh that it looks like.
+        place = maker.name_full, thing.original.name_full, tuple(value for row in matrix for value in row)
+        if thing.type != "MESH":
+            twice.append((place, shapes[key], matrix))
+            continue
+        found.setdefault(place, []).append((shapes[key], matrix))
+    for place, shape, matrix in twice:
+        found.setdefault(place, [(shape, matrix)])
+    by_maker = {}
+    for place, made in found.items():
+        by_maker.setdefault(place[0], []).extend(made)
+    return by_maker
+
+
+def may_instance(thing):
+    """Whether an object may make instances."""
+    return thing.instance_type != "NONE" or any(modifier.type == "NODES" for modifier in thing.modifiers)
+
+
+def rendered(scene):
+    """The objects that renders show: of layers that are rendered, in no collection that hides them, not hidden."""
+    shown = set()
+    for layer in scene.view_layers:
+        if layer.use:
+            _look_through(layer.layer_collection, shown)
+    return {thing for thing in shown if not thing.hide_render and not _is_only_copied(thing)}
+
+
+def _look_through(layer, shown):
+    if layer.exclude or layer.collection.hide_render:
+        return
+    shown.update(layer.collection.objects)
+    for below in layer.children:
+        _look_through(below, shown)
+
+
+def _is_only_copied(thing):
+    """Whether it is shown only where its parent makes instances of it."""
+    return thing.parent is not None and thing.parent.instance_type in {"VERTS", "FACES"}

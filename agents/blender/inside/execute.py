@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs a piece of code in a fresh namespace and tells what came of it."""
+
+import ast
+import linecache
+import sys
+import traceback
+
+import bpy
+import steadiness
+from changes import Watch
+from suspects import names_there, suspect
+
+FILE = "<blender_execute>"
+_LONGEST_VALUE = 4000
+_LONGEST_TRACEBACK = 6000
+_AROUND = 3  # lines shown before and after the one that failed
+
+
+def execute(arguments, report):
+    """Runs ``code``. Returns ``value`` (of a final expression), ``changed``, and ``error`` if it failed."""
+    del report
+    code = arguments["code"]
+    linecache.cache[FILE] = (len(code), None, code.splitlines(keepends=True), FILE)
+    result = {"value": None, "error": None}
+    watch = Watch()
+    failure = None
+    try:
+        result["value"] = _run(code)
+    except BaseException as error:
+        failure = error
+    # Code may have bent what tells the outcome, or set a tracer on it or an alarm, which raise and are gone then.
+    for _ in range(3):
+        try:
+            steadiness.current.put_names_back()
+            break
+        except Exception:
+            continue
+    if failure is not None:
+        result["error"] = _told(failure, code)
+        failure = None  # and with it the code's names
+    try:
+        result["changed"] = watch.report()
+    except Exception as error:
+        result["changed"] = {}
+        result["unwatched"] = f"{type(error).__name__}: {error}"
+    result["mode"] = bpy.context.mode
+    return result
+
+
+def _run(code):
+    tree = ast.parse(code, FILE)
+    last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+    namespace = {"__name__": "__main__", "__builtins__": __builtins__, "bpy": bpy}
+    exec(compile(tree, FILE, "exec"), namespace)  # noqa: S102 - what the tool is for; the process is confined
+    if last is None:
+        return None
+    value = eval(compile(ast.Expression(last.value), FILE, "eval"), namespace)  # noqa: S307 - as above
+    return None if value is None else _shown(value)
+
+
+def _shown(value):
+    try:
+        text = repr(value)
+    except Exception as error:
+        text = f"<{type(value).__name__}, whose repr fails: {type(error).__name__}: {error}>"
+    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}… ({len(text)} characters)"
+
+
+def _told(error, code):
+    """An exception as data: ``type``, ``message``, ``line`` (1-based), ``source`` around it, ``traceback``, ``ask``,
+    ``there`` (names in the place of one that is missing)."""
+    if isinstance(error, SyntaxError):
+        line, frame, span = error.lineno, None, None
+        shown = traceback.format_exception_only(error)
+    else:
+        outer, inner = _own_parts(error.__traceback__)
+        line = inner.tb_lineno if inner else None
+        frame = inner.tb_frame if inner else None
+        span = _span(inner) if inner else None
+        shown = traceback.format_exception(type(error), error, outer)
+    lines = code.splitlines()
+    ask, there = "", []
+    if frame is not None and line:
+        try:
+            failed = lines[line - 1] if line <= len(lines) else ""
+            ask = suspect(error, frame, failed, span)
+            there = names_there(error, frame, failed, span)
+        except Exception as fault:
+            sys.stderr.write(f"(what the error is about could not be found out: {fault!r})\n")
+    try:
+        message = str(error)
+    except BaseException as fault:
+        message = f"<its text cannot be had: {type(fault).__name__}>"
+    if isinstance(error, SystemExit):
+        message = f"the code called sys.exit({error.code!r}); Blender goes on"
+    return {
+        "type": type(error).__name__,
+        "message": message[:2000],
+        "line": line,
+        "source": _around(lines, line),
+        "traceback": "".join(shown)[-_LONGEST_TRACEBACK:],
+        "ask": ask,
+        "there": there,
+    }
+
+
+def _own_parts(trace):
+    """(outermost, innermost) part of a traceback that lies in the executed code; (None, None) if none does."""
+    outer = inner = None
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == FILE:
+            outer, inner = outer or trace, trace
+        trace = trace.tb_next
+    return outer, inner
+
+
+def _span(trace):
+    """(first, last) column in bytes of what failed on the line, if Python knows."""
+    positions = getattr(trace.tb_frame.f_code, "co_positions", None)
+    if positions is None:
+        return None
+    for number, place in enumerate(positions()):
+        if number == trace.tb_lasti // 2:
+            first, last = place[2], place[3]
+            return (first, last) if first is not None and place[0] == place[1] else None
+    return None
+
+
+def _around(lines, line):
+    if not line:
+        return ""
+    first, last = max(1, line - _AROUND), min(len(lines), line + _AROUND)
+    return "\n".join(
+        f"{'>' if number == line else ' '} {number:4d}  {lines[number - 1][:200]}"
+        for number in range(first, last + 1)
+    )

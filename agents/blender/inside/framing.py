@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From where a picture is taken, and how much of the world it takes in."""
+
+import statistics
+
+from mathutils import Matrix, Vector
+
+# Name, where the camera stands as seen from what it looks at, and what is up in the picture.
+VIEWS = (
+    ("front", (0, -1, 0), (0, 0, 1)),
+    ("right", (1, 0, 0), (0, 0, 1)),
+    ("top", (0, 0, 1), (0, 1, 0)),
+    ("three-quarter", (0.62, -1.0, 0.68), (0, 0, 1)),
+)
+CLOSE, LOOSE, WIDE = 1.06, 1.25, 1.7  # how much larger the picture is than what is framed
+_FOOT = 0.09  # of the picture's height: kept free for the scale bar
+_GROUND_TIMES, _SKY_TIMES, _FAR_TIMES = 1.7, 8.0, 6.0  # against what is framed
+_FLAT = 0.05
+
+
+class Box:
+    """A box along the world's axes."""
+
+    def __init__(self, low, high):
+        self.low, self.high = Vector(low), Vector(high)
+
+    @classmethod
+    def around(cls, boxes):
+        """The smallest that holds all of them."""
+        boxes = list(boxes)
+        return cls(
+            [min(box.low[axis] for box in boxes) for axis in range(3)],
+            [max(box.high[axis] for box in boxes) for axis in range(3)],
+        )
+
+    @property
+    def size(self):
+        """Its edges."""
+        return self.high - self.low
+
+    @property
+    def diagonal(self):
+        """From corner to corner."""
+        return self.size.length
+
+    @property
+    def centre(self):
+        """Its middle."""
+        return (self.low + self.high) / 2
+
+    def grown(self, by):
+        """The box, larger by so much on every side."""
+        return Box(self.low - Vector((by,) * 3), self.high + Vector((by,) * 3))
+
+    def meets(self, other):
+        """Whether they have a point in common."""
+        return all(
+            self.low[axis] <= other.high[axis] and other.low[axis] <= self.high[axis] for axis in range(3)
+        )
+
+    def holds(self, other):
+        """Whether the other's middle is inside, and no more than one of its sides reaches out."""
+        inside = sum(self.low[axis] <= other.low[axis] for axis in range(3))
+        inside += sum(self.high[axis] >= other.high[axis] for axis in range(3))
+        return inside >= 5 and self.distance(other.centre) == 0
+
+    def distance(self, place):
+        """From a place to the nearest point of the box."""
+        return Vector(
+            max(self.low[axis] - place[axis], place[axis] - self.high[axis], 0) for axis in range(3)
+        ).length
+
+
+def boxes_of(pieces):
+    """The box of every owner, by name."""
+    grouped = {}
+    for piece in pieces:
+        grouped.setdefault(piece.owner, []).append(piece)
+    return {owner: Box.around(found) for owner, found in grouped.items()}
+
+
+def focus(boxes, templates=()):
+    """(names to frame, names that reach beyond the picture, names that lie outside of it), of boxes by name.
+
+    Grounds, skies, what has flown far away, and ``templates`` that stand somewhere aside for their copies would make
+    everything else a dot.
+    """
+    outside = _stand_aside(boxes, templates)
+    outside = sorted({*outside, *_far_away({name: boxes[name] for name in boxes if name not in outside})})
+    beyond, core = [], None
+    for name in sorted(boxes.keys() - set(outside), key=lambda one: boxes[one].diagonal):
+        box = boxes[name]
+        if core is not None and core.diagonal > 0:
+            times = box.diagonal / core.diagonal
+            is_flat = min(box.size) <= _FLAT * max(box.size)
+            if (is_flat and times > _GROUND_TIMES and box.grown(core.diagonal).meets(core)) or (
+                times > _SKY_TIMES and box.holds(core)
+            ):
+                beyond.append(name)
+                continue
+        core = box if core is None else Box.around((core, box))
+    return sorted(boxes.keys() - {*outside, *beyond}), sorted(beyond), outside
+
+
+def _stand_aside(boxes, templates):
+    """Names of the templates that lie farther from all else than that is large."""
+    rest = [box for name, box in boxes.items() if name not in templates]
+    if not rest:
+        return []
+    middle = Box.around(rest)
+    near = middle.grown(middle.diagonal)
+    return [name for name in boxes if name in templates and not near.meets(boxes[name])]
+
+
+def _far_away(boxes):
+    """Names of the few boxes that lie far from where nearly all are."""
+    if len(boxes) < 4:
+        return []
+    middle = Vector(statistics.median(box.centre[axis] for box in boxes.values()) for axis in range(3))
+    away = {name: box.distance(middle) for name, box in boxes.items()}
+    reach = statistics.median(away[name] + boxes[name].diagonal for name in boxes)
+    found = sorted(name for name in boxes if away[name] > _FAR_TIMES * reach)
+    return found if len(found) <= max(1, len(boxes) // 10) else []
+
+
+def turned_to(towards, up):
+    """A camera's rotation for a view, as a matrix: its columns are right, up and towards the viewer."""
+    z = Vector(towards).normalized()
+    x = Vector(up).cross(z).normalized()
+    return Matrix((x, z.cross(x), z)).transposed()
+
+
+def fitted(points, rotation, margin):
+    """(place in the world, width in metres) of a square orthographic picture that holds the points."""
+    flat = [rotation.transposed() @ point for point in points]
+    low, high = (Vector(f(point[axis] for point in flat) for axis in range(3)) for f in (min, max))
+    size = high - low
+    across = max(size.x, size.y / (1 - _FOOT), size.length * 1e-3) * margin
+    middle = (low + high) / 2
+    middle.y -= across * _FOOT / 2
+    return rotation @ middle, across

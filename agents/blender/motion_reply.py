@@ -1,0 +1,136 @@
+"""What Blender answers about motion, checked: it comes from outside the trust."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Frame = Annotated[int, Field(ge=-1_048_574, le=1_048_574)]
+Text = Annotated[str, Field(max_length=1000)]
+Vector = tuple[float, float, float]
+Side = Annotated[int, Field(ge=16, le=2048)]
+_MOST_ACTORS, _MOST_PICTURES, _MOST_FRAMES = 8, 12, 1500
+
+
+class _Reply(BaseModel):
+    model_config = ConfigDict(allow_inf_nan=False, extra="ignore", protected_namespaces=())
+
+
+class View(_Reply):
+    """An orthographic view: unit vectors to the right, up and towards the viewer; the centre; the scale."""
+
+    axes: tuple[Vector, Vector, Vector]
+    centre: Vector
+    metres_per_pixel: float = Field(gt=0)
+    size: tuple[Side, Side]
+
+    def pixel(self, place: Vector) -> tuple[float, float]:
+        """Where a place of the world is on the picture."""
+        way = [here - there for here, there in zip(place, self.centre, strict=True)]
+        right, up, _ = (sum(a * b for a, b in zip(way, axis, strict=True)) for axis in self.axes)
+        width, height = self.size
+        return width / 2 + right / self.metres_per_pixel, height / 2 - up / self.metres_per_pixel
+
+
+class Shot(_Reply):
+    """One picture: ``view`` is None where the actor is not there."""
+
+    frame: Frame
+    view: View | None
+
+
+class Strip(_Reply):
+    """The pictures of one kind of view: ``path`` (the whole way) or ``close``."""
+
+    kind: Annotated[str, Field(pattern="^(path|close)$")]
+    pictures: list[Shot] = Field(max_length=_MOST_PICTURES)
+
+
+class CacheState(_Reply):
+    """A physics cache that moves the actor: ``state`` in words, the frames that it is for."""
+
+    label: Text
+    state: Text
+    start: Frame
+    end: Frame
+    on: bool
+
+
+class Touch(_Reply):
+    """A contact: ``frames`` are the first and last one of each time, ``gap`` metres are between them at the first."""
+
+    partner: Text = Field(alias="with")
+    frames: list[tuple[Frame, Frame]] = Field(min_length=1, max_length=50)
+    gap: float
+
+    @property
+    def when(self) -> str:
+        """In words: the first times."""
+        words = [f"{first}–{last}" if last > first else f"{first}" for first, last in self.frames[:3]]
+        return ", ".join(words) + (" …" if len(self.frames) > 3 else "")
+
+
+class Stretch(_Reply):
+    """The motion of one actor over one phase. Metres, m/s, degrees."""
+
+    phase: Text
+    start: Frame
+    end: Frame
+    present: bool
+    there: tuple[Frame, Frame] | None = None
+    displacement: float = 0.0
+    displacement_vector: Vector = (0.0, 0.0, 0.0)
+    path_length: float = 0.0
+    start_position: Vector | None = None
+    end_position: Vector | None = None
+    peak_speed: float | None = None
+    peak_frame: Frame | None = None
+    final_speed: float | None = None
+    turn: float | None = None
+    contacts: list[Touch] = Field(default_factory=list[Touch], max_length=2000)
+
+
+class ActorMotion(_Reply):
+    """The motion of one actor, measured at ``frames``."""
+
+    name: Text
+    kind: Text
+    objects: list[Text] = Field(max_length=20)
+    object_count: int
+    measured: Text
+    deforms: bool
+    speed_of: Text
+    caches: list[CacheState] = Field(max_length=1000)
+    keyframes: list[Frame] = Field(max_length=100_000)
+    phases: list[Stretch] = Field(min_length=1)
+    frames: list[Frame] = Field(min_length=1, max_length=_MOST_FRAMES)
+    centres: list[Vector | None] = Field(max_length=_MOST_FRAMES)
+    displacements: list[float | None] = Field(max_length=_MOST_FRAMES)
+    speeds: list[float | None] = Field(max_length=_MOST_FRAMES)
+    notes: list[Text] = Field(max_length=50)
+    columns: int = Field(ge=1, le=_MOST_PICTURES)
+    views: list[Strip] = Field(max_length=2)
+
+
+class Motion(_Reply):
+    """The whole answer. ``stepped_from``: the frame from which all were stepped, None if they were played."""
+
+    start: Frame
+    end: Frame
+    fps: float = Field(gt=0)
+    stride: int = Field(ge=1)
+    sampled: list[Frame] = Field(min_length=1, max_length=_MOST_PICTURES)
+    stepped_from: Frame | None
+    stepped_for: list[Text]
+    notes: list[Text] = Field(max_length=50)
+    actors: list[ActorMotion] = Field(min_length=1, max_length=_MOST_ACTORS)
+
+    @property
+    def how_played(self) -> str:
+        """In words: whether the frames were played or stepped, and why."""
+        often = "" if self.stride == 1 else f"; measured every {self.stride} frames"
+        if self.stepped_from is None:
+            return f"played: all physics is baked, or there is none{often}"
+        names = ", ".join(self.stepped_for[:4]) + (" …" if len(self.stepped_for) > 4 else "")
+        return f"stepped frame by frame from {self.stepped_from}, not baked: {names}{often}"

@@ -1,0 +1,39 @@
+"""What a process prints, kept within bounds: the beginning and the end."""
+
+from __future__ import annotations
+
+HEAD_BYTES = 12_000
+TAIL_BYTES = 12_000
+
+
+class Printed:
+    """Takes any amount of bytes, keeps the first and the last of them."""
+
+    def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        """Forgets everything."""
+        self._head = bytearray()
+        self._tail = bytearray()
+        self._dropped = 0
+
+    def add(self, data: bytes) -> None:
+        """Takes in more."""
+        room = HEAD_BYTES - len(self._head)
+        if room > 0:
+            self._head += data[:room]
+            data = data[room:]
+        self._tail += data
+        if (over := len(self._tail) - TAIL_BYTES) > 0:
+            del self._tail[:over]
+            self._dropped += over
+
+    @property
+    def text(self) -> str:
+        """What is kept, as text; what is not, is counted."""
+        gap = f"\n… {self._dropped:,} bytes left out …\n" if self._dropped else ""
+        head, tail = bytes(self._head), bytes(self._tail)
+        if not gap:
+            return (head + tail).decode("utf-8", "replace")
+        return head.decode("utf-8", "replace") + gap + tail.decode("utf-8", "replace")

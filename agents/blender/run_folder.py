@@ -1,0 +1,230 @@
+"""The folder of a run: what Blender may write to, and what only the supervisor does."""
+
+from __future__ import annotations
+
+import os
+import re
+import secrets
+import shutil
+import stat
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, BinaryIO
+
+from agents.blender.bounds import sweep
+from agents.blender.errors import Refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+_NAME = re.compile(r"[\w .()+-]{1,100}")
+SCENE_FILE = "scene.blend"  # in the workspace: the run's own file, as Blender has it open
+PRIVATE = "private"  # beside the workspace, while Blender runs: its temporary files
+_RESERVED = {
+    "workspace": "Blender's own",
+    "checkpoints": "the checkpoints' own",
+    PRIVATE: "Blender's own",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RunFolder:
+    """``root`` holds ``workspace`` (Blender's own, where its relative paths begin), ``checkpoints`` and what was saved.
+
+    What executed code puts into the workspace is not trusted: it is read, taken out and written over without following
+    links.
+    """
+
+    root: Path
+
+    @classmethod
+    def make(cls, root: Path) -> RunFolder:
+        """Makes the folders that are missing."""
+        folder = cls(root.absolute())
+        for path in (folder.workspace, folder.checkpoints):
+            path.mkdir(parents=True, exist_ok=True)
+        return folder
+
+    @property
+    def workspace(self) -> Path:
+        """The folder that Blender may write to."""
+        return self.root / "workspace"
+
+    @property
+    def private(self) -> Path:
+        """The folder of Blender's temporary files, while it runs."""
+        return self.root / PRIVATE
+
+    @property
+    def checkpoints(self) -> Path:
+        """The folder of checkpoints, out of executed code's reach."""
+        return self.root / "checkpoints"
+
+    def place_for(self, name: str, suffix: str) -> Path:
+        """A path in the run's folder for a file that a caller names. Raises Refusal for one that leads elsewhere."""
+        parts = list(PurePosixPath(name.replace("\\", "/")).parts)
+        if (
+            not parts
+            or len(parts) > 8
+            or not all(_NAME.fullmatch(part) and part.strip(". ") for part in parts)
+        ):
+            raise Refusal(
+                f"{name[:120]!r} cannot be a file of this run: give a relative path of plain names, as "
+                f"'tower{suffix}' or 'saves/tower{suffix}'."
+            )
+        if parts[0].lower() in _RESERVED:
+            raise Refusal(f"{parts[0]}/ is {_RESERVED[parts[0].lower()]}; save beside it.")
+        path = self.root.joinpath(*parts)
+        if path.suffix.lower() != suffix:
+            path = path.with_name(path.name + suffix)
+        if not path.parent.resolve().is_relative_to(self.root.resolve()):
+            raise Refusal(f"{name[:120]!r} leads out of the run's folder.")
+        return path
+
+    def open_made(self, relative: str) -> BinaryIO:
+        """Opens a regular file that Blender made, by its path in the workspace. Raises Refusal."""
+        return open_beneath(self.workspace, relative)
+
+    def take(self, relative: str, target: Path, *, durable: bool = True) -> None:
+        """Moves a file that Blender made to ``target``, whole or not at all. Raises Refusal.
+
+        It is copied: executed code may still hold the one that it made. ``durable`` waits for the disk.
+        """
+        take_beneath(self.workspace, relative, target, durable=durable)
+
+    def put(self, source: Path, name: str) -> Path:
+        """Copies a file to the workspace as ``name``, in place of whatever is there. Raises Refusal."""
+        target = self.workspace / name
+        part = f".{name}.{secrets.token_hex(8)}.part"
+        workspace = os.open(self.workspace, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+            with (
+                source.open("rb") as read,
+                os.fdopen(os.open(part, flags, 0o644, dir_fd=workspace), "wb") as copy,
+            ):
+                copy_file(read, copy)
+            _make_way(target)
+            os.replace(part, name, src_dir_fd=workspace, dst_dir_fd=workspace)
+        except OSError as error:
+            with suppress(OSError):
+                os.unlink(part, dir_fd=workspace)
+            raise Refusal(f"{target} cannot be written: {error.strerror or error}.") from error
+        finally:
+            os.close(workspace)
+        return target
+
+
+def _make_way(target: Path) -> None:
+    """Removes a folder that stands where a file is to be."""
+    with suppress(OSError):
+        if stat.S_ISDIR(target.lstat().st_mode):
+            sweep(target)
+            target.rmdir()
+
+
+def take_beneath(root: Path, relative: str, target: Path, *, durable: bool = True) -> None:
+    """Moves a file from below ``root``, where executed code writes, to ``target``. Raises Refusal."""
+    with _beneath(root, relative) as (folder, name), _open_plain(folder, name, relative) as made:
+        part = target.with_name(f".{target.name}.part")
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with part.open("wb") as copy:
+                copy_file(made, copy)
+                if durable:
+                    os.fsync(copy.fileno())
+            part.replace(target)
+        except OSError as error:
+            part.unlink(missing_ok=True)
+            raise Refusal(f"{target} cannot be written: {error.strerror or error}.") from error
+        with suppress(OSError):
+            os.unlink(name, dir_fd=folder)
+
+
+def new_run(runs: Path) -> RunFolder:
+    """A fresh folder below ``runs``, named after the time."""
+    stamp = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
+    for number in range(1, 1000):
+        root = runs / (stamp if number == 1 else f"{stamp}-{number}")
+        try:
+            root.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        return RunFolder.make(root)
+    raise Refusal(f"{runs} takes no further folder.")
+
+
+def open_beneath(root: Path, relative: str) -> BinaryIO:
+    """Opens a file below ``root`` step by step, so that no link on the way leads out. Raises Refusal."""
+    with _beneath(root, relative) as (folder, name):
+        return _open_plain(folder, name, relative)
+
+
+@contextmanager
+def _beneath(root: Path, relative: str) -> Generator[tuple[int, str]]:
+    """(open folder, name in it) of a path below ``root``, reached through folders alone. Raises Refusal."""
+    parts = PurePosixPath(relative).parts
+    if not parts or ".." in parts or relative.startswith("/") or "\0" in relative:
+        raise Refusal(f"{relative!r} is no path in the workspace.")
+    folder = os.open(root, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        for part in parts[:-1]:
+            try:
+                inner = os.open(part, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW, dir_fd=folder)
+            except OSError as error:
+                raise _not_made(relative, error) from error
+            os.close(folder)
+            folder = inner
+        yield folder, parts[-1]
+    finally:
+        os.close(folder)
+
+
+def _open_plain(folder: int, name: str, relative: str) -> BinaryIO:
+    try:
+        number = os.open(name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder)
+    except OSError as error:
+        raise _not_made(relative, error) from error
+    if not stat.S_ISREG(os.fstat(number).st_mode):
+        os.close(number)
+        raise Refusal(f"{relative} is not a plain file.")
+    return os.fdopen(number, "rb")
+
+
+def _not_made(relative: str, error: OSError) -> Refusal:
+    return Refusal(f"{relative} was not made, or is not a plain file: {error.strerror}.")
+
+
+def copy_file(source: BinaryIO, target: BinaryIO) -> None:
+    """Copies all of a file, within the kernel where it can."""
+    try:
+        size = os.fstat(source.fileno()).st_size
+        done = 0
+        while done < size:
+            sent = os.copy_file_range(source.fileno(), target.fileno(), size - done)
+            if sent == 0:
+                break
+            done += sent
+        if done == size:
+            return
+    except (OSError, AttributeError):
+        pass
+    source.seek(0)
+    target.seek(0)
+    target.truncate()
+    shutil.copyfileobj(source, target, 1 << 20)
+
+
+@contextmanager
+def locked(root: Path) -> Generator[None]:
+    """Holds a run's folder for one worker. Raises Refusal while another one has it."""
+    import fcntl  # noqa: PLC0415 - not on Windows
+
+    with (root / ".lock").open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise Refusal(f"{root} is in use by another SimWorlds. Choose another folder.") from error
+        yield

@@ -1,0 +1,165 @@
+"""``blender_execute``: Python in the live Blender."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from agents.blender.errors import Untrustworthy
+from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+
+if TYPE_CHECKING:
+    from agents.blender.checkpoints import Checkpoint
+    from agents.blender.process import Reply
+
+LONGEST_CODE = 400_000
+_LONGEST_PRINT = 8_000
+_LONGEST_TITLE = 40
+
+
+class Execute(Arguments):
+    """The arguments of ``blender_execute``."""
+
+    code: str = Field(max_length=LONGEST_CODE, description="Python. `bpy` is there; import the rest.")
+    timeout: float = Field(
+        default=60.0, ge=0.1, le=3600, description="Seconds after which Blender is stopped and put back."
+    )
+    on_error: Literal["keep", "restore"] = Field(
+        default="keep",
+        description="What becomes of a scene in which code failed half-way: kept as it is, or put back to before.",
+    )
+
+
+DESCRIPTION = """\
+Run Python in the live Blender. Each call has a fresh namespace; what is in the file (`bpy.data`) stays. \
+The reply holds what was printed, the value of a final expression, what changed in the scene, and for an \
+error the line that failed, with what the documentation of this Blender version says about the name that \
+was wrong. Physics: step frames one by one or bake; never jump. No network, no other processes; files go \
+below the current folder. Code that runs past `timeout` (seconds) or ends Blender is undone: Blender is \
+started again from the last checkpoint, which is taken after every call."""
+
+
+class _Fault(BaseModel):
+    """An exception of executed code, as Blender's side tells it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    type: str
+    message: str
+    line: int | None
+    source: str
+    traceback: str
+    ask: str
+    there: list[str]
+
+
+class _Outcome(BaseModel):
+    """What Blender's side tells of executed code, which could have bent that side."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    value: str | None
+    error: _Fault | None
+    changed: dict[str, dict[str, list[str]]]
+    mode: str
+    unwatched: str = ""
+
+
+def run(session: Session, asked: Execute, call: Call) -> Result:
+    """Runs the code; tells what came of it."""
+    blender = session.blender
+    if asked.on_error == "restore":
+        blender.keep("before code that may be undone")
+    before, unkept = blender.checkpoints.last, blender.checkpoints.unkept
+    title = _title(asked.code)
+    reply = blender.call(
+        "execute",
+        {"code": asked.code},
+        timeout=asked.timeout,
+        what=f"the code {title!r}",
+        changes=True,
+        after=f"after {title!r}",
+        progress=call.progress,
+        given_up=call.given_up,
+    )
+    data = _checked(session, reply, title, before)
+    data.update(stdout=reply.stdout, stderr=reply.stderr, seconds=round(reply.seconds, 4))
+    error = data["error"]
+    if error is None:
+        return Result(_told(data, reply), data)
+    error["documentation"] = session.docs(error["ask"]) if error["ask"] else ""
+    if asked.on_error == "restore":
+        data["scene"] = f"The scene was put back to {blender.restore()}."
+    else:
+        data["scene"] = f"The scene is as the code left it.{_way_back(before, unkept)}"
+    return Result(_told(data, reply), data, failed=True)
+
+
+def _title(code: str) -> str:
+    """The first line that says something, cut short."""
+    lines = [line.strip() for line in code.splitlines() if line.strip()]
+    first = lines[0] if lines else "nothing"
+    return first if len(lines) < 2 and len(first) <= _LONGEST_TITLE else f"{first[:_LONGEST_TITLE]} …"
+
+
+def _checked(session: Session, reply: Reply, title: str, before: Checkpoint | None) -> dict[str, Any]:
+    """The outcome, if it is one; otherwise the scene is put back, for nothing is known of it."""
+    try:
+        return _Outcome.model_validate(reply.value, strict=True).model_dump()
+    except ValidationError as error:
+        raise Untrustworthy(
+            f"What came back of the code {title!r} is no answer, and nothing of it is believed. The scene was put "
+            f"back to {session.blender.restore(before.number if before else None)}.",
+            (reply.stdout + reply.stderr)[-2000:],
+        ) from error
+
+
+def _way_back(before: Checkpoint | None, unkept: int) -> str:
+    if before is None:
+        return ""
+    also = f", and the {unkept} call(s) before it" if unkept else ""
+    return f" To undo it{also}: blender_load(checkpoint={before.number})."
+
+
+def _told(data: dict[str, Any], reply: Reply) -> str:
+    parts: list[str] = []
+    if error := data["error"]:
+        parts.append(f"**{error['type']}**: {error['message']}")
+        if error["source"]:
+            parts.append(f"```python\n{error['source']}\n```")
+        if error["there"]:
+            parts.append("There are, the nearest first: " + ", ".join(f"`{name}`" for name in error["there"]))
+        if error["documentation"]:
+            parts.append(
+                f"What the documentation says of `{error['ask'][:120]}`:\n\n{error['documentation']}"
+            )
+        parts.append(data["scene"])
+    if data["value"] is not None:
+        parts.append(f"Value: `{data['value']}`")
+    for name, text in (("Printed", reply.stdout), ("On stderr", reply.stderr)):
+        if text.strip():
+            parts.append(f"{name}:\n```\n{_bounded(text.rstrip())}\n```")
+    if data["changed"]:
+        lines = [
+            f"- {kind} {word}: {', '.join(names)}"
+            for kind, entry in data["changed"].items()
+            for word, names in entry.items()
+        ]
+        parts.append("Changed:\n" + "\n".join(lines))
+    if data["mode"] != "OBJECT":
+        parts.append(f"Blender is in {data['mode']} mode.")
+    parts.append(f"{reply.seconds:.2f} s" + ("" if parts else "; nothing was printed or changed"))
+    return "\n\n".join(parts)
+
+
+def _bounded(text: str) -> str:
+    if len(text) <= _LONGEST_PRINT:
+        return text
+    half = _LONGEST_PRINT // 2
+    return f"{text[:half]}\n… {len(text) - 2 * half:,} characters left out …\n{text[-half:]}"
+
+
+TOOL = Tool(
+    "blender_execute", "Run Python in Blender", DESCRIPTION, Execute, run, read_only=False, destructive=True
+)

@@ -1,0 +1,223 @@
+"""``blender_motion_sheet_preview``: how actors move, in pictures over sampled frames and in numbers."""
+
+from __future__ import annotations
+
+import itertools
+import secrets
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from agents.blender.bounds import sweep
+from agents.blender.errors import ToolBroke
+from agents.blender.motion_drawing import WIDTH, draw_sheets
+from agents.blender.motion_reply import ActorMotion, Frame, Motion, Stretch
+from agents.blender.sheets import GAP
+from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+MOST_ACTORS, MOST_PICTURES, MOST_PHASES = 8, 12, 24
+_FOLDER = "previews"
+_MEASURED = {
+    "vertices": "mean of its vertices",
+    "particles": "mean of its particles",
+    "fluid": "middle of its fluid",
+}
+
+
+class PhaseAsked(BaseModel):
+    """A named stretch of the motion, both frames included."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str = Field(min_length=1, max_length=60, description="What happens, as 'fall' or 'settle'.")
+    start: Frame = Field(description="First frame.")
+    end: Frame = Field(description="Last frame; the next phase may begin on it.")
+
+    @model_validator(mode="after")
+    def _in_order(self) -> PhaseAsked:
+        if self.end <= self.start:
+            raise ValueError(
+                f"phase {self.name!r} ends at {self.end}, which is not after its start {self.start}"
+            )
+        return self
+
+
+class MotionSheet(Arguments):
+    """The arguments of ``blender_motion_sheet_preview``."""
+
+    actors: list[str] = Field(
+        min_length=1,
+        max_length=MOST_ACTORS,
+        description="Names of objects, or of collections tagged protocol_role='object' (measured as one). An emitter "
+        "is followed by its particles, a fluid domain by its fluid.",
+    )
+    phases: list[PhaseAsked] = Field(
+        default_factory=list[PhaseAsked],
+        max_length=MOST_PHASES,
+        description="Stretches of the motion that are measured one by one. Default: the scene's frame range as one.",
+    )
+    frames: list[Frame] = Field(
+        default_factory=list[Frame],
+        max_length=MOST_PICTURES,
+        description="Frames to draw, at least two; without phases, all between them is measured. Default: starts, "
+        "middles and ends of the phases, or seven over the range.",
+    )
+    timeout: float = Field(
+        default=300.0, ge=1, le=3600, description="Seconds after which Blender is stopped and put back."
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> MotionSheet:
+        if len(set(self.frames)) == 1:
+            raise ValueError("frames: one frame alone shows no motion; give at least two")
+        if len(set(self.actors)) != len(self.actors):
+            raise ValueError("actors: a name is given twice")
+        ordered = sorted(self.phases, key=lambda phase: phase.start)
+        for one, other in itertools.pairwise(ordered):
+            if other.start < one.end:
+                pair = " and ".join(f"{each.name!r} ({each.start}–{each.end})" for each in (one, other))
+                raise ValueError(f"phases: {pair} overlap")
+        return self
+
+
+DESCRIPTION = """\
+See and measure how things move. For each actor: a strip of pictures over sampled frames in one fixed view of its \
+whole path (and close-ups if it is small in it), with its trail; below, displacement and speed over the frames with \
+phases, keyframes, contacts and the state of the physics caches that move it. As data, per actor and phase: \
+displacement and path length (m), peak and final speed (m/s), turn (degrees), what was touched from which frame on. \
+Measured on evaluated geometry: the mean of the vertices (cloth, soft bodies), of the particles, of a fluid's \
+surface. Physics that is not baked is stepped frame by frame from the start of its cache, and the sheet says so. \
+The scene is left as it was, at its frame."""
+
+
+def run(session: Session, asked: MotionSheet, call: Call) -> Result:
+    """Measures and draws. Raises BlenderError."""
+    folder = session.blender.folder
+    tiles = f".motion-{secrets.token_hex(4)}"
+    place = folder.workspace / tiles
+    place.mkdir()
+    try:
+        reply = session.blender.call(
+            "motion_sheet",
+            {
+                "actors": asked.actors,
+                "phases": [phase.model_dump() for phase in asked.phases],
+                "frames": asked.frames,
+                "folder": str(place),
+                "width": WIDTH,
+                "gap": GAP,
+            },
+            timeout=asked.timeout,
+            progress=call.progress,
+            given_up=call.given_up,
+        )
+        try:
+            motion = Motion.model_validate(reply.value)
+        except ValidationError as error:
+            raise ToolBroke(
+                f"Blender's answer cannot be understood: {error.error_count()} faults", str(error)
+            ) from error
+        sheets = draw_sheets(motion, lambda name: folder.open_made(f"{tiles}/{name}"))
+    finally:
+        sweep(place)
+        with suppress(OSError):
+            place.rmdir()
+    pictures = tuple(Picture(png, _kept(folder.root / _FOLDER, png)) for png in sheets)
+    data = _data(motion)
+    data["pictures"] = [str(picture.path.relative_to(folder.root)) for picture in pictures]
+    return Result(_told(motion), data, pictures)
+
+
+def _kept(folder: Path, png: bytes) -> Path:
+    """Writes a sheet under the next free name."""
+    folder.mkdir(exist_ok=True)
+    for number in itertools.count(1):
+        path = folder / f"motion-sheet-{number:03d}.png"
+        with suppress(FileExistsError), path.open("xb") as file:
+            file.write(png)
+            return path
+    raise AssertionError("numbers do not end")
+
+
+def _data(motion: Motion) -> dict[str, Any]:
+    """What a caller gets as data: the numbers, and where each actor is at the sampled frames."""
+    told = motion.model_dump(exclude={"actors"}, exclude_none=True)
+    told["actors"] = []
+    for actor in motion.actors:
+        numbers = actor.model_dump(
+            by_alias=True,
+            exclude={"frames", "centres", "displacements", "speeds", "columns", "views"},
+            exclude_none=True,
+        )
+        numbers["samples"] = [
+            {
+                "frame": frame,
+                "position": actor.centres[at],
+                "displacement": _rounded(actor.displacements[at]),
+                "speed": _rounded(actor.speeds[at]),
+            }
+            for at, frame in enumerate(actor.frames)
+            if frame in motion.sampled
+        ]
+        told["actors"].append(numbers)
+    return told
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else round(value, 4)
+
+
+# In words
+
+
+def _told(motion: Motion) -> str:
+    parts = [f"Frames {motion.start}–{motion.end} at {motion.fps:g} fps, {motion.how_played}."]
+    parts += motion.notes
+    for actor in motion.actors:
+        lines = [f"**{actor.name}** ({_what(actor)}); {_states(actor)}"]
+        lines.append(
+            "| phase | frames | displacement m | path m | peak m/s (frame) | final m/s | turn ° | touches (frames) |"
+        )
+        lines.append("|---|---|---|---|---|---|---|---|")
+        lines += [_row(phase) for phase in actor.phases]
+        parts += ["\n".join(lines), *actor.notes]
+    return "\n\n".join(parts)
+
+
+def _what(actor: ActorMotion) -> str:
+    words = [actor.kind, *([f"{actor.object_count} objects"] if actor.object_count > 1 else [])]
+    words.append(_MEASURED.get(actor.measured, "its origin"))
+    if actor.speed_of == "vertices":
+        words.append("deforming: speeds are means over its vertices")
+    return ", ".join(words)
+
+
+def _states(actor: ActorMotion) -> str:
+    words = [f"{cache.label}: {cache.state}, {cache.start}–{cache.end}" for cache in actor.caches[:6]]
+    if actor.keyframes:
+        words.append(f"{len(actor.keyframes)} keyed frames, {actor.keyframes[0]}–{actor.keyframes[-1]}")
+    return "; ".join(words) or "no physics, no keyframes"
+
+
+def _row(phase: Stretch) -> str:
+    name = phase.phase or "all"
+    if not phase.present:
+        return f"| {name} | {phase.start}–{phase.end} | not there | | | | | |"
+    way = ", ".join(f"{part:+.2f}" for part in phase.displacement_vector)
+    touches = "; ".join(f"{touch.partner} {touch.when}" for touch in phase.contacts[:4])
+    peak = "" if phase.peak_speed is None else f"{phase.peak_speed:.3g} ({phase.peak_frame})"
+    final = "" if phase.final_speed is None else f"{phase.final_speed:.3g}"
+    turn = "" if phase.turn is None else f"{phase.turn:.0f}"
+    return (
+        f"| {name} | {phase.start}–{phase.end} | {phase.displacement:.3g} ({way}) | {phase.path_length:.3g} | {peak} | "
+        f"{final} | {turn} | {touches} |"
+    )
+
+
+TOOL = Tool(
+    "blender_motion_sheet_preview", "See how things move", DESCRIPTION, MotionSheet, run, read_only=True
+)

@@ -1,0 +1,229 @@
+"""``blender_scene_state``: what is in the scene, how it stands, what simulates and what moves."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
+
+from pydantic import Field
+
+from agents.blender.tools import scene_dynamics as dynamics
+from agents.blender.tools import scene_words as words
+from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+from agents.blender.tools.scene_fit import Piece, Section, share_out, tokens
+from agents.blender.tools.scene_fold import fold, fold_tree, series
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from agents.blender.tools.scene_fold import Entry
+
+TIMEOUT = 60.0
+_LONGEST_OBJECTS = 80  # characters of the caller's own ``objects`` in a call that is named
+_FEW = 8  # channels, drivers or shape keys of a data-block in a readout that is not full
+_TOO_MANY = 60  # entries, above which like ones are folded whatever they are called
+_PART = 40  # of them in one entry of a full one
+_FEW_NAMES = 24  # series of names in one collection
+
+SectionName = Literal["collections", "objects", "physics", "animation", "materials", "view", "data_blocks"]
+_TITLES: dict[SectionName, tuple[str, int]] = {
+    "collections": ("Collections", 2),
+    "objects": ("Objects", 4),
+    "physics": ("Physics", 3),
+    "animation": ("Animation", 2),
+    "materials": ("Materials", 1),
+    "view": ("Cameras, lights, world, render", 1),
+}
+DATA_BLOCKS: SectionName = "data_blocks"
+_OF_SUMMARY: tuple[SectionName, ...] = ("collections", "physics", "animation", "view")
+
+
+class SceneState(Arguments):
+    """The arguments of ``blender_scene_state``."""
+
+    detail: Literal["summary", "normal", "full"] = Field(
+        default="normal",
+        description="summary: collections with names, what simulates, what moves. normal: every object with its "
+        "transform, extent, modifiers and physics. full: also every channel, node and custom property.",
+    )
+    objects: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
+        default=None,
+        max_length=200,
+        description="Only these: names, patterns (Brick.*) or names of collections. They are not folded.",
+    )
+    sections: list[SectionName] | None = Field(
+        default=None,
+        min_length=1,
+        description="Only these parts. view: cameras, lights, world, render settings. data_blocks, only when asked "
+        "for: a digest of every data-block in the file, as data, by which to tell what changed since.",
+    )
+    start: int = Field(
+        default=0, ge=0, description="Entries to pass over in each section, as the last readout says."
+    )
+    max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Longest readout.")
+
+
+DESCRIPTION = """\
+Read the live scene without changing it: collections with protocol tags; objects with world transform and \
+evaluated extent (world bounding box at the current frame), materials, modifiers and constraints in order with \
+the settings that differ from Blender's defaults; rigid bodies, cloth, soft bodies, particles, fluids, force \
+fields and the state of every cache; actions with channels and key ranges, drivers, shape keys; cameras, lights, \
+world, render settings; and, marked with !, what looks wrong. Long series are folded (Brick.001 … Brick.400). \
+What does not fit is counted, with the call that shows it."""
+
+
+def run(session: Session, asked: SceneState, call: Call) -> Result:
+    """Reads the scene; fits what it read into ``max_tokens``."""
+    usual = _OF_SUMMARY if asked.detail == "summary" else tuple(_TITLES)
+    names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (asked.sections or usual)]
+    reply = session.blender.call(
+        "scene_state",
+        {"detail": asked.detail, "objects": asked.objects, "sections": names},
+        timeout=TIMEOUT,
+        progress=call.progress,
+        given_up=call.given_up,
+    )
+    return readout(reply.value, asked)
+
+
+def readout(facts: dict[str, Any], asked: SceneState) -> Result:
+    """The facts in words and as data, both within ``max_tokens``."""
+    sections = [
+        Section(name, _pieces(name, facts[name], asked), weight, facts["unread"].get(name, 0))
+        for name, (_, weight) in _TITLES.items()
+        if name in facts
+    ]
+    head = _clipped(words.scene(facts), asked.max_tokens // 4)
+    sections = [section for section in sections if section.pieces or asked.sections]
+    footer = max((tokens(_footer(section, asked)) for section in sections), default=0) + 1
+    share_out(sections, asked.max_tokens - tokens(head), footer)
+    data: dict[str, Any] = {"scene": facts["scene"], "notes": facts["notes"], "left_out": {}}
+    data |= {name: [] for name in _TITLES if name in facts}
+    parts = [head]
+    for section in sections:
+        parts.append(_told(section, facts, asked))
+        data[section.name] = [piece.data for piece in section.shown]
+        if section.left_out:
+            data["left_out"][section.name] = {"count": section.left_out, "call": _next(section, asked)}
+    if (blocks := facts.get(DATA_BLOCKS)) is not None:
+        parts.append(_counted(blocks["digests"]))
+        data |= {
+            DATA_BLOCKS: blocks["digests"],
+            "data_block_parts": blocks["parts"],
+            "data_block_uses": blocks["uses"],
+            "tagged": blocks["tagged"],
+        }
+    return Result(_clipped("\n\n".join(parts), asked.max_tokens), data)
+
+
+def _counted(blocks: dict[str, str]) -> str:
+    """How many data-blocks there are of each kind."""
+    kinds = Counter(name.partition(" ")[0] for name in blocks)
+    told = ", ".join(f"{count:,} {kind}" for kind, count in sorted(kinds.items()))
+    return f"## Data-blocks ({len(blocks):,})\n{told}. Their digests are in the structured data."
+
+
+def _pieces(name: SectionName, entries: list[Entry], asked: SceneState) -> list[Piece]:
+    """What a section tells, from the entry on that the caller wants to begin with."""
+    full, summary = asked.detail == "full", asked.detail == "summary"
+    if name == "collections":
+        entries = [_with_series(entry) for entry in entries]
+        entries = fold_tree(entries) if asked.objects is None else entries
+    elif name == "animation" and not full:
+        entries = [dynamics.counted(entry) if summary else _shortened(entry) for entry in entries]
+    elif name == "physics" and summary:
+        entries = dynamics.by_kind(entries)
+    if asked.objects is None and name != "collections":
+        entries = fold(entries)
+        if len(entries) > _TOO_MANY:
+            entries = fold(entries, by_name=False)
+    if name == "animation" and full:
+        entries = _in_parts(entries)
+    listed = summary or "objects" not in (asked.sections or _TITLES)
+    write: dict[SectionName, Callable[[Entry], str]] = {
+        "collections": lambda entry: words.collection(entry, names=listed),
+        "objects": words.thing,
+        "physics": dynamics.physics,
+        "animation": dynamics.animation,
+        "materials": words.material,
+        "view": words.view,
+    }
+    return [Piece(write[name](entry), entry, entry.get("count", 1)) for entry in entries[asked.start :]]
+
+
+def _with_series(entry: Entry) -> Entry:
+    return {**entry, "names": series(entry["names"])[:_FEW_NAMES]} if "names" in entry else entry
+
+
+def _shortened(entry: Entry) -> Entry:
+    """An animated data-block with the first of its channels, like ones folded, and how many more there are."""
+    told = dict(entry)
+    for key in dynamics.LISTS:
+        if len(items := entry.get(key, ())) > _FEW:
+            items = fold([{"name": item.get("path", ""), **item} for item in items])
+            told[key] = items[:_FEW]
+            if left := sum(item.get("count", 1) for item in items[_FEW:]):
+                told[f"{key}_left_out"] = left
+    return told
+
+
+def _in_parts(entries: list[Entry]) -> list[Entry]:
+    """The entries, those with long lists as several, so that each fits into a readout."""
+    found: list[Entry] = []
+    for entry in entries:
+        longest = max((len(entry.get(key, ())) for key in dynamics.LISTS), default=0)
+        for first in range(0, max(longest, 1), _PART):
+            part = {key: items[first : first + _PART] for key in dynamics.LISTS if (items := entry.get(key))}
+            if longest > _PART:
+                part["part"] = f"{first + 1}–{min(first + _PART, longest)} of {longest}"
+            found.append(entry | part)
+    return found
+
+
+def _told(section: Section, facts: dict[str, Any], asked: SceneState) -> str:
+    """A section with its heading, and with the call that shows what is not in it."""
+    title, _ = _TITLES[cast("SectionName", section.name)]
+    total = facts["unread"].get(section.name, 0) + len(facts[section.name])
+    lines = [f"## {title} ({total:,})", *(piece.text for piece in section.shown)]
+    if section.left_out:
+        lines.append(_footer(section, asked))
+    return "\n".join(lines)
+
+
+def _footer(section: Section, asked: SceneState) -> str:
+    only = f"; {section.unread:,} of them only with objects=[…]" if section.unread else ""
+    return f"… {section.left_out:,} more: {_next(section, asked)}{only}"
+
+
+def _next(section: Section, asked: SceneState) -> str:
+    """The call that goes on where a section ends."""
+    given: list[str] = []
+    if asked.objects is not None:
+        objects = json.dumps(asked.objects, ensure_ascii=False)
+        given.append(f"objects={objects if len(objects) <= _LONGEST_OBJECTS else '[… as before]'}")
+    given.append(f'sections=["{section.name}"]')
+    if asked.detail != "normal":
+        given.append(f'detail="{asked.detail}"')
+    if start := asked.start + len(section.shown):
+        given.append(f"start={start}")
+    if asked.max_tokens != SceneState.model_fields["max_tokens"].default:
+        given.append(f"max_tokens={asked.max_tokens}")
+    return f"blender_scene_state({', '.join(given)})"
+
+
+def _clipped(text: str, room: int) -> str:
+    """The lines of a text that fit into ``room`` tokens."""
+    if tokens(text) <= room:
+        return text
+    kept: list[str] = []
+    used = 4
+    for line in text.splitlines():
+        used += tokens(line) + 1
+        if used > room:
+            break
+        kept.append(line)
+    return "\n".join([*kept, "…"])
+
+
+TOOL = Tool("blender_scene_state", "Read the scene", DESCRIPTION, SceneState, run, read_only=True)

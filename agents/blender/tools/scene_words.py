@@ -1,0 +1,286 @@
+"""A readout's facts in words: compact lines that a model reads, in Blender's own terms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from agents.blender.tools.scene_fold import Range
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from agents.blender.tools.scene_fold import Entry
+
+_FEW = 8  # items of a list in a readout that is not full
+
+
+def value(given: Any) -> str:
+    """A fact as Python would write it, a range as ``from…to``."""
+    if given is None or isinstance(given, (bool, int, float, str)):
+        return str(given)
+    if isinstance(given, list):
+        return f"({', '.join(value(item) for item in cast('list[Any]', given))})"
+    table = cast("dict[str, Any]", given)
+    if isinstance(table, Range):
+        return f"{value(table['from'])}…{value(table['to'])}"
+    return f"{{{pairs(table)}}}"
+
+
+def pairs(table: dict[str, Any]) -> str:
+    """``key=value, …``."""
+    return ", ".join(f"{key}={value(item)}" for key, item in table.items())
+
+
+def row(numbers: Iterable[Any]) -> str:
+    """Numbers side by side: ``0 0 1.5``."""
+    return " ".join(value(number) for number in numbers)
+
+
+def span(ends: Sequence[Any]) -> str:
+    """From where to where: ``1–250``."""
+    first, last = ends
+    return value(first) if first == last else f"{value(first)}–{value(last)}"
+
+
+def titled(entry: Entry, word: str = "") -> str:
+    """Its name, how many it stands for, and a word behind them."""
+    count = f" ({entry['count']})" if "count" in entry else ""
+    return f"{entry['name']}{count} {word}".rstrip()
+
+
+def _tags(entry: Entry) -> list[str]:
+    return [f"{key}={value(item)}" for key, item in entry.get("tags", {}).items()]
+
+
+def joined(head: str, parts: Iterable[str]) -> str:
+    """Parts of a line behind its head; empty ones are passed over."""
+    return "; ".join([head, *filter(None, parts)])
+
+
+# The scene
+
+
+def scene(facts: dict[str, Any]) -> str:
+    """The lines on top: what file, which frames, what it is rendered with, how many objects, what looks wrong."""
+    told, frame, units = facts["scene"], facts["scene"]["frame"], facts["scene"]["units"]
+    lines = [
+        joined(f'# Scene "{told["name"]}"', [told["file"], f"Blender {told['blender']}", *_tags(told)]),
+        joined(
+            f"frame {frame['current']} of {frame['start']}–{frame['end']} at {frame['fps']} fps",
+            [
+                f"frame_step {frame['step']}" if frame["step"] != 1 else "",
+                f"preview range {span(frame['preview'])}" if "preview" in frame else "",
+                f"gravity {row(told['gravity'])}" if told["gravity"] is not None else "gravity off",
+                _unit(units),
+            ],
+        ),
+        joined(
+            f"{told['engine']} {told['samples']} samples" if "samples" in told else told["engine"],
+            [
+                f"{told['resolution'][0]}×{told['resolution'][1]}"
+                + (f" at {told['resolution'][2]}%" if told["resolution"][2] != 100 else ""),
+                f"camera {told['camera']}" if told["camera"] else "no active camera",
+            ],
+        ),
+        joined(
+            f"{sum(told['counts'].values())} objects: {_counts(told['counts'])}"
+            if told["counts"]
+            else "no objects",
+            [
+                f"{told['outside']} more in the file, in no scene" if "outside" in told else "",
+                f"other scenes: {', '.join(told['other_scenes'])}" if "other_scenes" in told else "",
+                f"view layer {told['view_layer']}" if "view_layer" in told else "",
+            ],
+        ),
+    ]
+    if "markers" in told:
+        lines.append("markers: " + ", ".join(told["markers"]))
+    if "libraries" in told:
+        lines.append("libraries: " + ", ".join(told["libraries"]))
+    lines += [f"! {note}" for note in facts["notes"]]
+    return "\n".join(lines)
+
+
+def _unit(units: dict[str, Any]) -> str:
+    if units["scale_length"] == 1:
+        return "lengths in m"
+    return f"1 unit = {value(units['scale_length'])} m, lengths here are in units"
+
+
+def _counts(counts: dict[str, Any]) -> str:
+    return ", ".join(f"{value(count)} {kind}" for kind, count in counts.items())
+
+
+# Collections and objects
+
+
+def collection(entry: Entry, *, names: bool) -> str:
+    """A line of the tree."""
+    indent = "  " * entry["depth"]
+    if "again" in entry or "cut" in entry:
+        return f"{indent}- {titled(entry)} ({'see above' if 'again' in entry else 'and what is below it'})"
+    objects = entry.get("objects", {})
+    inside = _counts(objects)
+    if names and entry.get("names"):
+        listed = entry["names"]
+        inside += f": {', '.join(listed[:_FEW])}" + (
+            f" and {len(listed) - _FEW} more" if len(listed) > _FEW else ""
+        )
+    return joined(
+        f"{indent}- {titled(entry)}",
+        [
+            inside,
+            ", ".join(_tags(entry)),
+            f"hidden: {', '.join(entry['hidden'])}" if "hidden" in entry else "",
+            f"linked from {entry['linked']}" if "linked" in entry else "",
+        ],
+    )
+
+
+def thing(entry: Entry) -> str:
+    """An object: a line for itself, one each for modifiers and constraints."""
+    head = f"- {titled(entry, entry['type'])} in {', '.join(entry['in'])}"
+    lines = [joined(head, [*_place(entry), *_look(entry), *_tags(entry)])]
+    lines += [f"  modifier {_modifier(one)}" for one in entry.get("modifiers", ())]
+    lines += [f"  constraint {_constraint(one)}" for one in entry.get("constraints", ())]
+    return "\n".join(lines)
+
+
+def _place(entry: Entry) -> list[str]:
+    told = [f"at {row(entry['location'])}"]
+    if "parent" in entry:
+        kind = f" ({entry['parent_type']})" if "parent_type" in entry else ""
+        told.insert(0, f"parent {entry['parent']}{kind}")
+    if (turn := entry.get("rotation", [0, 0, 0])) != [0, 0, 0]:
+        told.append(f"rotation {row(turn)}°")
+    if (scale := entry.get("scale", [1, 1, 1])) != [1, 1, 1]:
+        told.append(f"scale {row(scale)}")
+    if box := entry.get("extent"):
+        about = "about " if box.get("rough") else ""
+        size = "×".join(value(length) for length in box["size"])
+        word = "each" if "count" in entry else "size"
+        told.append(f"spans {about}({row(box['min'])}) to ({row(box['max'])}), {word} {size}")
+    return told
+
+
+def _look(entry: Entry) -> list[str]:
+    return [write(entry[key]) for key, write in _LOOKS.items() if key in entry]
+
+
+_LOOKS: dict[str, Callable[[Any], str]] = {
+    "vertices": lambda count: f"{value(count)} vertices",
+    "evaluated_vertices": lambda count: f"{value(count)} evaluated",
+    "faces": lambda count: f"{value(count)} faces",
+    "bones": lambda count: f"{value(count)} bones",
+    "splines": lambda count: f"{value(count)} splines",
+    "instances": lambda count: f"{value(count)} instances",
+    "instancing": lambda what: f"instances {what}",
+    "shape_keys": lambda count: f"{value(count)} shape keys",
+    "materials": lambda names: f"material {', '.join(str(name) for name in names)}",
+    "shares": lambda data: f"shares data {data}",
+    "data": lambda data: f"data {data}",
+    "vertex_groups": lambda found: (
+        f"vertex groups {', '.join(found) if isinstance(found, list) else value(found)}"
+    ),
+    "uv_layers": lambda names: f"UV {', '.join(names) or 'none'}",
+    "text": lambda body: f'text "{body}"',
+    "rotation_mode": lambda mode: f"rotation_mode {mode}",
+    "display_type": lambda kind: f"display_type {kind}",
+    "pass_index": lambda number: f"pass_index {value(number)}",
+    "delta": lambda numbers: f"delta {row(numbers)}",
+    "locked": lambda names: f"locked {', '.join(names)}",
+    "hidden": lambda where: f"hidden: {', '.join(where)}",
+    "linked": lambda path: f"linked from {path}",
+    "overrides": lambda name: f"library override of {name}",
+    "custom": lambda table: f"custom {pairs(table)}",
+}
+
+
+def _modifier(entry: Entry) -> str:
+    off = f" off in {' and '.join(entry['off'])}" if "off" in entry else ""
+    return f"{entry['name']} {entry['type']}{off}{settings(entry)}".rstrip()
+
+
+def _constraint(entry: Entry) -> str:
+    bone = f" on bone {entry['bone']}" if "bone" in entry else ""
+    state = " off" if entry.get("off") else " INVALID" if entry.get("invalid") else ""
+    return f"{entry['name']} {entry['type']}{bone}{state}{settings(entry)}".rstrip()
+
+
+def settings(entry: Entry) -> str:
+    """``: key=value, …`` where an entry has settings that are told."""
+    found = entry.get("settings")
+    return f": {pairs(found)}" if found else ""
+
+
+# Materials and what is seen
+
+
+def material(entry: Entry) -> str:
+    """A material: a line, and one for each node of a full readout."""
+    return _with_nodes(
+        f"- {titled(entry)}", entry, [f"{value(entry['users'])} users", *_shaders(entry), *_rest(entry)]
+    )
+
+
+def _rest(entry: Entry) -> Iterable[str]:
+    yield f"viewport {row(entry['viewport'])}"
+    if "surface_render_method" in entry:
+        yield entry["surface_render_method"]
+    if "linked" in entry:
+        yield f"linked from {entry['linked']}"
+    if "settings" in entry:
+        yield pairs(entry["settings"])
+
+
+def _shaders(entry: Entry) -> Iterable[str]:
+    for part in ("surface", "volume", "displacement"):
+        if part not in entry:
+            continue
+        node = entry[part]
+        if node is None:
+            yield "nothing linked to its output"
+        else:
+            name = "" if part == "surface" else f"{part} "
+            yield f"{name}{node['shader']}" + (f" {pairs(node['inputs'])}" if "inputs" in node else "")
+
+
+def _with_nodes(head: str, entry: Entry, parts: Iterable[str]) -> str:
+    lines = [joined(head, parts)]
+    for node in entry.get("tree", ()):
+        name = "" if node["name"] == node["shader"] else f" ({node['shader']})"
+        inputs = f": {pairs(node['inputs'])}" if "inputs" in node else ""
+        own = f" [{pairs(node['settings'])}]" if "settings" in node else ""
+        lines.append(f"  node {node['name']}{name}{own}{inputs}" + (" MUTED" if node.get("muted") else ""))
+    return "\n".join(lines)
+
+
+def view(entry: Entry) -> str:
+    """A camera, a light, the world, or the settings of a render."""
+    kind = entry["kind"]
+    if kind == "world":
+        plain = f"color={value(entry['color'])}" if "color" in entry else ""
+        return _with_nodes(f"- world {titled(entry)}", entry, [plain, *_shaders(entry)])
+    skipped = {
+        "kind",
+        "name",
+        "count",
+        "pattern",
+        "settings",
+        "active",
+        "location",
+        "direction",
+        "settings_left_out",
+    }
+    own = {key: item for key, item in entry.items() if key not in skipped}
+    left = entry.get("settings_left_out")
+    return joined(
+        f"- {kind} {titled(entry)}" + (" (active)" if entry.get("active") else ""),
+        [
+            f"at {row(entry['location'])}" if "location" in entry else "",
+            f"looking {row(entry['direction'])}" if "direction" in entry else "",
+            pairs(own),
+            pairs(entry["settings"]) if "settings" in entry else "",
+            f"{left} more settings: detail='full'" if left else "",
+        ],
+    )

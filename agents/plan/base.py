@@ -1,0 +1,49 @@
+"""What every part of a plan has in common."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Stage = Literal["modeling", "uv", "texture", "deformation_setup", "motion", "camera", "light", "render"]
+# In the order in which a scene is built (paper, section "Staged Construction Pipeline").
+STAGES: tuple[Stage, ...] = (
+    "modeling",
+    "uv",
+    "texture",
+    "deformation_setup",
+    "motion",
+    "camera",
+    "light",
+    "render",
+)
+ALWAYS: frozenset[Stage] = frozenset({"modeling", "camera", "light", "render"})  # no scene does without
+
+# What Blender's own names may be: 63 bytes; a slash tells a part from its object.
+Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[^/\x00-\x1f]+$")]
+Node = Annotated[
+    str,
+    Field(
+        min_length=1,
+        max_length=121,
+        pattern=r"^[^/\x00-\x1f]+(/[^/\x00-\x1f]+)?$",
+        description="An object of the plan, or one of its parts as `Object/Part`.",
+    ),
+]
+Metres = Annotated[float, Field(ge=-1e5, le=1e5)]
+Length = Annotated[float, Field(gt=0, le=1e5, description="Metres.")]
+Vector = tuple[Metres, Metres, Metres]
+Share = Annotated[float, Field(ge=0, le=1)]
+Frame = Annotated[int, Field(ge=-100_000, le=1_000_000)]
+
+
+class Part(BaseModel):
+    """A part of a plan: nothing that it does not know, no number that is none, never changed."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, frozen=True)
+
+
+def owner_of(node: str) -> str:
+    """The object that a node of the relation graph belongs to: ``Table`` of ``Table`` and of ``Table/Leg``."""
+    return node.partition("/")[0]

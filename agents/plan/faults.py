@@ -1,0 +1,16 @@
+"""What is wrong with a plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """``path`` leads to the field (``relations[3].parents[0]``), ``message`` is a sentence."""
+
+    path: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.message}"

@@ -1,0 +1,52 @@
+"""What the verifier says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+Severity = Literal["hard", "soft"]
+Outcome = Literal["broken", "undecided", "error"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One breach of one rule.
+
+    ``outcome``: the rule is broken; or it could not be decided; or the rule itself failed. ``measured`` and
+    ``tolerance`` are in ``unit``. ``message`` says what is wrong, ``fix`` what a coder is to change. ``at`` is where
+    in the world, for pictures.
+    """
+
+    rule: str
+    severity: Severity
+    objects: tuple[str, ...]
+    message: str
+    fix: str = ""
+    outcome: Outcome = "broken"
+    frame: int | None = None
+    measured: float | None = None
+    tolerance: float | None = None
+    unit: str = ""
+    at: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The outcome of a run. ``passed`` are rules that ran and found nothing; ``idle`` those with nothing to judge,
+    with the reason."""
+
+    findings: tuple[Finding, ...]
+    passed: tuple[str, ...]
+    idle: dict[str, str] = field(default_factory=dict[str, str])
+    seconds: float = 0.0
+
+    @property
+    def ok(self) -> bool:
+        """Whether no hard rule is broken, undecided or failed itself."""
+        return not any(finding.severity == "hard" for finding in self.findings)
+
+    @property
+    def decided(self) -> bool:
+        """Whether every rule could be judged."""
+        return all(finding.outcome == "broken" for finding in self.findings)

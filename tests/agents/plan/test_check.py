@@ -1,0 +1,200 @@
+"""A plan is checked for itself: what is wrong is named by its field, in a sentence."""
+
+from __future__ import annotations
+
+import copy
+import json
+from typing import Any
+
+import pytest
+
+from agents.plan.check import read_plan
+
+CHAIR = {"dimensions": [0.5, 0.5, 0.9], "position": [0, 0, 0]}
+
+
+def a_plan() -> dict[str, Any]:
+    """A table with a bowl of fruit, four chairs around it, and a ball that falls into the bowl."""
+    chairs = [{"name": f"Chair {n}", "systems": ["furniture"], **CHAIR} for n in range(4)]
+    return {
+        "title": "A laid table",
+        "frame_start": 1,
+        "frame_end": 96,
+        "systems": ["ground", "furniture"],
+        "objects": [
+            {
+                "name": "Floor",
+                "systems": ["ground"],
+                "dimensions": [6, 6, 0.1],
+                "position": [0, 0, 0],
+                "role": "ground",
+            },
+            {
+                "name": "Table",
+                "systems": ["furniture"],
+                "dimensions": [1.6, 0.9, 0.75],
+                "position": [0, 0, 0],
+                "parts": ["Top"],
+            },
+            {
+                "name": "Bowl",
+                "systems": ["furniture"],
+                "dimensions": [0.3, 0.3, 0.12],
+                "position": [0, 0, 0.75],
+                "role": "container",
+            },
+            {
+                "name": "Ball",
+                "systems": ["furniture"],
+                "dimensions": [0.08, 0.08, 0.08],
+                "position": [0, 0, 1.5],
+                "role": "rigid",
+            },
+            *chairs,
+        ],
+        "relations": [
+            {"kind": "SupportedBy", "child": "Table", "parents": ["Floor"]},
+            {"kind": "SupportedBy", "child": "Bowl", "parents": ["Table/Top"]},
+            {"kind": "Inside", "content": "Ball", "container": "Bowl"},
+            {
+                "kind": "Distributed",
+                "members": [chair["name"] for chair in chairs],
+                "pattern": "circle",
+                "fold": 4,
+                "about": "Table",
+                "facing": "inwards",
+            },
+        ],
+        "groups": [{"name": "chairs", "members": ["Chair 0", "Chair 1"], "same": ["mesh"]}],
+        "lighting": [
+            {"name": "Key", "kind": "area", "position": [2, -2, 3], "target": "Table", "energy": 200}
+        ],
+        "camera": {"position": [3, -3, 2], "target": "Table", "subjects": ["Table", "Ball"]},
+        "render": {"kind": "animation"},
+        "motion": {
+            "phases": [
+                {"name": "drop", "actor": "Ball", "kind": "fall", "start": 1, "end": 20, "extent": 0.7},
+                {"name": "rest", "actor": "Ball", "kind": "settle", "start": 60, "end": 96, "cause": "drop"},
+            ]
+        },
+        "opt_out": ["uv"],
+    }
+
+
+def told(plan: Any) -> list[str]:
+    found, faults = read_plan(plan)
+    assert (found is None) == bool(faults)
+    return [str(fault) for fault in faults]
+
+
+def test_a_sound_plan_has_no_faults() -> None:
+    plan, faults = read_plan(json.dumps(a_plan()))
+    assert faults == []
+    assert plan is not None
+    assert plan.stages == ("modeling", "texture", "deformation_setup", "motion", "camera", "light", "render")
+    ball = plan.object("Ball")
+    assert ball is not None
+    assert ball.mechanism == ("sim_rigid", "bake")
+
+
+def test_a_plan_comes_back_from_its_json_as_it_was() -> None:
+    plan, _ = read_plan(a_plan())
+    assert plan is not None
+    assert read_plan(plan.model_dump_json())[0] == plan
+
+
+def changed(path: str, value: Any) -> dict[str, Any]:
+    """The sound plan with one field replaced; ``path`` as in a fault."""
+    plan = copy.deepcopy(a_plan())
+    *above, last = [
+        int(part) if part.isdigit() else part for part in path.replace("]", "").replace("[", ".").split(".")
+    ]
+    place: Any = plan
+    for part in above:
+        place = place[part]
+    place[last] = value
+    return plan
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "where", "says"),
+    [
+        ("relations[0].child", "Tabel", "relations[0].child", "did you mean 'Table'"),
+        ("relations[1].parents[0]", "Table/Leg", "relations[1].parents[0]", "no part 'Leg' (its parts: Top)"),
+        ("relations[0].parents", ["Bowl"], "relations[1]", "closes a circle"),
+        ("relations[0].parents", ["Table"], "relations[0]", "with itself"),
+        ("relations[0].parents", ["Chair 0"], "relations[0]", "nothing below it stands on"),
+        ("relations[3].fold", 5, "relations[3].fold", "5 members are asked for, 4 are named"),
+        ("relations[3].members", ["Chair 0", "Chair 1"], "relations[3].fold", "4 members are asked for"),
+        ("objects[3].dimensions", [0.5, 0.1, 0.1], "relations[2]", "cannot lie inside"),
+        ("objects[3].role", "static", "motion.phases[0].actor", "say what moves it"),
+        ("objects[0].systems", ["furniture"], "objects", "No object belongs to the system 'ground'"),
+        ("objects[1].name", "Floor", "objects[1]", "there twice"),
+        ("objects[1].name", "furniture", "objects[1].name", "name of a system too"),
+        ("systems", ["furniture"], "systems", "no system 'ground'"),
+        ("objects[1].systems", ["furnitur"], "objects[1].systems[0]", "did you mean 'furniture'"),
+        ("motion.phases[0].end", 200, "motion.phases[0]", "outside the scene's"),
+        ("motion.phases[0].end", 70, "motion.phases[1]", "overlaps 'drop'"),
+        ("motion.phases[1].cause", "push", "motion.phases[1].cause", "no phase 'push'"),
+        ("motion.phases[0].cause", "rest", "motion.phases[0].cause", "after its effect"),
+        ("motion.phases[0].cause", "drop", "motion.phases[0].cause", "its own cause"),
+        ("motion.phases[0].actor", "Cat", "motion.phases[0].actor", "no object 'Cat'"),
+        ("camera.subjects", ["Cat"], "camera.subjects[0]", "no object 'Cat'"),
+        ("camera.target", "Cat", "camera.target", "no object 'Cat'"),
+        ("lighting[0].target", "Cat", "lighting[0].target", "no object 'Cat'"),
+        ("groups[0].members", ["Cat", "Table"], "groups[0].members[0]", "no object 'Cat'"),
+        ("opt_out", ["camera"], "opt_out[0]", "No scene does without"),
+        ("opt_out", ["motion"], "opt_out", "phases are planned"),
+        ("motion.phases", [], "motion.phases", "no phase says how"),
+        ("frame_end", -5, "frame_end", "is before frame_start, 1."),
+        ("objects[1].dimensions", [1, 0, 1], "objects[1].dimensions[1]", "greater than 0"),
+        ("objects[1].position", [float("nan"), 0, 0], "objects[1].position[0]", "finite"),
+        ("objects[1].colour", "red", "objects[1].colour", "no field 'colour' here (fields: name, "),
+        ("relations[0].kind", "Upon", "relations[0].kind", "There is no relation 'Upon'; did you mean "),
+        ("relations[0].kind", "supported_by", "relations[0].kind", "did you mean 'SupportedBy'"),
+        ("relations[0]", {"child": "Table"}, "relations[0].kind", "which relation this is"),
+        ("relations[0]", {"kind": "SupportedBy", "child": "Table"}, "relations[0].parents", "It is missing."),
+        ("relations[0].parents", "Floor", "relations[0].parents", 'should be a list. Given: "Floor".'),
+        ("relations[3].fould", 4, "relations[3].fould", "did you mean 'fold' (fields: kind, members, "),
+        ("relations[3].spacing", "wide", "relations[3].spacing", "Give a number or a list of two numbers."),
+        ("camera.target", [1, 2], "camera.target", "Give a name or a list of three numbers."),
+        ("motion.phases[0].end", 0, "motion.phases[0].end", "Frame 0 is before the start, 1."),
+        ("lighting", [], "lighting", "It should have at least 1 item, not 0."),
+        ("objects[1].role", "wood", "objects[1].role", 'Given: "wood".'),
+        ("objects[1].name", "a/b", "objects[1].name", "without a slash"),
+    ],
+)
+def test_a_fault_is_named_by_its_field(path: str, value: Any, where: str, says: str) -> None:
+    found = told(changed(path, value))
+    assert any(fault.startswith(f"{where}") and says in fault for fault in found), found
+
+
+def test_opposite_directions_contradict_each_other() -> None:
+    plan = a_plan()
+    plan["relations"] += [
+        {"kind": "LeftOf", "a": "Chair 0", "b": "Table"},
+        {"kind": "LeftOf", "a": "Table", "b": "Chair 0"},
+        {"kind": "RightOf", "a": "Chair 0", "b": "Table"},
+        {"kind": "RightOf", "a": "Chair 0", "b": "Table", "frame": "camera"},
+    ]
+    found = told(plan)
+    assert [fault.partition(":")[0] for fault in found] == ["relations[5]", "relations[6]"]
+
+
+def test_a_circle_over_several_objects_names_them_all() -> None:
+    plan = a_plan()
+    plan["relations"] += [
+        {"kind": "OnTopOf", "a": "Chair 1", "b": "Bowl"},
+        {"kind": "OnTopOf", "a": "Table", "b": "Chair 1"},
+    ]
+    assert any("'Table' on 'Chair 1' on 'Bowl' on 'Table'" in fault for fault in told(plan))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "no json", "[]", "null", '{"title": 1}', "[" * 100_000, b"\xff\xfe", "1" * 3_000_000]
+)
+def test_what_is_no_plan_is_told(text: Any) -> None:
+    plan, faults = read_plan(text)
+    assert plan is None
+    assert faults
+    assert all(len(str(fault)) < 1000 for fault in faults)

@@ -1,0 +1,363 @@
+"""Draws the pictures on the rules' pages from the rules' cases; run as a script, with the ids of rules or for all.
+
+Each shows on the left the scene that keeps the rule, on the right its twin, and what the verifier says of it.
+"""
+
+from __future__ import annotations
+
+import io
+import itertools
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+REPO = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(REPO), str(REPO / "tests" / "agents")]
+
+from PIL import Image, ImageDraw  # noqa: E402
+from rule_cases import CASES, Case, judge  # noqa: E402
+from studio import Studio  # noqa: E402
+
+from agents.blender import sheets  # noqa: E402
+from agents.blender.findings_image import Mark, linear, panel_of  # noqa: E402
+from agents.blender.lettering import round_length, shortened, text_width  # noqa: E402
+from agents.protocol.facts import Facts  # noqa: E402
+from agents.protocol.folding import rows  # noqa: E402
+from agents.protocol.structure import is_mesh  # noqa: E402
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from agents.protocol.facts import CacheFacts, CollectionFacts, ObjectFacts
+    from agents.protocol.findings import Finding
+
+FOLDER = REPO / "docs" / "rules"
+WIDTH, HEIGHT = 340, 255
+COLOURS = 96  # of a picture: enough for flat shading, and a third of the bytes
+GREEN: sheets.Colour = (25, 135, 60)
+RED: sheets.Colour = (200, 30, 30)
+BLUE: sheets.Colour = (40, 90, 190)
+VIOLET: sheets.Colour = (120, 60, 170)
+PALE: sheets.Colour = (236, 237, 239)
+SMALL = sheets.Style(13)
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One of a case's two scenes, as it was seen: a picture, or what is to be drawn as curves."""
+
+    picture: Image.Image | None = None
+    curves: dict[str, list[float]] | None = None
+    frames: tuple[int, int] = (1, 1)
+
+
+def main(ids: Sequence[str]) -> None:
+    """Draws the pictures of some rules, or of all."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="rule-pictures-", ignore_cleanup_errors=True) as place:
+        studio = Studio(Path(place).resolve() / "run")
+        try:
+            for rule in ids or CASES:
+                path = FOLDER / f"{rule}.png"
+                path.write_bytes(draw(studio, rule, CASES[rule]))
+                sys.stdout.write(f"{path.relative_to(REPO)}: {path.stat().st_size / 1000:.1f} kB\n")
+        finally:
+            studio.blender.close()
+
+
+def draw(studio: Studio, rule: str, case: Case) -> bytes:
+    """The picture of a rule, as a PNG."""
+    studio.empty()
+    found = judge(studio, rule, case, good=False).findings
+    finding = rows(found)[0].worst
+    bad = take(studio, case, finding, finding.objects, RED)
+    studio.empty()
+    assert not judge(studio, rule, case, good=True).findings
+    good = take(studio, case, None, finding.objects, GREEN)
+    left = good.picture or plot(case, good, good, None)
+    right = bad.picture or plot(case, bad, good, finding)
+    columns = [
+        column(f"✓ {rule} holds", GREEN, left, case.says),
+        column(f"✗ {rule} is broken", RED, right, finding.message),
+    ]
+    sheet = beside(columns)
+    written = io.BytesIO()
+    sheet.quantize(COLOURS, dither=Image.Dither.NONE).save(written, "PNG", optimize=True)
+    return written.getvalue()
+
+
+def take(
+    studio: Studio, case: Case, finding: Finding | None, names: tuple[str, ...], colour: sheets.Colour
+) -> Shot:
+    """The open scene as the case is to be looked at."""
+    if case.look == "tree":
+        told = studio.blender.call("snapshot", {}, timeout=60).value
+        return Shot(tree(Facts.read(told), names if finding else (), case.baked))
+    if case.look == "camera":
+        return Shot(rendered(studio))
+    if case.look == "curve":
+        return curves(studio, case)
+    return Shot(view(studio, case.look, finding, names, colour))
+
+
+def column(title: str, colour: sheets.Colour, picture: Image.Image, text: str) -> Image.Image:
+    framed = sheets.grid([sheets.Panel(picture, border=colour)], 1)
+    return sheets.stack(
+        [
+            sheets.paragraph(title, framed.width, sheets.Style(16, colour)),
+            framed,
+            sheets.paragraph(text, framed.width, sheets.Style(14)),
+        ],
+        6,
+    )
+
+
+def beside(columns: Sequence[Image.Image]) -> Image.Image:
+    margin, gap = 10, 16
+    width = sum(one.width for one in columns) + gap * (len(columns) - 1)
+    sheet = Image.new(
+        "RGB", (width + 2 * margin, max(one.height for one in columns) + 2 * margin), sheets.PAPER
+    )
+    x = margin
+    for one in columns:
+        sheet.paste(one, (x, margin))
+        x += one.width + gap
+    return sheet
+
+
+# Views
+
+
+def view(
+    studio: Studio, name: str, finding: Finding | None, names: tuple[str, ...], colour: sheets.Colour
+) -> Image.Image:
+    marks = [Mark(1, finding)] if finding else []
+    asked = {
+        "objects": names,
+        "colour": linear(colour),
+        "at": finding.at if finding else None,
+        "size": None,
+        "frame": None,
+        "marked": finding is not None,
+    }
+    folder = studio.blender.folder
+    reply = studio.blender.call(
+        "findings_image",
+        {"findings": [asked], "folder": str(folder.workspace), "size": WIDTH, "close": 16, "whole": True},
+        timeout=120,
+    ).value
+    panels = {one["name"]: panel_of(folder, one, marks) for one in reply["views"]}
+    return panels[name].picture
+
+
+def rendered(studio: Studio) -> Image.Image:
+    studio.run(
+        "scene = bpy.context.scene\n"
+        "scene.render.engine, scene.cycles.samples, scene.cycles.device = 'CYCLES', 32, 'CPU'\n"
+        f"scene.render.resolution_x, scene.render.resolution_y = {WIDTH}, {HEIGHT}\n"
+        f"scene.render.filepath = {str(studio.blender.folder.workspace / 'seen.png')!r}\n"
+        "bpy.ops.render.render(write_still=True)"
+    )
+    with studio.blender.folder.open_made("seen.png") as file:
+        return sheets.read_png(file)
+
+
+# Trees of collections
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the tree."""
+
+    depth: int
+    mark: sheets.Colour
+    name: str
+    also: str
+
+
+def tree(facts: Facts, wrong: tuple[str, ...], with_mechanisms: bool) -> Image.Image:
+    lines = [Line(0, sheets.GREY, "Scene", "")]
+    lines += below(facts, "", 1, with_mechanisms)
+    height = 22
+    picture = Image.new("RGB", (WIDTH, max(HEIGHT, height * len(lines) + 16)), sheets.WHITE)
+    drawn = ImageDraw.Draw(picture)
+    for row, line in enumerate(lines):
+        x, y = 12 + 22 * line.depth, 18 + height * row
+        is_wrong = line.name in wrong
+        if is_wrong:
+            drawn.rectangle((x - 6, y - 10, WIDTH - 6, y + 10), fill=(255, 228, 225))
+        drawn.rectangle((x, y - 5, x + 10, y + 5), fill=line.mark)
+        style = sheets.Style(14, RED if is_wrong else sheets.INK)
+        sheets.write(drawn, (x + 18, y), line.name, style, anchor="lm")
+        start = x + 26 + text_width(line.name, 14)
+        also = shortened(line.also, WIDTH - 8 - start, 12) if line.also else ""
+        sheets.write(drawn, (start, y), also, sheets.Style(12, sheets.GREY), anchor="lm")
+    return picture
+
+
+def below(facts: Facts, parent: str, depth: int, with_mechanisms: bool) -> Iterator[Line]:
+    for one in facts.collections:
+        if parent in one.parents:
+            yield Line(
+                depth, {"system": BLUE, "object": GREEN}.get(one.role or "", sheets.GREY), one.name, tags(one)
+            )
+            yield from below(facts, one.name, depth + 1, with_mechanisms)
+            objects = {thing.name: thing for thing in facts.objects}
+            for name in one.objects:
+                thing = objects[name]
+                yield Line(depth + 1, colour_of(thing), name, kind_of(thing))
+                if with_mechanisms:
+                    yield from (Line(depth + 2, VIOLET, told, "") for told in mechanisms(thing, facts.caches))
+
+
+def tags(one: CollectionFacts) -> str:
+    words = {"system": ["system, L2"], "object": ["object, L3"]}.get(one.role or "", [])
+    return ", ".join([*words, *filter(None, (one.deformation_kind, one.motion_kind))])
+
+
+def colour_of(thing: ObjectFacts) -> sheets.Colour:
+    if thing.is_root:
+        return (225, 145, 20)
+    return (150, 150, 150) if is_mesh(thing) else VIOLET
+
+
+def kind_of(thing: ObjectFacts) -> str:
+    what = "root Empty" if thing.is_root else thing.type.lower()
+    return f"{what}, below {thing.parent}" if thing.parent else what
+
+
+def mechanisms(thing: ObjectFacts, caches: Sequence[CacheFacts]) -> list[str]:
+    told = [f"{one.type.lower()} modifier" for one in thing.modifiers]
+    told += [
+        f"cache: {'baked' if one.baked else 'not baked'}, frames {one.frame_start}–{one.frame_end}"
+        for one in caches
+        if one.object == thing.name
+    ]
+    return told + ["animated shape keys"] * thing.animated_shape_keys
+
+
+# Curves over frames
+
+
+def curves(studio: Studio, case: Case) -> Shot:
+    """How far the plan's actors get (or how high), at every frame of the plan."""
+    plan = case.plan
+    assert plan is not None
+    names = [one.name for one in plan.objects]
+    told: dict[str, Any] = studio.run(
+        "scene, found = bpy.context.scene, {}\n"
+        f"for frame in range({plan.frame_start}, {plan.frame_end} + 1):\n"
+        "    scene.frame_set(frame)\n"
+        "    graph = bpy.context.evaluated_depsgraph_get()\n"
+        f"    for name in {names!r}:\n"
+        "        thing = next(one for one in bpy.data.collections[name].objects if one.type == 'MESH')\n"
+        "        found.setdefault(name, []).append(thing.evaluated_get(graph).matrix_world.translation.copy())\n"
+        f"heights = {shows_heights(case)}\n"
+        "{'frames': (scene.frame_start, scene.frame_end), 'curves': {\n"
+        "    name: [round(at.z if heights else (at - places[0]).length, 3) for at in places]\n"
+        "    for name, places in found.items()}}"
+    )
+    return Shot(curves=told["curves"], frames=told["frames"])
+
+
+def shows_heights(case: Case) -> bool:
+    assert case.plan is not None
+    return any(phase.kind in {"fall", "settle"} for phase in case.plan.motion.phases)
+
+
+def plot(case: Case, shot: Shot, good: Shot, finding: Finding | None) -> Image.Image:
+    plan = case.plan
+    assert plan is not None
+    assert shot.curves is not None
+    assert good.curves is not None
+    phases = plan.motion.phases
+    first, last = plan.frame_start, plan.frame_end
+    every = [value for curve in (*shot.curves.values(), *good.curves.values()) for value in curve]
+    low, high = min(0.0, *every), max(every) * 1.12
+    left, right, bottom = 46, WIDTH - 14, HEIGHT - 32
+    top = 16 + 20 * len(phases)
+    picture = Image.new("RGB", (WIDTH, HEIGHT), sheets.WHITE)
+    drawn = ImageDraw.Draw(picture)
+
+    def x(frame: float) -> float:
+        return left + (frame - first) / (last - first) * (right - left)
+
+    def y(value: float) -> float:
+        return bottom - (value - low) / (high - low) * (bottom - top)
+
+    for begin, end in ((first, shot.frames[0]), (shot.frames[1], last)):
+        if end > begin:
+            drawn.rectangle((x(begin), top, x(end), bottom), fill=(238, 222, 220))
+            sheets.write(drawn, (x((begin + end) / 2), top + 12), "not rendered", sheets.Style(11, RED), "mm")
+    colours = dict(zip(shot.curves, (BLUE, (200, 110, 0)), strict=False))
+    for row, phase in enumerate(phases):
+        at = 14 + 20 * row
+        drawn.rectangle(
+            (x(phase.start), at - 7, x(phase.end), at + 8), fill=PALE, outline=colours[phase.actor]
+        )
+        label = f"planned: {phase.actor} {phase.kind} {phase.start}–{phase.end}"
+        label = shortened(label, right - x(phase.start), 11)
+        begin = min(x(phase.start) + 5, right - text_width(label, 11))
+        sheets.write(drawn, (begin, at + 1), label, sheets.Style(11, colours[phase.actor]), "lm")
+        for frame in (phase.start, phase.end):
+            for dash in range(top, bottom, 8):
+                drawn.line((x(frame), dash, x(frame), dash + 3), fill=sheets.FRAME)
+    axes(drawn, (left, right, top, bottom), (first, last), (x, y), (low, high), shows_heights(case))
+    if finding is not None:
+        for name, values in good.curves.items():
+            dashed(drawn, [(x(first + at), y(value)) for at, value in enumerate(values)], colours[name])
+    for row, (name, values) in enumerate(shot.curves.items()):
+        points = [(x(first + at), y(value)) for at, value in enumerate(values)]
+        drawn.line(points, fill=colours[name], width=3, joint="curve")
+        if len(shot.curves) > 1:
+            end = points[-1]
+            sheets.write(
+                drawn,
+                (end[0] - 4, end[1] + (14 if row else -10)),
+                name,
+                sheets.Style(12, colours[name], 2),
+                "rm",
+            )
+    if finding is not None and finding.frame is not None:
+        drawn.line((x(finding.frame), top, x(finding.frame), bottom), fill=RED, width=2)
+    return picture
+
+
+def axes(
+    drawn: ImageDraw.ImageDraw,
+    box: tuple[int, int, int, int],
+    frames: tuple[int, int],
+    scales: tuple[Any, Any],
+    values: tuple[float, float],
+    heights: bool,
+) -> None:
+    left, right, top, bottom = box
+    x, y = scales
+    drawn.line((left, top, left, bottom, right, bottom), fill=sheets.INK)
+    step = round_length((values[1] - values[0]) / 3)
+    value = 0.0
+    while value <= values[1]:
+        drawn.line((left - 4, y(value), left, y(value)), fill=sheets.INK)
+        sheets.write(drawn, (left - 7, y(value)), f"{value:g}", sheets.Style(11, sheets.GREY), "rm")
+        value = round(value + step, 9)
+    stride = int(round_length((frames[1] - frames[0]) / 3)) or 1
+    for frame in range(0, frames[1] + 1, stride):
+        if frame >= frames[0]:
+            drawn.line((x(frame), bottom, x(frame), bottom + 4), fill=sheets.INK)
+            sheets.write(drawn, (x(frame), bottom + 12), str(frame), sheets.Style(11, sheets.GREY), "mm")
+    sheets.write(drawn, (right, bottom + 24), "frame", sheets.Style(11, sheets.GREY), "rm")
+    what = "height, m" if heights else "way, m"
+    sheets.write(drawn, (4, bottom + 24), what, sheets.Style(11, sheets.GREY), "lm")
+
+
+def dashed(drawn: ImageDraw.ImageDraw, points: Sequence[tuple[float, float]], colour: sheets.Colour) -> None:
+    """What it would be if the rule held."""
+    faint = tuple((part + 2 * 255) // 3 for part in colour)
+    for start, end in list(itertools.pairwise(points))[::2]:
+        drawn.line((*start, *end), fill=faint, width=2)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

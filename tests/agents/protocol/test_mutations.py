@@ -1,0 +1,26 @@
+"""Valid scenes are found valid, and what is broken in them is found broken."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from mutating import COUNT, measure_rates
+
+if TYPE_CHECKING:
+    from studio import Studio
+
+pytestmark = pytest.mark.blender
+
+
+def test_breaches_are_found_by_the_rules_that_own_them_and_valid_scenes_raise_no_alarm(
+    studio: Studio, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rates = measure_rates(studio)
+    with capsys.disabled():
+        sys.stdout.write(f"\n{rates.table()}\n")
+    missed = [row for row in rates.log().splitlines() if row.endswith("NOTHING")]
+    assert len(rates.outcomes) == COUNT
+    assert not [finding.message for finding in rates.alarms]
+    assert rates.detection >= 0.98, missed

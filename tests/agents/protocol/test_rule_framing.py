@@ -1,0 +1,210 @@
+"""R14: what the camera shows, measured against what its lens takes in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from scenes import a_plan, build, the_finding, verified
+
+if TYPE_CHECKING:
+    from studio import Studio
+
+    from agents.plan.scene import ScenePlan
+    from agents.protocol.findings import Report
+
+pytestmark = pytest.mark.blender
+
+# Ten metres away a lens of 50 mm before 36 mm of film takes in 7.2 m, and in 16:9 a height of 4.05 m.
+WIDE, HIGH = 7.2, 4.05
+STAGE = """
+scene.render.resolution_x, scene.render.resolution_y = 1920, 1080
+camera((0, -10, 0), (0, 0, 0))
+
+def sheet(name, left, right, low, high, y=0, **more):
+    points = [(left, y, low), (right, y, low), (right, y, high), (left, y, high)]
+    return thing(name, mesh(name + " mesh", points, [(0, 1, 2, 3)]), **more)
+"""
+
+
+def plan(*subjects: str, **more: Any) -> ScenePlan:
+    objects = [
+        {"name": name, "systems": ["set"], "dimensions": (1, 1, 1), "position": (0, 0, 0)}
+        for name in subjects
+    ]
+    camera = {"position": (0, -10, 0), "target": (0, 0, 0), "subjects": subjects}
+    return a_plan(objects=objects, camera=camera, **more)
+
+
+def seen(studio: Studio, script: str, *subjects: str, **more: Any) -> Report:
+    build(studio, STAGE + script)
+    return verified(studio, "R14", plan(*subjects, **more))
+
+
+def test_what_stands_in_the_middle_of_the_picture_is_framed(studio: Studio) -> None:
+    found = seen(studio, "thing('Crate', box('Case', (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)))", "Crate")
+    assert found.passed == ("R14",)
+
+
+@pytest.mark.parametrize(("outside", "framed"), [(0.19, True), (0.21, False)])
+def test_a_fifth_of_a_subject_may_be_outside_of_the_picture(
+    studio: Studio, outside: float, framed: bool
+) -> None:
+    right = WIDE / 2 + outside
+    found = seen(studio, f"sheet('Poster', {right - 1}, {right}, -0.5, 0.5)", "Poster")
+    assert (found.passed == ("R14",)) == framed
+    if not framed:
+        finding = the_finding(found)
+        assert finding.objects == ("Poster", "Camera")
+        assert finding.measured == pytest.approx(outside, abs=0.005)
+        assert finding.tolerance == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(("cover", "framed"), [(0.0101, True), (0.0099, False)])
+def test_a_subject_covers_a_hundredth_of_the_picture(studio: Studio, cover: float, framed: bool) -> None:
+    half = (cover * WIDE * HIGH) ** 0.5 / 2
+    found = seen(studio, f"sheet('Stamp', {-half}, {half}, {-half}, {half})", "Stamp")
+    assert (found.passed == ("R14",)) == framed
+    if not framed:
+        assert the_finding(found).measured == pytest.approx(cover, rel=1e-3)
+        assert the_finding(found).objects == ("Stamp", "Camera")
+
+
+@pytest.mark.parametrize(("hidden", "framed"), [(0.48, True), (0.52, False)])
+def test_half_of_a_subject_may_be_hidden(studio: Studio, hidden: float, framed: bool) -> None:
+    # Half as far away, half as wide: the wall's edge hides what is behind it up to twice as far out.
+    edge = (hidden - 0.5) / 2
+    found = seen(
+        studio,
+        f"sheet('Poster', -0.5, 0.5, -0.5, 0.5)\nsheet('Wall', -3, {edge}, -2, 2, y=-5)\n",
+        "Poster",
+    )
+    assert (found.passed == ("R14",)) == framed
+    if not framed:
+        finding = the_finding(found)
+        assert finding.objects == ("Poster", "Wall mesh", "Camera")
+        assert finding.measured == pytest.approx(hidden, abs=0.005)
+        assert finding.at == pytest.approx((0, 0, 0), abs=0.02)
+
+
+GLASS = """
+glass = bpy.data.materials.new("Glass")
+glass.node_tree.nodes["Principled BSDF"].inputs["Transmission Weight"].default_value = 1
+bpy.data.objects["Wall mesh"].data.materials.append(glass)
+"""
+
+
+@pytest.mark.parametrize(
+    ("why", "hides"),
+    [
+        ("", True),
+        ("bpy.data.objects['Wall mesh'].hide_render = True", False),
+        ("bpy.data.collections['Wall'].hide_render = True", False),
+        (GLASS, False),
+        (GLASS + "glass.node_tree.nodes['Principled BSDF'].inputs[0].default_value = (1, 0, 0, 1)", False),
+        (GLASS.replace("value = 1", "value = 0"), True),
+    ],
+    ids=["a wall", "not rendered", "collection not rendered", "glass", "red glass", "no glass"],
+)
+def test_only_what_is_rendered_and_opaque_hides(studio: Studio, why: str, hides: bool) -> None:
+    build(studio, STAGE + "sheet('Poster', -0.5, 0.5, -0.5, 0.5)\nsheet('Wall', -3, 3, -2, 2, y=-5)\n" + why)
+    found = verified(studio, "R14", plan("Poster"))
+    assert bool(found.findings) == hides
+    if hides:
+        assert the_finding(found).measured == 1.0
+
+
+def test_a_thing_does_not_hide_itself_nor_do_its_instances(studio: Studio) -> None:
+    script = """
+makers = [plane("Seats", (-1, -1), (1, 1), turn=(90, 0, 0))]
+copy = box("Copy", (-0.8, -0.8, -0.8), (0.8, 0.8, 0.8))
+thing("Crowd", *makers)
+scene.collection.objects.link(copy)
+copy.parent, makers[0].instance_type = makers[0], "VERTS"
+"""
+    assert seen(studio, script, "Crowd").passed == ("R14",)
+
+
+def test_a_fountain_is_seen_with_its_drops_as_soon_as_there_are_any(studio: Studio) -> None:
+    script = """
+scene.frame_end = 41
+basin = plane("Basin", (-0.5, -0.5), (0.5, 0.5), turn=(90, 0, 0))
+thing("Fountain", basin)
+basin.modifiers.new("Drops", "PARTICLE_SYSTEM")
+drops = basin.particle_systems[0].settings
+drops.count, drops.frame_start, drops.frame_end, drops.lifetime = 1000, 5, 10, 100
+drops.normal_factor, drops.object_align_factor = 0, (40, 0, 0)
+scene.gravity = (0, 0, 0)
+"""
+    # A thousand samples of the basin, which stays, and a thousand drops, which fly out of the picture.
+    finding = the_finding(seen(studio, script, "Fountain", render={"kind": "animation"}))
+    assert (finding.frame, finding.measured) == (21, pytest.approx(0.5, abs=0.02))
+    studio.run("bpy.data.objects['Basin'].show_instancer_for_render = False")
+    finding = the_finding(verified(studio, "R14", plan("Fountain", render={"kind": "animation"})))
+    assert finding.measured == 1.0
+
+
+def test_behind_an_orthographic_camera_nothing_is_seen(studio: Studio) -> None:
+    script = """
+scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 4
+sheet("Before", -0.5, 0.5, -0.5, 0.5)
+sheet("Beside", 1.7, 2.7, -0.5, 0.5)
+sheet("Behind", -0.5, 0.5, -0.5, 0.5, y=-12)
+"""
+    found = seen(studio, script, "Before", "Beside", "Behind")
+    told = {finding.objects[0]: finding.measured for finding in found.findings}
+    assert told == {"Beside": pytest.approx(0.7, abs=0.01), "Behind": 1.0}
+
+
+def test_what_leaves_the_picture_is_told_with_the_frame(studio: Studio) -> None:
+    script = """
+scene.frame_end = 41
+root = sheet("Kite", -0.5, 0.5, -0.5, 0.5)
+key(root, 1, location=(0, 0, 0))
+key(root, 41, location=(4, 0, 0))
+linear(root)
+scene.frame_set(7)
+"""
+    found = seen(studio, script, "Kite")
+    finding = the_finding(found)
+    assert (finding.frame, finding.measured) == (41, pytest.approx(0.9, abs=0.005))
+    assert studio.run("bpy.context.scene.frame_current") == 7
+
+
+def test_a_wall_that_moves_in_is_seen_in_the_middle(studio: Studio) -> None:
+    script = """
+scene.frame_end = 41
+sheet("Poster", -0.5, 0.5, -0.5, 0.5)
+root = sheet("Wall", -3, 3, -2, 2, y=-5)
+for frame, x in ((1, 9), (21, 0), (41, 9)):
+    key(root, frame, location=(x, 0, 0))
+"""
+    finding = the_finding(seen(studio, script, "Poster"))
+    assert (finding.frame, finding.measured, finding.objects[1]) == (21, 1.0, "Wall mesh")
+
+
+def test_without_an_active_camera_nothing_is_framed(studio: Studio) -> None:
+    finding = the_finding(seen(studio, "sheet('Poster', -1, 1, -1, 1)\nscene.camera = None", "Poster"))
+    assert (finding.outcome, finding.message) == ("broken", "The scene has no active camera.")
+
+
+@pytest.mark.parametrize(
+    ("script", "reason"),
+    [
+        ("", "nothing called 'Poster'"),
+        ("sheet('Poster', -1, 1, -1, 1)\nscene.camera.data.type = 'PANO'", "panoramic"),
+        ("sheet('Poster', 1, 1, -1, 1)", "no area"),
+    ],
+)
+def test_what_cannot_be_told_is_undecided(studio: Studio, script: str, reason: str) -> None:
+    finding = the_finding(seen(studio, script, "Poster"))
+    assert finding.outcome == "undecided"
+    assert reason in finding.message
+
+
+def test_a_plan_without_subjects_leaves_the_camera_alone(studio: Studio) -> None:
+    build(studio, STAGE)
+    relation = {"kind": "Upright", "a": "Poster"}
+    assert verified(studio, "R14", a_plan(relation)).idle == {
+        "R14": "the plan names no subjects of the camera"
+    }

@@ -1,0 +1,141 @@
+"""W1 and W2: what hangs together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from scenes import a_plan, build, the_finding, verified
+
+if TYPE_CHECKING:
+    from studio import Studio
+
+pytestmark = pytest.mark.blender
+
+STACK = """
+thing("Floor", box("Slab", (-2, -2, -0.1), (2, 2, 0)), system_name="ground")
+thing("Table", box("Top", (-0.5, -0.5, 0), (0.5, 0.5, 0.7)))
+thing("Cup", box("Mug", (-0.1, -0.1, 0.7), (0.1, 0.1, 0.8)))
+def touches(one, *names):
+    bpy.data.objects[one]["contact_with"] = list(names)
+"""
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        'touches("Mug", "Top")\ntouches("Top", "Slab")',
+        'touches("Top", "Cup root", "Floor")',
+        'touches("Mug", "Slab")\ntouches("Table root", "Cup root")',
+    ],
+)
+def test_what_is_connected_to_the_ground_over_any_steps_is_grounded(studio: Studio, said: str) -> None:
+    build(studio, STACK + said)
+    assert verified(studio, "W1").passed == ("W1",)
+
+
+def test_relations_of_contact_connect(studio: Studio) -> None:
+    build(studio, STACK + 'touches("Top", "Slab")')
+    plan = a_plan({"kind": "SupportedBy", "child": "Cup", "parents": ("Table/Top",)})
+    assert verified(studio, "W1", plan).passed == ("W1",)
+
+
+def test_what_nothing_connects_to_the_ground_is_told(studio: Studio) -> None:
+    build(studio, STACK + 'touches("Mug", "Top")')
+    report = verified(studio, "W1")
+    assert [(one.rule, one.severity, one.objects) for one in report.findings] == [
+        ("W1", "soft", ("Table",)),
+        ("W1", "soft", ("Cup",)),
+    ]
+    assert report.ok
+
+
+@pytest.mark.parametrize("by_plan", [False, True])
+def test_strict_grounding_makes_it_hard(studio: Studio, by_plan: bool) -> None:
+    build(
+        studio, STACK + 'touches("Top", "Slab")\n' + ("" if by_plan else 'scene["strict_grounding"] = True')
+    )
+    plan = a_plan({"kind": "Upright", "a": "Cup"}, strict_grounding=by_plan)
+    report = verified(studio, "W1", plan)
+    assert the_finding(report).severity == "hard"
+    assert not report.ok
+
+
+def test_a_ground_that_is_no_object_grounds_nothing(studio: Studio) -> None:
+    build(studio, STACK + 'touches("Mug", "Top")\ntouches("Top", "Slab")\nsystem("ground").name = "floor"')
+    assert len(verified(studio, "W1").findings) == 3
+
+
+# One piece. ε of the bolt and the plate is 2 mm, that of two plates of 1.4 m is 7 mm.
+
+PLATES = """
+plate, other = box("Plate", (-0.5, -0.5, 0), (0.5, 0.5, 0.02)), box("Other plate", (-0.5, -0.5, -0.02), (0.5, 0.5, 0))
+other.location.z -= {plate}
+thing("Rig", plate, box("Bolt", (-0.01, -0.01, 0.02), (0.01, 0.01, 0.05), at=(0, 0, {bolt})), other)
+"""
+
+
+@pytest.mark.parametrize(
+    ("bolt", "plate", "loose"),
+    [
+        (0.0019, 0.0070, ()),
+        (0.0021, 0.0070, ("Bolt",)),
+        (0.0019, 0.0072, ("Other plate",)),
+        (0.5, 0.5, ("Bolt", "Other plate")),
+        (-0.01, -0.01, ()),
+    ],
+)
+def test_meshes_of_an_object_hang_together_within_the_tolerance(
+    studio: Studio, bolt: float, plate: float, loose: tuple[str, ...]
+) -> None:
+    build(studio, PLATES.format(bolt=bolt, plate=plate))
+    report = verified(studio, "W2")
+    if not loose:
+        assert report.passed == ("W2",)
+        return
+    found = the_finding(report)
+    assert (found.rule, found.severity, found.outcome) == ("W2", "soft", "broken")
+    assert found.objects[0] == "Rig"
+    assert found.measured == len(loose) + 1
+    assert found.tolerance == 1
+    if len(loose) == 1:
+        assert found.objects[1:] == loose
+
+
+def test_an_object_may_be_loose_if_it_says_so(studio: Studio) -> None:
+    build(
+        studio, PLATES.format(bolt=1, plate=1) + 'bpy.data.collections["Rig"]["allows_disconnected"] = True'
+    )
+    assert set(verified(studio, "W2").idle) == {"W2"}
+
+
+def test_a_part_within_another_one_hangs_together_with_it(studio: Studio) -> None:
+    build(
+        studio,
+        'thing("Pendant", box("Amber", (-1, -1, -1), (1, 1, 1)), box("Fly", (-0.1, -0.1, -0.1), (0.1, 0.1, 0.1)))',
+    )
+    assert verified(studio, "W2").passed == ("W2",)
+
+
+def test_two_halves_of_a_broken_thing_are_two_pieces(studio: Studio) -> None:
+    links = ", ".join(
+        f'box("Link {k}", ({k}, 0, 0), ({k} + {1 if k != 4 else 0.9}, 1, 1))' for k in range(10)
+    )
+    build(studio, f'thing("Chain", {links})')
+    found = the_finding(verified(studio, "W2"))
+    assert found.measured == 2
+    assert len(found.objects) == 6
+
+
+def test_the_smaller_of_two_pieces_is_the_loose_one(studio: Studio) -> None:
+    build(
+        studio,
+        'thing("Cup", box("Mug", (0, 0, 0), (0.1, 0.1, 0.1)), box("Handle", (0.12, 0.04, 0.02), (0.15, 0.06, 0.08)))',
+    )
+    assert the_finding(verified(studio, "W2")).objects == ("Cup", "Handle")
+
+
+def test_what_cannot_be_measured_is_told(studio: Studio) -> None:
+    build(studio, PLATES.format(bolt=0, plate=0) + 'bpy.data.objects["Bolt"].hide_viewport = True')
+    found = the_finding(verified(studio, "W2"))
+    assert (found.objects, found.outcome) == (("Rig",), "undecided")

@@ -1,0 +1,534 @@
+"""``blender_render``: stills, films, what is kept of them, and what becomes of them when something goes wrong."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import threading
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from PIL import Image
+
+from agents.blender.errors import Refusal
+from agents.blender.looks import LARGEST_SHOWN, faults, shown
+from agents.blender.pace import LEAST, Pace
+from agents.blender.tools.base import Call, Result
+from agents.blender.tools.render import TOOL
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from studio import Studio
+
+pytestmark = pytest.mark.blender
+
+# A glowing red cube of 1 m before a camera that sees 8 × 8 m; it needs no light, and one sample shows it.
+SCENE = """
+scene = bpy.context.scene
+bpy.ops.mesh.primitive_cube_add(size=1)
+cube = bpy.context.object
+material = bpy.data.materials.new("Red")
+material.diffuse_color = (1, 0, 0, 1)
+tree = material.node_tree
+glow = tree.nodes.new("ShaderNodeEmission")
+glow.inputs["Color"].default_value = (1, 0, 0, 1)
+tree.links.new(glow.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+cube.data.materials.append(material)
+camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+camera.data.type, camera.data.ortho_scale = "ORTHO", 8
+camera.location, camera.rotation_euler = (0, -10, 0), (1.5707963, 0, 0)
+scene.collection.objects.link(camera)
+scene.camera = camera
+scene.render.engine = "CYCLES"
+scene.view_settings.view_transform = "Standard"
+scene.frame_end = 5
+"""
+MOVING = (
+    SCENE
+    + """
+for frame, x in ((1, -2), (5, 2)):
+    cube.location.x = x
+    cube.keyframe_insert("location", frame=frame)
+for curve in cube.animation_data.action.layers[0].strips[0].channelbags[0].fcurves:
+    for key in curve.keyframe_points:
+        key.interpolation = "LINEAR"
+"""
+)
+FALLING = (
+    SCENE
+    + """
+cube.location.z = 3
+bpy.ops.rigidbody.object_add()
+scene.rigidbody_world.point_cache.frame_end = 20
+scene.frame_end = 16
+"""
+)
+SMALL: dict[str, Any] = {"engine": "cycles", "samples": 1, "denoise": False, "width": 64, "height": 64}
+FILM: dict[str, Any] = {"kind": "animation", **SMALL}
+
+
+def where(path: Path) -> tuple[float, float]:
+    """The middle of what is red in a picture, in metres of SCENE's camera: right, up."""
+    with Image.open(path) as picture:
+        rgb = picture.convert("RGB")
+    width, height = rgb.size
+    red = [
+        (x, y)
+        for y in range(height)
+        for x in range(width)
+        if (pixel := rgb.getpixel((x, y))) and isinstance(pixel, tuple) and pixel[0] > 100 > pixel[1]
+    ]
+    assert red, f"nothing is red in {path}"
+    right = sum(x for x, _ in red) / len(red) + 0.5
+    down = sum(y for _, y in red) / len(red) + 0.5
+    return right / width * 8 - 4, 4 - down / height * 8
+
+
+def frame_files(studio: Studio, name: str = "animation") -> dict[str, tuple[int, int]]:
+    """The frames of a film: name → what tells whether the file is still the same."""
+    folder = studio.blender.folder.root / "frames" / name
+    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in sorted(folder.glob("*.png"))}
+
+
+def stopped_after(frames: int) -> Call:
+    """A call that is given up when so many frames are done."""
+    given_up = threading.Event()
+
+    def progress(done: float, total: float | None, text: str) -> None:
+        del total, text
+        if done >= frames:
+            given_up.set()
+
+    return Call(progress, given_up)
+
+
+# Stills
+
+
+@pytest.mark.parametrize("engine", ["cycles", "workbench"])
+def test_a_still_shows_what_the_camera_sees(studio: Studio, engine: str) -> None:
+    studio.run(SCENE + "cube.location = (1, 0, -2)")
+    workspace = studio.blender.folder.workspace
+    before = {one.name for one in workspace.iterdir()}
+    found = studio.use(TOOL, None, **{**SMALL, "engine": engine}, name=engine)
+    path = studio.blender.folder.root / "renders" / f"{engine}.png"
+    assert where(path) == pytest.approx((1, -2), abs=0.1)
+    assert (found.data["path"], found.data["width"], found.data["height"]) == (str(path), 64, 64)
+    assert [picture.path for picture in found.pictures] == [path]
+    assert {one.name for one in workspace.iterdir()} - before <= {"scene.blend"}
+    assert found.data["warnings"] == []
+    assert any("diffuse_color" in note for note in found.data["notes"]) == (engine == "workbench")
+
+
+_STATE = """
+def read(thing, deep):
+    told = {}
+    for prop in thing.bl_rna.properties:
+        if prop.type == "POINTER" and deep and prop.identifier in {"image_settings", "ffmpeg", "shading"}:
+            told[prop.identifier] = read(getattr(thing, prop.identifier), False)
+        elif prop.type not in {"POINTER", "COLLECTION"}:
+            value = getattr(thing, prop.identifier)
+            told[prop.identifier] = str(value[:] if getattr(prop, "is_array", False) else value)
+    return told
+s = bpy.context.scene
+state = {
+    "frame": (s.frame_current, s.frame_subframe), "camera": s.camera.name,
+    "names": [(kind, sorted(one.name for one in getattr(bpy.data, kind)))
+              for kind in ("scenes", "images", "objects", "cameras", "movieclips")],
+    "markers": [(m.name, m.camera and m.camera.name) for m in s.timeline_markers],
+    "handlers": [(n, len(getattr(bpy.app.handlers, n))) for n in ("render_stats", "render_post")],
+    **{n: read(getattr(s, n), True) for n in ("render", "cycles", "display", "view_settings")},
+}
+repr(state)
+"""
+
+
+@pytest.mark.parametrize("kind", ["still", "animation"])
+def test_rendering_leaves_the_scene_and_its_settings_as_they_were(studio: Studio, kind: str) -> None:
+    studio.run(MOVING)
+    studio.run(
+        "r = s = bpy.context.scene.render\nscene = bpy.context.scene\n"
+        "r.engine = 'BLENDER_WORKBENCH'\nr.filepath = '//mine_####'\nr.resolution_percentage = 37\n"
+        "r.image_settings.media_type = 'VIDEO'\nr.image_settings.file_format = 'FFMPEG'\n"
+        "r.ffmpeg.format = 'MKV'\nscene.cycles.samples = 77\nscene.display.render_aa = '11'\n"
+        "other = bpy.data.objects.new('Other', bpy.data.cameras.new('Other'))\n"
+        "other.location = (0, -10, 3)\nother.rotation_euler.x = 1.57\nother.data.type = 'ORTHO'\n"
+        "scene.collection.objects.link(other)\n"
+        "scene.timeline_markers.new('cut', frame=1).camera = bpy.data.objects['Camera']\n"
+        "scene.frame_set(3, subframe=0.25)"
+    )
+    before = studio.run(_STATE)
+    own: dict[str, Any] = {"frame": 2} if kind == "still" else {"frame_end": 2}
+    found = studio.use(TOOL, kind=kind, **SMALL, camera="Other", **own)
+    assert not found.failed
+    assert studio.run(_STATE) == before
+
+
+def test_cameras_on_markers_take_their_turns_unless_one_is_asked_for(studio: Studio) -> None:
+    studio.run(
+        SCENE + "high = bpy.data.objects.new('High', camera.data.copy())\n"
+        "high.location, high.rotation_euler = (0, -10, 2), camera.rotation_euler\n"
+        "scene.collection.objects.link(high)\n"
+        "scene.timeline_markers.new('a', frame=1).camera = camera\n"
+        "scene.timeline_markers.new('b', frame=4).camera = high"
+    )
+    still = studio.blender.folder.root / "renders" / "still.png"
+    studio.use(TOOL, **SMALL, frame=5)
+    assert where(still)[1] == pytest.approx(-2, abs=0.1)
+    studio.use(TOOL, **SMALL, frame=5, camera="Camera")
+    assert where(still)[1] == pytest.approx(0, abs=0.1)
+
+
+def test_without_a_camera_it_says_how_to_add_one(studio: Studio) -> None:
+    with pytest.raises(Refusal, match="no camera") as refused:
+        studio.use(TOOL)
+    studio.run(str(refused.value).split("\n", 1)[1])
+    assert studio.use(TOOL, **SMALL).data["camera"] == "Camera"
+
+
+def test_a_camera_that_is_none_is_refused_with_the_names_of_those_there_are(studio: Studio) -> None:
+    studio.run(SCENE)
+    with pytest.raises(Refusal, match=r"'Cube' is no camera.*'Camera'"):
+        studio.use(TOOL, camera="Cube")
+    with pytest.raises(Refusal, match=r"no camera 'Nobody'.*'Camera'"):
+        studio.use(TOOL, camera="Nobody")
+
+
+def test_the_only_camera_is_taken_where_none_is_set_and_that_is_told(studio: Studio) -> None:
+    studio.run(SCENE + "scene.camera = None")
+    found = studio.use(TOOL, **SMALL)
+    assert any("'Camera', the only camera" in note for note in found.data["notes"])
+    assert studio.run("bpy.context.scene.camera is None") is True
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"frame_start": 3}, "kind='animation'"),
+        ({"kind": "animation", "frame": 3}, "kind='still'"),
+        ({"width": 100, "percentage": 50}, "percentage"),
+        ({"name": "../../out"}, "name"),
+        ({"name": "a/b"}, "name"),
+        ({"width": 100_000}, "width"),
+        ({"samples": 0}, "samples"),
+        ({"kind": "animation", "frame_start": 9, "frame_end": 3}, "no range"),
+        ({"kind": "animation", "frame_start": 0, "frame_end": 900_000}, "more than"),
+    ],
+)
+def test_what_does_not_fit_is_refused(studio: Studio, given: dict[str, Any], told: str) -> None:
+    studio.run(SCENE)
+    with pytest.raises(Refusal, match=told):
+        studio.use(TOOL, **given)
+
+
+def test_a_size_follows_the_scene_and_what_is_asked(studio: Studio) -> None:
+    studio.run(SCENE + "scene.render.resolution_x, scene.render.resolution_y = 200, 100")
+
+    def size(**given: int) -> tuple[int, int]:
+        found = studio.use(TOOL, None, engine="cycles", samples=1, denoise=False, **given)
+        with Image.open(found.data["path"]) as picture:
+            return picture.size
+
+    assert size(percentage=10) == (20, 10)
+    assert size(width=50) == (50, 25)
+    assert size(height=30) == (60, 30)
+
+
+def test_a_black_picture_is_told(studio: Studio) -> None:
+    studio.run(SCENE + "cube.hide_render = True")
+    assert "black" in studio.use(TOOL, **SMALL).data["warnings"][0]
+
+
+# Films
+
+
+def test_a_film_moves_and_can_be_read_back(studio: Studio) -> None:
+    studio.run(MOVING + "scene.render.fps = 12")
+    progress: list[tuple[float, float | None]] = []
+    call = Call(lambda done, total, text: progress.append((done, total)))
+    found = studio.use(TOOL, call, **FILM)
+    frames = studio.blender.folder.root / "frames" / "animation"
+    seen = [where(frames / f"{frame:04d}.png")[0] for frame in range(1, 6)]
+    assert seen == pytest.approx([-2, -1, 0, 1, 2], abs=0.1)
+    video = found.data["video"]
+    assert (video["frames"], video["width"], video["height"], video["fps"]) == (5, 64, 64, 12)
+    assert [(done, 5) for done in range(1, 6)] == [one for one in progress if one[0] % 1 == 0 and one[0]]
+    assert len(found.pictures) == 3
+    # H.264 in MP4 that starts at its first frame, with the colours of the pictures.
+    film = studio.blender.folder.root / "animation.mp4"
+    data = film.read_bytes()
+    assert data[4:8] == b"ftyp"
+    assert b"avc1" in data
+    shutil.copyfile(film, studio.blender.folder.workspace / "look.mp4")
+    colour = studio.run(
+        "import os\nimage = bpy.data.images.load(os.path.abspath('look.mp4'))\n"
+        "p = list(image.pixels)\nbpy.data.images.remove(image)\nos.remove('look.mp4')\n"
+        "at = (32 * 64 + 16) * 4\n[round(v, 2) for v in p[at:at + 3]]"
+    )
+    assert colour == pytest.approx([1, 0, 0], abs=0.06)
+
+
+def test_frames_that_are_skipped_are_held_in_the_film(studio: Studio) -> None:
+    studio.run(MOVING)
+    found = studio.use(TOOL, **FILM, name="held", step=2)
+    assert [*frame_files(studio, "held")] == ["0001.png", "0003.png", "0005.png"]
+    assert found.data["video"]["frames"] == 5
+
+
+def test_frames_that_are_there_are_kept_until_the_scene_or_a_setting_changes(studio: Studio) -> None:
+    studio.run(MOVING)
+    studio.use(TOOL, **FILM, frame_end=2, video=False)
+    first = frame_files(studio)
+    studio.run("bpy.context.scene.frame_set(4)\nbpy.data.objects['Cube'].select_set(False)")
+    found = studio.use(TOOL, **FILM, frame_end=3, video=False)
+    assert (found.data["kept"], found.data["made"]) == (2, 1)
+    assert {name: stamp for name, stamp in frame_files(studio).items() if name in first} == first
+    studio.run("bpy.data.materials['Red'].node_tree.nodes['Emission'].inputs['Strength'].default_value = 0.5")
+    found = studio.use(TOOL, **FILM, frame_end=2, video=False)
+    assert found.data["discarded"] == {"frames": 3, "why": "Material Red changed"}
+    assert "earlier state" in found.text
+    assert [*frame_files(studio)] == ["0001.png", "0002.png"]
+    found = studio.use(TOOL, None, **{**FILM, "samples": 2}, frame_end=1, video=False)
+    assert found.data["discarded"]["why"] == "samples 1 → 2"
+
+
+def test_a_frame_that_is_not_whole_is_made_again(studio: Studio) -> None:
+    studio.run(MOVING)
+    studio.use(TOOL, **FILM, name="torn", frame_end=2, video=False)
+    torn = studio.blender.folder.root / "frames" / "torn" / "0001.png"
+    whole = torn.read_bytes()
+    torn.write_bytes(whole[:-20])
+    found = studio.use(TOOL, **FILM, name="torn", frame_end=2, video=False)
+    assert (found.data["kept"], found.data["made"]) == (1, 1)
+    assert where(torn)[0] == pytest.approx(-2, abs=0.1)
+
+
+def test_given_up_it_stops_between_frames_and_goes_on_when_called_again(studio: Studio) -> None:
+    studio.run(MOVING)
+    process = studio.blender.pid
+    found = studio.use(TOOL, stopped_after(2), **FILM, name="given_up")
+    assert found.failed
+    assert "Not finished" in found.text
+    there = frame_files(studio, "given_up")
+    assert [*there] == ["0001.png", "0002.png"]
+    assert studio.blender.pid == process
+    found = studio.use(TOOL, **FILM, name="given_up")
+    assert (found.data["kept"], found.data["made"], found.failed) == (2, 3, False)
+    assert frame_files(studio, "given_up").items() >= there.items()
+
+
+# Simulations
+
+
+def test_what_is_not_baked_is_stepped_through_and_told(studio: Studio) -> None:
+    studio.run(FALLING)
+    still = studio.blender.folder.root / "renders" / "still.png"
+    found = studio.use(TOOL, **SMALL, frame=16)
+    assert found.data["unbaked"] == ["the rigid-body world"]
+    assert "stepped through" in found.text
+    # Free fall for 15 frames at 24 a second.
+    assert where(still)[1] == pytest.approx(3 - 9.81 / 2 * (15 / 24) ** 2, abs=0.15)
+
+
+def test_frames_that_were_jumped_to_before_do_not_spoil_a_simulation(studio: Studio) -> None:
+    studio.run(
+        SCENE + "scene.render.engine = 'BLENDER_EEVEE'\ncube.hide_render = True\n"
+        "bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=2, location=(0, 0, 3))\n"
+        "cloth = bpy.context.object\ncloth.data.materials.append(material)\n"
+        "cloth.rotation_euler.x = 0.5\ncloth.modifiers.new('Cloth', 'CLOTH')\nscene.frame_end = 13"
+    )
+    jumped: dict[str, Any] = {**FILM, "step": 6, "video": False, "width": 512, "height": 512}
+    studio.run("for frame in (1, 5, 1, 9):\n    bpy.context.scene.frame_set(frame)")
+    studio.use(TOOL, None, **jumped, name="jumped")
+    assert studio.run("bpy.context.scene.frame_current") == 9
+    studio.run("bpy.ops.ptcache.bake_all(bake=True)")
+    baked = studio.use(TOOL, None, **jumped, name="baked")
+    assert baked.data["unbaked"] == []
+    frames = studio.blender.folder.root / "frames"
+    for frame in ("0001.png", "0007.png", "0013.png"):
+        with Image.open(frames / "jumped" / frame) as one, Image.open(frames / "baked" / frame) as other:
+            assert one.tobytes() == other.tobytes(), frame
+    assert where(frames / "jumped" / "0013.png")[1] < where(frames / "jumped" / "0001.png")[1] - 0.5
+
+
+# What goes wrong
+
+
+def test_blender_lost_over_a_frame_is_started_again_and_the_film_is_the_same(own_studio: Studio) -> None:
+    own_studio.run(FALLING)
+    whole = own_studio.use(TOOL, **FILM, name="whole", frame_end=6, video=False)
+    # Handlers are not written to checkpoints: Blender ends only the first time.
+    own_studio.run(
+        "import os, signal\n"
+        "def end(scene, *_):\n"
+        "    if scene.frame_current == 4:\n"
+        "        os.kill(os.getpid(), signal.SIGKILL)\n"
+        "bpy.app.handlers.render_pre.append(end)"
+    )
+    found = own_studio.use(TOOL, **FILM, name="broken", frame_end=6, video=False)
+    assert (found.failed, found.data["made"]) == (False, 6)
+    assert any("lost over frame 4" in note for note in found.data["notes"])
+    frames = own_studio.blender.folder.root / "frames"
+    heights = [where(frames / "broken" / f"{frame:04d}.png")[1] for frame in range(1, 7)]
+    assert heights == [where(frames / "whole" / f"{frame:04d}.png")[1] for frame in range(1, 7)]
+    assert heights[-1] < heights[0]
+    assert whole.data["made"] == 6
+    assert own_studio.run("bpy.context.scene.frame_current") == 1
+
+
+def test_a_blender_that_dies_again_and_again_leaves_what_is_there(own_studio: Studio) -> None:
+    own_studio.run(MOVING)
+    over = threading.Event()
+
+    def kill() -> None:
+        with suppress(ProcessLookupError):
+            if own_studio.blender.pid is not None:
+                os.kill(own_studio.blender.pid, signal.SIGKILL)
+
+    def keep_killing() -> None:
+        while not over.wait(0.005):
+            kill()
+
+    killer = threading.Thread(target=keep_killing)
+
+    def progress(done: float, total: float | None, text: str) -> None:
+        del total, text
+        if done == 2:
+            kill()
+            killer.start()
+
+    try:
+        found: Result = own_studio.use(TOOL, Call(progress), **FILM)
+    finally:
+        over.set()
+        killer.join()
+    made = found.data["made"]
+    assert found.failed
+    assert 2 <= made < 5
+    assert "again with the same arguments" in found.text
+    there = frame_files(own_studio)
+    found = own_studio.use(TOOL, **FILM)
+    assert (found.failed, found.data["kept"], found.data["made"]) == (False, made, 5 - made)
+    assert frame_files(own_studio).items() >= there.items()
+    assert found.data["video"]["frames"] == 5
+
+
+# A time budget
+
+
+def test_a_time_budget_lowers_samples_and_such_frames_are_made_again_without_it(studio: Studio) -> None:
+    studio.run(MOVING + "cube.scale = (9, 1, 9)")
+    asked: dict[str, Any] = {**FILM, "samples": 60_000, "name": "hurried", "frame_end": 2}
+    found = studio.use(TOOL, **asked, time_budget=2)
+    assert LEAST <= found.data["samples"] < 60_000
+    assert "samples instead of 60000" in found.text
+    assert found.data["video"]["frames"] == 2
+    found = studio.use(TOOL, **asked, time_budget=2)
+    assert found.data["kept"] + found.data["made"] + found.data["dropped_count"] == 2
+    assert found.data["kept"] >= 1
+    call = Call()
+    call.given_up.set()
+    found = studio.use(TOOL, call, **asked)
+    assert (found.data["kept"], found.data["missing_count"]) == (0, 2)
+
+
+class Clock:
+    """Time that passes as it is told to; frames take ``fixed`` seconds and ``each`` for a sample."""
+
+    def __init__(self, fixed: float, each: float) -> None:
+        self.now = 0.0
+        self._fixed, self._each = fixed, each
+
+    def __call__(self) -> float:
+        """Seconds."""
+        return self.now
+
+    def render(self, samples: int | None) -> float:
+        """Lets the time pass that a frame takes; returns it."""
+        seconds = self._fixed + self._each * (samples or 0)
+        self.now += seconds
+        return seconds
+
+
+def paced(clock: Clock, budget: float, samples: int | None, frames: int) -> list[int | None]:
+    """The samples of the frames that are made within a budget."""
+    pace = Pace(budget, samples, clock)
+    while (few := pace.trial(frames)) is not None:
+        pace.tried(few, clock.render(few))
+    made: list[int | None] = []
+    while frames:
+        pace.settle(frames)
+        every = pace.every(frames)
+        if not every:
+            break
+        frames //= every
+        pace.took(pace.samples, clock.render(pace.samples))
+        made.append(pace.samples)
+        frames -= 1
+    return made
+
+
+def test_with_enough_time_nothing_is_lowered() -> None:
+    assert paced(Clock(0.5, 0.01), 200, 128, 20) == [128] * 20
+
+
+def test_samples_are_lowered_alike_for_all_frames() -> None:
+    clock = Clock(0.5, 0.05)
+    made = paced(clock, 60, 256, 20)
+    assert made == [made[0]] * 20
+    assert 32 <= (made[0] or 0) <= 50
+    assert 45 < clock.now <= 63
+
+
+def test_frames_are_left_out_only_when_samples_can_sink_no_further() -> None:
+    clock = Clock(2.0, 0.1)
+    made = paced(clock, 30, 256, 24)
+    assert set(made) == {LEAST}
+    assert 6 <= len(made) <= 12
+    assert clock.now <= 33
+
+
+def test_frames_of_an_engine_without_samples_are_left_out() -> None:
+    clock = Clock(1.0, 0.0)
+    made = paced(clock, 10, None, 30)
+    assert 5 <= len(made) <= 10
+    assert clock.now <= 11
+
+
+def test_one_frame_is_made_however_short_the_time(studio: Studio) -> None:
+    studio.run(MOVING)
+    big: dict[str, Any] = {**FILM, "engine": "cycles", "samples": 4000, "width": 400, "height": 400}
+    found = studio.use(TOOL, None, **big, name="short", time_budget=1)
+    there = [*frame_files(studio, "short")]
+    assert there[0] == "0001.png"
+    assert len(there) + found.data["dropped_count"] == 5
+    assert found.data["samples"] < 4000
+    assert found.data["video"]["frames"] == 5
+
+
+# Pictures for a model
+
+
+def test_large_pictures_are_shown_smaller_and_small_ones_as_they_are(tmp_path: Path) -> None:
+    large, small = tmp_path / "large.png", tmp_path / "small.png"
+    Image.new("RGB", (1600, 400), (10, 90, 30)).save(large)
+    Image.new("RGB", (160, 40)).save(small)
+    shrunk = tmp_path / "shown.png"
+    shrunk.write_bytes(shown(large))
+    with Image.open(shrunk) as picture:
+        assert picture.size == (LARGEST_SHOWN, LARGEST_SHOWN // 4)
+    assert shown(small) == small.read_bytes()
+
+
+def test_pictures_that_show_nothing_or_do_not_change_are_told(tmp_path: Path) -> None:
+    paths = {name: tmp_path / f"{name}.png" for name in ("plain", "scene", "again")}
+    Image.new("RGB", (20, 20), (90, 90, 90)).save(paths["plain"])
+    scene = Image.linear_gradient("L")
+    scene.save(paths["scene"])
+    scene.save(paths["again"])
+    assert "of one colour" in faults([paths["plain"]])[0]
+    assert "alike" in faults([paths["scene"], paths["again"]])[0]
+    assert faults([paths["scene"]]) == []

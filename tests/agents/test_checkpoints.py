@@ -1,0 +1,329 @@
+"""When the state is written out, what is kept of it, and what becomes of the run when that fails."""
+
+from __future__ import annotations
+
+import resource
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import pytest
+from processes import of_run
+from studio import Studio
+
+from agents.blender import checkpoints
+from agents.blender.checkpoints import KEPT, Checkpoint
+from agents.blender.errors import Died, Refusal
+from agents.blender.sandbox import Limits, best_sandbox
+from agents.blender.tools.execute import TOOL
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+pytestmark = pytest.mark.blender
+
+NAMES = "sorted(o.name for o in bpy.data.objects)"
+CRASH = "import os\nos.abort()"
+
+
+def adding(name: str) -> str:
+    return f"bpy.context.collection.objects.link(bpy.data.objects.new({name!r}, None))"
+
+
+def numbers(studio: Studio) -> list[int]:
+    return [one.number for one in studio.blender.checkpoints.newest_first()]
+
+
+@pytest.fixture(scope="module")
+def _kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+    studio = Studio(tmp_path_factory.mktemp("checkpoints") / "run")
+    yield studio
+    studio.blender.close()
+
+
+@pytest.fixture
+def kept(_kept: Studio, monkeypatch: pytest.MonkeyPatch) -> Studio:
+    """A Blender with an empty scene that is kept, however slow this machine is at present."""
+    monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 1e6)
+    _kept.empty()
+    _kept.blender.keep("an empty scene")
+    return _kept
+
+
+@contextmanager
+def full_disk() -> Iterator[None]:
+    """No file that this process writes grows beyond a few bytes meanwhile."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+# When
+
+
+def test_a_small_scene_is_kept_after_every_call_that_may_change_it(kept: Studio) -> None:
+    before = numbers(kept)[0]
+    kept.run(adding("One"))
+    kept.run(adding("Two"))
+    kept.blender.call("execute", {"code": "1"}, timeout=20)
+    assert numbers(kept)[0] == before + 2
+    last = kept.blender.checkpoints.last
+    assert last is not None
+    assert last.path.read_bytes()[:7] in {b"BLENDER", b"\x28\xb5\x2f\xfd" + last.path.read_bytes()[4:7]}
+
+
+def test_a_large_scene_waits_until_the_work_is_worth_it(
+    kept: Studio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A real scene of a million vertices, which takes a while to write; nothing is cheap any more."""
+    monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 0.0)
+    kept.run(
+        "import numpy\nmesh = bpy.data.meshes.new('Large')\nmesh.vertices.add(1_000_000)\n"
+        "mesh.vertices.foreach_set('co', numpy.random.random(3_000_000))\n"
+        "bpy.context.collection.objects.link(bpy.data.objects.new('Large', mesh))"
+    )
+    large = kept.blender.keep("a large scene")
+    cost = kept.blender.checkpoints._cost
+    assert large.bytes > 10_000_000
+    kept.run(adding("Quick"))
+    kept.run(adding("Quick, too"))
+    assert numbers(kept)[0] == large.number
+    assert kept.blender.checkpoints.unkept == 2
+    kept.run(f"import time\ntime.sleep({cost * checkpoints.PATIENCE})")
+    assert numbers(kept)[0] == large.number + 1
+    assert kept.blender.checkpoints.unkept == 0
+    kept.run(adding("Lost"))
+    with pytest.raises(Died, match=r"what the last call before had changed since then is lost, too"):
+        kept.use(TOOL, code=CRASH)
+    assert kept.run(NAMES) == ["Large", "Quick", "Quick, too"]
+
+
+def test_what_is_to_be_undone_is_kept_before_however_large(
+    kept: Studio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept.run(adding("Kept"))
+    monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 0.0)
+    monkeypatch.setattr(checkpoints, "PATIENCE", 1e6)
+    kept.run(adding("Not yet kept"))
+    found = kept.use(TOOL, code=f"{adding('Half')}\n1 / 0", on_error="restore")
+    assert "The scene was put back to checkpoint" in found.text
+    assert kept.run(NAMES) == ["Kept", "Not yet kept"]
+
+
+def test_the_way_back_says_what_else_it_undoes(kept: Studio, monkeypatch: pytest.MonkeyPatch) -> None:
+    last = kept.blender.checkpoints.last
+    assert last is not None
+    found = kept.use(TOOL, code="1 / 0")
+    assert f"To undo it: blender_load(checkpoint={last.number})." in found.text
+    last = kept.blender.keep("now")
+    monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 0.0)
+    monkeypatch.setattr(checkpoints, "PATIENCE", 1e6)
+    kept.run(adding("One"))
+    kept.run(adding("Two"))
+    found = kept.use(TOOL, code="1 / 0")
+    assert f"To undo it, and the 2 call(s) before it: blender_load(checkpoint={last.number})." in found.text
+
+
+def test_a_checkpoint_is_no_event_to_the_scenes_handlers(kept: Studio) -> None:
+    code = "def never(*_):\n    while True: pass\nbpy.app.handlers.save_pre.append(never)\n" + adding("Kept")
+    kept.use(TOOL, code=code)
+    assert kept.blender.keep("a handler that never returns").number == numbers(kept)[0]
+    assert kept.run("len(bpy.app.handlers.save_pre)") == 1
+
+
+def test_nothing_is_kept_twice(kept: Studio) -> None:
+    first = kept.blender.keep("once")
+    assert kept.blender.keep("twice") == first
+
+
+# What is kept
+
+
+def test_the_newest_are_kept(kept: Studio) -> None:
+    for number in range(KEPT + 3):
+        kept.run(adding(str(number)))
+    assert len(numbers(kept)) == KEPT
+    assert numbers(kept) == sorted(numbers(kept), reverse=True)
+    files = sorted(int(path.stem) for path in kept.blender.folder.checkpoints.iterdir())
+    assert files == sorted(numbers(kept))
+    gone = numbers(kept)[-1] - 1
+    with pytest.raises(Refusal, match=rf"There is no checkpoint {gone}; kept are {gone + 1}, "):
+        kept.blender.restore(gone)
+
+
+def test_large_ones_are_fewer(kept: Studio, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept.run(adding("One"))
+    last = kept.blender.checkpoints.last
+    assert last is not None
+    monkeypatch.setattr(checkpoints, "KEPT_BYTES", 5 * last.bytes + last.bytes // 2)
+    kept.run(adding("Two"))
+    assert len(numbers(kept)) == 5
+    monkeypatch.setattr(checkpoints, "KEPT_BYTES", 1)
+    kept.run(adding("Three"))
+    assert len(numbers(kept)) == checkpoints.KEPT_LEAST
+
+
+def test_going_back_is_a_step_of_its_own(kept: Studio) -> None:
+    kept.run(adding("One"))
+    one = kept.blender.keep("one")
+    kept.run(adding("Two"))
+    two = kept.blender.keep("two")
+    assert kept.blender.restore(one.number) == one
+    assert kept.run(NAMES) == ["One"]
+    with pytest.raises(Died, match=r"stands at checkpoint \d+ \(.*how the scene was before"):
+        kept.use(TOOL, code=CRASH)
+    assert kept.run(NAMES) == ["One"]
+    kept.blender.restore(two.number)
+    assert kept.run(NAMES) == ["One", "Two"]
+
+
+def test_a_state_comes_back_as_it_was(kept: Studio) -> None:
+    """Paths, the frame, the mode's object, data without users and what was packed."""
+    look = (
+        "s = bpy.context.scene\n(s.frame_current, s.render.filepath, bpy.data.images['i'].filepath,"
+        " bpy.data.images['i'].packed_file is not None, [round(v, 3) for v in bpy.context.object.location],"
+        " bpy.context.object.name)"
+    )
+    kept.run(
+        "bpy.ops.mesh.primitive_cube_add(location=(1, 2, 3))\ns = bpy.context.scene\ns.frame_current = 42\n"
+        "s.render.filepath = '//renders/one_'\nimage = bpy.data.images.new('i', 8, 8)\nimage.pack()\n"
+        "image.filepath = '//textures/i.png'\nimage.use_fake_user = True"
+    )
+    before = kept.run(look)
+    assert before[0] == 42
+    assert before[1:3] == ("//renders/one_", "//textures/i.png")
+    kept.blender.keep("a state")
+    kept.blender.kill()
+    assert kept.run(look) == before
+    kept.run("s = bpy.context.scene\ns.frame_current = 1\ns.render.filepath = ''")
+    kept.blender.restore(numbers(kept)[1])
+    assert kept.run(look) == before
+
+
+def test_relative_paths_still_lead_there_when_code_has_saved_elsewhere(kept: Studio) -> None:
+    kept.run(
+        "import os\nos.makedirs('sub', exist_ok=True)\n"
+        "bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath('sub/other.blend'))\n"
+        "image = bpy.data.images.new('i', 8, 8)\nimage.use_fake_user = True\n"
+        "image.filepath_raw = '//i.png'\nimage.file_format = 'PNG'\nimage.save()"
+    )
+    assert (kept.blender.folder.workspace / "sub" / "i.png").is_file()
+    kept.blender.keep("elsewhere")
+    kept.blender.kill()
+    assert kept.run("import os\nos.path.isfile(bpy.path.abspath(bpy.data.images['i'].filepath))") is True
+    assert kept.run("bpy.data.filepath") == str(kept.blender.folder.workspace / "scene.blend")
+
+
+# When it fails
+
+
+def test_a_full_disk_costs_one_checkpoint_and_is_told_beside_the_result(kept: Studio) -> None:
+    kept.run(adding("Kept"))
+    last = kept.blender.keep("before")
+    content = last.path.read_bytes()
+    with full_disk():
+        found = kept.use(TOOL, code=f"{adding('Unkept')}\n6 * 7")
+    assert found.data["value"] == "42"
+    assert not found.failed
+    assert "The state cannot be kept: " in found.text
+    assert "File too large" in found.text
+    assert f"{last} is untouched" in found.text
+    assert numbers(kept)[0] == last.number
+    assert last.path.read_bytes() == content
+    assert not list(kept.blender.folder.checkpoints.glob(".*"))
+    # With room again, the next call keeps both.
+    found = kept.use(TOOL, code=adding("Later"))
+    assert "cannot be kept" not in found.text
+    kept.blender.kill()
+    assert kept.run(NAMES) == ["Kept", "Later", "Unkept"]
+
+
+def test_what_was_not_kept_for_want_of_room_is_told_when_it_is_lost(kept: Studio) -> None:
+    kept.run(adding("Kept"))
+    kept.blender.keep("before")
+    with full_disk():
+        kept.run(adding("Unkept"))
+    with pytest.raises(Died, match=r"what the last call before had changed since then is lost, too"):
+        kept.use(TOOL, code=CRASH)
+    assert kept.run(NAMES) == ["Kept"]
+
+
+def test_a_checkpoint_that_is_asked_for_fails_plainly(kept: Studio) -> None:
+    kept.blender.checkpoints.changed(0.0)
+    with (
+        full_disk(),
+        pytest.raises(Refusal, match=r"The state cannot be kept: .*File too large.*Blender is well"),
+    ):
+        kept.blender.keep("now")
+    before = kept.blender.inner_pid
+    assert kept.run("1 + 1") == 2
+    assert kept.blender.inner_pid == before
+
+
+def test_a_scene_too_large_to_be_written_is_told_and_stays(tmp_path: Path) -> None:
+    """Blender itself cannot write it: it is confined to small files."""
+    studio = Studio(tmp_path / "run", sandbox=best_sandbox(None, Limits(file_size=3 << 20)))
+    try:
+        found = studio.use(
+            TOOL,
+            code="import numpy\nmesh = bpy.data.meshes.new('Large')\nmesh.vertices.add(1_000_000)\n"
+            "mesh.vertices.foreach_set('co', numpy.random.random(3_000_000))\nmesh.use_fake_user = True",
+        )
+        assert "The state cannot be kept" in found.text
+        assert "File too large" in found.text
+        assert studio.run("len(bpy.data.meshes['Large'].vertices)") == 1_000_000
+        assert numbers(studio) == [1]
+    finally:
+        studio.blender.close()
+    assert of_run(tmp_path / "run") == []
+
+
+def test_what_cannot_be_opened_is_passed_over_and_told(tmp_path: Path) -> None:
+    studio = Studio(tmp_path / "run")
+    for name in ("One", "Two"):
+        studio.run(adding(name))
+        studio.blender.keep(name)
+    studio.run(adding("Three"))
+    studio.blender.close()
+    files = sorted((tmp_path / "run" / "checkpoints").iterdir())
+    files[-1].write_bytes(files[-1].read_bytes()[:2000])
+    files[-2].write_bytes(b"no blend at all")
+    again = Studio(tmp_path / "run")
+    try:
+        assert again.run(NAMES) == ["One"]
+        last = again.blender.checkpoints.last
+        assert last is not None
+        assert last.number > int(files[-1].stem)
+        # Where Blender stands is the newest now: a crash does not go through the broken ones again.
+        with pytest.raises(Died, match="how the scene was before"):
+            again.use(TOOL, code=CRASH)
+        assert again.run(NAMES) == ["One"]
+    finally:
+        again.blender.close()
+
+
+def test_halves_of_checkpoints_are_cleared_away(tmp_path: Path) -> None:
+    studio = Studio(tmp_path / "run")
+    studio.run(adding("Kept"))
+    studio.blender.close()
+    (tmp_path / "run" / "checkpoints" / ".000009.blend.part").write_bytes(b"half")
+    (tmp_path / "run" / "workspace" / "scene.blend@").write_bytes(b"half")
+    (tmp_path / "run" / "checkpoints" / "notes.txt").write_text("mine")
+    again = Studio(tmp_path / "run")
+    try:
+        assert again.run(NAMES) == ["Kept"]
+        assert not list((tmp_path / "run").rglob("*.part"))
+        assert not list((tmp_path / "run").rglob("*.blend@"))
+        assert (tmp_path / "run" / "checkpoints" / "notes.txt").exists()
+    finally:
+        again.blender.close()
+
+
+def test_a_checkpoint_says_what_it_is(kept: Studio) -> None:
+    kept.use(TOOL, code="tower = 'high'")
+    last = kept.blender.checkpoints.last
+    assert isinstance(last, Checkpoint)
+    assert str(last) == f"checkpoint {last.number} (after \"tower = 'high'\", {last.taken:%H:%M:%S})"

@@ -1,0 +1,217 @@
+"""``simworlds doctor``: what it finds on this machine, on a broken one, and how it says so."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from studio import Studio
+from test_escapes import works
+
+from agents.blender import checks, confine
+from agents.blender.launch import Runtime
+from agents.blender.sandbox import Sandbox, best_sandbox, bubblewrap_fault
+from kb_build.runtime import installed_bpy
+
+pytestmark = pytest.mark.blender
+
+DEBIANS = Path("/usr/bin/blender")
+COMMAND = "from agents.cli import main; main(prog_name='simworlds')"
+
+
+def run(*words: str, home: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    kept = {name: value for name, value in os.environ.items() if name not in {"BLENDER_EXE", "COLUMNS"}}
+    place = home / "temporary"
+    place.mkdir(exist_ok=True)
+    given = {**kept, "SIMWORLDS_HOME": str(home / "home"), "TMPDIR": str(place), **environment}
+    return subprocess.run(
+        [sys.executable, "-c", COMMAND, "doctor", *words],
+        env=given,
+        capture_output=True,
+        text=True,
+        timeout=200,
+        check=False,
+    )
+
+
+def findings(done: subprocess.CompletedProcess[str]) -> dict[str, dict[str, Any]]:
+    return {finding["name"]: finding for finding in json.loads(done.stdout)["findings"]}
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory: pytest.TempPathFactory) -> subprocess.CompletedProcess[str]:
+    """What it says of this machine, as JSON."""
+    home = tmp_path_factory.mktemp("doctor")
+    done = run("--json", home=home)
+    assert list((home / "temporary").iterdir()) == []
+    return done
+
+
+def test_this_machine_is_found_to_work(here: subprocess.CompletedProcess[str]) -> None:
+    assert here.returncode == 0, here.stderr
+    assert here.stderr == ""
+    told = json.loads(here.stdout)
+    assert told["works"] is True
+    found = findings(here)
+    assert list(found) == [
+        "Blender",
+        "Start",
+        "Sandbox",
+        "Workbench",
+        "Cycles",
+        "Films",
+        "Fluids",
+        "Knowledge",
+        "Room",
+    ]
+    assert found["Blender"]["data"]["version"] == installed_bpy()
+    assert found["Blender"]["data"]["kind"] == "environment"
+    assert 0.05 < found["Start"]["data"]["seconds"] < 60
+    assert found["Cycles"]["state"] == "good"
+    assert 0 < found["Cycles"]["data"]["seconds"] < 60
+    assert found["Films"]["data"]["supported"] is True
+    assert (found["Fluids"]["state"], found["Fluids"]["data"]["fault"]) == ("good", None)
+    assert (found["Knowledge"]["state"], found["Knowledge"]["data"]["built"]) == ("poor", [])
+    assert found["Knowledge"]["advice"].startswith("simworlds kb build")
+    assert found["Room"]["data"]["free"] > 0
+    drawn = found["Workbench"]["data"]
+    assert drawn["fault"] or drawn["seconds"] > 0
+
+
+def test_the_sandbox_is_the_one_that_works_here(here: subprocess.CompletedProcess[str]) -> None:
+    found = findings(here)["Sandbox"]
+    assert found["data"]["kind"] == best_sandbox().kind
+    assert found["keeps"] == list(best_sandbox().holds)
+    if found["data"]["kind"] == "landlock":
+        assert "bubblewrap" in found["advice"]
+    if found["data"]["kind"] == "bubblewrap":
+        assert bubblewrap_fault() is None
+        assert found["advice"] == ""
+
+
+def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Path) -> None:
+    done = run("--sandbox", "none", home=tmp_path)
+    assert done.returncode == 0
+    lines = done.stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert lines[0].startswith("✓  Blender    ")
+    assert "!  Sandbox    none: your files are open to what runs in Blender" in done.stdout
+    assert "- does not keep out: reading and writing files wherever you can" in done.stdout
+    assert "→ simworlds kb build" in done.stdout
+    assert re.search(
+        r"^✓  Blender can work here, but look at: Sandbox.*Knowledge\.$", done.stdout, re.MULTILINE
+    )
+
+
+def test_what_is_no_blender_is_said_and_exits_with_1(tmp_path: Path) -> None:
+    done = run("--blender-exe", "/bin/true", home=tmp_path, COLUMNS="200")
+    assert done.returncode == 1
+    assert "✗  Blender    No Blender to work in: /bin/true does not say that it is Blender" in done.stdout
+    assert "✗  Blender cannot work here." in done.stdout
+    named = run("--json", home=tmp_path, BLENDER_EXE=str(tmp_path))
+    assert (named.returncode, json.loads(named.stdout)["works"]) == (1, False)
+    assert list(findings(named)) == ["Blender", "Knowledge", "Room"]
+    unknown = run("--json", "--blender", "4.9", home=tmp_path)
+    assert unknown.returncode == 1
+    assert "no bpy package is known for Blender 4.9" in findings(unknown)["Blender"]["text"]
+
+
+def test_missing_libraries_are_named_with_their_packages(tmp_path: Path) -> None:
+    """A program that says of itself what a Blender says whose libraries are not there."""
+    fake = tmp_path / "fake" / "blender"
+    fake.parent.mkdir()
+    fake.write_text(
+        '#!/bin/sh\n[ "$1" = --version ] && echo "Blender 5.1.9" && exit\n'
+        "echo 'blender: error while loading shared libraries: libSM.so.6: cannot open shared object file' >&2\n"
+        "exit 127\n"
+    )
+    fake.chmod(0o755)
+    done = run("--json", "--blender-exe", str(fake), home=tmp_path)
+    assert done.returncode == 1
+    start = findings(done)["Start"]
+    assert start["text"] == "system libraries are missing: libSM.so.6"
+    assert start["advice"] == "apt-get install libsm6"
+    assert start["data"] == {"missing": ["libSM.so.6"], "packages": ["libsm6"]}
+
+
+def test_all_missing_libraries_are_listed_not_just_the_first(tmp_path: Path) -> None:
+    compiler = shutil.which("cc")
+    if compiler is None or shutil.which("ldd") is None:
+        pytest.skip("no compiler to make a program with that lacks libraries")
+    (tmp_path / "main.c").write_text("int one(void); int two(void); int main(void) { return one() + two(); }")
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.c").write_text(f"int {name}(void) {{ return 0; }}")
+        subprocess.run([compiler, "-shared", "-o", f"lib{name}.so.7", f"{name}.c"], cwd=tmp_path, check=True)
+    subprocess.run(
+        [compiler, "-o", "blender", "main.c", "./libone.so.7", "./libtwo.so.7"], cwd=tmp_path, check=True
+    )
+    for name in ("one", "two"):
+        (tmp_path / f"lib{name}.so.7").unlink()
+    runtime = Runtime(tmp_path / "blender", "executable", "5.1.9")
+    assert checks.missing_libraries(runtime, "libother.so.1: cannot open shared object file") == [
+        "libone.so.7",
+        "libtwo.so.7",
+    ]
+
+
+def test_the_packages_are_those_that_the_readme_installs() -> None:
+    listed = (Path(__file__).parents[2] / ".ci" / "debian-packages").read_text().split()
+    assert set(listed) <= set(checks.PACKAGES.values())
+
+
+def test_a_sandbox_that_does_not_hold_what_it_says_is_found_out(tmp_path: Path) -> None:
+    """Here, one that only limits amounts passes itself off as one that closes files."""
+    works("landlock")
+    open_one, told = best_sandbox("none"), best_sandbox("landlock")
+    studio = Studio(tmp_path / "run", sandbox=Sandbox("none", told.holds, told.lacks, open_one.limits))
+    try:
+        found = checks._confined(studio.blender, told, None)
+    finally:
+        studio.blender.close()
+    assert found.state == "bad"
+    assert found.lacks == ("files outside can be read", "files outside can be written")
+    assert confine.has_seccomp()
+    assert not list(Path.home().glob(".simworlds-doctor-*"))
+
+
+def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SIMWORLDS_HOME", str(base.parent.parent))
+    found = checks._knowledge(installed_bpy())
+    assert found.state == "good"
+    assert found.place == str(base)
+    other = checks._knowledge("3.4.1")
+    assert other.state == "poor"
+    assert other.advice == "simworlds kb build 3.4"
+    assert other.text == f"no base of Blender 3.4; there is one of {found.data['wanted']}"
+
+
+def test_an_installed_blender_is_looked_at(tmp_path: Path) -> None:
+    if not DEBIANS.exists():
+        pytest.skip(f"there is no {DEBIANS}")
+    done = run("--json", home=tmp_path, BLENDER_EXE=str(DEBIANS))
+    assert done.returncode == 0, done.stdout
+    found = findings(done)
+    assert found["Blender"]["data"]["kind"] == "executable"
+    assert found["Start"]["state"] == found["Sandbox"]["state"] == "good"
+    assert found["Cycles"]["state"] == "good"
+    assert found["Fluids"]["state"] == "good"
+
+
+def test_checks_that_are_given_up_end_blender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    each = checks.checks(checks.Choice())
+    for _, check in each:
+        if check().name == "Start":
+            break
+    assert [path.name[:16] for path in tmp_path.iterdir()] == ["simworlds-doctor"]
+    each.close()
+    assert list(tmp_path.iterdir()) == []
+    monkeypatch.setattr("tempfile.tempdir", None)

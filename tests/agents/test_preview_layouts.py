@@ -1,0 +1,176 @@
+"""The previews of several things: rooms are opened, and the frame holds what matters."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from preview_views import Views, build, is_coloured
+
+from agents.blender.tools import bake, previews
+
+if TYPE_CHECKING:
+    from studio import Studio
+
+pytestmark = pytest.mark.blender
+
+
+def room(walls: str) -> str:
+    return walls + (
+        "\nfor at, (x, y) in enumerate(((-1, -1), (1, -1), (-1, 1), (1, 1))):\n"
+        "    thing = box(f'Chest {at}', (x, y, .3), (.6, .6, .6), (.8, 0, 0)); thing.parent = house"
+        "\nbpy.context.view_layer.update()"
+    )
+
+
+HOUSE = "house = bpy.data.objects.new('House', None); bpy.context.scene.collection.objects.link(house)\n"
+THICK = (
+    HOUSE
+    + """
+for name, place, size in (
+    ('South', (0, -2.1, 1.25), (4.4, .2, 2.5)), ('North', (0, 2.1, 1.25), (4.4, .2, 2.5)),
+    ('West', (-2.1, 0, 1.25), (.2, 4, 2.5)), ('East', (2.1, 0, 1.25), (.2, 4, 2.5)),
+    ('Ceiling', (0, 0, 2.6), (4.4, 4.4, .2)), ('Floor', (0, 0, -.1), (4.4, 4.4, .2)),
+):
+    box(name, place, size, (.6, .6, .6)).parent = house
+"""
+)
+THIN = HOUSE + "box('Shell', (0, 0, 1.25), (4.4, 4.4, 2.5), (.6, .6, .6)).parent = house\n"
+
+
+@pytest.mark.parametrize(
+    "walls", [THICK, THICK + "house.rotation_euler.z = .6\n", THIN], ids=["thick", "turned", "one box"]
+)
+def test_a_closed_room_is_opened_from_every_side(studio: Studio, walls: str) -> None:
+    build(studio, room(walls))
+    views = Views(studio, "scene")
+    for name, view in views.by_name.items():
+        assert view["cut_away"], name
+        assert views.share(name, "red") > 0.02, name
+    # The far walls still stand: behind the things there is more than the background.
+    assert views.middle("front")[3] == 255
+    assert not any("Chest" in name for view in views.by_name.values() for name in view["cut_away"])
+
+
+def test_a_roof_without_walls_is_lifted(studio: Studio) -> None:
+    build(studio, room(HOUSE) + "\nbox('Roof', (0, 0, 2.6), (5, 5, .2), (.6, .6, .6))")
+    views = Views(studio, "scene")
+    assert {name for name, view in views.by_name.items() if view["cut_away"]} == {"top", "three-quarter"}
+    assert views.by_name["top"]["cut_away"] == ["Roof"]
+    assert views.share("top", "red") > 0.02
+
+
+def test_what_was_cut_away_is_said_on_the_sheet(studio: Studio) -> None:
+    build(studio, room(THICK))
+    found = studio.use(previews.SCENE_LAYOUT)
+    assert "top: Ceiling" in found.text
+    assert "front: South" in found.text
+
+
+def test_an_empty_room_is_opened_and_a_solid_is_not(studio: Studio) -> None:
+    build(studio, THICK)
+    assert Views(studio, "scene").by_name["top"]["cut_away"] == ["Ceiling"]
+    studio.empty()
+    build(studio, "box('Solid', size=(4, 4, 3))")
+    assert not any(view["cut_away"] for view in Views(studio, "scene").data["views"])
+
+
+def test_nothing_is_cut_away_outdoors(studio: Studio) -> None:
+    build(
+        studio,
+        "random.seed(4); box('Ground', (0, 0, -.05), (40, 40, .1))\n"
+        "for at in range(30):\n"
+        "    box(f'House {at}', (random.uniform(-18, 18), random.uniform(-18, 18), 1.5), (3, 3, 3))",
+    )
+    assert not any(view["cut_away"] for view in Views(studio, "scene").data["views"])
+
+
+CROWD = """
+for at in range(6): box(f'Thing {at}', (at, 0, .5), rgb=(.8, 0, 0))
+bpy.ops.mesh.primitive_plane_add(size=500); bpy.context.object.name = 'Ground'
+bpy.ops.mesh.primitive_uv_sphere_add(radius=800); bpy.context.object.name = 'Sky'
+box('Lost', (0, 0, -700))
+"""
+
+
+def test_ground_sky_and_what_is_lost_do_not_make_dots_of_the_rest(studio: Studio) -> None:
+    build(studio, CROWD)
+    views = Views(studio, "scene")
+    assert views.extent == pytest.approx([6, 1, 1])
+    assert views.share("front", "red") > 0.05
+    assert "'Ground', 'Sky'" in " ".join(views.data["notes"])
+    assert "'Lost' at (0, 0, -700) m" in " ".join(views.data["notes"])
+    assert Views(studio, "scene", everything=True).extent[0] == pytest.approx(1600, rel=0.01)
+
+
+RAIN = """
+box('Ground', (0, 0, -.1), (4, 4, .2))
+bpy.ops.mesh.primitive_uv_sphere_add(radius=.1, location=(40, 0, 0)); drop = paint(bpy.context.object, .8, 0, 0)
+drop.name = 'Drop'
+bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0, 2)); bpy.context.object.name = 'Cloud'
+rain = bpy.context.object.modifiers.new('Rain', 'PARTICLE_SYSTEM').particle_system.settings
+rain.count, rain.frame_start, rain.frame_end, rain.render_type = 50, 1, 1, 'OBJECT'
+rain.instance_object, rain.particle_size, rain.normal_factor = drop, 1, 0
+for frame in range(1, 6): bpy.context.scene.frame_set(frame)
+"""
+
+
+def test_what_copies_are_made_of_may_stand_aside(studio: Studio) -> None:
+    build(studio, RAIN)
+    views = Views(studio, "scene")
+    assert views.extent[0] == pytest.approx(4)
+    assert views.share("front", "red") > 0.005
+    assert "'Drop' at (40, 0, 0) m" in " ".join(views.data["notes"])
+
+
+CAVE = """
+bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=7, radius=4)
+for at in range(4): box(f'Chest {at}', (at - 1.5, 0, -2), (.6, .6, .6), (.8, 0, 0))
+"""
+
+
+def test_a_cave_of_many_faces_is_opened_in_seconds(studio: Studio) -> None:
+    build(studio, CAVE + "import time; bpy.app.driver_namespace['began'] = time.process_time()")
+    views = Views(studio, "scene")
+    spent = studio.run("import time; time.process_time() - bpy.app.driver_namespace['began']")
+    assert all(view["cut_away"] == ["Icosphere"] for view in views.by_name.values())
+    assert all(views.share(name, "red") > 0.002 for name in views.by_name)
+    assert spent < 10  # of the processor, not of the clock
+
+
+POOL = """
+fluid = box('Pool', (0, 0, .5), (2, 1, 1), (.1, .2, .8)).modifiers.new('Fluid', 'FLUID')
+fluid.fluid_type = 'DOMAIN'
+fluid = fluid.domain_settings
+fluid.domain_type, fluid.resolution_max, fluid.use_mesh = 'LIQUID', 24, True
+flow = box('Water', (0, 0, .3), (1.9, .9, .5), (.1, .2, .8)).modifiers.new('Fluid', 'FLUID')
+flow.fluid_type = 'FLOW'
+flow.flow_settings.flow_type, flow.flow_settings.flow_behavior = 'LIQUID', 'GEOMETRY'
+bpy.data.objects['Water'].hide_render = True
+box('Stone', (.3, 0, .3), (.3, .3, .3), (.8, 0, 0))
+"""
+
+
+def test_a_liquid_is_its_surface_and_no_room(own_studio: Studio) -> None:
+    build(own_studio, POOL)
+    own_studio.use(bake.TOOL, frame_start=1, frame_end=3)
+    views = Views(own_studio, "scene", frame=2)
+    assert not any(view["cut_away"] for view in views.by_name.values())
+    assert views.extent[2] < 0.8
+    assert views.share("top", "blue") > 0.2
+
+
+def test_the_scenes_camera_has_a_picture_of_its_own(studio: Studio) -> None:
+    build(
+        studio,
+        "box('Aim', (0, 5, 0), rgb=(.8, 0, 0)); c = bpy.data.cameras.new('Eye'); o = bpy.data.objects.new('Eye', c)\n"
+        "o.rotation_euler.x = math.pi / 2; bpy.context.scene.collection.objects.link(o); scene = bpy.context.scene\n"
+        "scene.camera = o; scene.render.resolution_x, scene.render.resolution_y = 400, 100; box('Behind', (0, -50, 0))",
+    )
+    views = Views(studio, "scene")
+    assert list(views.by_name)[-1] == "camera 'Eye'"
+    picture = views.pictures["camera 'Eye'"]
+    assert picture.width == 4 * picture.height
+    assert is_coloured(views.middle("camera 'Eye'"), "red")
+    # 36 mm wide, 50 mm away: at 4.5 m, 3.24 m wide.
+    assert views.share("camera 'Eye'", "red") == pytest.approx(1 / 3.24 * min(1, 4 / 3.24), rel=0.15)

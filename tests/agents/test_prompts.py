@@ -1,0 +1,182 @@
+"""The roles' prompts: whole, of files that are all used, true to the rules and plans that they tell of, and short."""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import fields
+from itertools import product
+from typing import TYPE_CHECKING, Any, get_args
+
+import pytest
+
+from agents.blender import docs_client, plan_check
+from agents.blender.catalogue import TOOLS
+from agents.models.tokens import of_text
+from agents.plan import relations
+from agents.plan.base import STAGES, Stage
+from agents.plan.edit import EditPlan
+from agents.plan.scene import ScenePlan
+from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
+from agents.protocol import vocabulary
+from agents.protocol.guide import told_tolerance
+from agents.protocol.rules.catalogue import RULES, chosen
+from agents.protocol.stages import rules_of
+from agents.protocol.tolerances import TOLERANCES
+from agents.roles import prompts
+from agents.roles.prompts import FOLDER, ROLES, Role, protocol_text, system_prompt, team_text
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+ALL = [(role, stage, edit) for role, stage, edit in product(ROLES, (None, *STAGES), (False, True))]
+ANSWERS: list[tuple[Role, bool, type[BaseModel]]] = [
+    ("planner", False, ScenePlan),
+    ("planner", True, EditPlan),
+    *(("planner", edit, model) for edit in (False, True) for model in (TacticalPlan, Decision)),
+    *(("reviewer", edit, Review) for edit in (False, True)),
+    *(("final_reviewer", edit, FinalReview) for edit in (False, True)),
+]
+
+
+def whole(role: Role, stage: Stage | None = None, *, edit: bool = False) -> str:
+    return "\n\n".join(system_prompt(role, stage, edit=edit))
+
+
+def composed() -> str:
+    """Every text that any model may be given."""
+    return "\n\n".join([*(whole(*one[:2], edit=one[2]) for one in ALL), team_text(), team_text(edit=True)])
+
+
+def test_every_paragraph_of_every_file_is_used() -> None:
+    files = sorted(FOLDER.rglob("*.md"))
+    assert {path.stem for path in files} == {*ROLES, *STAGES, "team"}
+    told = composed()
+    for path in files:
+        for paragraph in path.read_text(encoding="utf-8").split("\n\n"):
+            part = paragraph.partition("{{")[0].strip()
+            assert part in told, f"{path.name}: {part[:60]}"
+
+
+def test_nothing_is_left_to_be_filled_in() -> None:
+    assert "{{" not in composed()
+
+
+def test_a_hole_that_nothing_fills_is_an_error() -> None:
+    with pytest.raises(KeyError, match="stagse"):
+        prompts._filled("The {{stagse}}.", stages="x")
+
+
+@pytest.mark.parametrize(("role", "stage", "edit"), ALL)
+def test_parts_come_from_what_is_shared_to_what_is_the_stages_own(
+    role: Role, stage: Stage | None, edit: bool
+) -> None:
+    parts = system_prompt(role, stage, edit=edit)
+    assert parts[1] == protocol_text()
+    assert parts[:3] == system_prompt(role, edit=edit), "the prompt cache finds them again"
+    assert all(part.strip() == part and part for part in parts)
+    assert len(parts) == (3 if stage is None else 4)
+
+
+def test_the_protocol_names_every_rule_tolerance_tag_and_relation() -> None:
+    text = protocol_text()
+    for rule in RULES:
+        sentence = rule.about.partition(". ")[0].removesuffix(".")
+        soft = " (soft)" if rule.severity == "soft" else ""
+        assert f"\n- {rule.id}{soft} {sentence}." in text
+    used = {name for rule in RULES for name in rule.tolerances}
+    assert used == {field.name for field in fields(TOLERANCES)}
+    for name in used - {"contact", "contact_share", "contact_most", "penetration", "penetration_share"}:
+        assert text.count(f"{name} {told_tolerance(name)}") == 1
+    for one in vocabulary.PROPERTIES:
+        assert f"`{one.name}`" in text
+        assert one.meaning in text
+    for word in (*vocabulary.SYSTEMS, *vocabulary.DEFORMATION_KINDS, *vocabulary.MOTION_KINDS):
+        assert word in text
+    for kind in get_args(get_args(relations.Relation)[0]):
+        line = next(one for one in text.splitlines() if one.startswith(f"- {_kind(kind)}("))
+        for name in set(kind.model_fields) - {"kind"}:
+            assert re.search(rf"[(, ]{name}[…?,)]", line), line
+
+
+def _kind(model: type[BaseModel]) -> str:
+    return "/".join(get_args(model.model_fields["kind"].annotation))
+
+
+def test_epsilon_and_noise_are_told_as_they_are() -> None:
+    assert "ε is 2 mm or 0.5 % of the smaller object's diagonal, at most 10 mm" in protocol_text()
+    assert "noise is 1 mm or 1 % of the smallest dimension" in protocol_text()
+
+
+@pytest.mark.parametrize(("role", "edit", "model"), ANSWERS)
+def test_a_role_is_told_every_field_of_what_it_answers(
+    role: Role, edit: bool, model: type[BaseModel]
+) -> None:
+    text = prompts.shapes_text(role, edit=edit)
+    schema = model.model_json_schema()
+    parts: dict[str, Any] = {model.__name__: schema, **schema.get("$defs", {})}
+    for name, part in parts.items():
+        block = re.search(rf"^{name} {{.*?^}}", text, re.MULTILINE | re.DOTALL)
+        assert block, name
+        for field, told in part["properties"].items():
+            mark = "" if field in part.get("required", ()) else r"\?"
+            assert re.search(rf"^  {field}{mark}: ", block[0], re.MULTILINE), f"{name}.{field}"
+            for choice in told.get("enum", ()):
+                assert f'"{choice}"' in block[0]
+
+
+@pytest.mark.parametrize("role", ROLES)
+def test_every_role_can_read_the_plan(role: Role) -> None:
+    assert "\nScenePlan {" in prompts.shapes_text(role)
+    assert "\nEditPlan {" in prompts.shapes_text(role, edit=True)
+
+
+@pytest.mark.parametrize("role", [*ROLES, "team"])
+def test_what_is_only_for_edits_is_told_for_edits_only(role: Any) -> None:
+    def text(edit: bool) -> str:
+        return team_text(edit=edit) if role == "team" else prompts.role_text(role, edit=edit)
+
+    assert "## Editing:" in text(True)
+    assert "## Editing:" not in text(False)
+    assert "## Making:" not in text(True)
+    assert "one JSON object" in text(False) or role in {"coder", "team"}
+
+
+def test_every_stage_says_what_belongs_into_it_when_it_is_done_and_what_judges_it() -> None:
+    for stage in STAGES:
+        text = prompts.stage_text(stage)
+        assert text.startswith(f"# {stage}: ")
+        for word in ("Belongs here: ", "\nNot here: ", "\nDone when ", "\nGoes wrong often:\n- "):
+            assert text.count(word) == 1
+        for edit in (False, True):
+            last = prompts.stage_text(stage, edit=edit).splitlines()[-1]
+            told = last.removeprefix("Rules that judge this stage: ").removesuffix(".").split(", ")
+            assert chosen(told) == rules_of(stage, edit=edit), "as blender_verify takes them"
+
+
+def test_the_planner_knows_all_stages_in_order() -> None:
+    places = [prompts.role_text("planner").index(f"\n- {prompts.stage_title(stage)}") for stage in STAGES]
+    assert places == sorted(places)
+
+
+def test_tools_that_are_named_are_there() -> None:
+    known = {*(tool.name for tool in TOOLS), docs_client.NAME, plan_check.NAME}
+    assert set(re.findall(r"\bblender_\w+", composed())) <= known
+
+
+def test_only_the_coder_hears_of_code_and_nobody_of_how_the_api_is_spelled() -> None:
+    texts = {path: path.read_text(encoding="utf-8") for path in FOLDER.rglob("*.md")}
+    for path, text in texts.items():
+        assert not re.search(r"bpy\.(ops|types|context)|\w+\(\)|\.\w+_\w+\b", text), path.name
+        assert "bpy" not in text or path.stem == "coder"
+
+
+def test_prompts_stay_short() -> None:
+    rows = {"the protocol": of_text(protocol_text())}
+    rows |= {f"stage {stage}": of_text(prompts.stage_text(stage)) for stage in STAGES}
+    rows |= {f"{role}, whole": sum(map(of_text, system_prompt(role, "motion"))) for role in ROLES}
+    rows |= {f"{role}, edit": sum(map(of_text, system_prompt(role, "motion", edit=True))) for role in ROLES}
+    sys.stdout.write("\n".join(f"{name:24} {tokens:6} tokens at most" for name, tokens in rows.items()))
+    assert rows["the protocol"] < 3000
+    assert max(rows[f"stage {stage}"] for stage in STAGES) < 1000
+    assert max(rows.values()) < 9000

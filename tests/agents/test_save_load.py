@@ -1,0 +1,465 @@
+"""``blender_save`` and ``blender_load``: what comes back elsewhere, and what is refused."""
+
+from __future__ import annotations
+
+import ast
+import os
+import resource
+import shutil
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from studio import Studio, no_docs
+
+from agents.blender.checkpoints import KEPT
+from agents.blender.errors import Refusal
+from agents.blender.launch import make_launch
+from agents.blender.process import BlenderProcess
+from agents.blender.run_folder import RunFolder
+from agents.blender.sandbox import best_sandbox, default_limits
+from agents.blender.saved import take_all
+from agents.blender.supervisor import Supervisor
+from agents.blender.tools.base import Session
+from agents.blender.tools.files import LOAD, SAVE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+pytestmark = pytest.mark.blender
+
+# A cloth that falls on a cube, its cache in memory or on disk; MEASURE tells where its vertices are.
+CLOTH = """
+bpy.ops.mesh.primitive_cube_add(size=1)
+bpy.context.object.modifiers.new("Collision", "COLLISION")
+bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=2, location=(0, 0, 1))
+bpy.context.object.name = "Sheet"
+cache = bpy.context.object.modifiers.new("Cloth", "CLOTH").point_cache
+cache.frame_end, cache.use_disk_cache = 12, ON_DISK
+bpy.ops.ptcache.bake_all(bake=True)
+"""
+LIQUID = """
+bpy.ops.mesh.primitive_uv_sphere_add(radius=0.5)
+flow = bpy.context.object.modifiers.new("Fluid", "FLUID")
+flow.fluid_type = "FLOW"
+flow.flow_settings.flow_type = "LIQUID"
+bpy.ops.mesh.primitive_cube_add(size=2)
+bpy.context.object.name = "Sheet"
+modifier = bpy.context.object.modifiers.new("Fluid", "FLUID")
+modifier.fluid_type = "DOMAIN"
+domain = modifier.domain_settings
+domain.domain_type, domain.resolution_max, domain.use_mesh = "LIQUID", 16, True
+domain.cache_type, domain.cache_frame_end, domain.cache_directory = "ALL", 9, "//caches/Sheet"
+bpy.ops.fluid.bake_all()
+"""
+MEASURE = """
+bpy.context.scene.frame_set(8)
+thing = bpy.data.objects["Sheet"]
+mesh = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+points = [round(x, 5) for vertex in mesh.vertices for x in vertex.co]
+(len(points), min(points), max(points), hash(tuple(points)))
+"""
+PICTURE = """
+import os
+os.makedirs("textures", exist_ok=True)
+image = bpy.data.images.new("Wood", 4, 4)
+image.pixels[:] = [0.25, 0.5, 0.75, 1.0] * 16
+image.filepath_raw, image.file_format = "//textures/wood.png", "PNG"
+image.save()
+bpy.data.images.remove(image)
+bpy.data.images.load("//textures/wood.png").use_fake_user = True
+"""
+COLOUR = "[round(x, 2) for x in bpy.data.images['wood.png'].pixels[:4]]"
+
+
+@pytest.fixture(scope="module")
+def _run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+    made = Studio(tmp_path_factory.mktemp("saving") / "run")
+    made.use(SAVE, name="empty", verify=False)
+    yield made
+    made.blender.close()
+
+
+@pytest.fixture
+def studio(_run: Studio) -> Studio:
+    """A run whose scene is empty, and in which nothing but that was saved."""
+    root = _run.blender.folder.root
+    for made in (*root.iterdir(), *(root / "workspace").iterdir()):
+        if made.name in {"empty.blend", ".lock", "workspace", "checkpoints", "private", "scene.blend"}:
+            continue
+        if made.is_dir() and not made.is_symlink():
+            shutil.rmtree(made)
+        else:
+            made.unlink()
+    _run.use(LOAD, path="empty")
+    return _run
+
+
+@contextmanager
+def studio_for(root: Path, **launch: Any) -> Iterator[Studio]:
+    """A run whose Blender is started otherwise."""
+    folder = RunFolder.make(root)
+    made = Studio.__new__(Studio)
+    made.blender = Supervisor(make_launch(folder.workspace, **launch), folder)
+    made.session = Session(made.blender, no_docs)
+    made.blender.start()
+    yield made
+    made.blender.close()
+
+
+def refusal(studio: Studio, tool: Any, **arguments: Any) -> str:
+    with pytest.raises(Refusal) as refused:
+        studio.use(tool, **arguments)
+    return str(refused.value)
+
+
+def elsewhere(path: Path, room: Path, code: str) -> Any:
+    """What ``code`` finds in a process that has nothing but the file and its caches, moved to another folder."""
+    room.mkdir()
+    for one in (path, path.with_name(f"blendcache_{path.stem}")):
+        if one.exists():
+            shutil.move(one, room / one.name)
+    launch = make_launch(room)
+    process = BlenderProcess(launch)
+    try:
+        process.call("look", {"path": str(room / path.name)}, timeout=60)
+        found = process.call("execute", {"code": code}, timeout=60).value
+        assert found["error"] is None, found["error"]["traceback"]
+        return ast.literal_eval(found["value"])
+    finally:
+        process.kill()
+        launch.clean()
+
+
+# What comes back
+
+
+@pytest.mark.parametrize(
+    ("recipe", "label", "files"),
+    [
+        (CLOTH.replace("ON_DISK", "False"), "cloth of 'Sheet'", 0),
+        (CLOTH.replace("ON_DISK", "True"), "cloth of 'Sheet'", 12),
+        (LIQUID, "liquid of 'Sheet'", 27),
+    ],
+    ids=["cloth in memory", "cloth on disk", "liquid"],
+)
+def test_a_baked_cache_opens_elsewhere_and_here_again(
+    studio: Studio, tmp_path: Path, recipe: str, label: str, files: int
+) -> None:
+    studio.run(recipe)
+    before = studio.run(MEASURE)
+    found = studio.use(SAVE, name="saves/tower")
+    assert not found.failed, found.text
+    assert (found.data["beside"] or {"files": 0})["files"] == files
+    assert [(one["label"], one["baked"]) for one in found.data["opened"]["caches"]] == [(label, True)]
+    assert found.data["external"] == []
+    assert studio.run(MEASURE) == before, "saving has changed the scene that was saved"
+    path = Path(found.data["path"])
+    assert path == studio.blender.folder.root / "saves" / "tower.blend"
+
+    studio.run("bpy.ops.wm.read_homefile(use_empty=True)")
+    shutil.rmtree(studio.blender.folder.workspace / "caches", ignore_errors=True)
+    studio.use(LOAD, path="saves/tower")
+    assert studio.run(MEASURE) == before
+    assert not (studio.blender.folder.workspace / ".loading").exists()
+
+    assert elsewhere(path, tmp_path / "elsewhere", MEASURE) == before
+    assert before[0] > 100
+
+
+def test_a_picture_is_packed_into_the_copy_alone(studio: Studio, tmp_path: Path) -> None:
+    studio.run(PICTURE)
+    found = studio.use(SAVE, name="tower", verify=False)
+    assert found.data["packed"] == ["wood.png"]
+    assert found.data["external"] == []
+    state = "image = bpy.data.images['wood.png']\n(image.packed_file is None, image.filepath)"
+    assert studio.run(state) == (True, "//textures/wood.png")
+    assert elsewhere(Path(found.data["path"]), tmp_path / "elsewhere", COLOUR) == [0.25, 0.5, 0.75, 1.0]
+
+
+def test_without_packing_a_picture_is_found_where_it_lies(studio: Studio) -> None:
+    studio.run(PICTURE)
+    found = studio.use(SAVE, name="saves/tower", verify=False, pack=False)
+    lies = str(studio.blender.folder.workspace / "textures" / "wood.png")
+    assert [(one["path"], one["missing"]) for one in found.data["external"]] == [(lies, False)]
+    assert lies in found.text
+    studio.run("bpy.ops.wm.read_homefile(use_empty=True)")
+    studio.use(LOAD, path="saves/tower")
+    assert studio.run(COLOUR) == [0.25, 0.5, 0.75, 1.0]
+
+
+def test_pixels_that_no_file_holds_are_saved(studio: Studio, tmp_path: Path) -> None:
+    studio.run(
+        "image = bpy.data.images.new('wood.png', 2, 2)\nimage.pixels[:] = [1, 0, 1, 1] * 4\nimage.use_fake_user = True"
+    )
+    found = studio.use(SAVE, name="tower", verify=False, pack=False)
+    assert found.data["rescued"] == ["wood.png"]
+    assert elsewhere(Path(found.data["path"]), tmp_path / "elsewhere", COLOUR) == [1, 0, 1, 1]
+
+
+def test_what_is_missing_is_named_and_hinders_nothing(studio: Studio) -> None:
+    studio.run(PICTURE + "\nos.remove('textures/wood.png')")
+    found = studio.use(SAVE, name="tower", verify=False)
+    assert found.data["packed"] == []
+    assert [one["missing"] for one in found.data["external"]] == [True]
+    assert "(missing)" in found.text
+
+
+def test_a_bake_of_geometry_nodes_goes_along(studio: Studio, tmp_path: Path) -> None:
+    studio.run("""
+bpy.ops.mesh.primitive_cube_add()
+bpy.context.object.name = "Sheet"
+tree = bpy.data.node_groups.new("Rise", "GeometryNodeTree")
+for way in ("INPUT", "OUTPUT"):
+    tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+make = tree.nodes.new
+enter, leave, move = make("NodeGroupInput"), make("NodeGroupOutput"), make("GeometryNodeSetPosition")
+begin, end = make("GeometryNodeSimulationInput"), make("GeometryNodeSimulationOutput")
+begin.pair_with_output(end)
+move.inputs["Offset"].default_value = (0, 0, 0.1)
+for one, other in ((enter, begin), (begin, move), (move, end), (end, leave)):
+    source = next(socket for socket in one.outputs if socket.type == "GEOMETRY")
+    tree.links.new(source, next(socket for socket in other.inputs if socket.type == "GEOMETRY"))
+modifier = bpy.context.object.modifiers.new("Rise", "NODES")
+modifier.node_group, modifier.bake_target, modifier.bake_directory = tree, "DISK", "//caches/rise"
+bpy.context.scene.frame_end = 9
+bpy.ops.object.simulation_nodes_cache_bake(selected=True)
+""")
+    before = studio.run(MEASURE)
+    found = studio.use(SAVE, name="tower", verify=False)
+    assert found.data["beside"]["files"] == 18
+    assert elsewhere(Path(found.data["path"]), tmp_path / "elsewhere", MEASURE) == before
+    assert before[2] == pytest.approx(1.8)
+
+
+def test_caches_of_an_older_save_go_with_it(studio: Studio) -> None:
+    studio.run(CLOTH.replace("ON_DISK", "True"))
+    beside = Path(studio.use(SAVE, name="tower", verify=False).data["beside"]["path"])
+    assert len(list(beside.iterdir())) == 12
+    studio.run("bpy.data.objects.remove(bpy.data.objects['Sheet'])")
+    assert studio.use(SAVE, name="tower", verify=False).data["beside"] is None
+    assert not beside.exists()
+
+
+def test_a_cache_whose_files_are_gone_is_not_called_whole(studio: Studio) -> None:
+    studio.run(LIQUID + "\nimport shutil\nshutil.rmtree('caches')")
+    found = studio.use(SAVE, name="tower", verify=False)
+    assert found.failed
+    assert "liquid of 'Sheet' passes for baked, but 9 of its frames are missing" in found.text
+    assert (studio.blender.folder.root / "tower.blend").exists()
+
+
+def test_another_folders_file_opens_with_its_caches_and_pictures(studio: Studio, tmp_path: Path) -> None:
+    studio.run(CLOTH.replace("ON_DISK", "True") + PICTURE)
+    before = studio.run(MEASURE)
+    saved = Path(studio.use(SAVE, name="tower", verify=False).data["path"])
+    assets = tmp_path / "assets"
+    shutil.move(saved.parent / "workspace" / "textures", assets / "textures")
+    for one in (saved, saved.with_name("blendcache_tower")):
+        shutil.move(one, assets / one.name)
+    with studio_for(tmp_path / "other", read=(assets,)) as other:
+        files = {path: path.read_bytes() for path in assets.rglob("*") if path.is_file()}
+        assert other.use(LOAD, path=str(assets / "tower.blend")).data["objects"] == 2
+        assert other.run(MEASURE) == before
+        assert other.run(COLOUR) == [0.25, 0.5, 0.75, 1.0]
+        other.run("bpy.ops.ptcache.free_bake_all()")
+        assert {path: path.read_bytes() for path in assets.rglob("*") if path.is_file()} == files
+        (assets / "link.blend").symlink_to(assets / "tower.blend")
+        assert "it is a link" in refusal(other, LOAD, path=str(assets / "link.blend"))
+        assert "may not be opened" in refusal(other, LOAD, path=str(tmp_path / "empty.blend"))
+
+
+# Checkpoints
+
+
+def test_a_save_without_a_name_is_a_checkpoint_to_go_back_to(studio: Studio) -> None:
+    studio.run("bpy.ops.mesh.primitive_cube_add()")
+    number = studio.use(SAVE).data["checkpoint"]
+    assert not studio.use(SAVE).data["new"]
+    studio.run("bpy.data.objects.remove(bpy.data.objects['Cube'])")
+    assert number in studio.use(LOAD).data["checkpoints"]
+    found = studio.use(LOAD, checkpoint=number)
+    assert f"back at checkpoint {number}" in found.text
+    assert studio.run("[one.name for one in bpy.data.objects]") == ["Cube"]
+    assert found.data["checkpoint"] > number
+    studio.blender.kill()
+    assert studio.run("[one.name for one in bpy.data.objects]") == ["Cube"], (
+        "the last checkpoint is another one"
+    )
+
+
+def test_the_oldest_checkpoint_can_be_gone_back_to(studio: Studio) -> None:
+    for number in range(14):
+        studio.run(f"bpy.data.objects.new('{number}', None).use_fake_user = True")
+    studio.use(LOAD, checkpoint=studio.use(LOAD).data["checkpoints"][-1])
+    assert studio.run("len(bpy.data.objects)") == 14 - (KEPT - 1)
+
+
+def test_no_such_checkpoint_is_refused_with_those_that_are_kept(studio: Studio) -> None:
+    kept = studio.use(LOAD).data["checkpoints"]
+    assert f"kept are {kept[-1]}, " in refusal(studio, LOAD, checkpoint=9999)
+    assert "not both" in refusal(studio, LOAD, checkpoint=1, path="tower")
+
+
+# What is refused
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../out", "/tmp/out", "..", ".", "", "a/../../out", "workspace/in", "Checkpoints/000001", "a\0b", "a\nb", "~/x*",
+     "a/" * 20 + "b", "x" * 300],
+)  # fmt: skip
+def test_a_name_that_leads_elsewhere_is_refused(studio: Studio, name: str) -> None:
+    before = sorted(studio.blender.folder.root.rglob("*"))
+    assert refusal(studio, SAVE, name=name)
+    assert sorted(studio.blender.folder.root.rglob("*")) == before
+
+
+def test_a_folders_name_is_refused(studio: Studio) -> None:
+    (studio.blender.folder.root / "folder.blend").mkdir()
+    assert "is a folder" in refusal(studio, SAVE, name="folder")
+    assert "no plain file" in refusal(studio, LOAD, path="folder.blend")
+
+
+def test_a_link_out_of_the_runs_folder_is_not_followed(studio: Studio, tmp_path: Path) -> None:
+    (studio.blender.folder.root / "out").symlink_to(tmp_path)
+    assert "leads out" in refusal(studio, SAVE, name="out/tower")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_links_that_code_leaves_where_files_are_written_are_not_followed(
+    studio: Studio, tmp_path: Path
+) -> None:
+    victim = tmp_path / "victim"
+    victim.mkdir()
+    (victim / "kept").write_text("kept")
+    studio.run(LIQUID)
+    studio.run(f"""
+import os, shutil
+shutil.rmtree("caches/Sheet/mesh")
+os.symlink({str(victim)!r}, "caches/Sheet/mesh")
+os.symlink({str(victim / "kept")!r}, "caches/Sheet/data/stolen.vdb")
+os.symlink({str(victim / "kept")!r}, ".saved.blend")
+os.symlink({str(victim)!r}, ".loading")
+""")
+    assert "not a plain file" in refusal(studio, SAVE, name="tower")
+    assert not (studio.blender.folder.root / "tower.blend").exists()
+    studio.run("import os\nfor link in ('data/stolen.vdb', 'mesh'): os.remove(f'caches/Sheet/{link}')")
+    studio.use(SAVE, name="tower", verify=False)
+    studio.use(LOAD, path="tower")
+    assert [(one.name, one.read_text()) for one in victim.iterdir()] == [("kept", "kept")]
+    assert [one.name for one in studio.blender.folder.root.glob(".saving-*")] == []
+
+
+@pytest.mark.parametrize("below", ["../out", "/tmp/out", "", "a/../../out", "a\0b"])
+def test_a_reply_cannot_name_a_place_outside(studio: Studio, tmp_path: Path, below: str) -> None:
+    (studio.blender.folder.workspace / "made").write_text("made")
+    with pytest.raises(Refusal, match="cannot be a file of a cache"):
+        take_all(studio.blender.folder, [("made", below)], tmp_path / "caches")
+    assert not list(tmp_path.iterdir())
+
+
+HOSTILE = {
+    "nothing.blend": (None, "There is no nothing.blend. Saved in this run: empty.blend."),
+    "../other.blend": (None, "leave out '..'"),
+    "/etc/passwd": (None, "may not be opened"),
+    "void.blend": (b"", "is empty"),
+    "text.blend": (b"hello, I am a scene", "is no .blend file"),
+    "head.blend": (b"BLENDER17-01v0501", "cannot be opened"),
+    "squeezed.blend": (b"\x28\xb5\x2f\xfd" + bytes(range(256)) * 8, "cannot be opened"),
+    "checkpoints/NEWEST": (None, "go back to it with checkpoint="),
+    "a\0b": (None, "is no path"),
+}
+
+
+@pytest.mark.parametrize("path", HOSTILE)
+def test_what_is_no_blend_file_is_refused_and_the_scene_stays(studio: Studio, path: str) -> None:
+    studio.run("bpy.ops.mesh.primitive_cube_add()")
+    content, because = HOSTILE[path]
+    root = studio.blender.folder.root
+    if content is not None:
+        (root / path).write_bytes(content)
+    path = path.replace("NEWEST", max(one.name for one in (root / "checkpoints").glob("*.blend")))
+    assert because in refusal(studio, LOAD, path=path)
+    assert studio.run("[one.name for one in bpy.data.objects]") == ["Cube"]
+
+
+def test_a_torn_or_newer_file_is_refused_and_the_scene_stays(studio: Studio) -> None:
+    studio.run("bpy.ops.mesh.primitive_cube_add()")
+    studio.run(
+        "bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//plain.blend'), copy=True, compress=False)"
+    )
+    whole = (studio.blender.folder.workspace / "plain.blend").read_bytes()
+    root = studio.blender.folder.root
+    (root / "torn.blend").write_bytes(whole[: len(whole) // 2])
+    version = whole[12:17]
+    assert version == b"v0501"
+    (root / "newer.blend").write_bytes(whole.replace(version, b"v0777", 1))
+    studio.run("bpy.data.objects['Cube'].location.x = 3")
+    assert "torn.blend cannot be opened" in refusal(studio, LOAD, path="torn")
+    told = refusal(studio, LOAD, path="newer.blend")
+    assert "saved by Blender 7.77" in told
+    assert "The scene stands as before, at checkpoint" in told
+    assert studio.run("[(one.name, one.location.x) for one in bpy.data.objects]") == [("Cube", 3.0)]
+    (root / "plain.blend").write_bytes(whole)
+    assert studio.use(LOAD, path="plain").data["objects"] == 1
+    assert studio.run("bpy.data.objects['Cube'].location.x") == 0.0
+
+
+def test_scripts_in_a_file_do_not_run(studio: Studio) -> None:
+    studio.run(
+        "text = bpy.data.texts.new('start.py')\n"
+        "text.write(\"import bpy\\nbpy.data.objects.new('Ran', None)\")\n"
+        "text.use_module = True\n"
+        "bpy.ops.mesh.primitive_cube_add()"
+    )
+    studio.use(SAVE, name="tower", verify=False)
+    found = studio.use(LOAD, path="tower")
+    assert found.data["scripts"]
+    assert "they do not run" in found.text
+    assert studio.run("[one.name for one in bpy.data.objects]") == ["Cube"]
+
+
+# Full disks
+
+
+def test_a_file_too_large_for_the_sandbox_leaves_the_old_one_whole(tmp_path: Path) -> None:
+    sandbox = best_sandbox(limits=replace(default_limits(), file_size=2_000_000))
+    with studio_for(tmp_path / "small", sandbox=sandbox) as small:
+        root = small.blender.folder.root
+        small.use(SAVE, name="tower", verify=False)
+        before = (root / "tower.blend").read_bytes()
+        code = (
+            "import random\nimage = bpy.data.images.new('Noise', 1024, 1024, float_buffer=True)\n"
+            "image.pixels.foreach_set([random.random() for _ in range(4 * 1024 * 1024)])\n"
+            "image.use_fake_user = True"
+        )
+        assert small.blender.call("execute", {"code": code}, timeout=60).value["error"] is None
+        told = refusal(small, SAVE, name="tower")
+        assert "tower.blend was not saved" in told
+        assert "untouched" in told
+        assert (root / "tower.blend").read_bytes() == before
+        assert not (root / "workspace" / ".saved.blend").exists()
+
+
+def test_a_full_disk_leaves_the_old_file_and_its_caches_whole(studio: Studio) -> None:
+    studio.run(CLOTH.replace("ON_DISK", "True"))
+    studio.use(SAVE, name="tower", verify=False)
+    root = studio.blender.folder.root
+    before = {path: path.read_bytes() for path in root.glob("*tower*/*")} | {
+        root / "tower.blend": (root / "tower.blend").read_bytes()
+    }
+    assert len(before) == 13
+    studio.run("bpy.data.objects['Sheet'].scale.x = 2")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, hard))
+    try:
+        told = refusal(studio, SAVE, name="tower", verify=False)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert os.strerror(27) in told
+    assert "untouched" in told
+    assert {path: path.read_bytes() for path in before} == before
+    assert [path.name for path in root.iterdir() if path.name.startswith(".saving")] == []

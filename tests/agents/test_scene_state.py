@@ -1,0 +1,926 @@
+"""``blender_scene_state``: what it reads in real scenes, that it fits, and that it leaves no trace."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from agents.blender.errors import Refusal
+from agents.blender.tools.base import Result, parse
+from agents.blender.tools.scene_fit import tokens
+from agents.blender.tools.scene_state import TOOL, SceneState, readout
+
+if TYPE_CHECKING:
+    from studio import Studio
+
+pytestmark = pytest.mark.blender
+
+SECTIONS = ("collections", "objects", "physics", "animation", "materials", "view")
+CUBE = "bpy.ops.mesh.primitive_cube_add({0})\no = bpy.context.object\n"
+
+
+def read(studio: Studio, code: str = "", **arguments: Any) -> Result:
+    """What the tool reads after some code."""
+    if code:
+        studio.run(code)
+    found = studio.use(TOOL, **arguments)
+    json.dumps(found.data, allow_nan=False)
+    assert tokens(found.text) <= arguments.get("max_tokens", 4000)
+    return found
+
+
+def entry(found: Result, section: str, name: str, **having: Any) -> dict[str, Any]:
+    """The one entry of this name, and with these values."""
+    entries = [
+        one
+        for one in found.data[section]
+        if one["name"] == name and all(one.get(key) == item for key, item in having.items())
+    ]
+    assert len(entries) == 1, (name, having, found.text)
+    return entries[0]
+
+
+# Objects
+
+
+def test_an_extent_is_that_of_evaluated_geometry_in_the_world(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("location=(1, 2, 3), rotation=(0, 0, 0.7853981633974483)")
+        + "m = o.modifiers.new('Row', 'ARRAY')\nm.count = 3\no.scale.z = 2",
+    )
+    told = entry(found, "objects", "Cube")
+    # Three cubes of edge 2 in a row, turned by 45°: corners at 1 ± √2 and 4√2·cos 45° further on.
+    half = math.sqrt(2)
+    assert told["extent"]["min"] == pytest.approx([1 - half, 2 - half, 1], abs=1e-3)
+    assert told["extent"]["max"] == pytest.approx([1 + half + 2 * half, 2 + half + 2 * half, 5], abs=1e-3)
+    assert told["rotation"] == [0, 0, 45]
+    assert told["scale"] == [1, 1, 2]
+    assert (told["vertices"], told["evaluated_vertices"]) == (8, 24)
+    assert "at 1 2 3; rotation 0 0 45°; scale 1 1 2" in found.text
+
+
+def test_a_turned_sphere_is_measured_by_its_vertices_not_by_its_box(studio: Studio) -> None:
+    found = read(studio, "bpy.ops.mesh.primitive_uv_sphere_add(rotation=(0.5, 0.6, 0.7))")
+    assert max(entry(found, "objects", "Sphere")["extent"]["size"]) <= 2.0001
+
+
+def test_instances_belong_to_the_extent_of_what_makes_them(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("location=(0, 0, 0)")
+        + """
+c = bpy.data.collections.new('Kit')
+c.objects.link(o)
+e = bpy.data.objects.new('Maker', None)
+bpy.context.scene.collection.objects.link(e)
+e.instance_type, e.instance_collection, e.location = 'COLLECTION', c, (10, 0, 0)
+""",
+    )
+    told = entry(found, "objects", "Maker")
+    assert (told["extent"]["min"], told["extent"]["max"], told["instances"]) == ([9, -1, -1], [11, 1, 1], 1)
+    assert told["instancing"] == "COLLECTION Kit"
+
+
+def test_modifiers_stand_in_order_with_the_settings_that_differ(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("")
+        + """
+o.modifiers.new('Edge', 'BEVEL').segments = 4
+s = o.modifiers.new('Smooth', 'SUBSURF')
+s.levels, s.show_render = 2, False
+o.modifiers.new('Plain', 'SOLIDIFY')
+m = o.modifiers.new('Copy', 'MIRROR')
+m.mirror_object = bpy.data.objects.new('Middle', None)
+m.use_axis = (True, True, False)
+""",
+    )
+    assert entry(found, "objects", "Cube")["modifiers"] == [
+        {"name": "Edge", "type": "BEVEL", "settings": {"segments": 4}},
+        {"name": "Smooth", "type": "SUBSURF", "off": ["render"], "settings": {"levels": 2}},
+        {"name": "Plain", "type": "SOLIDIFY"},
+        {
+            "name": "Copy",
+            "type": "MIRROR",
+            "settings": {"use_axis": [True, True, False], "mirror_object": "Middle"},
+        },
+    ]
+    assert "modifier Smooth SUBSURF off in render: levels=2" in found.text
+
+
+def test_what_blender_makes_has_no_settings_that_differ(studio: Studio) -> None:
+    """Each default is compared with a fresh modifier, constraint, field or body of this Blender."""
+    found = read(
+        studio,
+        """
+def made():
+    bpy.ops.mesh.primitive_cube_add()
+    return bpy.context.object
+for kind in bpy.types.Modifier.bl_rna.properties['type'].enum_items:
+    o = made()
+    o.name = 'Modified ' + kind.identifier
+    try:
+        o.modifiers.new(kind.identifier, kind.identifier)
+    except Exception:
+        pass
+o = made()
+o.name = 'Constrained'
+for kind in bpy.types.Constraint.bl_rna.properties['type'].enum_items:
+    o.constraints.new(kind.identifier).name = kind.identifier
+for kind in ('FORCE', 'WIND', 'VORTEX', 'TURBULENCE', 'DRAG', 'HARMONIC', 'MAGNET', 'CHARGE', 'BOID', 'TEXTURE'):
+    bpy.ops.object.effector_add(type=kind)
+bpy.ops.rigidbody.world_add()
+made()
+bpy.ops.rigidbody.object_add()
+bpy.ops.object.camera_add()
+for kind in ('POINT', 'SUN', 'SPOT', 'AREA'):
+    bpy.ops.object.light_add(type=kind)
+""",
+        max_tokens=50_000,
+    )
+    odd: list[Any] = []
+    for one in found.data["objects"]:
+        for part in (*one.get("modifiers", ()), *one.get("constraints", ())):
+            if settings := {key: item for key, item in part.get("settings", {}).items() if item is not None}:
+                odd.append((part["type"], settings))
+    for one in (*found.data["physics"], *found.data["view"]):
+        if one["kind"] not in {"rigid_body_world", "render"} and "settings" in one:
+            odd.append((one["kind"], one.get("type"), one["settings"]))
+    assert [one for one in odd if one[0] not in {"SOLVER", "FOLLOW_TRACK"}] == []
+    assert len(found.data["objects"]) > 50
+    assert len(entry(found, "objects", "Constrained")["constraints"]) > 25
+
+
+def test_a_node_group_is_told_with_the_inputs_that_differ(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("")
+        + """
+g = bpy.data.node_groups.new('Scatter', 'GeometryNodeTree')
+for name, kind in (('Geometry', 'Geometry'), ('Count', 'Int'), ('Size', 'Float'), ('On', 'Object')):
+    s = g.interface.new_socket(name, in_out='INPUT', socket_type='NodeSocket' + kind)
+    if name == 'Size':
+        s.default_value = 0.5
+g.interface.new_socket('Geometry', in_out='OUTPUT', socket_type='NodeSocketGeometry')
+g.links.new(g.nodes.new('NodeGroupInput').outputs[0], g.nodes.new('NodeGroupOutput').inputs[0])
+m = o.modifiers.new('Nodes', 'NODES')
+m.node_group = g
+names = {i.name: i.identifier for i in g.interface.items_tree if i.in_out == 'INPUT'}
+m[names['Count']], m[names['On']] = 7, o
+""",
+    )
+    settings = entry(found, "objects", "Cube")["modifiers"][0]["settings"]
+    assert settings == {"node_group": "Scatter", "Count": 7, "On": "Cube"}
+
+
+def test_the_protocols_tags_are_told_where_they_stand(studio: Studio) -> None:
+    found = read(
+        studio,
+        """
+scene = bpy.context.scene
+scene['strict_grounding'] = True
+ground = bpy.data.collections.new('ground')
+floor = bpy.data.collections.new('Floor')
+ground['protocol_role'], floor['protocol_role'] = 'system', 'object'
+floor['deformation_kind'], floor['motion_kind'], floor['allows_disconnected'] = 'none', 'none', True
+scene.collection.children.link(ground)
+ground.children.link(floor)
+root = bpy.data.objects.new('Floor.root', None)
+root['is_object_root'] = True
+bpy.ops.mesh.primitive_plane_add()
+mesh = bpy.context.object
+mesh['contact_with'] = ['Ball', 'Tower']
+mesh.parent = root
+floor.objects.link(root)
+floor.objects.link(mesh)
+scene.collection.objects.unlink(mesh)
+""",
+    )
+    assert found.data["scene"]["tags"] == {"strict_grounding": True}
+    tree = [(one["name"], one["depth"], one.get("tags")) for one in found.data["collections"]]
+    assert tree == [
+        ("Scene Collection", 0, None),
+        ("ground", 1, {"protocol_role": "system"}),
+        (
+            "Floor",
+            2,
+            {
+                "protocol_role": "object",
+                "deformation_kind": "none",
+                "motion_kind": "none",
+                "allows_disconnected": True,
+            },
+        ),
+    ]
+    assert entry(found, "objects", "Plane")["tags"] == {"contact_with": ["Ball", "Tower"]}
+    assert entry(found, "objects", "Plane")["parent"] == "Floor.root"
+    assert entry(found, "objects", "Floor.root")["tags"] == {"is_object_root": True}
+    assert "    - Floor; 1 EMPTY, 1 MESH; protocol_role=object" in found.text
+
+
+def test_constraints_are_told_and_those_that_cannot_work_are_marked(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("")
+        + """
+t = bpy.data.objects.new('Aim', None)
+bpy.context.scene.collection.objects.link(t)
+a = o.constraints.new('DAMPED_TRACK')
+a.target, a.influence = t, 0.5
+o.constraints.new('COPY_LOCATION')
+""",
+    )
+    assert entry(found, "objects", "Cube")["constraints"] == [
+        {"name": "Damped Track", "type": "DAMPED_TRACK", "settings": {"influence": 0.5, "target": "Aim"}},
+        {"name": "Copy Location", "type": "COPY_LOCATION", "invalid": True},
+    ]
+
+
+def test_what_is_hidden_or_outside_the_view_layer_says_so(studio: Studio) -> None:
+    found = read(
+        studio,
+        """
+for name in ('Seen', 'Off', 'Eye', 'Out'):
+    bpy.ops.mesh.primitive_cube_add(location=(4, 0, 0))
+    bpy.context.object.name = name
+bpy.data.objects['Off'].hide_viewport = bpy.data.objects['Off'].hide_render = True
+bpy.data.objects['Eye'].hide_set(True)
+c = bpy.data.collections.new('Attic')
+bpy.context.scene.collection.children.link(c)
+c.objects.link(bpy.data.objects['Out'])
+bpy.context.scene.collection.objects.unlink(bpy.data.objects['Out'])
+bpy.context.view_layer.layer_collection.children['Attic'].exclude = True
+""",
+    )
+    assert {tuple(one["extent"]["min"]) for one in found.data["objects"]} == {(3, -1, -1)}
+    hidden = {one["name"]: one.get("hidden") for one in found.data["objects"]}
+    assert hidden == {"Seen": None, "Off": ["viewport", "render"], "Eye": ["layer"], "Out": ["layer"]}
+    assert entry(found, "collections", "Attic")["hidden"] == ["excluded"]
+
+
+# Physics
+
+FALLING = """
+scene = bpy.context.scene
+bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, location=(0, 0, 2))
+flag = bpy.context.object
+flag.name = 'Flag'
+cloth = flag.modifiers.new('Cloth', 'CLOTH')
+cloth.settings.quality, cloth.settings.mass = 9, 0.2
+cloth.collision_settings.use_self_collision = True
+cloth.settings.effector_weights.gravity = 0.5
+cloth.point_cache.frame_end = 6
+bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, location=(3, 0, 2))
+ball = bpy.context.object
+ball.name = 'Ball'
+ball.modifiers.new('Softbody', 'SOFT_BODY').settings.goal_default = 0.1
+ball.modifiers['Softbody'].point_cache.frame_end = 6
+bpy.ops.mesh.primitive_plane_add(location=(-3, 0, 4))
+rain = bpy.context.object
+rain.name = 'Rain'
+rain.modifiers.new('Drops', 'PARTICLE_SYSTEM')
+drops = rain.particle_systems[0].settings
+drops.count, drops.frame_start, drops.frame_end, drops.normal_factor = 50, 1, 2, 0
+drops.effector_weights.wind = 0
+rain.particle_systems[0].point_cache.frame_end = 6
+bpy.ops.object.effector_add(type='WIND', location=(-5, 0, 1))
+bpy.context.object.field.strength = 20
+bpy.ops.rigidbody.world_add()
+scene.rigidbody_world.point_cache.frame_end = 6
+for i in range(5):
+    bpy.ops.mesh.primitive_cube_add(size=0.4, location=(0, 3, 0.2 + 0.5 * i))
+    b = bpy.context.object
+    b.name = 'Brick.%03d' % (i + 1)
+    bpy.ops.rigidbody.object_add()
+    b.rigid_body.collision_shape = 'BOX'
+    b.rigid_body.mass = 1 + i
+bpy.ops.object.empty_add()
+hinge = bpy.context.object
+hinge.name = 'Hinge'
+bpy.ops.rigidbody.constraint_add(type='HINGE')
+hinge.rigid_body_constraint.object1 = bpy.data.objects['Brick.001']
+bpy.ops.mesh.primitive_plane_add(size=20)
+bpy.context.object.name = 'Floor'
+bpy.ops.rigidbody.object_add(type='PASSIVE')
+bpy.context.object.modifiers.new('Collision', 'COLLISION').settings.friction_factor = 0.5
+"""
+
+
+def test_everything_that_simulates_is_told_with_what_differs(studio: Studio) -> None:
+    found = read(studio, FALLING)
+    cloth = entry(found, "physics", "Flag")
+    assert cloth["kind"] == "cloth"
+    assert cloth["settings"] == {
+        "mass": 0.2,
+        "quality": 9,
+        "effector_weights.gravity": 0.5,
+        "collision_settings.use_self_collision": True,
+    }
+    assert cloth["cache"]["state"] == "unbaked"
+    assert cloth["cache"]["range"] == [1, 6]
+    assert entry(found, "physics", "Ball")["settings"] == {"goal_default": 0.1}
+    drops = entry(found, "physics", "Rain")
+    assert (drops["particles"], drops["emission"], drops["type"]) == (50, [1, 2], "EMITTER")
+    assert entry(found, "physics", "Wind") == {
+        "kind": "force_field",
+        "name": "Wind",
+        "type": "WIND",
+        "strength": 20,
+    }
+    bricks = entry(found, "physics", "Brick.001 … Brick.005")
+    assert (bricks["count"], bricks["shape"], bricks["mass"]) == (5, "BOX", {"from": 1, "to": 5})
+    assert entry(found, "physics", "Floor", kind="rigid_body")["type"] == "PASSIVE"
+    assert entry(found, "physics", "Floor", kind="collision")["settings"] == {"friction_factor": 0.5}
+    assert entry(found, "physics", "Hinge")["objects"] == ["Brick.001", None]
+    world = entry(found, "physics", "Scene", kind="rigid_body_world")
+    assert (world["bodies"], world["cache"]["range"]) == (6, [1, 6])
+    assert "rigid_body Brick.001 … Brick.005 (5); type=ACTIVE, shape=BOX, mass=1…5" in found.text
+
+
+def test_a_cache_says_whether_it_is_baked_and_what_it_holds(studio: Studio) -> None:
+    studio.run(FALLING + "bpy.ops.ptcache.bake_all(bake=True)\nscene.frame_set(5)")
+    found = read(studio, sections=["physics", "objects"])
+    for name, kind in (("Flag", "cloth"), ("Ball", "soft_body"), ("Scene", "rigid_body_world")):
+        cache = entry(found, "physics", name, kind=kind)["cache"]
+        assert (cache["state"], cache["frames"]) == ("baked", 6), (name, cache)
+        assert cache["bytes"] > 500
+    drops = entry(found, "physics", "Rain")
+    assert drops["alive"] == 50
+    # At most four frames of free fall from z = 4: 9.81 · t² / 2 is 0.14.
+    low, high = drops["between"]
+    assert 3.8 < low[2] < high[2] <= 4
+    assert re.search(r"cloth Flag;.*\n  cache BAKED, frames 1–6, holds 6 in memory, \d", found.text)
+    stale = read(
+        studio,
+        "bpy.ops.ptcache.free_bake_all()\n"
+        "bpy.data.objects['Flag'].modifiers['Cloth'].settings.quality = 4\n"
+        "bpy.context.view_layer.update()",
+    )
+    cache = entry(stale, "physics", "Flag")["cache"]
+    assert (cache["state"], cache["outdated"]) == ("unbaked", True)
+    assert "Caches that are outdated (bake again): Flag." in stale.data["notes"]
+
+
+def test_a_cache_on_disk_is_counted_and_weighed(own_studio: Studio) -> None:
+    found = read(
+        own_studio,
+        """
+import os
+bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath('scene.blend'))
+bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8)
+c = bpy.context.object.modifiers.new('Cloth', 'CLOTH')
+c.point_cache.use_disk_cache = True
+c.point_cache.frame_end = 4
+bpy.ops.ptcache.bake_all(bake=True)
+""",
+    )
+    cache = entry(found, "physics", "Grid")["cache"]
+    assert (cache["state"], cache["frames"], cache["on_disk"]) == ("baked", 4, True)
+    weighed = own_studio.run(
+        "import os\nd = bpy.path.abspath('//blendcache_scene')\n"
+        "sum(os.path.getsize(os.path.join(d, n)) for n in os.listdir(d))"
+    )
+    assert cache["bytes"] == weighed > 1000
+
+
+def test_a_fluid_domain_tells_its_type_resolution_and_frames_on_disk(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("")
+        + """
+import os
+o.name = 'Tank'
+m = o.modifiers.new('Fluid', 'FLUID')
+m.fluid_type = 'DOMAIN'
+m.show_viewport = False
+d = m.domain_settings
+d.resolution_max, d.cache_type, d.cache_directory, d.cache_frame_end = 48, 'MODULAR', '//cache_tank', 30
+for part, frames in (('data', range(1, 13)), ('noise', (3, 4))):
+    folder = bpy.path.abspath('//cache_tank/' + part)
+    os.makedirs(folder, exist_ok=True)
+    for frame in frames:
+        with open(os.path.join(folder, 'fluid_data_%04d.vdb' % frame), 'wb') as file:
+            file.write(b'x' * 100)
+bpy.ops.mesh.primitive_cube_add(size=0.5)
+m = bpy.context.object.modifiers.new('Fluid', 'FLUID')
+m.fluid_type = 'FLOW'
+m.flow_settings.flow_behavior = 'INFLOW'
+""",
+    )
+    tank = entry(found, "physics", "Tank")
+    assert (tank["kind"], tank["type"], tank["resolution"]) == ("fluid_domain", "GAS", 48)
+    assert "settings" not in tank
+    assert tank["off"] == ["viewport"]
+    cache = tank["cache"]
+    assert (cache["type"], cache["range"], cache["state"], cache["bytes"]) == (
+        "MODULAR",
+        [1, 30],
+        "unbaked",
+        1400,
+    )
+    assert cache["on_disk"] == {
+        "data": {"first": 1, "last": 12, "frames": 12},
+        "noise": {"first": 3, "last": 4, "frames": 2},
+    }
+    assert entry(found, "physics", "Cube")["settings"] == {"flow_behavior": "INFLOW"}
+    assert "on disk: data 1–12 (12), noise 3–4 (2)" in found.text
+
+
+# Animation
+
+MOVER = (
+    CUBE.format("")
+    + """
+o.name = 'Mover'
+o.keyframe_insert('location', frame=1)
+o.location = (3, 0, -1)
+o.keyframe_insert('location', frame=41)
+for frame in range(10, 31):
+    o.scale.x = frame / 10
+    o.keyframe_insert('scale', index=0, frame=frame)
+curve = o.animation_data.action.layers[0].strips[0].channelbags[0].fcurves[0]
+curve.modifiers.new('CYCLES')
+for key in curve.keyframe_points:
+    key.interpolation = 'LINEAR'
+o.shape_key_add(name='Basis')
+tall = o.shape_key_add(name='Tall')
+tall.slider_max = 2
+tall.value = 0.5
+tall.keyframe_insert('value', frame=7)
+aim = bpy.data.objects.new('Aim', None)
+bpy.context.scene.collection.objects.link(aim)
+driver = o.driver_add('rotation_euler', 2).driver
+driver.expression = 'x * 2'
+variable = driver.variables.new()
+variable.name = 'x'
+variable.targets[0].id, variable.targets[0].data_path = aim, 'location.x'
+"""
+)
+
+
+def test_a_layered_action_tells_its_channels_keys_and_ranges(studio: Studio) -> None:
+    found = read(studio, MOVER)
+    moves = entry(found, "animation", "Mover", action="MoverAction", slot="OBMover")
+    assert (moves["curves"], moves["keys"], moves["range"]) == (4, 27, [1, 41])
+    assert moves["channels"] == [
+        {
+            "path": "location",
+            "keys": 6,
+            "axes": [0, 1, 2],
+            "frames": [1, 41],
+            "values": [[0, 3], [0, 0], [-1, 0]],
+            "modifiers": ["CYCLES"],
+            "interpolation": ["BEZIER", "LINEAR"],
+        },
+        {"path": "scale", "keys": 21, "frames": [10, 30], "values": [1, 3], "every_frame": True},
+    ]
+    shape = entry(found, "animation", "Mover", of="shape keys", slot="KEKey")
+    assert shape["channels"][0]["path"] == 'key_blocks["Tall"].value'
+    assert "location[0,1,2]: 6 keys, frames 1–41, values 0 to 3, 0, -1 to 0" in found.text
+
+
+def test_drivers_and_shape_keys_are_told(studio: Studio) -> None:
+    found = read(studio, MOVER)
+    (driven,) = [one for one in found.data["animation"] if "drivers" in one]
+    assert driven["drivers"] == [
+        {
+            "path": "rotation_euler",
+            "type": "SCRIPTED",
+            "axis": 2,
+            "expression": "x * 2",
+            "variables": [{"name": "x", "targets": ["Aim.location.x"]}],
+        }
+    ]
+    (shaped,) = [one for one in found.data["animation"] if "blocks" in one]
+    assert shaped["blocks"][1] == {"name": "Tall", "value": 0.5, "range": [0, 2]}
+    short = read(studio, detail="summary")
+    assert "- Mover, 1 drivers" in short.text
+    assert "- Mover (shape keys), 2 shape keys" in short.text
+    broken = read(
+        studio, "bpy.data.objects['Mover'].animation_data.drivers[0].driver.expression = 'nobody + 1'"
+    )
+    assert broken.data["notes"] == ["Drivers or channels that do not work: Mover.rotation_euler."]
+
+
+def test_an_action_without_a_slot_and_one_without_users_are_named(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("") + "o.keyframe_insert('location', frame=1)\no.animation_data.action_slot = None\n"
+        "bpy.data.actions.new('Idle')",
+    )
+    assert entry(found, "animation", "Cube")["slot"] is None
+    assert found.data["notes"] == ["An action is assigned, but no slot of it, so that nothing plays: Cube."]
+    assert entry(found, "animation", "unused actions")["actions"] == ["Idle"]
+
+
+def test_ten_thousand_keys_are_one_line(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("")
+        + """
+import array
+o.keyframe_insert('location', frame=1)
+curves = o.animation_data.action.layers[0].strips[0].channelbags[0].fcurves
+for curve in curves:
+    curve.keyframe_points.add(9999)
+    curve.keyframe_points.foreach_set('co', array.array('f', [x for i in range(10000) for x in (i + 1, i % 7)]))
+for i in range(500):
+    curves.new('["p%d"]' % i).keyframe_points.add(2)
+""",
+        sections=["animation"],
+    )
+    (moves,) = found.data["animation"]
+    assert moves["keys"] == 31_000
+    assert moves["channels"][0]["frames"] == [1, 10_000]
+    assert moves["channels"][1]["count"] == 500
+    assert len(found.text.splitlines()) < 12
+
+
+# Materials, cameras, lights, world, render
+
+
+def test_materials_cameras_lights_world_and_render_settings(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("")
+        + """
+scene = bpy.context.scene
+red = bpy.data.materials.new('Red')
+shader = red.node_tree.nodes['Principled BSDF']
+shader.inputs['Base Color'].default_value = (0.8, 0.1, 0.1, 1)
+shader.inputs['Metallic'].default_value = 0.25
+noise = red.node_tree.nodes.new('ShaderNodeTexNoise')
+red.node_tree.links.new(noise.outputs[0], shader.inputs['Roughness'])
+o.data.materials.append(red)
+bpy.ops.object.camera_add(location=(0, -5, 0), rotation=(1.5707963267948966, 0, 0))
+scene.camera = bpy.context.object
+scene.camera.data.lens = 35
+bpy.ops.object.light_add(type='AREA', location=(0, 0, 4))
+bpy.context.object.data.energy, bpy.context.object.data.size = 200, 2
+scene.world = bpy.data.worlds.new('Sky')
+scene.world.node_tree.nodes['Background'].inputs['Strength'].default_value = 0.4
+scene.render.engine = 'CYCLES'
+scene.cycles.samples = 32
+scene.render.resolution_x, scene.render.resolution_y = 640, 360
+scene.frame_end, scene.render.fps = 96, 30
+scene.view_settings.exposure = 0.5
+""",
+    )
+    assert entry(found, "materials", "Red")["surface"] == {
+        "shader": "Principled BSDF",
+        "inputs": {"Base Color": [0.8, 0.1, 0.1, 1], "Metallic": 0.25, "Roughness": "<- Noise Texture"},
+    }
+    camera = entry(found, "view", "Camera")
+    assert camera["active"]
+    assert (camera["lens"], camera["direction"]) == (35, [0, 1, 0])
+    area = entry(found, "view", "Area")
+    assert (area["energy"], area["direction"], area["size"]) == (200, [0, 0, -1], 2)
+    assert entry(found, "view", "Sky")["surface"]["inputs"]["Strength"] == 0.4
+    assert entry(found, "view", "Scene")["settings"]["view_settings.exposure"] == 0.5
+    scene = found.data["scene"]
+    assert (scene["engine"], scene["samples"], scene["resolution"]) == ("CYCLES", 32, [640, 360, 100])
+    assert (scene["frame"]["end"], scene["frame"]["fps"], scene["camera"]) == (96, 30, "Camera")
+    full = read(studio, detail="full", sections=["materials"])
+    assert "node Noise Texture" in full.text
+
+
+# What fits, and how to ask for more
+
+CROWD = """
+import random
+random.seed(7)
+scene = bpy.context.scene
+bpy.ops.mesh.primitive_cube_add(size=0.2)
+data = bpy.context.object.data
+bpy.data.objects.remove(bpy.context.object)
+wall = bpy.data.collections.new('Wall')
+scene.collection.children.link(wall)
+for i in range(1200):
+    o = bpy.data.objects.new('Brick.%03d' % (i + 1), data)
+    o.location, o.rotation_euler.z = (i % 40, 0, i // 40), i % 3
+    wall.objects.link(o)
+    if i % 2:
+        o.modifiers.new('Bevel', 'BEVEL').width = 0.01 + i / 1e5
+for i in range(200):
+    tree = bpy.data.collections.new('Tree.%03d' % i)
+    tree['protocol_role'] = 'object'
+    scene.collection.children.link(tree)
+    root = bpy.data.objects.new('Tree.%03d.root' % i, None)
+    root['is_object_root'] = True
+    mesh = bpy.data.objects.new('Tree.%03d.mesh' % i, data)
+    mesh.parent = root
+    tree.objects.link(root)
+    tree.objects.link(mesh)
+for i in range(400):
+    o = bpy.data.objects.new(''.join(random.choice('abcdefgh') for _ in range(9)), data)
+    o.location.x = i
+    scene.collection.objects.link(o)
+"""
+
+
+@pytest.mark.parametrize("detail", ["summary", "normal", "full"])
+def test_two_thousand_objects_fit_folded(studio: Studio, detail: str) -> None:
+    found = read(studio, CROWD, detail=detail)
+    assert sum(found.data["scene"]["counts"].values()) == 2000
+    assert len(json.dumps(found.data)) < 12 * 4000
+    trees = entry(found, "collections", "Tree.000 … Tree.199")
+    assert (trees["count"], trees["objects"]) == (200, {"EMPTY": 1, "MESH": 1})
+    if detail != "summary":
+        even = entry(found, "objects", "Brick.001 … Brick.1199")
+        assert (even["count"], even["pattern"]) == (600, "Brick.*")
+        assert even["extent"]["max"][2] == pytest.approx(29.1, abs=1e-3)
+        assert sum(one.get("count", 1) for one in found.data["objects"]) == 2000
+    else:
+        assert "Brick.001 … Brick.1200 (1200)" in found.text
+
+
+def test_what_was_left_out_is_counted_and_the_named_call_brings_it(studio: Studio) -> None:
+    studio.run(CROWD)
+    seen: list[str] = []
+    call: dict[str, Any] = {"objects": ["Brick.*"], "sections": ["objects"], "max_tokens": 20_000}
+    for _ in range(40):
+        found = read(studio, **call)
+        seen += [one["name"] for one in found.data["objects"]]
+        left = found.data["left_out"].get("objects")
+        if left is None:
+            break
+        assert left["count"] == 1200 - len(seen)
+        assert left["call"] in found.text
+        call = named(left["call"])
+    assert len(seen) == len(set(seen)) == 1200
+
+
+def named(call: str) -> dict[str, Any]:
+    """The arguments of a call as the readout names it."""
+    assert call.startswith("blender_scene_state(")
+    return eval(f"dict({call.removeprefix('blender_scene_state(')}")
+
+
+def test_no_readout_is_longer_than_asked_for(studio: Studio) -> None:
+    studio.run(CROWD + FALLING)
+    for detail in ("summary", "normal", "full"):
+        for objects in (None, ["Wall", "Flag", "Ball"]):
+            given = {"detail": detail, "objects": objects}
+            facts = studio.blender.call("scene_state", {**given, "sections": SECTIONS}, timeout=60).value
+            for room in (500, 1000, 4000, 12_000):
+                found = readout(facts, SceneState(**given, max_tokens=room))
+                assert tokens(found.text) <= room
+                assert len(found.text.encode()) <= 3 * room
+                assert len(json.dumps(found.data)) < 12 * room + 4000
+                assert objects is None or detail == "summary" or tokens(found.text) > 0.7 * room
+
+
+def test_copies_are_of_one_series_with_what_they_are_copies_of(studio: Studio) -> None:
+    code = "for i in range(6):\n    bpy.ops.mesh.primitive_cube_add(location=(3 * i, 0, 0))"
+    cubes = entry(read(studio, code), "objects", "Cube … Cube.005")
+    assert (cubes["count"], cubes["pattern"], cubes["location"]) == (
+        6,
+        "Cube*",
+        [{"from": 0, "to": 15}, 0, 0],
+    )
+    assert len(read(studio, objects=[cubes["pattern"]]).data["objects"]) == 6
+
+
+def test_folding_hides_no_setting_that_only_some_have(studio: Studio) -> None:
+    code = """
+for i in range(10):
+    bpy.ops.mesh.primitive_cube_add(location=(3 * i, 0, 0))
+    o = bpy.context.object
+    o['box'] = {'min': i, 'max': 'x', 'size': 2, 'from': 1, 'to': [i]}
+    w = o.modifiers.new('Wave', 'WAVE')
+    if i % 2:
+        w.height, w.narrowness, w.use_cyclic = 1 + i, 3, False
+"""
+    told = read(studio, code, detail="full").data["objects"]
+    assert [one["count"] for one in told] == [5, 5]
+    assert "settings" not in told[0]["modifiers"][0]
+    assert told[1]["modifiers"][0]["settings"] == {
+        "use_cyclic": False,
+        "height": {"from": 2, "to": 10},
+        "narrowness": 3,
+    }
+    box = {"min": {"from": 0, "to": 8}, "max": "x", "size": 2, "from": 1, "to": [{"from": 0, "to": 8}]}
+    assert told[0]["custom"]["box"] == box
+
+
+def test_objects_are_chosen_by_name_pattern_and_collection(studio: Studio) -> None:
+    studio.run(CROWD + "o = bpy.data.objects.new('odd[1]', None)\nscene.collection.objects.link(o)")
+    found = read(studio, objects=["Brick.00[12]", "Tree.007", "odd[1]"])
+    names = [one["name"] for one in found.data["objects"]]
+    assert names == ["odd[1]", "Brick.001", "Brick.002", "Tree.007.root", "Tree.007.mesh"]
+    assert [one["name"] for one in found.data["collections"]] == ["Scene Collection", "Wall", "Tree.007"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ("Brik.001", "Brick.001"),
+        ("brick.001", "'Brick.001'"),
+        ("Stone*", "No object fits 'Stone*'"),
+        ("x" * 255, "other names"),
+    ],
+)
+def test_a_name_that_is_not_there_is_refused_with_the_nearest(studio: Studio, asked: str, told: str) -> None:
+    studio.run(CROWD)
+    with pytest.raises(Refusal, match=re.escape(told)):
+        studio.use(TOOL, objects=[asked])
+
+
+def test_an_object_of_another_scene_and_an_empty_scene_are_told_apart(studio: Studio) -> None:
+    with pytest.raises(Refusal, match="has no objects"):
+        studio.use(TOOL, objects=["Cube"])
+    studio.run(
+        "s = bpy.data.scenes.new('Other')\ns.collection.objects.link(bpy.data.objects.new('Away', None))"
+    )
+    studio.run("bpy.context.scene.collection.objects.link(bpy.data.objects.new('Here', None))")
+    with pytest.raises(Refusal, match="not in the scene 'Scene'"):
+        studio.use(TOOL, objects=["Away"])
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"detail": "all"},
+        {"sections": ["everything"]},
+        {"sections": []},
+        {"objects": [""]},
+        {"start": -1},
+        {"max_tokens": 10},
+        {"frame": 3},
+    ],
+)
+def test_arguments_that_do_not_fit_are_refused(arguments: dict[str, Any]) -> None:
+    with pytest.raises(Refusal, match=next(iter(arguments))):
+        parse(TOOL, arguments)
+
+
+# What must not break it
+
+
+def test_numbers_that_are_none_are_told_and_stay_json(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("")
+        + """
+o.name, o.location.x = 'Lost', float('nan')
+bpy.ops.mesh.primitive_cube_add(rotation=(1, 1, 0))
+bpy.context.object.data.vertices[0].co.x = float('inf')
+bpy.context.object['weight'] = float('nan')
+m = bpy.context.object.modifiers.new('Push', 'DISPLACE')
+m.strength = float('nan')
+""",
+        detail="full",
+    )
+    assert entry(found, "objects", "Lost")["location"] == ["nan", 0, 0]
+    assert entry(found, "objects", "Cube")["custom"] == {"weight": "nan"}
+    assert found.data["notes"][0] == "Transforms that are not finite: Lost."
+    assert found.data["notes"][1].startswith("Geometry that is not finite")
+
+
+def test_names_and_properties_of_any_kind_stay_in_their_line(studio: Studio) -> None:
+    found = read(
+        studio,
+        CUBE.format("")
+        + """
+o.name = 'two\\nlines # head'
+o['contact_with'] = ['Thing %d' % i for i in range(100)]
+o['many'] = {'k%d' % i: [1.0] * 50 for i in range(200)}
+o['long'] = 'x' * 100_000
+o['array'] = [0.5] * 500_000
+o['owner'] = o
+""",
+        detail="full",
+    )
+    told = entry(found, "objects", r"two\nlines # head")
+    assert len(told["tags"]["contact_with"]) == 17
+    assert told["tags"]["contact_with"][-1] == "… 84 more"
+    assert told["custom"]["array"] == "float[500000]"
+    assert told["custom"]["owner"] == r"two\nlines # head"
+    assert len(told["custom"]["many"]) == 25
+    assert len(told["custom"]["long"]) == 120
+    assert "\nlines" not in found.text
+
+
+def test_a_linked_library_that_is_gone_is_named(studio: Studio) -> None:
+    found = read(
+        studio,
+        """
+import os
+path = bpy.path.abspath('//shelf.blend')
+bpy.ops.mesh.primitive_cube_add()
+bpy.data.objects['Cube'].name = 'Lamp'
+bpy.data.libraries.write(path, {bpy.data.objects['Lamp']})
+bpy.ops.wm.read_factory_settings(use_empty=True)
+with bpy.data.libraries.load(path, link=True) as (there, here):
+    here.objects = ['Lamp']
+bpy.context.scene.collection.objects.link(here.objects[0])
+os.remove(path)
+""",
+    )
+    assert entry(found, "objects", "Lamp")["linked"].endswith("shelf.blend")
+    assert found.data["notes"][0].startswith("A linked library is missing: ")
+
+
+def test_collections_in_a_ring_of_parents_are_told_once(studio: Studio) -> None:
+    found = read(
+        studio,
+        """
+row = [bpy.context.scene.collection]
+for i in range(6):
+    pair = [bpy.data.collections.new(name + 'abcdef'[i]) for name in ('left ', 'right ')]
+    for above in row:
+        for below in pair:
+            above.children.link(below)
+    row = pair
+row[0].objects.link(bpy.data.objects.new('Deep', None))
+""",
+    )
+    again = [one for one in found.data["collections"] if one.get("again")]
+    assert len(found.data["collections"]) - len(again) == 13
+    assert entry(found, "objects", "Deep")["in"] == ["left f"]
+
+
+def test_every_type_of_object_and_edit_mode_can_be_read(studio: Studio) -> None:
+    found = read(
+        studio,
+        """
+for made in ('metaball_add()', 'armature_add()', 'volume_add()', 'speaker_add()', 'lightprobe_add()',
+             'pointcloud_random_add()', 'curves_random_add()', 'grease_pencil_add(type="MONKEY")',
+             'text_add(rotation=(1, 0, 0))', 'add(type="LATTICE")', 'add(type="CURVE")', 'add(type="MESH")'):
+    eval('bpy.ops.object.' + made)
+bpy.ops.mesh.primitive_cube_add()
+bpy.ops.object.mode_set(mode='EDIT')
+""",
+    )
+    assert len(found.data["scene"]["counts"]) == 12
+    assert entry(found, "objects", "Mesh")["vertices"] == "no"
+    assert entry(found, "objects", "Text")["extent"]["size"][1] < 1e-3 + 0.7 * math.cos(1)
+    assert found.data["notes"] == ["Blender is in EDIT_MESH mode (Cube): edits show after it is left."]
+    studio.run("bpy.ops.object.mode_set(mode='OBJECT')")
+
+
+def test_an_empty_scene_is_short(studio: Studio) -> None:
+    found = read(studio)
+    assert "no objects" in found.text
+    assert found.data["left_out"] == {}
+    assert len(found.text) < 600
+
+
+# It leaves no trace, and is quick
+
+STATE = """
+scene = bpy.context.scene
+caches = [m.point_cache for o in scene.objects for m in o.modifiers if hasattr(m, 'point_cache')]
+caches += [p.point_cache for o in scene.objects for p in o.particle_systems]
+caches += [scene.rigidbody_world.point_cache]
+graph = bpy.context.view_layer.depsgraph
+repr((
+    scene.frame_current, len(updates), bpy.context.view_layer.objects.active.name,
+    [(c.info, c.is_baked, c.is_outdated, c.frame_start, c.frame_end) for c in caches],
+    sorted((o.name, o.select_get(), [round(x, 6) for r in o.matrix_world for x in r]) for o in scene.objects),
+    {k: len(getattr(bpy.data, k)) for k in dir(bpy.data) if hasattr(getattr(bpy.data, k), 'foreach_get')},
+    [round(v.co.z, 6) for v in bpy.data.objects['Flag'].evaluated_get(graph).data.vertices],
+))
+"""
+
+
+def test_reading_leaves_no_trace(studio: Studio) -> None:
+    watch = "import builtins\nupdates = bpy.app.driver_namespace.setdefault('seen', [])\n"
+    studio.run(
+        FALLING
+        + watch
+        + "for f in range(1, 4): scene.frame_set(f)\n"
+        + "bpy.app.handlers.depsgraph_update_post.append(lambda *a: bpy.app.driver_namespace['seen'].append(1))\n"
+        + "bpy.app.handlers.frame_change_post.append(lambda *a: bpy.app.driver_namespace['seen'].append(2))"
+    )
+    before = studio.run(watch + STATE)
+    for detail in ("summary", "normal", "full"):
+        read(studio, detail=detail)
+    assert studio.run(watch + STATE) == before
+
+
+def test_five_hundred_objects_take_less_than_a_third_of_a_second(studio: Studio) -> None:
+    studio.run(
+        CROWD.replace("1200", "500").replace("range(200)", "range(0)").replace("range(400)", "range(0)")
+    )
+    arguments = {"detail": "normal", "objects": None, "sections": list(SECTIONS)}
+    taken = [studio.blender.call("scene_state", arguments, timeout=60).seconds for _ in range(4)]
+    assert min(taken) <= 0.3
+
+
+def test_entries_keep_the_order_of_the_scene(studio: Studio) -> None:
+    found = read(
+        studio,
+        "for n in 'zyxabc':\n bpy.context.scene.collection.objects.link(bpy.data.objects.new(n, None))",
+    )
+    names = [one["name"] for one in found.data["objects"]]
+    assert sorted(names) == sorted("zyxabc")
+    assert names == studio.run("[o.name for o in bpy.context.scene.collection.objects]")
+    places = [found.text.index(f"- {name} EMPTY") for name in names]
+    assert all(one < other for one, other in pairwise(places))

@@ -1,0 +1,524 @@
+"""Calls that cost Blender its life, or try to: each is answered in time and in words, and the next one works."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from processes import becomes, of_run
+from studio import Studio
+
+from agents.blender.errors import (
+    CannotStart,
+    Died,
+    Interrupted,
+    LeftBehind,
+    Lost,
+    Refusal,
+    TookTooLong,
+)
+from agents.blender.launch import make_launch
+from agents.blender.run_folder import RunFolder
+from agents.blender.supervisor import Supervisor
+from agents.blender.tools.base import Call
+from agents.blender.tools.execute import TOOL
+from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
+from agents.blender.tools.previews import SCENE_LAYOUT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+pytestmark = pytest.mark.blender
+
+DEBIANS = Path("/usr/bin/blender")
+NAMES = "sorted(o.name for o in bpy.data.objects)"
+STANDS = (
+    r"A new Blender stands at checkpoint \d+ \([^\n]*, \d\d:\d\d:\d\d\), which is how the scene was before\."
+)
+
+
+def adding(name: str) -> str:
+    return f"bpy.context.collection.objects.link(bpy.data.objects.new({name!r}, None))"
+
+
+@pytest.fixture(scope="module")
+def _hardy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+    studio = Studio(tmp_path_factory.mktemp("hardy") / "run")
+    yield studio
+    studio.blender.close()
+
+
+@pytest.fixture
+def hardy(_hardy: Studio) -> Studio:
+    """A Blender with one object, which is kept; shared by tests that end it."""
+    _hardy.empty()
+    _hardy.run(adding("Kept"))
+    _hardy.blender.keep("an object")
+    return _hardy
+
+
+def lost(studio: Studio, code: str, timeout: float = 20.0) -> Lost:
+    """The error of code that Blender does not survive; nothing of the scene may be lost by it."""
+    with pytest.raises(Lost) as caught:
+        studio.use(TOOL, code=f"{adding('Undone')}\n{code}", timeout=timeout)
+    assert re.search(STANDS, str(caught.value)), str(caught.value)
+    assert studio.run(NAMES) == ["Kept"]
+    return caught.value
+
+
+# Code that ends Blender
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("import ctypes; ctypes.string_at(0)", r"it crashed \(SIGSEGV\)"),
+        ("import os; os.abort()", r"it crashed \(SIGABRT\)"),
+        (
+            "import os; os.kill(os.getpid(), 9)",
+            r"it was killed \(SIGKILL\), by the system when memory ran out",
+        ),
+        ("import os; os._exit(3)", "it was ended from inside, with exit code 3"),
+        ("import os; os._exit(0)", "exit code 0, as after bpy.ops.wm.quit_blender or os._exit"),
+        ("import os; os.closerange(3, 65536)", "its channel was closed from inside"),
+        ("import os; os.execv('/bin/sleep', ['sleep', '600'])", "or it became another program"),
+    ],
+)
+def test_code_that_ends_blender_is_undone_and_told(hardy: Studio, code: str, told: str) -> None:
+    error = lost(hardy, code)
+    assert isinstance(error, Died)
+    assert re.search(
+        rf"^Blender ended \d+\.\d s into the code '{re.escape(adding('Undone')[:40])} …': .*{told}",
+        str(error),
+    )
+
+
+def test_quitting_blender_costs_nothing_but_at_most_itself(hardy: Studio) -> None:
+    with contextlib.suppress(Died):
+        hardy.use(TOOL, code="bpy.ops.wm.quit_blender()")
+    assert hardy.run(NAMES) == ["Kept"]
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        (
+            "import threading, time\nthreading.Thread(target=time.sleep, args=(600,)).start()",
+            "1 thread of its own",
+        ),
+        (
+            "import _thread\ndef on():\n    while True: pass\nfor _ in range(3): _thread.start_new_thread(on, ())",
+            "3 threads of its own",
+        ),
+        ("import sys\nsys.addaudithook(lambda *_: None)", "an audit hook, which Python cannot take back"),
+        ("import sys\ndef hook(*_): raise ValueError('spoilt')\nsys.addaudithook(hook)", "spoilt"),
+    ],
+)
+def test_what_code_leaves_behind_does_not_reach_the_next_call(hardy: Studio, code: str, told: str) -> None:
+    error = lost(hardy, code)
+    assert isinstance(error, LeftBehind)
+    assert told in str(error)
+
+
+def test_threads_that_end_with_their_call_are_no_fault(hardy: Studio) -> None:
+    code = "import threading\nt = threading.Thread(target=print, args=('from a thread',))\nt.start()"
+    assert hardy.use(TOOL, code=code).data["stdout"] == "from a thread\n"
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import os; os.close(0); os.close(1); os.close(2)",
+        "import os; os.closerange(0, 3); os.open('/dev/null', 0)",
+        "import sys; sys.stdout.close(); sys.stderr.close()",
+        "import sys; sys.exit(3)",
+        "raise SystemExit",
+        "raise KeyboardInterrupt",
+        "import signal; signal.raise_signal(signal.SIGINT)",
+        "import signal; signal.setitimer(signal.ITIMER_REAL, 0.01, 0.01)",
+        "import signal; signal.signal(14, lambda *_: 1 / 0); signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)",
+        "import signal; signal.setitimer(signal.ITIMER_PROF, 0.001)",
+        "import faulthandler; faulthandler.dump_traceback_later(0.2, exit=True)",
+        "import sys; sys.modules.clear()",
+        "bpy.ops = bpy.context = bpy.data = bpy.types = None",
+        "import json, os, time; json.dumps = json.loads = os.write = os.read = time.perf_counter = None",
+        "import sys; sys.setprofile(lambda *_: 1 / 0)",
+        "import sys; sys.meta_path.clear(); sys.path_hooks = []",
+        "import sys, types; sys.modules['files'] = sys.modules['changes'] = types.ModuleType('files')",
+        "import warnings; warnings.simplefilter('error')",
+        "import numpy; numpy.seterr(all='raise')",
+        "import locale; locale.setlocale(locale.LC_ALL, '')",
+        "import os; os.umask(0o777)",
+    ],
+)
+def test_blender_survives(hardy: Studio, code: str) -> None:
+    """The same process goes on, and what it is asked next works as ever."""
+    blender = hardy.blender.inner_pid
+    hardy.use(TOOL, code=code)
+    found = hardy.use(
+        TOOL,
+        code="import json, os, numpy, warnings\nwarnings.warn('w')\n"
+        "print(json.dumps(numpy.float64(1) / numpy.zeros(1)[0]))\n"
+        "open('written', 'w').write(str(1.5))\nopen('written').read()",
+    )
+    assert (found.data["error"], found.data["stdout"], found.data["value"]) == (None, "Infinity\n", "'1.5'")
+    assert hardy.blender.keep("afterwards").path.stat().st_size > 1000
+    assert hardy.blender.inner_pid == blender
+
+
+# Deadlines
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "while True: pass",
+        "import time; time.sleep(600)",
+        "sum(range(10**13))",
+        "scene = bpy.context.scene\nscene.render.engine = 'CYCLES'\nscene.cycles.samples = 10**7\n"
+        "scene.render.resolution_x = scene.render.resolution_y = 64\n"
+        "scene.camera = bpy.data.objects.new('C', bpy.data.cameras.new('C'))\n"
+        "scene.collection.objects.link(scene.camera)\nscene.cycles.use_adaptive_sampling = False\n"
+        "bpy.ops.render.render()",
+        "while True:\n    try:\n        while True: pass\n    except BaseException: pass",
+        "while True: print('x' * 10000)",
+        "import signal\nfor n in (1, 2, 3, 10, 12, 14, 15): signal.signal(n, signal.SIG_IGN)\nwhile True: pass",
+    ],
+    ids=["python", "sleep", "c", "render", "catches all", "output", "ignores signals"],
+)
+def test_a_deadline_is_kept_whatever_runs(hardy: Studio, code: str) -> None:
+    started = time.monotonic()
+    error = lost(hardy, code, timeout=0.7)
+    assert (
+        time.monotonic() - started < 15
+    )  # the deadline, another Blender, and a machine that does other things too
+    assert isinstance(error, TookTooLong)
+    assert "ran past its deadline of 0.7 s, and Blender was stopped. A new Blender stands at" in str(error)
+    assert len(error.printed) <= 2000
+
+
+def test_what_an_error_says_can_be_read_aloud(hardy: Studio) -> None:
+    hardy.run("tower = 1")
+    hardy.blender.keep("a tower")
+    with pytest.raises(TookTooLong) as caught:
+        hardy.use(TOOL, code="while True: pass", timeout=0.3)
+    kept = hardy.blender.checkpoints.last
+    assert kept is not None
+    assert str(caught.value) == (
+        "The code 'while True: pass' ran past its deadline of 0.3 s, and Blender was stopped. A new Blender stands at "
+        f"{kept}, which is how the scene was before."
+    )
+
+
+def test_code_that_is_to_be_undone_when_it_fails_is_undone_when_it_crashes(hardy: Studio) -> None:
+    hardy.blender.checkpoints.changed(0.0)
+    with pytest.raises(Died):
+        hardy.use(TOOL, code=f"{adding('Half')}\nimport os\nos.abort()", on_error="restore")
+    assert hardy.run(NAMES) == ["Kept"]
+
+
+def test_a_call_that_nobody_waits_for_any_more_is_ended(hardy: Studio) -> None:
+    call = Call()
+    threading.Timer(0.2, call.given_up.set).start()
+    started = time.monotonic()
+    with pytest.raises(Interrupted, match=r"was given up after \d\.\d s, and Blender was stopped"):
+        hardy.use(TOOL, call, code="while True: pass", timeout=100)
+    assert time.monotonic() - started < 15
+    assert hardy.run(NAMES) == ["Kept"]
+
+
+def test_ctrl_c_ends_the_call_and_not_the_run(hardy: Studio) -> None:
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        hardy.use(TOOL, code="while True: pass", timeout=100)
+    assert hardy.run(NAMES) == ["Kept"]
+
+
+def test_arguments_too_large_are_refused_before_they_are_sent(hardy: Studio) -> None:
+    blender = hardy.blender.inner_pid
+    with pytest.raises(Refusal, match=r"arguments of execute are too large: .* at most"):
+        hardy.blender.call("execute", {"code": "#" * (17 << 20)}, timeout=20)
+    assert hardy.blender.inner_pid == blender
+
+
+def test_an_answer_too_large_is_told(own_studio: Studio) -> None:
+    with pytest.raises(Refusal, match=r"The answer cannot be sent: .* at most"):
+        own_studio.use(TOOL, code="import frames\nframes.LARGEST_BODY = 1000\n'x' * 3000")
+
+
+# Between calls
+
+
+@pytest.mark.parametrize("which", ["outer", "inner"])
+def test_a_blender_that_ends_between_two_calls_is_started_again(hardy: Studio, which: str) -> None:
+    number = hardy.blender.pid if which == "outer" else hardy.blender.inner_pid
+    assert number is not None
+    inner = Path(f"/proc/{hardy.blender.inner_pid}")
+    os.kill(number, signal.SIGKILL)
+    assert becomes(lambda: not inner.exists() or "Z" in (inner / "stat").read_text())
+    found = hardy.use(TOOL, code=NAMES)
+    assert found.data["value"] == "['Kept']"
+    assert re.search(STANDS, found.text), found.text
+
+
+def test_what_is_lost_between_two_calls_is_told(hardy: Studio) -> None:
+    """A scene that is slow to write is not written after every call."""
+    hardy.blender.checkpoints.changed(0.0)
+    hardy.blender.checkpoints.changed(0.0)
+    hardy.blender.kill()
+    found = hardy.use(TOOL, code="1")
+    assert "Blender had ended" in found.text
+    assert "what the last 2 calls before had changed since then is lost, too" in found.text
+    assert "lost" not in hardy.use(TOOL, code="1").text
+
+
+def test_blender_outlives_the_thread_that_started_it(tmp_path: Path) -> None:
+    made: list[Studio] = []
+    starter = threading.Thread(target=lambda: made.append(Studio(tmp_path / "run")))
+    starter.start()
+    starter.join()
+    blender = made[0].blender
+    try:
+        first = blender.inner_pid
+        assert made[0].run("1 + 1") == 2
+        restarter = threading.Thread(target=lambda: (blender.kill(), made[0].run("1")))
+        restarter.start()
+        restarter.join()
+        second = blender.inner_pid
+        assert second != first
+        assert made[0].run("1 + 1") == 2
+        assert blender.inner_pid == second
+    finally:
+        blender.close()
+
+
+def test_calls_of_many_threads_are_answered_each_with_its_own(hardy: Studio) -> None:
+    answers: dict[int, object] = {}
+
+    def ask(number: int) -> None:
+        reply = hardy.blender.call("execute", {"code": f"print({number})\n{number} ** 2"}, timeout=60)
+        answers[number] = (reply.value["value"], reply.stdout)
+
+    threads = [threading.Thread(target=ask, args=(number,)) for number in range(12)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert answers == {number: (str(number**2), f"{number}\n") for number in range(12)}
+
+
+def test_two_runs_know_nothing_of_each_other(make_studio: Callable[[str], Studio]) -> None:
+    one, two = make_studio("one"), make_studio("two")
+    one.run(adding("One"))
+    two.run(adding("Two"))
+    one.blender.kill()
+    assert (one.run(NAMES), two.run(NAMES)) == (["One"], ["Two"])
+    outside = two.use(TOOL, code=f"open({str(one.blender.folder.workspace / 'scene.blend')!r})")
+    assert outside.data["error"]["type"] in {"PermissionError", "FileNotFoundError"}
+
+
+# Starting and ending
+
+
+def test_a_run_goes_on_where_it_was_left(tmp_path: Path) -> None:
+    first = Studio(tmp_path / "run")
+    first.run(adding("Kept"))
+    first.blender.call("execute", {"code": adding("Not yet written")}, timeout=20)
+    first.blender.checkpoints.changed(0.0)
+    first.blender.close()
+    second = Studio(tmp_path / "run")
+    try:
+        assert second.run(NAMES) == ["Kept", "Not yet written"]
+    finally:
+        second.blender.close()
+
+
+def test_nothing_remains_of_a_run_that_is_closed(tmp_path: Path) -> None:
+    def open_files() -> int:
+        return len(list(Path("/proc/self/fd").iterdir()))
+
+    Studio(tmp_path / "first").blender.close()
+    before = open_files()
+    studio = Studio(tmp_path / "run")
+    studio.run("open(bpy.app.tempdir + 'left', 'w').write('x')")
+    assert of_run(tmp_path / "run")
+    studio.blender.close()
+    studio.blender.close()
+    assert of_run(tmp_path / "run") == []
+    assert open_files() == before
+    assert sorted(path.name for path in (tmp_path / "run").iterdir()) == [".lock", "checkpoints", "workspace"]
+    with pytest.raises(CannotStart, match="ended"):
+        studio.run("1")
+
+
+def test_a_run_is_one_supervisors(hardy: Studio) -> None:
+    folder = hardy.blender.folder
+    with pytest.raises(Refusal, match="in use by another"):
+        Supervisor(make_launch(folder.workspace), folder)
+
+
+def test_what_is_no_blender_is_told_before_anything_is_started(tmp_path: Path) -> None:
+    for path, told in (
+        (Path("/bin/true"), "does not say that it is Blender"),
+        (tmp_path, "no Blender executable"),
+    ):
+        with pytest.raises(CannotStart, match=told):
+            make_launch(tmp_path / "run" / "workspace", blender_exe=path)
+
+
+def test_a_blender_that_does_not_come_up_says_why(tmp_path: Path) -> None:
+    fake = tmp_path / "fake" / "blender"
+    fake.parent.mkdir()
+    fake.write_text(
+        '#!/bin/sh\n[ "$1" = --version ] && echo "Blender 5.9.9" && exit\necho "no libX.so" >&2\nexit 7\n'
+    )
+    fake.chmod(0o755)
+    with pytest.raises(CannotStart, match=r"(?s)did not come up.*exit code 7.*no libX\.so"):
+        Studio(tmp_path / "run", blender_exe=fake)
+    assert of_run(tmp_path / "run") == []
+
+
+def test_a_session_that_is_being_ended_starts_no_blender(own_studio: Studio) -> None:
+    own_studio.blender.end()
+    with pytest.raises(
+        TookTooLong, match="Another Blender could not be started: this session is being ended"
+    ):
+        own_studio.use(TOOL, code="while True: pass", timeout=0.2)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere it ends when it next looks at its channel")
+@pytest.mark.parametrize("kind", ["bubblewrap", "landlock", "none"])
+def test_blender_ends_with_its_supervisor_whatever_it_is_doing(tmp_path: Path, kind: str) -> None:
+    from test_escapes import works
+
+    if kind != "none":
+        works(kind)
+    script = f"""
+import sys
+sys.path[:0] = [{str(Path(__file__).parent)!r}]
+from pathlib import Path
+from studio import Studio
+from agents.blender.sandbox import best_sandbox
+studio = Studio(Path({str(tmp_path / "run")!r}), sandbox=best_sandbox({kind!r}))
+print("ready", flush=True)
+studio.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, timeout=600)
+"""
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        assert becomes((tmp_path / "run" / "workspace" / "begun").exists)
+        assert len(of_run(tmp_path / "run")) >= 1
+    finally:
+        process.kill()
+        process.communicate()
+    assert becomes(lambda: of_run(tmp_path / "run") == [])
+    reopened = Studio(tmp_path / "run")  # nothing holds the run's folder
+    reopened.blender.close()
+
+
+# A disk that is nearly full
+
+_TINY_DISK = """
+import sys
+sys.path[:0] = [{tests!r}]
+from pathlib import Path
+from studio import Studio
+from agents.blender.sandbox import best_sandbox
+from agents.blender.errors import OutOfBounds
+from agents.blender.tools.execute import TOOL
+from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
+from agents.blender.tools.previews import SCENE_LAYOUT
+studio = Studio(Path({place!r}) / "run", sandbox=best_sandbox("landlock"))
+try:
+    studio.use(TOOL, code=(
+        "import os, time\\nfile = os.open('hidden', os.O_CREAT | os.O_RDWR)\\nos.unlink('hidden')\\n"
+        "while True: os.write(file, bytes(1 << 20)); time.sleep(0.02)"), timeout=60)
+except OutOfBounds as error:
+    print(error)
+print(studio.run("time = __import__('time'); time.sleep(0.6); 1 + 1"))
+studio.blender.close()
+"""
+
+
+def test_the_last_of_a_disk_is_left_to_others(tmp_path: Path) -> None:
+    """Also what is written to a file without a name, which no list of files shows, is written to the disk."""
+    from test_escapes import works
+
+    works("landlock")
+    place = tmp_path / "disk"
+    place.mkdir()
+    mount = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c"]
+    probe = [*mount, f"mount -t tmpfs -o size=1m tmpfs {place}"]
+    if subprocess.run(probe, capture_output=True, check=False).returncode:
+        pytest.skip("a disk of the test's own cannot be mounted here")
+    script = _TINY_DISK.format(tests=str(Path(__file__).parent), place=str(place))
+    words = [*mount, f'mount -t tmpfs -o size=64m tmpfs {place} && exec "$0" -c "$1"', sys.executable, script]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
+    assert re.search(r"left \d+ MB free on the disk, where \d+ MB are to stay free", done.stdout), (
+        done.stdout + done.stderr
+    )
+    assert done.stdout.splitlines()[-1] == "2"
+
+
+# A Blender that is a program of its own
+
+
+@pytest.fixture(scope="module")
+def debians(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+    if not DEBIANS.exists():
+        pytest.skip(f"there is no {DEBIANS}")
+    studio = Studio(tmp_path_factory.mktemp("debian") / "run", blender_exe=DEBIANS)
+    yield studio
+    studio.blender.close()
+
+
+def test_an_installed_blender_works_the_same_way(debians: Studio) -> None:
+    assert debians.run("bpy.app.background, bpy.app.version >= (2, 83)") == (True, True)
+    found = debians.use(TOOL, code="print('heard')\nbpy.ops.mesh.primitive_cube_add()\nlen(bpy.data.objects)")
+    assert (found.data["stdout"], found.data["value"]) == ("heard\n", "1")
+    assert found.data["changed"]["objects"] == {"added": ["Cube"]}
+    failed = debians.use(TOOL, code="bpy.data.objects['Nobody']")
+    assert failed.data["error"]["type"] == "KeyError"
+    for code, error in (
+        ("import os; os.abort()", Died),
+        ("import ctypes; ctypes.string_at(0)", Died),
+        ("while True: pass", TookTooLong),
+        ("import threading, time; threading.Thread(target=time.sleep, args=(600,)).start()", LeftBehind),
+    ):
+        with pytest.raises(error, match=r"stands at checkpoint \d+ .*how the scene was before"):
+            debians.use(
+                TOOL,
+                code=f"bpy.ops.mesh.primitive_cube_add()\n{code}",
+                timeout=0.5 if error is TookTooLong else 10,
+            )
+        assert debians.run(NAMES) == ["Cube"]
+
+
+def test_a_blender_without_numpy_still_shows_its_scenes_and_says_what_else_it_lacks(debians: Studio) -> None:
+    if debians.run("__import__('importlib.util').util.find_spec('numpy') is not None"):
+        pytest.skip("this one has it")
+    debians.empty()
+    debians.run(
+        "for name, place, size in (('Shell', (0, 0, 1), 4), ('Chest', (0, 0, 0), .5)):\n"
+        "    bpy.ops.mesh.primitive_cube_add(size=size, location=place)\n"
+        "    bpy.context.object.name = name"
+    )
+    assert "Rooms are shown closed" in debians.use(SCENE_LAYOUT).text
+    with pytest.raises(Refusal, match="python3-numpy"):
+        debians.use(MOTION_SHEET, actors=["Chest"])
+
+
+def test_an_installed_blender_is_confined_too(debians: Studio) -> None:
+    for code in ("import socket; socket.socket()", "import os; os.fork()", "open('/etc/passwd').read()"):
+        assert debians.use(TOOL, code=code).data["error"]["type"] in {"PermissionError", "FileNotFoundError"}
+    assert not (RunFolder(debians.blender.folder.root).root / "planted").exists()
