@@ -2,8 +2,8 @@
 
 ``with FakeMessagesAPI() as api: Anthropic(base_url=api.base_url, api_key="any")``. It checks requests as the
 API does (key, custom_ids, required fields), remembers them in ``requests``, and answers each message with
-what ``answer(params)`` returns. Faults are scripted per route and used up one by one:
-``api.fail("POST /v1/messages/batches", Status(529), Drop())``.
+what ``answer(params)`` returns, streamed where the request asks for it. Faults are scripted per route and used
+up one by one: ``api.fail("POST /v1/messages/batches", Status(529), Drop())``.
 """
 
 from __future__ import annotations
@@ -19,6 +19,9 @@ from datetime import UTC, datetime, timedelta
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any, Self
 from urllib.parse import parse_qs, urlsplit
+
+import fake_messages_rules as rules
+import fake_messages_stream as sse
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,13 +43,18 @@ MODELS = ("claude-haiku-5-5", "claude-sonnet-5-5", "claude-opus-5-5")
 
 @dataclass(frozen=True)
 class Reply:
-    """A message. ``content`` (blocks, as the API has them) replaces ``text``, e.g. with a ``tool_use``."""
+    """A message. ``content`` (blocks, as the API has them) replaces ``text``, e.g. with a ``tool_use``.
+
+    ``input_tokens`` None: the server counts them, and what of them it had kept or now keeps.
+    """
 
     text: str = "Hello."
     stop_reason: str = "end_turn"
     content: tuple[dict[str, Any], ...] = ()
-    input_tokens: int = 100
+    input_tokens: int | None = 100
     output_tokens: int = 20
+    cache_read_tokens: int = 0
+    cache_write_tokens: int = 0
     stop_details: dict[str, Any] | None = None
 
 
@@ -91,12 +99,52 @@ class Hang:
 
 @dataclass(frozen=True)
 class Truncate:
-    """Fault: the answer ends after so many bytes of its body, against its Content-Length."""
+    """Fault: the answer ends after so many bytes of its body, against its Content-Length.
+
+    A stream that ends ``clean`` ends as if it were whole.
+    """
 
     after: int
+    clean: bool = False
 
 
-Fault = Status | Drop | Hang | Truncate
+@dataclass(frozen=True)
+class Raw:
+    """Fault: these bytes go out instead of an HTTP response; then the connection breaks."""
+
+    data: bytes
+
+
+@dataclass(frozen=True)
+class StreamError:
+    """Fault: a stream says after so many events that it failed, and ends."""
+
+    after: int
+    type: str = "overloaded_error"
+    message: str = "Overloaded"
+
+
+@dataclass(frozen=True)
+class Stall:
+    """Fault: a stream stops after so many bytes, for so many seconds or until ``go`` is set; then it goes on.
+
+    Without ``go`` it does not go on: the connection breaks.
+    """
+
+    after: int
+    seconds: float = 20.0
+    go: threading.Event | None = None
+
+
+@dataclass(frozen=True)
+class Garble:
+    """Fault: the bytes of a stream from ``at`` on are replaced by as many of ``data``."""
+
+    at: int
+    data: bytes
+
+
+Fault = Status | Drop | Hang | Truncate | Raw | StreamError | Stall | Garble
 Answer = Reply | Ended | Line
 
 
@@ -133,6 +181,7 @@ class FakeMessagesAPI:
         self.polls = polls
         self.requests: list[Recorded] = []
         self.batches: dict[str, Batch] = {}
+        self.prompts = rules.PromptCache()
         self._faults: defaultdict[str, deque[Fault]] = defaultdict(deque)
         self._changed = threading.Condition()
         self._stopping = threading.Event()
@@ -176,19 +225,27 @@ class FakeMessagesAPI:
         self.batches[batch.id] = batch
         return batch
 
-    def message(self, reply: Reply, model: str) -> dict[str, Any]:
-        """``reply`` as the API writes a message."""
+    def message(self, reply: Reply, params: dict[str, Any]) -> dict[str, Any]:
+        """``reply`` as the API writes a message that answers ``params``."""
         content = list(reply.content) or ([{"type": "text", "text": reply.text}] if reply.text else [])
+        if reply.input_tokens is None:
+            usage = self.prompts.usage(params)
+        else:
+            usage = {
+                "input_tokens": reply.input_tokens,
+                "cache_creation_input_tokens": reply.cache_write_tokens,
+                "cache_read_input_tokens": reply.cache_read_tokens,
+            }
         return {
             "id": self._id("msg"),
             "type": "message",
             "role": "assistant",
-            "model": model,
-            "content": content,
+            "model": params["model"],
+            "content": rules.sign(params, content),
             "stop_reason": reply.stop_reason,
             "stop_sequence": None,
             "stop_details": reply.stop_details,
-            "usage": {"input_tokens": reply.input_tokens, "output_tokens": reply.output_tokens},
+            "usage": {**usage, "output_tokens": reply.output_tokens},
         }
 
     def _id(self, kind: str) -> str:
@@ -214,7 +271,8 @@ class FakeMessagesAPI:
         answer = self.answer(body)
         if not isinstance(answer, Reply):
             return _error(500, "this answer is for batches only")
-        return 200, self.message(answer, body["model"])
+        message = self.message(answer, body)
+        return 200, [*sse.events(message)] if body.get("stream") else message
 
     def post_count_tokens(self, body: Any, query: dict[str, str]) -> tuple[int, Any]:
         problem = _problem({"max_tokens": 1, **body} if isinstance(body, dict) else body)
@@ -290,7 +348,7 @@ class FakeMessagesAPI:
         if isinstance(answer, Line):
             return "succeeded", answer.text.replace("{custom_id}", request["custom_id"])
         if isinstance(answer, Reply):
-            result = {"type": "succeeded", "message": self.message(answer, request["params"]["model"])}
+            result = {"type": "succeeded", "message": self.message(answer, request["params"])}
         else:
             result = {"type": answer.type}
             if answer.type == "errored":
@@ -346,6 +404,7 @@ class _Handler(BaseHTTPRequestHandler):
     server_api: FakeMessagesAPI
     protocol_version = "HTTP/1.1"
     wbufsize = -1  # headers and body in one packet: two would wait for the client's delayed ACK
+    disable_nagle_algorithm = True
 
     def do_GET(self) -> None:
         self._handle("GET")
@@ -369,7 +428,7 @@ class _Handler(BaseHTTPRequestHandler):
         headers = {key.lower(): value for key, value in self.headers.items()}
         fault = self.server_api._next_fault(route)
         status, reply = 200, None
-        if not isinstance(fault, (Status, Hang, Drop)) or (isinstance(fault, Drop) and fault.handled):
+        if not isinstance(fault, (Status, Hang, Drop, Raw)) or (isinstance(fault, Drop) and fault.handled):
             if not (headers.get("authorization") or headers.get("x-api-key")):
                 status, reply = _error(401, "no API key")
             elif "anthropic-version" not in headers:
@@ -381,12 +440,17 @@ class _Handler(BaseHTTPRequestHandler):
         self.server_api._record(Recorded(route, self.path, headers, body))
         if isinstance(fault, Hang):
             self.server_api._stopping.wait(fault.seconds)
-        if isinstance(fault, (Hang, Drop)):
+        if isinstance(fault, Raw):
+            with contextlib.suppress(OSError):
+                self.connection.sendall(fault.data)
+        if isinstance(fault, (Hang, Drop, Raw)):
             self.close_connection = True
             self.connection.close()
         elif isinstance(fault, Status):
             default = _error(fault.code, f"scripted {fault.code}")[1]
             self._send(fault.code, default if fault.body is None else fault.body, fault.headers)
+        elif isinstance(reply, list):
+            self._stream(reply, fault)
         else:
             self._send(status, reply, {}, fault.after if isinstance(fault, Truncate) else None)
 
@@ -406,6 +470,34 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(data[:only])
         if only is not None:
             self.close_connection = True
+
+    def _stream(self, events: list[sse.Event], fault: Fault | None) -> None:
+        if isinstance(fault, StreamError):
+            events = [*events[: fault.after], sse.error(fault.type, fault.message)]
+        data = b"".join(map(sse.encoded, events))
+        if isinstance(fault, Garble):
+            data = (data[: fault.at] + fault.data + data[fault.at + len(fault.data) :])[: len(data)]
+        pieces, whole = [data], True
+        if isinstance(fault, Truncate):
+            pieces, whole = [data[: fault.after]], fault.clean
+        elif isinstance(fault, Stall):
+            pieces, whole = [data[: fault.after], data[fault.after :]], fault.go is not None
+        self.send_response(200)
+        self.send_header("Content-Type", "text/event-stream; charset=utf-8")
+        self.send_header("Transfer-Encoding", "chunked")
+        self.send_header("request-id", "req_local")
+        self.end_headers()
+        with contextlib.suppress(OSError):
+            for number, piece in enumerate(pieces):
+                if number and isinstance(fault, Stall):
+                    (fault.go or self.server_api._stopping).wait(fault.seconds)
+                    if not whole:
+                        break
+                self.wfile.write(b"%x\r\n%b\r\n" % (len(piece), piece) if piece else b"")
+                self.wfile.flush()
+            if whole:
+                self.wfile.write(b"0\r\n\r\n")
+        self.close_connection = not whole
 
 
 def _route(method: str, path: str) -> tuple[str, Callable[..., tuple[int, Any]] | None, tuple[str, ...]]:
@@ -427,9 +519,7 @@ def _problem(params: Any) -> str:
     messages = params.get("messages")
     if not isinstance(messages, list) or not messages or messages[-1].get("role") != "user":
         return "messages: at least one is required, and the last must be the user's"
-    if params.get("stream"):
-        return "stream: this server does not stream"
-    return ""
+    return rules.problem(params)
 
 
 def _error(status: int, message: str) -> tuple[int, Any]:

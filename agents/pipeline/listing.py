@@ -1,0 +1,49 @@
+"""Which runs there are, and how one stands."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+from agents.blender.launch import runs_folder
+from agents.pipeline.errors import NoRun
+from agents.pipeline.history import Ending, History
+from agents.pipeline.journal import NAME
+from agents.pipeline.retelling import read_history
+from agents.pipeline.shown import runs_table, show
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rich.console import RenderableType
+    from rich.table import Table
+
+
+def new_root(runs: Path) -> Path:
+    """A folder below ``runs`` that is not there yet, named after the time."""
+    stamp = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
+    return next(
+        path
+        for number in range(1, 1000)
+        if not (path := runs / (stamp if number == 1 else f"{stamp}-{number}")).exists()
+    )
+
+
+def table_of_runs() -> Table:
+    """All runs that have a journal, newest first; of one that cannot be read, just that."""
+    found = sorted(runs_folder().glob(f"*/{NAME}"), key=lambda path: path.stat().st_mtime, reverse=True)
+    return runs_table((path.parent.name, _known_of(path.parent)) for path in found)
+
+
+def _known_of(run: Path) -> History:
+    try:
+        return read_history(run)
+    except NoRun:
+        return History(ending=Ending("unreadable"))
+
+
+def shown(run: Path) -> RenderableType:
+    """How a run stands. Raises NoRun."""
+    if not (run / NAME).is_file():
+        raise NoRun(f"{run} is no run: it has no {NAME}.")
+    return show(read_history(run))

@@ -1,0 +1,66 @@
+"""What a run is asked to do. It is written down at its beginning, and holds for every sitting of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Mode = Literal["make", "edit"]
+Origin = Literal["live", "session", "replay"]
+
+DEFAULT_MODEL = "claude-opus-5-5"  # the newest of the paper's line: one strong model for all roles
+ROLES = ("planner", "coder", "reviewer", "final_reviewer")
+
+
+class Options(BaseModel):
+    """What does not change from sitting to sitting.
+
+    ``origin``: where answers come from: a live model, a ``session`` (its name) written by hand, or the ``replay`` of
+    another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
+    ``verifier``, ``stages``: False leaves that out (the paper's ablations).
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    mode: Mode = "make"
+    prompt: str = Field(min_length=1, max_length=20_000)
+    file: Path | None = None
+    reference: Path | None = None
+    origin: Origin = "live"
+    source: str = ""
+    model: str = DEFAULT_MODEL
+    models: dict[str, str] = Field(default_factory=dict[str, str])
+    blender: str | None = None
+    blender_exe: Path | None = None
+    sandbox: Literal["bubblewrap", "landlock", "none"] | None = None
+    read: tuple[Path, ...] = ()
+    render_minutes: float | None = Field(default=None, gt=0)
+    samples: int | None = Field(default=None, ge=1)
+    verifier: bool = True
+    stages: bool = True
+
+    def model_of(self, role: str) -> str:
+        """The model that answers for a role."""
+        return self.models.get(role, self.model)
+
+    @property
+    def told(self) -> str:
+        """Where the answers come from, in words."""
+        match self.origin:
+            case "session":
+                return f"hand-written session: {self.source}"
+            case "replay":
+                return f"recorded: {self.source}"
+            case _:
+                return "live"
+
+
+class Limits(BaseModel):
+    """What one sitting may use: dollars (over the whole run), and minutes."""
+
+    model_config = ConfigDict(frozen=True)
+
+    max_cost: float | None = Field(default=None, ge=0)
+    max_minutes: float | None = Field(default=None, gt=0)

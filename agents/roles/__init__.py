@@ -1,0 +1,1 @@
+"""The four roles: who plans, who builds, who looks, and who judges the result."""

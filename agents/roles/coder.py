@@ -1,0 +1,94 @@
+"""The coder: a fresh session for each stage, kept across its retries, with all tools."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from agents.roles.base import Conversation, Worked, as_json
+from agents.roles.prompts import system_prompt
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from agents.plan.base import Stage
+    from agents.plan.tactical import TacticalPlan
+    from agents.roles.base import Desk
+
+NAME = "coder"
+_BEGIN = """\
+{plan}
+
+The stage is {stage}. Its tactical plan:
+{tactic}
+
+How the scene stands:
+
+{state}
+
+Build this stage. End with a short report, without a call, when it is done and blender_verify is content."""
+_AGAIN = """\
+The stage is not done. The planner says: {instructions}
+
+The verifier:
+{verified}
+
+The reviewer:
+{reviewed}
+
+Mend this in the scene as it is, and end with a short report."""
+_REPLANNED = """\
+The scene was put back to how it was before this stage; nothing of what you built in it is there any more. The planner \
+has made a new tactical plan:
+{tactic}
+
+How the scene stands:
+
+{state}
+
+Build the stage by this plan, and end with a short report."""
+_FIX = """\
+{plan}
+
+The scene is built and rendered. The final reviewer wants this mended:
+{instructions}
+
+How the scene stands:
+
+{state}
+
+Mend just that; what moves must be baked again. End with a short report."""
+
+
+class Coder:
+    """One stage's coder. Everything raises ModelError."""
+
+    def __init__(self, desk: Desk, stage: Stage, plan: str, *, edit: bool = False) -> None:
+        """``plan`` is what the whole run is held to, in words."""
+        self._stage = stage
+        self._plan = plan
+        self._talk = Conversation(desk, NAME, system_prompt(NAME, stage, edit=edit), desk.tools(NAME, stage))
+        self._tactic = ""
+
+    def begin(self, tactic: TacticalPlan, state: str) -> Worked:
+        """The first attempt."""
+        self._tactic = as_json(tactic)
+        words = _BEGIN.format(plan=self._plan, stage=self._stage, tactic=self._tactic, state=state)
+        return self._work(words)
+
+    def again(self, instructions: str, verified: str, reviewed: str) -> Worked:
+        """A retry, in the scene as it stands."""
+        words = _AGAIN.format(instructions=instructions, verified=verified, reviewed=reviewed)
+        return self._work(words, verified)
+
+    def replanned(self, tactic: TacticalPlan, state: str) -> Worked:
+        """An attempt by a new plan, in the scene as it was before the stage."""
+        self._tactic = as_json(tactic)
+        return self._work(_REPLANNED.format(tactic=self._tactic, state=state))
+
+    def fix(self, instructions: str, state: str) -> Worked:
+        """What the final reviewer wants mended."""
+        return self._work(_FIX.format(plan=self._plan, instructions=instructions, state=state))
+
+    def _work(self, words: str, *open_findings: str) -> Worked:
+        pinned: Sequence[str] = (self._plan, *filter(None, [self._tactic]), *open_findings)
+        return self._talk.work(self._stage, words, pinned=pinned)

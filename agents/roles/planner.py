@@ -1,0 +1,143 @@
+"""The planner: one session for a run, which thinks in plans and never touches Blender (paper, "Agents")."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from agents.models.structured import fits
+from agents.plan.check import read_plan
+from agents.plan.edit import EditPlan, unknown_targets
+from agents.plan.tactical import Decision, TacticalPlan
+from agents.roles.base import Conversation, as_json
+from agents.roles.prompts import system_prompt
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence, Set
+
+    from agents.models.base import Picture
+    from agents.plan.base import Stage
+    from agents.plan.scene import ScenePlan
+    from agents.roles.base import Desk
+
+NAME = "planner"
+_STRATEGIC = "Write the scene plan for this request, as one JSON object:\n\n{prompt}"
+_EDIT = """\
+Write the edit plan for this instruction, as one JSON object:
+
+{prompt}
+
+The scene as it is:
+
+{state}"""
+_REFERENCE = "What the result should look like:"
+_TACTICAL = """\
+The stage {stage} begins. {why}Write its tactical plan, as one JSON object. How the scene stands:
+
+{state}"""
+_DECIDE = """\
+Attempt {attempt} of the stage {stage} is over. {left}
+
+The coder ({how}) says:
+{report}
+
+The verifier:
+{verified}
+
+The reviewer:
+{reviewed}
+
+Decide, as one JSON object."""
+
+
+_KNOWN = 20  # faults of the file that are told
+_BEFORE = """\
+What the verifier had to say of the file before the edit. It does not count, unless it gets worse, and is not to be \
+mended unless the instruction asks for it:"""
+
+
+class Planner:
+    """Keeps its session over all stages. Everything raises ModelError; Misfit when no answer fits."""
+
+    def __init__(self, desk: Desk, *, edit: bool = False) -> None:
+        self._talk = Conversation(desk, NAME, system_prompt(NAME, edit=edit))
+        self._plan: tuple[str, ...] = ()
+
+    def strategic(self, prompt: str) -> ScenePlan:
+        """The scene plan, which contradicts itself nowhere."""
+        plan = self._talk.data("", _sound_plan, _STRATEGIC.format(prompt=prompt))
+        self._plan = (self._talk.said,)
+        return plan
+
+    def edit(
+        self,
+        prompt: str,
+        state: str,
+        names: Set[str],
+        seen: Sequence[Picture],
+        reference: Picture | None = None,
+    ) -> EditPlan:
+        """The plan of an edit of a file with these ``names`` in it.
+
+        ``seen`` are previews of the scene, ``reference`` is what it should look like.
+        """
+
+        def reader(data: Any) -> tuple[EditPlan | None, Sequence[object]]:
+            plan, problems = fits(EditPlan)(data)
+            if plan is not None and (unknown := unknown_targets(plan, names)):
+                return None, unknown
+            return plan, problems
+
+        said: list[Picture | str] = [_EDIT.format(prompt=prompt, state=state), *seen]
+        if reference is not None:
+            said += [_REFERENCE, reference]
+        plan = self._talk.data("", reader, *said)
+        self._plan = (self._talk.said,)
+        return plan
+
+    def tactical(self, stage: Stage, state: str, why: str = "") -> TacticalPlan:
+        """The plan of a stage; ``state`` is the scene's readout, ``why`` what an earlier plan came to."""
+
+        def reader(data: Any) -> tuple[TacticalPlan | None, Sequence[object]]:
+            plan, problems = fits(TacticalPlan)(data)
+            if plan is not None and plan.stage != stage:
+                return None, [f"stage: this is the stage {stage!r}, not {plan.stage!r}."]
+            return plan, problems
+
+        words = _TACTICAL.format(stage=stage, why=f"{why.rstrip()} " if why else "", state=state)
+        return self._talk.data(stage, reader, words, pinned=self._plan)
+
+    def decide(  # noqa: PLR0913 - all that is known of an attempt
+        self, stage: Stage, attempt: int, *, how: str, report: str, verified: str, reviewed: str, left: str
+    ) -> Decision:
+        """What becomes of the stage. ``left`` tells how many retries and replans there are."""
+        words = _DECIDE.format(
+            stage=stage,
+            attempt=attempt,
+            how=how,
+            report=report,
+            verified=verified,
+            reviewed=reviewed,
+            left=left,
+        )
+        return self._talk.data(stage, fits(Decision), words, pinned=(*self._plan, verified))
+
+
+def _sound_plan(data: Any) -> tuple[ScenePlan | None, Sequence[object]]:
+    if not isinstance(data, dict):
+        return None, ["The plan is a JSON object."]
+    return read_plan(data)
+
+
+def told(plan: ScenePlan) -> str:
+    """The scene plan as every other role reads it."""
+    return f"The scene plan:\n{as_json(plan)}"
+
+
+def told_edit(plan: EditPlan, prompt: str, known: Sequence[str] = ()) -> str:
+    """The plan of an edit as every other role reads it. ``known``: what was at fault before it."""
+    parts = [f"The instruction: {prompt}", f"The edit plan:\n{as_json(plan)}"]
+    if known:
+        left = [f"- … and {len(known) - _KNOWN} more"] if len(known) > _KNOWN else []
+        listed = "\n".join([*(f"- {one}" for one in known[:_KNOWN]), *left])
+        parts.append(f"{_BEFORE}\n{listed}")
+    return "\n\n".join(parts)

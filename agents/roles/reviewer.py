@@ -1,0 +1,49 @@
+"""The reviewer: a fresh session for each stage, which sees previews and readouts and changes nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from agents.models.structured import fits
+from agents.plan.tactical import Review
+from agents.roles.base import Conversation, as_json
+from agents.roles.prompts import system_prompt
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from agents.models.base import Block
+    from agents.plan.base import Stage
+    from agents.plan.tactical import TacticalPlan
+    from agents.roles.base import Desk
+
+NAME = "reviewer"
+_LOOK = """\
+{plan}
+
+Attempt {attempt} of the stage {stage} is over. Its tactical plan, whose questions you are to answer:
+{tactic}
+
+What there is to see; look closer with your tools where you need to. Then give your review, as one JSON object."""
+
+
+class Reviewer:
+    """One stage's reviewer. Raises ModelError; Misfit when no answer fits."""
+
+    def __init__(self, desk: Desk, stage: Stage, plan: str, *, edit: bool = False) -> None:
+        self._stage = stage
+        self._plan = plan
+        self._talk = Conversation(desk, NAME, system_prompt(NAME, stage, edit=edit), desk.tools(NAME, stage))
+
+    def review(self, tactic: TacticalPlan, attempt: int, evidence: Sequence[Block | str]) -> Review:
+        """The judgement on an attempt, by previews and readouts."""
+
+        def reader(data: Any) -> tuple[Review | None, Sequence[object]]:
+            review, problems = fits(Review)(data)
+            if review is not None and len(review.judgements) < len(tactic.questions):
+                asked, given = len(tactic.questions), len(review.judgements)
+                return None, [f"judgements: {asked} questions were asked, {given} are answered."]
+            return review, problems
+
+        words = _LOOK.format(plan=self._plan, attempt=attempt, stage=self._stage, tactic=as_json(tactic))
+        return self._talk.work_then_data(self._stage, reader, words, *evidence, pinned=(self._plan,))

@@ -1,0 +1,170 @@
+"""Sessions that a person wrote."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from asks import ask
+
+from agents.models.base import Message, Text, ToolResult, ToolUse, user, whole
+from agents.models.errors import BadRecord, CutShort, Drifted, Refused
+from agents.models.handwritten import read_turn
+from agents.models.recorded import Recorded
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PLAN = """\
+role: planner
+expects: Twelve wooden dominoes
+---
+Here is the plan.
+
+```json
+{"title": "Dominoes"}
+```
+"""
+BUILD = """\
+role: coder
+stage: modeling
+expects: Twelve wooden
+  dominoes
+"""
+CODE = """\
+role: coder
+stage: modeling
+---
+I begin with the table.
+
+```python call blender_execute code timeout=90 on_error=restore
+import bpy
+
+bpy.ops.mesh.primitive_cube_add()
+```
+
+Now I look at it.
+
+```json call blender_object_preview
+{"name": "Table", "views": ["front", "top"]}
+```
+"""
+FIX = """\
+role: coder
+stage: modeling
+expects: R12
+expects: Domino 7   floats
+rejects: Table stands
+---
+It floats; I put it down.
+"""
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Path:
+    (tmp_path / "README.md").write_text("How this was made.")
+    (tmp_path / "01-plan.md").write_text(PLAN)
+    (tmp_path / "02-code.md").write_text(CODE)
+    (tmp_path / "03-fix.md").write_text(FIX)
+    return tmp_path
+
+
+def test_a_session_plays_turn_by_turn(session: Path):
+    played = Recorded(session)
+    plan = played.answer(ask("Make this: Twelve wooden\n dominoes stand.", role="planner", stage=""))
+    assert plan.text == 'Here is the plan.\n\n```json\n{"title": "Dominoes"}\n```'
+    assert (plan.stop_reason, plan.model, plan.live, plan.calls) == ("end_turn", "hand-written", False, ())
+    code = played.answer(ask("Begin."))
+    begin, run, look, preview = code.content
+    assert (begin, look) == (Text("I begin with the table."), Text("Now I look at it."))
+    assert isinstance(run, ToolUse)
+    assert run.input == {
+        "code": "import bpy\n\nbpy.ops.mesh.primitive_cube_add()",
+        "timeout": 90,
+        "on_error": "restore",
+    }
+    assert isinstance(preview, ToolUse)
+    assert (preview.name, preview.input) == (
+        "blender_object_preview",
+        {"name": "Table", "views": ["front", "top"]},
+    )
+    assert run.id != preview.id
+    assert code.stop_reason == "tool_use"
+    assert played.left() == ("03-fix.md",)
+    results = user(
+        ToolResult(run.id, (Text("R12: Domino 7 floats."),), failed=True), ToolResult(preview.id, ())
+    )
+    assert played.answer(ask("Begin.", code.message(), results)).text == "It floats; I put it down."
+
+
+@pytest.mark.parametrize(
+    ("said", "misfit"),
+    [
+        ("R12: Domino 8 floats.", "it should contain: Domino 7   floats"),
+        ("R12: Domino 7 floats, the Table stands.", "it should not contain: Table stands"),
+    ],
+)
+def test_a_question_that_the_writer_did_not_expect_is_a_drift(session: Path, said, misfit):
+    played = Recorded(session)
+    played.answer(ask("Begin."))
+    with pytest.raises(Drifted, match=r"coder \(modeling\) asks something else than 03-fix\.md") as error:
+        played.answer(ask("Begin.", Message("assistant", (Text("x"),)), said))
+    assert misfit in str(error.value)
+    assert said in str(error.value)
+    assert (error.value.message, error.value.found) == (3, said)
+    assert played.left() == ("01-plan.md", "03-fix.md")
+
+
+def test_turns_may_end_badly():
+    assert read_turn("1.md", "role: coder\nstop: refusal\n---\nNo.").turn.stop_reason == "refusal"
+    for stop, error in (("refusal", Refused), ("max_tokens", CutShort)):
+        turn = read_turn("1.md", f"role: coder\nstop: {stop}\n---\nNo.").turn
+        with pytest.raises(error):
+            whole(turn)
+
+
+def test_longer_fences_hold_shorter_ones():
+    text = (
+        "role: coder\n---\n````python call blender_execute code\nprint('''\n```python call x y\n```\n''')\n````\n"
+        "````markdown\n```python call blender_execute code\n```\n````\n"
+    )
+    call, said = read_turn("1.md", text).turn.content
+    assert isinstance(call, ToolUse)
+    assert call.input == {"code": "print('''\n```python call x y\n```\n''')"}
+    assert said == Text("````markdown\n```python call blender_execute code\n```\n````")
+
+
+def test_an_answer_may_hold_lines_of_dashes_and_nothing_at_all():
+    assert read_turn("1.md", "role: coder\n---\nA\n\n---\n\nB\n").turn.text == "A\n\n---\n\nB"
+    assert read_turn("1.md", "role: coder\n---\n").turn.content == ()
+    assert read_turn("1.md", "role: coder\n---\n```x call save\n```").turn.calls[0].input == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("role: coder\nHello", "no line of dashes"),
+        ("stage: uv\n---\n", "whose turn"),
+        ("role: coder\nrole: planner\n---\n", "given twice"),
+        ("role: coder\nexpects:\n---\n", "expects is empty"),
+        ("role: coder\nwants: x\n---\n", "'wants: x' is no line of a head"),
+        (BUILD + "---\n", "'dominoes' is no line of a head"),
+        ("role: coder\n---\n```python call run code\nx", "not closed"),
+        ("role: coder\n---\n```python call run code more\nx\n```", "only one argument of run"),
+        ("role: coder\n---\n```python call run 'code\nx\n```", "cannot be read"),
+        ("role: coder\n---\n```json call run\n{x}\n```", "no JSON"),
+        ("role: coder\n---\n```json call run\n[1]\n```", "no JSON object"),
+    ],
+)
+def test_a_slip_of_the_pen_is_told_with_its_file(text, says):
+    with pytest.raises(BadRecord, match=says) as error:
+        read_turn("07-x.md", text)
+    assert str(error.value).startswith("07-x.md: ")
+
+
+def test_folders_without_turns_and_files_without_text_are_told(tmp_path: Path):
+    with pytest.raises(BadRecord, match="has no turns"):
+        Recorded(tmp_path)
+    (tmp_path / "01-x.md").write_bytes(b"\xff\xfe")
+    with pytest.raises(BadRecord, match="cannot be read"):
+        Recorded(tmp_path)

@@ -1,0 +1,79 @@
+"""A home with a knowledge base, a server for the team, and runs that several tests read."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+import teams
+from commands import Command
+from sittings import answered, asked_of, sit
+from team import Team
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from fake_messages_api import FakeMessagesAPI
+    from sittings import Played
+
+
+@pytest.fixture(scope="session")
+def home(base: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A home folder with the base's knowledge, and runs of its own."""
+    folder = tmp_path_factory.mktemp("home")
+    (folder / "kb").symlink_to(base.parent)
+    return folder
+
+
+@pytest.fixture
+def api(home: Path) -> Iterator[FakeMessagesAPI]:
+    """The server that answers live runs; a test gives it its team as ``api.answer``."""
+    with answered(home, Team()) as server:
+        yield server
+
+
+@pytest.fixture
+def command(home: Path) -> Iterator[Callable[..., Command]]:
+    """Starts ``simworlds``; nothing of it outlives the test."""
+    started: list[Command] = []
+
+    def command(*words: object, url: str = "") -> Command:
+        started.append(Command(home, *words, url=url))
+        return started[-1]
+
+    yield command
+    for one in started:
+        one.kill()
+
+
+@pytest.fixture(scope="session")
+def play(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Played]:
+    """Plays a team's run, for all tests that ask for it."""
+
+    def play(team: Team, *faults: object, **options: object) -> Played:
+        with answered(home, team) as server:
+            server.fail("POST /v1/messages", *faults)  # type: ignore[arg-type]
+            played = sit(tmp_path_factory.mktemp("played") / "run", **options)
+            return replace(played, requests=asked_of(server))
+
+    return play
+
+
+@pytest.fixture(scope="session")
+def mended(play: Callable[..., Played]) -> Played:
+    """A run in which much is sent back, and mended."""
+    return play(teams.mended())
+
+
+@pytest.fixture(scope="session")
+def falling(play: Callable[..., Played]) -> Played:
+    """A crate that falls: faked at first, then simulated."""
+    return play(teams.falling())
+
+
+@pytest.fixture(scope="session")
+def troubled(play: Callable[..., Played]) -> Played:
+    """A run in which models and server do all that they should not, and which ends well."""
+    return play(teams.troubled(), *teams.outages())

@@ -1,0 +1,104 @@
+"""Sittings that are killed at the first event at which none was killed before: by turns before and behind it."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+import signal
+import sys
+from collections import Counter
+from contextlib import ExitStack
+from itertools import count
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from sittings import at_home, go_on, sit
+
+from agents.pipeline.journal import KEYS, NAME, Journal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+    from agents.pipeline.journal import Row
+
+Event = tuple[Any, ...]
+_SECONDS = 240.0
+
+
+def events(rows: Iterable[Mapping[str, Any]]) -> list[Event]:
+    """What each row is about. A question that is asked again is the same event, until it is answered."""
+    whose: dict[int, tuple[str, str]] = {}
+    answered: Counter[tuple[str, str]] = Counter()
+    found: list[Event] = []
+    for row in rows:
+        kind = row["type"]
+        if kind == "model.asked":
+            whose[row["n"]] = lane = (row["role"], row["stage"])
+            found.append((kind, *lane, answered[lane]))
+        elif kind == "model.answered":
+            lane = whose[row["n"]]
+            found.append((kind, *lane, answered[lane]))
+            answered[lane] += 1
+        else:
+            found.append((kind, *(row.get(key) for key in KEYS)))
+    return found
+
+
+def killed_at_every_event(root: Path, home: Path, url: str, **options: Any) -> list[tuple[Event, str]]:
+    """Plays a run to its end; (event, "before" or "behind") of every death."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([__name__])  # so that a sitting need not import everything anew
+    deaths = root.with_name("deaths.jsonl")
+    deaths.touch()
+    for number in count():
+        process = context.Process(target=_sit, args=(root, home, url, deaths, options))
+        with (
+            pytest.MonkeyPatch.context() as patch
+        ):  # CPython 3.13.0 does not tell the server where modules are
+            patch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
+            process.start()
+        process.join(_SECONDS)
+        assert process.exitcode in (0, -signal.SIGKILL), f"sitting {number} ended with {process.exitcode}"
+        if process.exitcode == 0:
+            break
+    return [(tuple(event), where) for event, where in _died(deaths)]
+
+
+def _died(deaths: Path) -> list[tuple[list[Any], str]]:
+    return [json.loads(line) for line in deaths.read_text().splitlines()]
+
+
+def _sit(root: Path, home: Path, url: str, deaths: Path, options: dict[str, Any]) -> None:
+    before = _died(deaths)
+    past = {tuple(event) for event, _ in before}
+
+    def die(event: Event, where: str) -> None:
+        with deaths.open("a") as file:
+            file.write(json.dumps([event, where]) + "\n")
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    write = Journal.append
+
+    def append(journal: Journal, row: Mapping[str, Any]) -> Row:
+        known = events(journal.rows)
+        (*_, event) = events([*journal.rows, row])
+        new = event not in known and event not in past
+        if new and len(before) % 2:
+            die(event, "before")
+        written = write(journal, row)
+        if new:
+            die(event, "behind")
+        return written
+
+    with ExitStack() as stack:
+        patch = stack.enter_context(at_home(home))
+        patch.setenv("ANTHROPIC_API_KEY", "any")
+        patch.setenv("ANTHROPIC_BASE_URL", url)
+        patch.setattr(Journal, "append", append)
+        began = (root / NAME).exists() and (root / NAME).stat().st_size
+        if began:
+            go_on(root)
+        else:
+            sit(root, **options)

@@ -1,0 +1,140 @@
+"""Sittings at runs, as a person has them, but with small pictures; and what is left of them."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from fake_messages_api import FakeMessagesAPI, Reply
+
+from agents.blender.sandbox import best_sandbox
+from agents.blender.sessions import Setup
+from agents.blender.tools import previews
+from agents.models.claude import Claude
+from agents.pipeline import answering, judging
+from agents.pipeline.journal import NAME, Row, read_rows
+from agents.pipeline.options import Limits, Options
+from agents.pipeline.sitting import Ended, Sitting, Stop, begin, resume
+from agents.pipeline.toolbox import Toolbox
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PROMPT = "A crate stands on a floor"
+MESSAGES = "POST /v1/messages"
+OnRow = Callable[[Mapping[str, Any]], object]
+
+
+def make_small(patch: pytest.MonkeyPatch) -> None:
+    """Pictures of few pixels, and no pauses before a model is asked again."""
+    patch.setattr(previews, "PANEL", 48)
+    patch.setattr(judging, "_STILL", {"kind": "still", "name": "look", "width": 48, "samples": 1})
+    patch.setattr(answering, "Claude", lambda **given: Claude(**{**given, "pause": lambda seconds: None}))
+
+
+@contextmanager
+def at_home(home: Path) -> Iterator[pytest.MonkeyPatch]:
+    """A home, small pictures, nobody who answers."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SIMWORLDS_HOME", str(home))
+        for name in ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN", "ANTHROPIC_BASE_URL"):
+            patch.delenv(name, raising=False)
+        make_small(patch)
+        yield patch
+
+
+@contextmanager
+def answered(home: Path, team: Callable[[dict[str, Any]], Reply]) -> Iterator[FakeMessagesAPI]:
+    """The same, with a server that answers as the team does."""
+    with at_home(home) as patch, FakeMessagesAPI(team) as api:
+        patch.setenv("ANTHROPIC_API_KEY", "any")
+        patch.setenv("ANTHROPIC_BASE_URL", api.base_url)
+        yield api
+
+
+@dataclass
+class Onlooker:
+    """Keeps what it is told; ``on_row`` may act on it."""
+
+    on_row: OnRow = lambda row: None
+    rows: list[Row] = field(default_factory=list)
+    heard: list[tuple[str, str]] = field(default_factory=list)
+
+    def take(self, row: Mapping[str, Any]) -> None:
+        self.rows.append(dict(row))
+        self.on_row(row)
+
+    def saying(self, role: str, text: str) -> None:
+        self.heard.append((role, text))
+
+    def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
+        pass
+
+
+@dataclass
+class Played:
+    """A run after a sitting. ``requests`` are the bodies of what the model was asked."""
+
+    root: Path
+    ended: Ended
+    onlooker: Onlooker
+    requests: list[dict[str, Any]] = field(default_factory=list)
+
+    @property
+    def rows(self) -> list[Row]:
+        return read_rows(self.root / NAME)
+
+    def of(self, kind: str, **about: Any) -> list[Row]:
+        """The rows of a type, with these fields."""
+        return [row for row in self.rows if row["type"] == kind and about.items() <= row.items()]
+
+    def the(self, kind: str, **about: Any) -> Row:
+        (row,) = self.of(kind, **about)
+        return row
+
+    @property
+    def taken(self) -> list[tuple[str, str]]:
+        """(stage, what was done) of every decision."""
+        return [(row["stage"], row["taken"]) for row in self.of("decided")]
+
+
+def seat(limits: Limits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None) -> Sitting:
+    return Sitting(limits or Limits(), Onlooker(on_row), stop or Stop(threading.Event()))
+
+
+def sit(root: Path, at: Sitting | None = None, **options: Any) -> Played:
+    """Begins a run."""
+    at = at or seat()
+    return _played(root, begin(root, Options(**{"prompt": PROMPT, **options}), at), at)
+
+
+def go_on(root: Path, at: Sitting | None = None) -> Played:
+    """Takes a run up again."""
+    at = at or seat()
+    return _played(root, resume(root, at), at)
+
+
+def _played(root: Path, ended: Ended, at: Sitting) -> Played:
+    assert isinstance(at.watcher, Onlooker)
+    return Played(root, ended, at.watcher)
+
+
+def asked_of(api: FakeMessagesAPI) -> list[dict[str, Any]]:
+    return [request.body for request in api.received(MESSAGES)]
+
+
+def scenes(folder: Path, *files: Path) -> list[dict[str, str]]:
+    """{"Object Cube": digest, …} of all that is in each file."""
+    read = tuple({file.parent for file in files})
+    found: list[dict[str, str]] = []
+    with Toolbox(Setup(best_sandbox(), run=folder, read=read)) as toolbox:
+        for file in files:
+            loaded = toolbox.call("blender_load", {"path": str(file)})
+            assert not loaded.failed, loaded.text
+            state = toolbox.call("blender_scene_state", {"sections": ["data_blocks"]})
+            found.append(dict(state.data["data_blocks"]))
+    return found

@@ -1,0 +1,342 @@
+"""An edit from file and instruction to its result, with every part real but the model."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
+
+import crates
+import pytest
+from PIL import Image
+from sittings import answered, asked_of, scenes, sit
+from team import DONE, Team, reply, run, words_of
+
+from agents.blender.sandbox import best_sandbox
+from agents.blender.sessions import Setup
+from agents.pipeline.errors import Unusable
+from agents.pipeline.events import told_event
+from agents.pipeline.retelling import read_history
+from agents.pipeline.toolbox import Toolbox
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from sittings import Played
+
+pytestmark = pytest.mark.blender
+
+STILL = {"kind": "still", "engine": "BLENDER_WORKBENCH", "resolution": [64, 36], "samples": 1}
+
+# A file that knows nothing of the scene protocol: a mug and a spoon on a table, a lamp that swings.
+KITCHEN = """\
+import bpy
+from mathutils import Matrix, Vector
+
+scene = bpy.context.scene
+scene.frame_end = 8
+scene.render.engine = "BLENDER_WORKBENCH"
+
+
+def block(name, size, at):
+    bpy.ops.mesh.primitive_cube_add(size=1, location=at)
+    made = bpy.context.object
+    made.name = made.data.name = name
+    made.data.transform(Matrix.Diagonal((*size, 1)))
+    return made
+
+
+block("Table", (2, 2, 0.1), (0, 0, -0.05))
+mug = block("Mug", (0.2, 0.2, 0.2), (0, 0, 0.1))
+block("Spoon", (0.4, 0.05, 0.02), (0.5, 0, 0.01))
+glaze = bpy.data.materials.new("Glaze")
+glaze.use_nodes = True
+image = glaze.node_tree.nodes.new("ShaderNodeTexImage")
+image.image = bpy.data.images.load("//leaf.png")
+mug.data.materials.append(glaze)
+lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+lamp.data.energy = 50
+scene.collection.objects.link(lamp)
+for frame, z in ((1, 1.0), (8, 1.2)):
+    lamp.location.z = z
+    lamp.keyframe_insert("location", frame=frame)
+camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+camera.location = (2, -2, 1.5)
+camera.rotation_euler = (Vector((0, 0, 0)) - camera.location).to_track_quat("-Z", "Y").to_euler()
+scene.collection.objects.link(camera)
+scene.camera = camera
+"""
+SUNK = crates.MODELING.replace("HEIGHT", "-0.1")
+RED = """\
+import bpy
+mug = bpy.data.objects["Mug"]
+mug.scale.z = 1.5
+mug.location.z = 0.15
+bpy.data.objects["Spoon"].location.x = 0.6
+jug = bpy.data.objects.new("Jug", mug.data.copy())
+jug.data.name = "Jug"
+jug.location = (-0.5, 0, 0.1)
+bpy.context.scene.collection.objects.link(jug)
+"""
+
+KEYED = """\
+import bpy
+ball = bpy.data.objects["Mug"]
+for frame in range(1, 9):
+    ball.location.z = max(0.1, 0.4 - 4.9 * ((frame - 1) / 24) ** 2)
+    ball.keyframe_insert("location", frame=frame)
+"""
+TAGGED = """\
+import bpy
+tagged = bpy.data.collections.new("Mug")
+system = bpy.data.collections.new("crockery")
+bpy.context.scene.collection.children.link(system)
+system.children.link(tagged)
+system["protocol_role"] = "system"
+mug = bpy.data.objects["Mug"]
+root = bpy.data.objects.new("Mug root", None)
+root["is_object_root"] = True
+tagged.objects.link(root)
+mug.parent = root
+bpy.context.scene.collection.objects.unlink(mug)
+tagged.objects.link(mug)
+tagged["protocol_role"], tagged["deformation_kind"], tagged["motion_kind"] = "object", "sim_rigid", "bake"
+"""
+SIMULATED = """\
+import bpy
+mug = bpy.data.objects["Mug"]
+mug.animation_data_clear()
+mug.location.z = 0.4
+bpy.ops.rigidbody.world_add()
+for one, kind in ((mug, "ACTIVE"), (bpy.data.objects["Table"], "PASSIVE")):
+    with bpy.context.temp_override(object=one, active_object=one, selected_objects=[one]):
+        bpy.ops.rigidbody.object_add(type=kind)
+    one.rigid_body.collision_shape = "BOX"
+bpy.context.scene.rigidbody_world.point_cache.frame_end = 8
+bpy.ops.ptcache.bake_all(bake=True)
+"""
+
+
+def task(stage: str, *targets: str, kind: str = "modify") -> dict[str, Any]:
+    return {"kind": kind, "stage": stage, "targets": list(targets), "instruction": "As asked."}
+
+
+def plan(*tasks: dict[str, Any], **more: Any) -> dict[str, Any]:
+    return {"title": "An edit", "tasks": list(tasks), "render": STILL, **more}
+
+
+_SAVE = """
+bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath("//kitchen.blend"), copy=True, compress=False)
+"""
+
+
+def build(folder: Path, code: str) -> Path:
+    """A file made by code, with a texture beside it."""
+    with Toolbox(Setup(best_sandbox(), run=folder / "work")) as toolbox:
+        Image.new("RGB", (4, 4), (20, 90, 30)).save(folder / "work" / "workspace" / "leaf.png")
+        made = toolbox.call("blender_execute", {"code": code + _SAVE})
+        assert not made.failed, made.text
+    mine = folder / "mine"
+    mine.mkdir()
+    for name in ("leaf.png", "kitchen.blend"):
+        (folder / "work" / "workspace" / name).rename(mine / name)
+    return mine / "kitchen.blend"
+
+
+@pytest.fixture(scope="session")
+def kitchen(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build(tmp_path_factory.mktemp("kitchen"), KITCHEN)
+
+
+@pytest.fixture(scope="session")
+def pristine(kitchen: Path) -> bytes:
+    return kitchen.read_bytes()
+
+
+# A file that knows no protocol
+
+
+@pytest.fixture(scope="session")
+def taller(
+    play: Callable[..., Played], kitchen: Path, pristine: bytes, tmp_path_factory: pytest.TempPathFactory
+) -> Played:
+    """A mug made taller and a jug added, where the planner first errs and the coder moves the spoon, too."""
+    reference = tmp_path_factory.mktemp("reference") / "wanted.webp"
+    Image.new("RGB", (3000, 1000), (200, 30, 30)).save(reference)
+    wrong = plan(task("modeling", "Mugg"))
+    right = plan(task("modeling", "Mug"), task("modeling", "Jug", kind="add"))
+    team = Team(code={"modeling": RED})
+    team.plan = lambda params: reply(right if "there is nothing called" in words_of(params) else wrong)
+    return play(
+        team, mode="edit", prompt="Make the mug taller, and add a jug", file=kitchen, reference=reference
+    )
+
+
+def test_an_edit_changes_what_is_asked_for_and_reports_every_data_block(
+    taller: Played, kitchen: Path, tmp_path: Path
+) -> None:
+    assert taller.ended.how == "done", taller.ended.why
+    report = taller.the("edited")
+    assert report["added"] == ["Mesh Jug", "Object Jug"]
+    assert report["removed"] == []
+    assert report["changed"] == ["Object Mug", "Object Spoon", "Scene Scene"]
+    assert report["why"]["Scene Scene"] == "holds Jug"
+    assert {"Mesh Table", "Object Table", "Light Lamp", "Action LampAction", "Image leaf.png"} <= set(
+        report["unchanged"]
+    )
+    assert report["parts"]["Object Mug"] == ["transform"]
+    before, after = scenes(tmp_path, kitchen, taller.root / "scene.blend")
+    assert {name for name in before if before[name] != after.get(name)} == set(report["changed"])
+
+
+def test_what_an_edit_moves_beside_what_was_asked_for_is_named_in_a_warning(taller: Played) -> None:
+    assert taller.the("edited")["outside"] == ["Object Spoon"]
+    history = read_history(taller.root)
+    told = "\n".join(told_event(taller.the("edited"), history))
+    assert "Warning" in told
+    assert "Object Spoon (transform)" in told
+    assert "Object Mug" not in told.partition("Warning")[2]
+
+
+def test_the_file_that_is_edited_stays_as_it_is(taller: Played, kitchen: Path, pristine: bytes) -> None:
+    assert sorted(path.name for path in kitchen.parent.iterdir()) == ["kitchen.blend", "leaf.png"]
+    assert kitchen.read_bytes() == pristine
+    opened = taller.of("tool.answered", name="blender_load")[0]
+    assert "leaf.png" in opened["content"][0]["text"]
+    assert "missing" not in opened["content"][0]["text"]
+
+
+def test_a_plan_for_what_is_not_in_the_file_goes_back_with_what_is(taller: Played) -> None:
+    told = words_of(taller.requests[1])
+    assert "there is nothing called 'Mugg' in the file. Nearest: 'Mug'" in told
+
+
+def test_the_planner_sees_the_scene_and_the_reference_at_a_size_that_models_see(taller: Played) -> None:
+    (message,) = taller.requests[0]["messages"]
+    pictures = [block for block in message["content"] if block["type"] == "image"]
+    assert len(pictures) >= 2
+    kept = taller.the("reference")["path"]
+    with Image.open(taller.root / kept) as picture:
+        assert max(picture.size) == 1568
+
+
+# Faked physics
+
+
+@pytest.fixture(scope="session")
+def dropped(play: Callable[..., Played], kitchen: Path) -> Played:
+    """A mug that is to fall: keyed and not tagged, keyed though tagged, then simulated."""
+    actor = {"name": "Mug", "deformation_kind": "sim_rigid", "motion_kind": "bake"}
+    turns = (run(KEYED), DONE, run(TAGGED), DONE, run(SIMULATED), DONE)
+    team = Team(plan=plan(task("motion", "Mug", "Table"), actors=[actor]), coder={"motion": turns})
+    return play(team, mode="edit", prompt="Let the mug fall onto the table", file=kitchen)
+
+
+def found_by(played: Played, attempt: int) -> list[dict[str, Any]]:
+    findings = played.the("verified", stage="motion", attempt=attempt)["findings"]
+    return [one for one in findings if one["rule"] == "R15"]
+
+
+def test_an_actor_that_says_not_by_what_it_moves_cannot_advance(dropped: Played) -> None:
+    (finding,) = found_by(dropped, 1)
+    assert finding["severity"] == "hard"
+    assert "there is no collection of that name" in finding["message"]
+    first = dropped.of("decided", stage="motion")[0]
+    assert (first["decision"]["transition"], first["taken"], first["overruled"]) == ("advance", "retry", True)
+
+
+def test_keyframes_that_play_a_simulation_are_sent_back(dropped: Played) -> None:
+    assert any("Mug" in one["objects"] for one in found_by(dropped, 2))
+    assert dropped.of("decided", stage="motion")[1]["taken"] == "retry"
+    assert any("R15" in words_of(request) for request in dropped.requests)
+
+
+def test_a_real_simulation_closes_the_stage_and_its_consequences_are_no_surprise(dropped: Played) -> None:
+    assert dropped.ended.how == "done", dropped.ended.why
+    assert found_by(dropped, 3) == []
+    report = dropped.the("edited")
+    assert report["outside"] == [], report["why"]
+    assert report["why"]["Collection crockery"] == "holds Mug"
+    assert "Object Spoon" in report["unchanged"]
+
+
+# A file of the protocol that has faults of its own
+
+
+@pytest.fixture(scope="session")
+def brighter(play: Callable[..., Played], tmp_path_factory: pytest.TempPathFactory) -> Played:
+    """A crate sunk into the floor, under a sun that is to be brighter; the first attempt sinks it deeper."""
+    file = build(tmp_path_factory.mktemp("sunk"), "\n".join([SUNK, crates.CAMERA, crates.LIGHT]))
+    deeper = 'import bpy\nbpy.data.objects["Crate root"].location.z = -0.2\nbpy.data.lights["Sun"].energy = 5'
+    back = 'import bpy\nbpy.data.objects["Crate root"].location.z = -0.1'
+    team = Team(plan=plan(task("light", "Sun")), coder={"light": (run(deeper), DONE, run(back), DONE)})
+    return play(team, mode="edit", prompt="Make the sun brighter", file=file)
+
+
+def test_faults_that_the_file_had_do_not_count_unless_they_get_worse(brighter: Played) -> None:
+    assert brighter.ended.how == "done", brighter.ended.why
+    assert any(
+        one["rule"] == "V2"
+        for one in brighter.of("tool.answered", name="blender_verify")[0]["data"]["findings"]
+    )
+    first, second = brighter.of("verified", stage="light")
+    assert not first["ok"]
+    assert any("made this worse" in one["message"] for one in first["findings"])
+    assert second["ok"]
+    assert brighter.taken == [("light", "retry"), ("light", "advance")]
+    assert brighter.the("edited")["changed"] == ["Light Sun"]
+
+
+def test_the_team_is_told_which_faults_are_not_its_own(brighter: Played) -> None:
+    coder = next(
+        one for one in brighter.requests if one["system"][0]["text"].startswith("# You are the coder")
+    )
+    assert "What the verifier had to say of the file before the edit" in words_of(coder)
+
+
+# Files that cannot be edited
+
+
+def spoilt(kind: str, kitchen: Path, folder: Path) -> Path:
+    """A file that is none, holds text, is cut off, or was written by a Blender that is not there yet."""
+    path = folder / "bad.blend"
+    whole = kitchen.read_bytes()
+    if kind == "text":
+        path.write_text("This is no .blend.")
+    elif kind == "torn":
+        path.write_bytes(whole[: len(whole) // 3])
+    elif kind == "newer":
+        head, version = whole[:13], whole[13:17]
+        assert head.startswith(b"BLENDER")
+        assert version.isdigit()
+        path.write_bytes(head + b"9901" + whole[17:])
+    return path
+
+
+@pytest.mark.parametrize("kind", ["missing", "text", "torn", "newer"])
+def test_a_file_that_cannot_be_opened_ends_clearly_before_a_model_is_asked(
+    kind: str, kitchen: Path, home: Path, tmp_path: Path
+) -> None:
+    path = spoilt(kind, kitchen, tmp_path)
+    with answered(home, Team()) as api:
+        if kind in {"missing", "text"}:
+            with pytest.raises(Unusable, match=r"bad\.blend"):
+                sit(tmp_path / "run", mode="edit", file=path)
+            assert not (tmp_path / "run").exists()
+        else:
+            ended = sit(tmp_path / "run", mode="edit", file=path).ended
+            assert (ended.how, ended.again) == ("failed", False)
+            assert "bad.blend" in ended.why
+            assert "Traceback" not in ended.why
+        assert asked_of(api) == []
+
+
+def test_the_command_says_what_is_wrong_with_a_file_and_nothing_of_resuming(tmp_path: Path) -> None:
+    path = tmp_path / "bad.blend"
+    path.write_text("This is no .blend.")
+    given = ["edit", str(path), "Make it blue", "--run", str(tmp_path / "run")]
+    code = "from agents.cli import main; main()"
+    done = subprocess.run([sys.executable, "-c", code, *given], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"Error: {path} is no .blend: it does not begin as one.\n"

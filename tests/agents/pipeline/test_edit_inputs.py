@@ -1,0 +1,129 @@
+"""What an edit is compared with and shown: the faults of the file before, and pictures of what is wanted."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from PIL import Image
+
+from agents.pipeline.baseline import new_findings
+from agents.pipeline.errors import Unusable
+from agents.pipeline.inputs import picture
+from agents.plan.edit import EditPlan, unknown_targets
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+STILL = {"kind": "still", "engine": "BLENDER_WORKBENCH", "resolution": [64, 36], "samples": 1}
+
+
+def depth(measured: float | None, *objects: str, **more: Any) -> dict[str, Any]:
+    return {
+        "rule": "V2", "severity": "hard", "objects": list(objects or ("Mug", "Table")), "message": "Too deep.",
+        "outcome": "broken", "measured": measured, "tolerance": 0.001, "unit": "m", **more,
+    }  # fmt: skip
+
+
+# Faults that were there
+
+
+def test_a_fault_that_was_there_is_not_new_however_its_objects_are_ordered() -> None:
+    assert new_findings([depth(0.05)], [depth(0.05, "Table", "Mug")]) == []
+    assert new_findings([depth(0.05)], [depth(0.02)]) == []
+
+
+def test_a_fault_that_got_worse_is_new_and_says_what_it_was() -> None:
+    (found,) = new_findings([depth(0.05)], [depth(0.06)])
+    assert found["message"] == "Too deep. The edit made this worse: it was 0.05 m."
+
+
+def test_what_is_too_little_is_worse_the_less_it_is() -> None:
+    assert new_findings([depth(0.4, tolerance=1.0)], [depth(0.5, tolerance=1.0)]) == []
+    assert len(new_findings([depth(0.4, tolerance=1.0)], [depth(0.3, tolerance=1.0)])) == 1
+
+
+def test_each_fault_that_was_there_excuses_one_and_the_worst_it_can() -> None:
+    known, now = [depth(0.05), depth(0.02)], [depth(0.02), depth(0.05), depth(0.04)]
+    assert [one["measured"] for one in new_findings(known, now)] == [0.04]
+
+
+def test_other_objects_other_rules_and_what_is_now_certain_are_new() -> None:
+    assert len(new_findings([depth(0.05)], [depth(0.05, "Jug", "Table")])) == 1
+    assert len(new_findings([depth(0.05)], [depth(0.05, rule="V1")])) == 1
+    assert len(new_findings([depth(None, outcome="undecided")], [depth(0.05)])) == 1
+    assert len(new_findings([depth(0.05, severity="soft")], [depth(0.05)])) == 1
+
+
+# Pictures
+
+
+@pytest.mark.parametrize(("kind", "mode"), [("PNG", "RGBA"), ("PNG", "P"), ("JPEG", "CMYK"), ("WEBP", "RGB")])
+def test_pictures_of_the_usual_kinds_become_one_that_models_read(
+    tmp_path: Path, kind: str, mode: str
+) -> None:
+    path = tmp_path / "named.as-it-likes"
+    Image.new(mode, (40, 30)).save(path, kind)
+    found = picture(path)
+    assert found.media_type == "image/png"
+    with Image.open(io.BytesIO(found.data), formats=["PNG"]) as shown:
+        assert shown.size == (40, 30)
+
+
+def test_large_pictures_are_shrunk_in_pixels_and_bytes(tmp_path: Path) -> None:
+    Image.effect_noise((1800, 1800), 200).convert("RGB").save(tmp_path / "noise.jpg", quality=60)
+    found = picture(tmp_path / "noise.jpg")
+    assert len(found.data) <= 3_500_000
+    with Image.open(io.BytesIO(found.data)) as shown:
+        assert shown.size[0] == shown.size[1] <= 1568
+
+
+def test_a_photograph_is_shown_upright(tmp_path: Path) -> None:
+    exif = Image.Exif()
+    exif[0x0112] = 6  # taken with the camera on its side
+    Image.new("RGB", (40, 20)).save(tmp_path / "photo.jpg", exif=exif)
+    with Image.open(io.BytesIO(picture(tmp_path / "photo.jpg").data)) as shown:
+        assert shown.size == (20, 40)
+
+
+@pytest.mark.parametrize("kind", ["missing", "text", "torn", "GIF"])
+def test_what_is_no_picture_is_said_to_be_none(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "wanted.png"
+    if kind == "text":
+        path.write_text("red")
+    elif kind == "torn":
+        written = io.BytesIO()
+        Image.effect_noise((64, 64), 99).save(written, "PNG")
+        path.write_bytes(written.getvalue()[:500])
+    elif kind == "GIF":
+        Image.new("P", (4, 4)).save(path, "GIF")
+    with pytest.raises(Unusable, match=r"wanted\.png"):
+        picture(path)
+
+
+# Plans
+
+
+def edit_plan(*tasks: tuple[str, str, str], **more: Any) -> EditPlan:
+    told = [
+        {"kind": kind, "stage": stage, "targets": [name], "instruction": "As told."}
+        for kind, stage, name in tasks
+    ]
+    return EditPlan.model_validate({"title": "An edit", "tasks": told, "render": STILL, **more})
+
+
+def test_only_what_is_there_or_is_added_can_be_changed() -> None:
+    plan = edit_plan(
+        ("add", "modeling", "Jug"), ("modify", "texture", "Jug"), ("remove", "modeling", "Spoom")
+    )
+    assert unknown_targets(plan, frozenset({"Spoon"})) == [
+        "tasks.2.targets: there is nothing called 'Spoom' in the file. Nearest: 'Spoon'."
+    ]
+
+
+def test_actors_need_a_task_that_sets_them_in_motion() -> None:
+    actor = {"name": "Jug", "deformation_kind": "sim_rigid", "motion_kind": "bake"}
+    with pytest.raises(ValueError, match="give it a task"):
+        edit_plan(("modify", "texture", "Jug"), actors=[actor])
+    assert edit_plan(("modify", "motion", "Jug"), actors=[actor]).actors[0].name == "Jug"

@@ -1,0 +1,329 @@
+"""What a person sees while a run lasts: a drawing on a terminal, lines elsewhere, never a control character."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import threading
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from domino_run import domino_plan, dominoes, finding
+from rich.console import Console
+from sample_runs import Tape
+
+from agents.pipeline.history import History
+from agents.pipeline.live import Lines, Quiet, Screen, make_view
+from agents.pipeline.retelling import history_of
+from agents.pipeline.shown import Now, Progress, run_row, runs_table, seconds_left, show, working
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rich.console import RenderableType
+
+EVIL = "\x1b[2J\x1b]0;owned\x07[red]\r\n\u202e\x9b31m"
+_STEERING = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u202a-\u202e]")
+
+
+def drawn(what: RenderableType, width: int = 120) -> str:
+    console = Console(width=width, height=40, file=io.StringIO(), color_system=None)
+    console.print(what)
+    assert isinstance(console.file, io.StringIO)
+    return console.file.getvalue()
+
+
+def until(kind: str, nth: int = 1) -> History:
+    """The dominoes' run, up to the row of that type."""
+    rows = dominoes().rows
+    places = [place for place, row in enumerate(rows) if row["type"] == kind]
+    return history_of(rows[: places[nth - 1] + 1])
+
+
+def lines_of(tape: Tape) -> list[str]:
+    stream = io.StringIO()
+    with Lines(stream) as view:
+        for row in tape.rows:
+            view.take(row)
+    return stream.getvalue().splitlines()
+
+
+# Lines
+
+
+def test_lines_tell_the_run_in_order() -> None:
+    told = "\n".join(lines_of(dominoes()))
+    for words in (
+        "00:00  make: Twelve wooden dominoes",
+        "Plan: Twelve dominoes (15 objects, 39 relations)",
+        "Modeling, attempt 1\n",
+        "blender_execute failed, 2.0 s: AttributeError: no operator",
+        "verifier: 13 hard findings, 1 soft finding",
+        "V1 ×12 Domino.01 … Domino.12 (12) · Table",
+        "reviewer blocks: The row is even.",
+        "attempt 1 sent back: 13 hard findings, the reviewer blocks (it wanted to advance)",
+        "Modeling closed after 2 attempts, 1 min 20 s",
+        "UV: skipped",
+        "back to checkpoints/texture.blend",
+        "Taken up again, sitting 2.",
+        "Final review: needs a fix: The last domino is cut off.",
+        "Run done",
+        "cost: $1.48",
+    ):
+        assert words in told
+        told = told[told.index(words) :]
+
+
+def test_a_line_says_that_answers_were_not_live() -> None:
+    assert any("No model was asked in this run" in line for line in lines_of(dominoes(live=False)))
+    assert not any("No model was asked" in line for line in lines_of(dominoes()))
+
+
+def test_progress_is_told_now_and_then() -> None:
+    now = [0.0]
+    stream = io.StringIO()
+    with Lines(stream, clock=lambda: now[0]) as view:
+        for second in range(31):
+            now[0] = float(second)
+            view.progress("blender_bake", second, 30, f"frame {second}")
+    told = stream.getvalue().splitlines()
+    assert [line.split("bake")[1] for line in told] == [" 33 % frame 10", " 67 % frame 20", " 100 % frame 30"]
+
+
+def test_lines_go_on_where_a_run_was_left() -> None:
+    stream = io.StringIO()
+    with Lines(stream, until("stage.closed")) as view:
+        view.take({"type": "stage.began", "stage": "texture"})
+    assert stream.getvalue() == "01:41  Texture begins\n"
+
+
+class _Gone(io.StringIO):
+    def write(self, s: str, /) -> int:
+        raise BrokenPipeError
+
+
+def test_a_reader_that_has_gone_does_not_end_the_run() -> None:
+    with Lines(_Gone()) as view:
+        view.take(dominoes().rows[0])
+
+
+def test_letters_that_the_stream_has_no_word_for_are_replaced() -> None:
+    raw = io.BytesIO()
+    with Lines(io.TextIOWrapper(raw, "ascii", write_through=True)) as view:
+        for row in dominoes().rows:
+            view.take(row)
+    assert b"Domino.01 ? Domino.12" in raw.getvalue()
+
+
+# The drawing
+
+
+def test_the_stages_stand_with_their_state() -> None:
+    told = drawn(working(until("attempt.began", 2), Now(70.0), 40))
+    assert re.search(r"▶ +Modeling +attempt 2", told)
+    assert re.search(r"– +UV +skipped", told)
+    assert re.search(r"· +Texture +waiting", told)
+
+
+def test_what_the_coder_does_now_is_shown_with_how_far_it_is() -> None:
+    tape = dominoes()
+    place = next(n for n, row in enumerate(tape.rows) if row.get("name") == "blender_bake")
+    history = history_of(tape.rows[: place + 1])
+    now = Now(history.seconds, {}, {"blender_bake": Progress(48, 96, "frame 48 of 96")})
+    told = drawn(working(history, now, 40))
+    assert "coder A rigid body world." in told
+    assert re.search(r"coder blender_bake +━+ 50% +frame 48 of 96", told)
+
+
+def test_streamed_words_are_shown_by_their_end() -> None:
+    history = history_of([{"type": "model.asked", "n": 1, "role": "coder", "stage": "uv"}])
+    told = drawn(working(history, Now(3.0, {"coder": "beginning " + "and on " * 80 + "to the end"}), 40))
+    assert "to the end" in told
+    assert "beginning" not in told
+
+
+def test_findings_of_the_last_attempt_stay_until_the_next_is_judged() -> None:
+    told = drawn(working(until("attempt.began", 2), Now(70.0), 40))
+    assert "Attempt 1: sent back: 13 hard findings, the reviewer blocks" in told
+    assert "V1 ×12 Domino.01 … Domino.12 (12) · Table" in told
+    assert "Reviewer blocks: The row is even." in told
+
+
+@pytest.mark.parametrize("height", [10, 24, 40])
+def test_it_fits_a_terminal(height: int) -> None:
+    for place in (40, 60, 95, 140):
+        history = history_of(dominoes().rows[:place])
+        told = drawn(working(history, Now(history.seconds, folder="/a/long/folder"), height), width=80)
+        assert len(told.splitlines()) <= max(height, 18)
+
+
+def test_time_left_is_told_once_enough_is_done() -> None:
+    assert seconds_left(until("stage.began")) is None
+    assert seconds_left(until("stage.closed", 1)) is None, "one of six stages tells little"
+    two = until("stage.closed", 2)
+    assert seconds_left(two) == pytest.approx((80.1 + 29.7) / 2 * 4, rel=0.02)
+    assert "02:12 · about 4 min left" in drawn(working(two, Now(132.0), 40))
+    left = seconds_left(two, since=1e9)
+    assert left
+    assert left > 0, "what takes longer than thought is not over"
+    assert seconds_left(until("run.ended")) is None
+
+
+def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
+    assert "$1.48 · 640.8k in, 15.2k out" in drawn(working(until("run.ended"), Now(377.0), 40))
+    recorded = drawn(working(history_of(dominoes(live=False).rows), Now(377.0), 40))
+    assert "recorded answers, nothing to pay" in recorded
+    assert "No model was asked" in recorded
+
+
+def test_a_screen_shows_the_last_state_when_it_is_left() -> None:
+    console = Console(width=100, height=40, file=io.StringIO(), force_terminal=True, color_system=None)
+    with Screen(io.StringIO(), "/tmp/run", console=console) as view:
+        for row in dominoes().rows:
+            view.take(row)
+            view.saying("coder", "words")
+            view.progress("blender_bake", 1, None, "")
+    assert isinstance(console.file, io.StringIO)
+    written = console.file.getvalue()
+    last = written[written.rindex("Twelve dominoes  done") :]
+    assert re.search(r"✓ +Render", last)
+    assert written.rstrip().endswith("\x1b[?25h"), "the cursor is back"
+
+
+def test_rows_words_and_progress_may_come_from_several_threads() -> None:
+    console = Console(width=100, height=40, file=io.StringIO(), force_terminal=True, color_system=None)
+    tapes = [Tape(), Tape(), Tape(), Tape()]
+    with Screen(io.StringIO(), console=console) as view:
+
+        def play(tape: Tape, role: str) -> None:
+            for n in range(50):
+                tape.says(role, "motion", f"words {n}")
+                view.saying(role, "more ")
+                view.progress("blender_bake", n, 50, "frame")
+            for row in tape.rows:
+                view.take(row)
+
+        threads = [threading.Thread(target=play, args=(tape, f"role{n}")) for n, tape in enumerate(tapes)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert view.history.rows == sum(len(tape.rows) for tape in tapes)
+    assert view.history.total.calls == 200
+    assert not view.history.pending
+
+
+@pytest.fixture
+def terminal() -> Iterator[Any]:
+    """The writing end of a real pseudo-terminal."""
+    pty = pytest.importorskip("pty")
+    leader, follower = pty.openpty()
+    with os.fdopen(follower, "w") as stream:
+        yield stream
+    os.close(leader)
+
+
+def test_a_terminal_gets_a_screen_and_a_pipe_gets_lines(
+    terminal: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TERM", "xterm-256color")
+    assert isinstance(make_view(terminal), Screen)
+    assert isinstance(make_view(io.StringIO()), Lines)
+    monkeypatch.setenv("TERM", "dumb")
+    assert isinstance(make_view(terminal), Lines)
+
+
+def test_a_quiet_view_keeps_the_picture() -> None:
+    with Quiet() as view:
+        for row in dominoes().rows:
+            view.take(row)
+        view.saying("coder", "words")
+        view.progress("tool", 1, 2, "")
+    assert view.history == history_of(dominoes().rows)
+
+
+# Runs
+
+
+def test_a_whole_run_is_shown_with_what_went_wrong_in_it() -> None:
+    told = drawn(show(until("run.ended")))
+    assert "Modeling, attempt 1: sent back: 13 hard findings, the reviewer blocks" in told
+    assert "Motion, attempt 1: planned anew: 1 hard finding" in told
+    assert "Final review 2: accepted. All fall." in told
+
+
+def test_runs_are_listed_with_how_they_stand() -> None:
+    stopped = Tape()
+    stopped.began("A cloth falls over a table")
+    stopped.add("stage.began", stage="motion")
+    stopped.ended("stopped")
+    table = runs_table(
+        [("first", until("run.ended")), ("second", history_of(stopped.rows)), ("third", History())]
+    )
+    told = [re.split(r"  +", line.strip()) for line in drawn(table).splitlines() if line.strip()]
+    assert told[0] == ["Run", "What", "Outcome", "Stage", "Cost", "When"]
+    assert told[2][:4] == ["first", "Twelve dominoes", "done", "$1.48"]
+    assert told[3][:4] == ["second", "A cloth falls over a table", "stopped", "Motion"]
+    assert told[4][:2] == ["third", "unfinished"]
+
+
+# Hostile words
+
+
+def hostile() -> Tape:
+    tape = Tape()
+    tape.began(EVIL, mode=EVIL, source=EVIL)
+    plan = domino_plan()
+    plan["title"] = EVIL
+    tape.add("plan", plan=plan)
+    tape.add("stage.began", stage=EVIL)
+    tape.add("attempt.began", stage=EVIL, attempt=1)
+    tape.codes(EVIL, 1, EVIL, EVIL, EVIL, failed=True)
+    tape.uses("coder", EVIL, 1, EVIL, {}, EVIL, failed=True)
+    tape.add("attempt.ended", stage=EVIL, attempt=1, report=EVIL, ended=EVIL)
+    tape.judged(EVIL, 1, "retry", (finding(EVIL, EVIL, EVIL, fix=EVIL),), instructions=EVIL)
+    review = {"judgements": [], "blocking": True, "summary": EVIL}
+    tape.add("reviewed", stage=EVIL, attempt=1, review=review)
+    tape.add("rolled.back", stage=EVIL, attempt=1, to=EVIL)
+    tape.add("edited", added=[], removed=[], changed=[EVIL], unchanged=[], outside=[EVIL])
+    tape.add("tool.called", n=9, role=EVIL, stage=EVIL, attempt=1, name=EVIL, input={})
+    tape.add("model.asked", n=9, role=EVIL, stage=EVIL)
+    return tape
+
+
+def test_no_control_character_of_theirs_gets_out() -> None:
+    tape = hostile()
+    now = Now(1.0, {EVIL: EVIL, "coder": EVIL}, {EVIL: Progress(float("nan"), 3, EVIL)}, EVIL)
+    told = ["\n".join(lines_of(tape))]
+    told += [drawn(working(history_of(tape.rows), now, 40)), drawn(show(history_of(tape.rows)))]
+    tape.ended(EVIL, EVIL)
+    told += ["\n".join(lines_of(tape)), drawn(show(history_of(tape.rows)))]
+    told.append(drawn(runs_table([(EVIL, history_of(tape.rows))])))
+    for text in told:
+        assert not _STEERING.search(text), _STEERING.findall(text)
+        assert "owned" in text, "what they say is shown, but does nothing"
+
+
+def test_progress_of_any_numbers_is_drawn() -> None:
+    call = {"type": "tool.called", "n": 1, "role": "coder", "stage": "uv", "name": "bake", "input": {}}
+    history = history_of([call])
+    for done, total in (
+        (float("nan"), 3.0),
+        (5.0, 3.0),
+        (-1.0, 3.0),
+        (1.0, 0.0),
+        (float("inf"), 2.0),
+        (1.0, None),
+    ):
+        assert "bake" in drawn(working(history, Now(0.0, {}, {"bake": Progress(done, total, "")}), 40))
+        stream = io.StringIO()
+        ticks = iter((0.0, 99.0))
+        with Lines(stream, clock=lambda ticks=ticks: next(ticks)) as view:
+            view.progress("bake", done, total, "")
+            view.progress("bake", done, total, "")
+        assert "bake" in stream.getvalue()
+
+
+def test_the_row_of_a_run_that_never_began_is_empty() -> None:
+    assert [str(cell) for cell in run_row("x", History())] == ["x", "", "unfinished", "plan", "", ""]

@@ -1,0 +1,150 @@
+"""What the loop does by the paper's algorithm: who decides, what is sent back, what is undone, when it ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import crates
+import pytest
+import teams
+from sittings import scenes
+from team import ADVANCE, DONE, FINE, REPLAN, RETRY, Team, run, turn_of, whose, words_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from sittings import Played
+
+pytestmark = pytest.mark.blender
+
+
+def of_role(played: Played, role: str, stage: str) -> list[dict[str, object]]:
+    return [request for request in played.requests if whose(request) == (role, stage)]
+
+
+def test_stages_that_are_opted_out_are_skipped_and_the_scene_is_carried_on(mended: Played) -> None:
+    assert [row["stage"] for row in mended.of("stage.skipped")] == list(crates.OUTSIDE)
+    assert not [request for request in mended.requests if whose(request)[1] in crates.OUTSIDE]
+    (row,) = mended.of("tool.answered", role="runner", stage="camera", attempt=1, n=1)
+    assert "Crate" in row["content"][0]["text"]
+
+
+def test_a_contact_that_does_not_hold_never_advances_though_the_planner_says_so(mended: Played) -> None:
+    first, second = mended.of("decided", stage="modeling")
+    assert (first["decision"]["transition"], first["taken"], first["overruled"]) == ("advance", "retry", True)
+    assert first["why"] == "The verifier has 3 hard findings."
+    assert (second["taken"], second["overruled"]) == ("advance", False)
+    verified = mended.the("verified", stage="modeling", attempt=1)
+    assert not verified["ok"]
+    assert {"V1", "R5"} <= {one["rule"] for one in verified["findings"] if one["severity"] == "hard"}
+
+
+def test_who_is_sent_back_hears_why_and_what_was_found(mended: Played) -> None:
+    again = words_of(of_role(mended, "coder", "modeling")[-1])
+    assert "The planner says: The verifier has 3 hard findings." in again
+    assert "'Crate' floats 200.0 mm above 'Floor'" in again
+
+
+def test_a_blocking_review_never_advances_though_the_planner_says_so(mended: Played) -> None:
+    first, second = mended.of("decided", stage="camera")
+    assert (first["taken"], first["why"]) == ("retry", "The review blocks.")
+    assert (second["taken"], second["overruled"]) == ("advance", False)
+    assert "The crate looks like a sphere." in words_of(of_role(mended, "coder", "camera")[-1])
+
+
+def test_the_coder_keeps_its_session_over_retries_and_has_a_fresh_one_in_each_stage(mended: Played) -> None:
+    turns = [turn_of(request) for request in of_role(mended, "coder", "modeling")]
+    assert turns == [0, 1, 2, 3]
+    assert turn_of(of_role(mended, "coder", "camera")[0]) == 0
+
+
+def test_the_reviewer_has_one_session_a_stage_and_the_planner_one_for_the_run(mended: Played) -> None:
+    assert [turn_of(request) for request in of_role(mended, "reviewer", "camera")] == [0, 1]
+    planner = [request for request in mended.requests if whose(request)[0] == "planner"]
+    assert [turn_of(request) for request in planner] == list(range(len(planner)))
+
+
+def test_the_reviewer_cannot_call_what_changes_the_scene(mended: Played) -> None:
+    offered = {tool["name"] for tool in of_role(mended, "reviewer", "modeling")[0]["tools"]}  # type: ignore[index]
+    assert "blender_scene_state" in offered
+    assert not offered & {"blender_execute", "blender_load", "blender_bake", "blender_docs", "blender_verify"}
+    refused = words_of(of_role(mended, "reviewer", "modeling")[1])
+    assert "blender_execute is not yours to call" in refused
+    assert not mended.of("tool.called", role="reviewer")
+
+
+def test_a_new_plan_begins_with_the_scene_as_it_was_before_the_stage(mended: Played, tmp_path: Path) -> None:
+    assert mended.taken[-2:] == [("light", "replan"), ("light", "advance")]
+    assert mended.the("rolled.back", stage="light")["to"] == "camera"
+    assert [row["attempt"] for row in mended.of("tactic", stage="light")] == [1, 2]
+    before, after = (
+        row["content"][0]["text"]
+        for row in mended.of("tool.answered", role="runner", stage="light", name="blender_scene_state")
+        if row["n"] in (1, 6)
+    )
+    assert "Sun" not in before
+    assert "Sun" not in after
+    assert "The last plan did not do: This plan leads nowhere." in words_of(mended.requests[-1]) or any(
+        "The last plan did not do: This plan leads nowhere." in words_of(request)
+        for request in of_role(mended, "planner", "light")
+    )
+
+
+def test_the_result_is_mended_once_from_the_last_checkpoint_and_rendered_again(mended: Played) -> None:
+    (load,) = mended.of("tool.answered", role="runner", stage="render", name="blender_load")
+    assert not load["failed"]
+    assert "Put the sun higher." in words_of(of_role(mended, "coder", "render")[0])
+    assert [row["round"] for row in mended.of("rendered")] == [1, 2]
+    assert [row["review"]["verdict"] for row in mended.of("final.reviewed")] == ["needs_fix"]
+
+
+def test_a_fix_that_breaks_a_hard_rule_is_undone(play: Callable[..., Played], tmp_path: Path) -> None:
+    played = play(teams.spoiled())
+    assert played.ended.how == "done"
+    assert not played.the("verified", stage="render")["ok"]
+    assert played.the("rolled.back", stage="render", attempt=2)["to"] == "light"
+    assert len(played.of("rendered")) == 1
+    light, scene = scenes(tmp_path, played.root / "checkpoints" / "light.blend", played.root / "scene.blend")
+    assert scene == light
+
+
+def test_motion_that_is_faked_by_keyframes_is_stopped(falling: Played) -> None:
+    first, second = falling.of("verified", stage="motion")
+    assert "R15" in {one["rule"] for one in first["findings"] if one["severity"] == "hard"}
+    assert second["ok"]
+    assert [taken for stage, taken in falling.taken if stage == "motion"] == ["retry", "advance"]
+
+
+def test_when_retries_are_used_up_the_run_is_given_up(play: Callable[..., Played]) -> None:
+    team = Team(coder={"modeling": (run(crates.FLOATING), DONE)}, decisions={"modeling": (RETRY,)})
+    played = play(team)
+    assert [taken for _, taken in played.taken] == ["retry"] * 10 + ["abort"]
+    assert played.ended.how == "aborted"
+    assert "There is no retry left." in played.ended.why
+    assert (played.ended.file, played.ended.shown) == (None, None)
+    lefts = [words_of(request) for request in played.requests if whose(request) == ("planner", "modeling")]
+    assert "10 retries and 5 replans are left" in lefts[1]
+    assert "0 retries and 5 replans are left" in lefts[-1]
+
+
+def test_when_replans_are_used_up_the_last_checkpoint_stands(
+    play: Callable[..., Played], tmp_path: Path
+) -> None:
+    builds = [turn for _ in range(6) for turn in (run(crates.CAMERA), DONE)]
+    team = Team(coder={"camera": builds}, decisions={"modeling": (ADVANCE,), "camera": (REPLAN,)})
+    played = play(team)
+    assert [taken for stage, taken in played.taken if stage == "camera"] == ["replan"] * 5 + ["abort"]
+    assert played.ended.how == "aborted"
+    assert played.ended.file == played.root / "checkpoints" / "modeling.blend"
+    (kept,) = scenes(tmp_path, played.ended.file)
+    assert "Object Planks" in kept
+    assert "Object Camera" not in kept
+    assert played.rows[-1]["file"] == "checkpoints/modeling.blend"
+
+
+def test_the_planner_may_give_up(play: Callable[..., Played]) -> None:
+    abort = {"transition": "abort", "reason": "Crates are beyond us."}
+    played = play(Team(decisions={"modeling": (abort,)}, reviewer={"modeling": (FINE,)}))
+    assert (played.ended.how, played.taken) == ("aborted", [("modeling", "abort")])
+    assert "Crates are beyond us." in played.ended.why

@@ -1,0 +1,163 @@
+"""``simworlds make``, ``resume``, ``replay``, ``demo``, ``runs`` and ``show``: what they print, and how they end."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner, Result
+from sittings import answered, at_home
+from team import ABORT, Team
+
+from agents.cli import main
+from agents.pipeline.journal import NAME
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from commands import Command
+    from sittings import Played
+
+pytestmark = pytest.mark.blender
+
+
+def said(*words: object) -> Result:
+    """What a command says in this process."""
+    result = CliRunner().invoke(main, [str(word) for word in words], env={"COLUMNS": "200"})
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+@pytest.fixture
+def alone(home: Path) -> Iterator[None]:
+    """Nobody answers."""
+    with at_home(home):
+        yield
+
+
+def test_make_ends_with_a_scene_a_picture_and_a_report(
+    home: Path, command: Callable[..., Command], tmp_path: Path
+) -> None:
+    root = tmp_path / "run"
+    with answered(home, Team()) as api:
+        code, out, err = command("make", "A crate stands on a floor", "--run", root, url=api.base_url).end()
+    assert code == 0, err
+    assert out.splitlines() == [str(root / name) for name in ("scene.blend", "still.png", "report.html")]
+    assert "A crate stands on a floor" in (root / "report.html").read_text()
+    assert "\x1b" not in err
+    assert "camera" in err
+
+
+def test_a_stage_that_cannot_be_closed_is_exit_code_1(
+    home: Path, command: Callable[..., Command], tmp_path: Path
+) -> None:
+    root = tmp_path / "run"
+    with answered(home, Team(decisions={"modeling": (ABORT,)})) as api:
+        code, out, err = command("make", "A crate", "--run", root, "--quiet", url=api.base_url).end()
+    assert code == 1, err
+    assert "Aborted: The stage modeling could not be closed: This cannot be built." in err
+    assert out.splitlines() == [str(root / "report.html")]
+
+
+def test_without_a_key_make_fails_with_exit_code_2_and_says_what_to_do(alone: None, tmp_path: Path) -> None:
+    result = said("make", "A crate", "--run", tmp_path / "run")
+    assert result.exit_code == 2
+    assert "ANTHROPIC_API_KEY" in result.stderr
+
+
+def test_a_limit_that_is_reached_is_exit_code_3(
+    home: Path, command: Callable[..., Command], tmp_path: Path
+) -> None:
+    root = tmp_path / "run"
+    with answered(home, Team()) as api:
+        words = ("--max-cost", 0, "--quiet")
+        code, _, err = command("make", "A crate", "--run", root, *words, url=api.base_url).end()
+        assert code == 3, err
+        assert f"Go on with: simworlds resume {root}" in err
+        assert command("resume", root, *words, url=api.base_url).end()[0] == 3
+        assert not api.requests
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("make", ""), "prompt"),
+        (("make", "A crate", "--role-model", "painter=x"), "--role-model takes ROLE=NAME"),
+        (("make", "A crate", "--max-cost", "-1"), "--max-cost"),
+        (("make", "A crate", "--max-minutes", "0"), "--max-minutes"),
+        (("demo", "no-such"), "There is no session 'no-such'"),
+        (("resume", "/nowhere/at/all"), "is no run"),
+        (("replay", "/nowhere/at/all"), "holds no record"),
+        (("show", "/nowhere/at/all"), "is no run"),
+        (("make", "A crate", "--run", "/proc/nothing"), "cannot be the folder of a run"),
+    ],
+)
+def test_what_cannot_be_is_told_without_a_trace(alone: None, words: tuple[str, ...], says: str) -> None:
+    result = said(*words)
+    assert result.exit_code == 2
+    assert says in " ".join(result.output.split())
+    assert "Traceback" not in result.output
+
+
+def test_demo_without_a_name_lists_the_sessions(alone: None) -> None:
+    result = said("demo")
+    assert result.exit_code == 0
+    assert "simworlds demo dominoes" in result.stdout
+    assert "written by hand" in result.stdout
+
+
+def test_resume_of_a_finished_run_says_where_its_result_is(mended: Played, alone: None) -> None:
+    result = said("resume", mended.root)
+    assert result.exit_code == 0
+    assert str(mended.root / "scene.blend") in result.stdout
+
+
+def test_show_tells_how_a_run_stands(mended: Played, alone: None) -> None:
+    result = said("show", mended.root)
+    assert result.exit_code == 0
+    for words in ("A crate stands on a floor", "Modeling", "Light"):
+        assert words in result.stdout
+
+
+def test_show_writes_the_report_anew(mended: Played, alone: None) -> None:
+    result = said("show", mended.root, "--report")
+    assert result.exit_code == 0
+    assert (mended.root / "report.html").exists()
+
+
+BROKEN = {
+    "empty": "",
+    "nonsense": "nonsense\nmore\n",
+    "other-types": '{"type": "run.began", "prompt": 3, "models": [], "t": {}}\n',
+    "no-type": '{"a": 1}\n{"type": "plan"}\n',
+    "torn": '{"type": "run.began", "prompt": "A torn one", "mode": "make"}\n{"type": "tool.an',
+}
+
+
+def test_runs_lists_good_and_broken_runs(mended: Played, base: Path, tmp_path: Path) -> None:
+    (tmp_path / "kb").symlink_to(base.parent)
+    with at_home(tmp_path):
+        assert said("runs").exit_code == 0
+        shutil.copytree(mended.root, tmp_path / "runs" / "good")
+        for name, text in BROKEN.items():
+            (tmp_path / "runs" / name).mkdir()
+            (tmp_path / "runs" / name / NAME).write_text(text)
+        (tmp_path / "runs" / "no-run").mkdir()
+        result = said("runs")
+        assert result.exit_code == 0
+        for name in ("good", *BROKEN):
+            assert name in result.stdout
+        assert "no-run" not in result.stdout
+        assert "A crate on a floor" in result.stdout
+        assert result.stdout.count("unreadable") == 2
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_show_of_a_broken_run_says_what_it_can(alone: None, tmp_path: Path, name: str) -> None:
+    (tmp_path / NAME).write_text(BROKEN[name])
+    for options in ((), ("--report",)):
+        result = said("show", tmp_path, *options)
+        assert result.exit_code in (0, 2)
+        assert "Traceback" not in result.output

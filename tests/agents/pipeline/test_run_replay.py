@@ -1,0 +1,122 @@
+"""A run that is played again from its record: without a key, without a server, and never taken for a live one."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from sittings import at_home, go_on, scenes, seat, sit
+
+from agents.pipeline.demos import replay_options
+from agents.pipeline.errors import NoRun
+from agents.pipeline.journal import NAME, read_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from sittings import Played
+
+pytestmark = pytest.mark.blender
+
+
+@pytest.fixture
+def alone(home: Path) -> Iterator[None]:
+    """Nobody answers."""
+    with at_home(home):
+        yield
+
+
+@pytest.fixture(scope="module")
+def replayed(home: Path, mended: Played, tmp_path_factory: pytest.TempPathFactory) -> Played:
+    with at_home(home):
+        return sit(tmp_path_factory.mktemp("replayed") / "run", **replay_options(mended.root))
+
+
+def test_a_replay_makes_the_same_scene(mended: Played, replayed: Played, tmp_path: Path) -> None:
+    assert replayed.ended.how == "done"
+    assert replayed.taken == mended.taken
+    first, second = scenes(tmp_path, mended.root / "scene.blend", replayed.root / "scene.blend")
+    assert first == second
+    assert (replayed.root / "plan.json").read_bytes() == (mended.root / "plan.json").read_bytes()
+
+
+def test_a_replayed_answer_is_never_marked_live_and_costs_nothing_now(replayed: Played) -> None:
+    assert replayed.rows[0]["source"].startswith("recorded: ")
+    turns = [row["turn"] for row in replayed.of("model.answered")]
+    assert turns
+    assert not any(turn["live"] for turn in turns)
+
+
+def test_a_replay_that_is_stopped_goes_on(mended: Played, alone: None, tmp_path: Path) -> None:
+    at = seat()
+    at.watcher.on_row = lambda row: at.stop.event.set() if row["type"] == "attempt.ended" else None  # type: ignore[attr-defined]
+    options = replay_options(_until(mended, tmp_path / "record", "decided"))
+    assert sit(tmp_path / "run", at, **options).ended.how == "stopped"
+    played = go_on(tmp_path / "run")
+    assert played.taken == [("modeling", "retry")]
+    assert "The record has no further turn for the coder (modeling)" in played.ended.why
+
+
+def _until(played: Played, folder: Path, kind: str) -> Path:
+    """The record of a run up to the first row of a type."""
+    rows = played.rows
+    end = next(place for place, row in enumerate(rows) if row["type"] == kind)
+    return _record(folder, rows[: end + 1])
+
+
+def _record(folder: Path, rows: list[dict[str, Any]]) -> Path:
+    folder.mkdir()
+    (folder / NAME).write_text("".join(json.dumps(row) + "\n" for row in rows))
+    return folder
+
+
+def test_another_prompt_is_another_conversation(mended: Played, alone: None, tmp_path: Path) -> None:
+    options = replay_options(mended.root) | {"prompt": "A barrel stands on a floor"}
+    played = sit(tmp_path / "run", **options)
+    assert played.ended.how == "failed"
+    assert (
+        "The conversation is not the recorded one: the planner, call 1, message 1 (user)" in played.ended.why
+    )
+    assert "-A crate stands on a floor" in played.ended.why
+    assert "+A barrel stands on a floor" in played.ended.why
+
+
+def test_where_blender_answers_otherwise_the_replay_says_so_and_stops(
+    mended: Played, alone: None, tmp_path: Path
+) -> None:
+    rows = mended.rows
+    turn = next(row["turn"] for row in rows if "0.2))" in json.dumps(row.get("turn")))
+    (call,) = [block for block in turn["content"] if block["type"] == "tool_use"]
+    call["input"]["code"] = call["input"]["code"].replace("0.2))", "0.9))")
+    played = sit(tmp_path / "run", **replay_options(_record(tmp_path / "record", rows)))
+    assert played.ended.how == "failed"
+    assert "The conversation is not the recorded one: the " in played.ended.why
+    assert not played.of("decided")
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (lambda root: shutil.rmtree(root), "holds no record"),
+        (lambda root: (root / NAME).write_text(""), "holds no record"),
+        (lambda root: (root / NAME).write_text("nonsense\n{}\n"), "is no row of a journal"),
+        (lambda root: (root / NAME).write_text('{"type": "run.began"}\n'), "holds no record"),
+    ],
+)
+def test_what_is_no_record_is_told_before_anything_is_begun(
+    tmp_path: Path, spoil: Callable[[Path], object], says: str
+) -> None:
+    root = _record(tmp_path / "record", [{"type": "plan"}])
+    spoil(root)
+    with pytest.raises(NoRun, match=says):
+        replay_options(root)
+
+
+def test_a_record_without_answers_ends_in_words(mended: Played, alone: None, tmp_path: Path) -> None:
+    record = _record(tmp_path / "record", read_rows(mended.root / NAME)[:2])
+    played = sit(tmp_path / "run", **replay_options(record))
+    assert played.ended.how == "failed"
+    assert "The record has no further turn for the planner" in played.ended.why

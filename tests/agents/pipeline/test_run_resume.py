@@ -1,0 +1,271 @@
+"""Runs that are killed, spoilt or fought over, and taken up again."""
+
+from __future__ import annotations
+
+import errno
+import json
+import shutil
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+import crates
+import pytest
+import teams
+from killing import events, killed_at_every_event
+from PIL import Image, ImageChops
+from processes import becomes, of_run
+from sittings import MESSAGES, answered, go_on, scenes, seat, sit
+from team import ABORT, DONE, NEEDS_FIX, Team, call, run
+
+from agents.blender.run_folder import locked
+from agents.pipeline import journal as journal_module
+from agents.pipeline.errors import NoRun, RunError
+from agents.pipeline.journal import NAME, read_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from fake_messages_api import FakeMessagesAPI
+    from sittings import Played
+
+pytestmark = pytest.mark.blender
+
+WHOLE = crates.STANDING + crates.CAMERA + crates.LIGHT
+
+
+def at_once() -> Team:
+    """Builds everything in one stage, and mends it after the rendering."""
+    return Team(coder={"light": (run(WHOLE), DONE), "render": (run(teams.HIGHER), DONE)}, final=(NEEDS_FIX,))
+
+
+# Killed
+
+VARYING = ("seconds", "checkpoint", "i", "t", "n", "pictures")  # a picture holds when it was rendered
+
+
+def plain(rows: list[dict[str, Any]]) -> set[str]:
+    """What the rows say of the run, without what no two sittings have in common."""
+    told = (
+        "plan",
+        "tactic",
+        "attempt.ended",
+        "verified",
+        "reviewed",
+        "decided",
+        "rolled.back",
+        "stage.closed",
+    )
+    return {
+        json.dumps({key: row[key] for key in row if key not in VARYING}, sort_keys=True)
+        for row in rows
+        if row["type"] in (*told, "rendered", "final.reviewed", "run.ended")
+    }
+
+
+@pytest.mark.timeout(900)
+def test_a_run_that_is_killed_at_every_event_ends_as_one_that_never_was(home: Path, tmp_path: Path) -> None:
+    with answered(home, at_once()) as api:
+        whole = sit(tmp_path / "whole", stages=False)
+    assert whole.ended.how == "done"
+    root = tmp_path / "killed" / "run"
+    root.parent.mkdir()
+    with answered(home, at_once()) as api:
+        deaths = killed_at_every_event(root, home, api.base_url, stages=False)
+        requests = len(api.received(MESSAGES))
+    rows = read_rows(root / NAME)
+    found = Counter(events(rows))
+
+    assert rows[-1]["outcome"] == "done"
+    once = {event for event in found if event[0] not in ("sitting.began", "scene.restored")}
+    assert once == {event for event in events(whole.rows) if event[0] != "sitting.began"}
+    assert {event for event, _ in deaths} >= once
+    assert not [event for event in once if found[event] > 1 and event[0] != "model.asked"]
+    assert plain(rows) == plain(whole.rows)
+    # Asked again is only what no answer was written down of.
+    unheard = sum(event[0] == "model.answered" and where == "before" for event, where in deaths)
+    assert requests == len([row for row in rows if row["type"] == "model.answered"]) + unheard
+    first, second = scenes(tmp_path / "look", whole.root / "scene.blend", root / "scene.blend")
+    assert first == second
+    assert (root / "plan.json").read_bytes() == (whole.root / "plan.json").read_bytes()
+    with Image.open(root / "still.png") as one, Image.open(whole.root / "still.png") as other:
+        assert ImageChops.difference(one.convert("RGB"), other.convert("RGB")).getbbox() is None
+    assert becomes(lambda: not of_run(root / "blender"))
+
+
+def test_a_finished_run_is_not_begun_again(mended: Played) -> None:
+    before = (mended.root / NAME).read_bytes()
+    again = go_on(mended.root)  # without a key
+    assert again.ended.how == "done"
+    assert (again.ended.file, again.ended.shown) == (mended.ended.file, mended.ended.shown)
+    assert (mended.root / NAME).read_bytes() == before
+
+
+def test_what_a_coder_saves_under_a_stages_name_never_takes_the_place_of_its_checkpoint(
+    api: FakeMessagesAPI, tmp_path: Path
+) -> None:
+    saving = (run(crates.CAMERA), call("blender_save", name="modeling", verify=False), DONE)
+    api.answer = Team(coder={"camera": saving}, decisions={"camera": (ABORT,)})
+    at = seat()
+
+    def stop(row: Any) -> None:
+        if (row["type"], row.get("stage")) == ("attempt.ended", "camera"):
+            at.stop.event.set()
+
+    at.watcher.on_row = stop  # type: ignore[attr-defined]
+    root = tmp_path / "run"
+    assert sit(root, at).ended.how == "stopped"
+    assert go_on(root).ended.how == "aborted"
+    (modeling,) = scenes(tmp_path / "look", root / "checkpoints" / "modeling.blend")
+    assert "Object Planks" in modeling
+    assert "Object Camera" not in modeling
+
+
+# What is wrong with a folder
+
+
+@pytest.fixture(scope="module")
+def stopped(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run that was stopped after its plan."""
+    with answered(home, Team()):
+        at = seat()
+        at.watcher.on_row = lambda row: at.stop.event.set() if row["type"] == "plan" else None  # type: ignore[attr-defined]
+        played = sit(tmp_path_factory.mktemp("stopped") / "run", at)
+    assert (played.ended.how, played.ended.why) == ("stopped", "You asked it to stop.")
+    return played.root
+
+
+@pytest.fixture
+def copy(stopped: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be spoilt."""
+    return shutil.copytree(stopped, tmp_path / "run")
+
+
+def test_a_torn_last_line_is_cut_off(api: FakeMessagesAPI, copy: Path) -> None:
+    api.answer = Team(decisions={"modeling": (ABORT,)})
+    whole = len(read_rows(copy / NAME))
+    with (copy / NAME).open("ab") as file:
+        file.write(b'{"i": 99, "type": "tool.ans')
+    played = go_on(copy)
+    assert played.taken == [("modeling", "abort")]
+    assert [row["i"] for row in played.rows] == list(range(1, len(played.rows) + 1))
+    assert len(played.rows) > whole
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "does not say what the run is"),
+        ("nonsense\n{}\n", "line 1, is no row of a journal"),
+        ('{"type": "run.began"}\n[1, 2]\n{}\n', "line 2, is no row"),
+        ('{"no": "type"}\n{"type": "plan"}\n', "line 1, is no row"),
+        ('{"type": "run.began", "stage": []}\n{"type": "plan"}\n', "line 1, is no row"),
+        ('{"type": "plan"}\n', "does not say what the run is"),
+        ('{"type": "run.began"}\n', "does not say what the run is to do"),
+        ('{"type": "run.began", "options": {"prompt": ""}}\n', "does not say what the run is to do"),
+        ("\x00" * 40 + "\n{}\n", "line 1, is no row"),
+    ],
+)
+def test_a_journal_of_nonsense_is_told_and_left_alone(tmp_path: Path, text: str, says: str) -> None:
+    (tmp_path / NAME).write_text(text)
+    with pytest.raises(NoRun, match=says):
+        go_on(tmp_path)
+    assert (tmp_path / NAME).read_text() == text
+
+
+def _changed(root: Path, kind: str, change: Callable[[dict[str, Any]], object]) -> None:
+    rows = read_rows(root / NAME)
+    change(next(row for row in rows if row["type"] == kind))
+    (root / NAME).write_text("".join(json.dumps(row) + "\n" for row in rows))
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "says"),
+    [
+        ("model.answered", lambda row: row.pop("turn"), "is no part of a record"),
+        ("model.asked", lambda row: row.pop("n"), "is no part of a record"),
+        ("tool.answered", lambda row: row.pop("content"), "is no answer of a tool"),
+        ("tool.answered", lambda row: row.update(content=[{"type": "text"}]), "is no answer of a tool"),
+    ],
+)
+def test_rows_that_lack_what_they_should_tell_end_the_sitting_in_words(
+    api: FakeMessagesAPI, copy: Path, kind: str, change: Callable[[dict[str, Any]], object], says: str
+) -> None:
+    _changed(copy, kind, change)
+    played = go_on(copy)
+    assert played.ended.how == "failed"
+    assert says in played.ended.why
+    assert not api.requests
+
+
+def test_a_picture_that_is_gone_is_told(api: FakeMessagesAPI, copy: Path) -> None:
+    picture = {"type": "picture", "path": "pictures/0.png", "media_type": "image/png"}
+    _changed(copy, "tool.answered", lambda row: row.update(content=[picture]))
+    played = go_on(copy)
+    assert played.ended.how == "failed"
+    assert "pictures/0.png, which the run has seen, cannot be read" in played.ended.why
+
+
+def test_a_folder_that_is_no_run_is_told(tmp_path: Path) -> None:
+    with pytest.raises(NoRun, match="is no run"):
+        go_on(tmp_path)
+    with pytest.raises(NoRun, match="is no run"):
+        go_on(tmp_path / "nowhere")
+
+
+def test_a_run_needs_a_folder_of_its_own(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(NoRun, match="is not empty"):
+        sit(tmp_path)
+    with pytest.raises(NoRun, match="cannot be the folder of a run"):
+        sit(tmp_path / "notes.txt")
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_a_second_process_on_a_run_is_told(copy: Path) -> None:
+    before = (copy / NAME).read_bytes()
+    with locked(copy), pytest.raises(NoRun, match="in use by another"):
+        go_on(copy)
+    assert (copy / NAME).read_bytes() == before
+
+
+def test_a_folder_that_vanishes_ends_the_sitting_in_words(api: FakeMessagesAPI, tmp_path: Path) -> None:
+    root = tmp_path / "run"
+
+    def vanish(row: Any) -> None:
+        if row["type"] == "stage.began":
+            shutil.rmtree(root)
+
+    played = sit(root, seat(on_row=vanish))
+    assert played.ended.how == "failed"
+    assert len(api.requests) < 10
+
+
+# Where the disk is full
+
+
+@pytest.mark.parametrize("room", [9, 23])
+def test_a_full_disk_ends_the_sitting_and_once_there_is_room_the_run_goes_on(
+    api: FakeMessagesAPI, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: int
+) -> None:
+    api.answer = Team(decisions={"modeling": (ABORT,)})
+    left = [room]
+    write = journal_module._write
+
+    def full(file: Any, data: bytes) -> None:
+        left[0] -= 1
+        if left[0] < 0:
+            file.write(data[:5])
+            raise OSError(errno.ENOSPC, "No space left on device")
+        write(file, data)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(journal_module, "_write", full)
+        with pytest.raises(RunError, match=r"No space left on device\. Make room, then resume the run"):
+            sit(tmp_path / "run")
+    assert len(read_rows(tmp_path / "run" / NAME)) == room
+    asked = len(api.requests)
+    played = go_on(tmp_path / "run")
+    assert played.taken == [("modeling", "abort")]
+    unheard = asked - len([row for row in played.rows[:room] if row["type"] == "model.answered"])
+    assert len(api.requests) == len(played.of("model.answered")) + unheard
