@@ -1,4 +1,4 @@
-"""``python -m bench``: measures retrieval, latency, the server and builds, beside the targets and the peers."""
+"""``python -m bench``: retrieval, latency, servers, builds, Blender and the verifier, beside targets and peers."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from kb_serve.errors import KBServeError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-PARTS = ("retrieval", "latency", "server", "builds")
-_SETS = ("dev.jsonl", "check.jsonl")
+PARTS = ("retrieval", "latency", "server", "builds", "blender", "verifier")
+_SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")
 
 
 def _parts(text: str) -> list[str]:

@@ -20,6 +20,7 @@ from kb_build.analysis import terms
 from kb_build.index import Doc, make_units
 from kb_build.records import Link, symbol_from_json
 from kb_build.schema import unpack
+from kb_build.uses import load_uses
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:
@@ -42,7 +43,8 @@ def read_units(base: Path) -> list[Doc]:
         rows = connection.execute("SELECT slug, summary, summary_method FROM pages").fetchall()
     with KnowledgeBase(base) as knowledge:
         pages = [page for slug, _, _ in rows if (page := knowledge.page(slug)) is not None]
-    return make_units(symbols, pages, links, {slug: (text, method) for slug, text, method in rows if text})
+    summaries = {slug: (text, method) for slug, text, method in rows if text}
+    return make_units(symbols, pages, links, summaries, load_uses())
 
 
 class Baselines:
@@ -56,7 +58,7 @@ class Baselines:
             return list(chain.from_iterable(analysed(text) for text in texts if text))
 
         names = [found((*unit.name, *unit.heading)) for unit in units]
-        rests = [found((*unit.context, *unit.body, *unit.related)) for unit in units]
+        rests = [found((*unit.context, *unit.body, *unit.related, *unit.uses)) for unit in units]
         self._index = sqlite3.connect(":memory:")
         self._index.execute("CREATE VIRTUAL TABLE flat USING fts5 (name, rest, content='', detail=full)")
         self._index.executemany(

@@ -59,7 +59,7 @@ class Part:
 
 def markdown(parts: Sequence[Part], facts: Mapping[str, str]) -> str:
     """The whole report."""
-    blocks = ["# SimWorlds: knowledge base, measured", _facts(facts)]
+    blocks = ["# SimWorlds, measured", _facts(facts)]
     figures = [figure for part in parts for figure in part.figures]
     if figures:
         blocks.append(table(targets_table(figures)))

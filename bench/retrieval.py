@@ -5,14 +5,17 @@ from __future__ import annotations
 import json
 import random
 import re
+import tempfile
 import time
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unittest import mock
 
 from bench.report import Figure, Part, Table
-from bench.setting import percentile, say
+from bench.setting import corpora, percentile, say
+from kb_build.pipeline import BuildOptions, build
 from kb_serve import search
 from kb_serve.budget import tokens
 from kb_serve.knowledge_base import KnowledgeBase
@@ -20,7 +23,6 @@ from kb_serve.reader import Reader
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
-    from pathlib import Path
 
     from bench.setting import Setting
     from kb_serve.answer import Answer
@@ -164,7 +166,16 @@ def _words_only(base: Path, stack: ExitStack) -> Callable[[str], Sequence[str]]:
     return lambda text: [found.ref for found in searcher.search(text, LIMIT)]
 
 
-def compared(base: Path, *, quick: bool) -> Iterator[tuple[str, Callable[[str], Sequence[str]]]]:
+def _base_without_uses(base: Path, home: Path, folder: Path) -> Path:
+    """A base of the same version and sources, without the table of :mod:`kb_build.uses`."""
+    with closing(Reader(base)) as reader:
+        version = reader.meta["blender"]
+    options = BuildOptions(corpora=corpora(), offline=True, output=folder / base.name)
+    with mock.patch("kb_build.store.load_uses", dict):
+        return build(version, options=options, home=home).path
+
+
+def compared(base: Path, home: Path, *, quick: bool) -> Iterator[tuple[str, Callable[[str], Sequence[str]]]]:
     """(name, what answers) for every system, ours first. Each is closed when the next is asked for."""
     with ExitStack() as stack:
         yield "SimWorlds", _ours(base, stack)
@@ -182,6 +193,10 @@ def compared(base: Path, *, quick: bool) -> Iterator[tuple[str, Callable[[str], 
         with ExitStack() as stack:
             stack.enter_context(mock.patch.object(search, constant, 0.0))
             yield name, _ours(base, stack)
+    say("building a base without what people ask for")
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simworlds-bench-")))
+        yield "… without what people ask for", _ours(_base_without_uses(base, home, folder), stack)
     from bench.baselines import CANDIDATES, Baselines, read_units  # noqa: PLC0415 - takes seconds and memory
 
     say("making the flat indexes of the same documents")
@@ -198,7 +213,7 @@ def measure(setting: Setting) -> Part:
     """Every system on every set. The first set is judged."""
     sets = {path.stem: read_queries(path) for path in setting.queries}
     results: dict[str, dict[str, list[Outcome]]] = {}
-    for name, ask in compared(setting.base, quick=setting.quick):
+    for name, ask in compared(setting.base, setting.home, quick=setting.quick):
         say(f"retrieval: {name}")
         results[name] = {title: ask_all(ask, queries) for title, queries in sets.items()}
     ours = next(iter(results.values()))

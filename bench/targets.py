@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Unit = Literal["share", "ms", "s", "MB", "tokens", "count"]
+Unit = Literal["share", "ms", "s", "MB", "tokens", "count", "times"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +47,8 @@ def shown(value: float, unit: Unit) -> str:
         return f"{value:.3f}"
     if unit == "count":
         return f"{value:,.0f}"
+    if unit == "times":
+        return f"{value:.2f} ×"
     if unit == "tokens":
         return f"{value:,.0f} tokens"
     if value < 10:
@@ -57,6 +59,8 @@ def shown(value: float, unit: Unit) -> str:
 def _number(bound: float, unit: Unit) -> str:
     if unit == "share":
         return f"{bound:.2f}"
+    if unit == "times":
+        return f"{bound:g} ×"
     return f"{bound:,g}" if unit == "count" else f"{bound:,g} {unit}"
 
 
@@ -87,6 +91,18 @@ _ROWS = (
     Target("build_again", "build when nothing has changed", "s", 1),
     Target("html", "manual from HTML (789 MB): reading", "s", 30),
     Target("size", "base file", "MB", 60),
+    Target("worker_start", "Blender's start to its first reply", "s", 2),
+    Target("mcp_start", "simworlds mcp: start to first blender_execute", "s", 2),
+    Target("execute_p50", 'blender_execute("1+1") over MCP: p50', "ms", 8, False, "echo tool 1.0 ms"),
+    Target("state", "scene state of 500 objects", "ms", 300),
+    Target("preview", "preview of 50 objects, 4 × 384²", "s", 3),
+    Target("restart", "restart after SIGKILL, 100 objects", "s", 4),
+    Target("verify", "verifying 500 objects, 1,000,000 triangles: C, G, V, W", "s", 5),
+    Target("verify_growth", "cost an object, 2,000 against 50 objects", "times", 1.5),
+    Target("verify_motion", "verifying 12 actors over 250 baked frames: T", "s", 10),
+    Target("verify_loose", "simworlds verify, 200 untagged primitives, in all", "s", 10),
+    Target("mutations", "random breaches of valid scenes found by their rule", "share", 0.98, True),
+    Target("false_alarms", "findings in valid scenes", "count", 0),
 )
 TARGETS = {target.key: target for target in _ROWS}
 assert len(TARGETS) == len(_ROWS), "a figure is listed twice"

@@ -1,0 +1,273 @@
+"""For each predicate a scene in which it holds, and one after a change that ends that: ``NAME``, ``NAME/broken``."""
+
+import os
+import shutil
+
+import bpy
+from making import FRAMES, PLACE, add, bake, body, cloth_on, empty, finish, free, get, keys, new, read, save
+
+
+def weigh(thing, name):
+    """A vertex group with weights."""
+    group = thing.vertex_groups.new(name=name)
+    group.add([0, 1], 1.0, "REPLACE")
+    return name
+
+
+def cloth():
+    new()
+    add("cube", "Table").modifiers.new("Collision", "COLLISION")
+    sheet = add("grid", "Sheet", (0, 0, 1.3), size=2, x_subdivisions=8, y_subdivisions=8)
+    modifier = cloth_on(sheet)
+    modifier.settings.vertex_group_mass = weigh(sheet, "Pins")
+    modifier.collision_settings.use_self_collision = True
+    bake()
+
+
+def soft():
+    new()
+    jelly = add("cube", "Jelly")
+    modifier = jelly.modifiers.new("Softbody", "SOFT_BODY")
+    modifier.point_cache.frame_end = FRAMES
+    modifier.settings.vertex_group_goal = weigh(jelly, "Held")
+    modifier.settings.use_goal = True
+    block = add("cube", "Block", (0, 0, 3))
+    body(block)
+    block.modifiers.new("Collision", "COLLISION")
+    bake()
+
+
+def rigid():
+    new()
+    body(add("plane", "Floor", size=10), "PASSIVE")
+    for name, x in (("Left", -2), ("Right", 2)):
+        thing = add("cube", name, (x, 0, 3))
+        body(thing).mass = 2
+        thing.rigid_body.collision_shape = "BOX"
+        thing.modifiers.new("Collision", "COLLISION")
+    joint = empty("Hinge", (0, 0, 3))
+    bpy.ops.rigidbody.constraint_add(type="HINGE")
+    tie = joint.rigid_body_constraint
+    tie.object1, tie.object2, tie.disable_collisions = get("Left"), get("Right"), True
+    bake()
+
+
+def particles():
+    new()
+    flag = add("grid", "Flag", size=2, x_subdivisions=8, y_subdivisions=8)
+    cloth_on(flag).settings.vertex_group_mass = weigh(flag, "Pins")
+    flag.modifiers.new("Dust", "PARTICLE_SYSTEM")
+    system = flag.particle_systems[0]
+    system.settings.count, system.settings.frame_end, system.settings.lifetime = 30, 8, 20
+    system.point_cache.frame_end = FRAMES
+    add("cube", "Wall", (3, 0, 0)).modifiers.new("Collision", "COLLISION")
+    bpy.ops.object.effector_add(type="WIND", location=(0, 0, -2))
+    bpy.context.object.name = "Wind"
+    bake()
+
+
+def fluid():
+    new(8)
+    tap = add("ico_sphere", "Tap", (0, 0, 0.5), radius=0.3)
+    flow = tap.modifiers.new("Fluid", "FLUID")
+    flow.fluid_type = "FLOW"
+    flow.flow_settings.flow_type, flow.flow_settings.flow_behavior = "LIQUID", "INFLOW"
+    paddle = add("cube", "Paddle", (0, 0, -0.5), size=0.4)
+    effector = paddle.modifiers.new("Fluid", "FLUID")
+    effector.fluid_type = "EFFECTOR"
+    keys(paddle, "location", [(0, 0, -0.5), (0.4, 0, -0.5)], [1, 8])
+    water = add("cube", "Water", size=2)
+    modifier = water.modifiers.new("Fluid", "FLUID")
+    modifier.fluid_type = "DOMAIN"
+    domain = modifier.domain_settings
+    domain.domain_type, domain.resolution_max, domain.use_mesh = "LIQUID", 32, True
+    domain.cache_type, domain.cache_frame_end = "ALL", 8
+    save("fluid")
+    domain.cache_directory = "//water"
+    bpy.ops.fluid.bake_all()
+
+
+def guided():
+    new(8)
+    guide = add("cube", "Guide", size=0.5)
+    effector = guide.modifiers.new("Fluid", "FLUID")
+    effector.fluid_type = "EFFECTOR"
+    effector.effector_settings.effector_type = "GUIDE"
+    smoke = add("cube", "Smoke", size=2)
+    modifier = smoke.modifiers.new("Fluid", "FLUID")
+    modifier.fluid_type = "DOMAIN"
+    domain = modifier.domain_settings
+    domain.cache_type, domain.use_guide, domain.guide_source = "MODULAR", True, "EFFECTOR"
+
+
+def recorded():
+    new()
+    ball = add("cube", "Ball")
+    keys(ball, "location", [(0, 0, 0.1 * frame) for frame in range(1, 13)], range(1, 13))
+
+
+def blended():
+    new()
+    slab = add("cube", "Slab")
+    slab.shape_key_add(name="Basis")
+    squashed = slab.shape_key_add(name="Squashed")
+    squashed.data[0].co.z -= 1
+    keys(squashed, "value", [0.0, 1.0], [1, 12])
+
+
+def hide(name):
+    return lambda: setattr(get(name), "hide_render", True)
+
+
+def without(name, kind):
+    """Removes an object's modifier of a type."""
+
+    def change():
+        modifiers = get(name).modifiers
+        modifiers.remove(next(one for one in modifiers if one.type == kind))
+
+    return change
+
+
+def setting(name, kind, path, value):
+    """Sets something of an object's modifier of a type."""
+
+    def change():
+        modifier = next(one for one in get(name).modifiers if one.type == kind)
+        owner, _, attribute = path.rpartition(".")
+        setattr(modifier.path_resolve(owner) if owner else modifier, attribute, value)
+
+    return change
+
+
+def of_body(attribute, value):
+    return lambda: setattr(get("Left").rigid_body, attribute, value)
+
+
+def of_tie(attribute, value):
+    return lambda: setattr(get("Hinge").rigid_body_constraint, attribute, value)
+
+
+def of_particles(attribute, value):
+    return lambda: setattr(get("Flag").particle_systems[0].settings, attribute, value)
+
+
+def out_of_world():
+    bpy.context.view_layer.objects.active = get("Left")
+    bpy.ops.rigidbody.object_remove()
+
+
+def no_world():
+    bpy.ops.rigidbody.world_remove()
+
+
+def empty_world():
+    world = bpy.context.scene.rigidbody_world
+    for thing in list(world.collection.objects):
+        world.collection.objects.unlink(thing)
+
+
+def particles_first():
+    bpy.context.view_layer.objects.active = get("Flag")
+    bpy.ops.object.modifier_move_to_index(modifier="Dust", index=0)
+
+
+def lose_files():
+    """The flags of the bake stay; the files of half the frames are gone."""
+    for folder in ("data", "mesh"):
+        place = os.path.join(os.path.dirname(bpy.data.filepath), "water", folder)
+        for name in sorted(os.listdir(place))[:5]:
+            os.unlink(os.path.join(place, name))
+
+
+def stand_still():
+    get("Paddle").animation_data_clear()
+
+
+def fewer_keys():
+    thing = get("Ball")
+    thing.animation_data_clear()
+    keys(thing, "location", [(0, 0, 0), (0, 0, 1)], [1, 12])
+
+
+def no_blend():
+    get("Slab").data.shape_keys.animation_data_clear()
+
+
+# Predicate → the scene in which it holds, and what ends that.
+CASES = {
+    "renderable": (cloth, hide("Sheet")),
+    "solver_enabled": (cloth, setting("Sheet", "CLOTH", "show_render", False)),
+    "cloth_modifier": (cloth, without("Sheet", "CLOTH")),
+    "cloth_cache_baked": (cloth, free),
+    "cloth_self_collision": (
+        cloth,
+        setting("Sheet", "CLOTH", "collision_settings.use_self_collision", False),
+    ),
+    "cloth_pin_group": (cloth, lambda: get("Sheet").vertex_groups["Pins"].remove([0, 1])),
+    "cloth_collision_partners": (cloth, without("Table", "COLLISION")),
+    "soft_modifier": (soft, without("Jelly", "SOFT_BODY")),
+    "soft_cache_baked": (soft, free),
+    "soft_collision_partners": (soft, setting("Block", "COLLISION", "show_viewport", False)),
+    "soft_goal_group": (soft, setting("Jelly", "SOFT_BODY", "settings.use_goal", False)),
+    "soft_rigid_partners": (soft, no_world),
+    "rigid_settings": (rigid, out_of_world),
+    "rigid_type": (rigid, of_body("type", "PASSIVE")),
+    "rigid_shape": (rigid, of_body("collision_shape", "MESH")),
+    "rigid_world_populated": (rigid, empty_world),
+    "rigid_cache_baked": (rigid, free),
+    "rigid_constraint": (rigid, of_tie("object2", None)),
+    "rigid_constraint_no_collision": (rigid, of_tie("disable_collisions", False)),
+    "rigid_collision_modifier": (rigid, without("Left", "COLLISION")),
+    "rigid_positive_mass": (rigid, of_body("mass", 0.0)),
+    "particle_system": (particles, without("Flag", "PARTICLE_SYSTEM")),
+    "particle_type": (particles, of_particles("type", "HAIR")),
+    "particle_source": (particles, of_particles("count", 0)),
+    "particle_cache_baked": (particles, free),
+    "particle_collision_partners": (particles, without("Wall", "COLLISION")),
+    "particle_from_deformed": (particles, particles_first),
+    "particle_force_fields": (particles, lambda: setattr(get("Wind").field, "strength", 0.0)),
+    "fluid_modifier": (fluid, without("Water", "FLUID")),
+    "fluid_type": (fluid, setting("Tap", "FLUID", "flow_settings.flow_type", "SMOKE")),
+    "fluid_domain_exists": (fluid, lambda: setattr(get("Tap"), "location", (0, 0, 9))),
+    "fluid_flow_count": (fluid, setting("Tap", "FLUID", "flow_settings.use_inflow", False)),
+    "fluid_dynamic_effector": (fluid, stand_still),
+    "fluid_guiding": (guided, setting("Smoke", "FLUID", "domain_settings.use_guide", False)),
+    "fluid_resolution": (fluid, setting("Water", "FLUID", "domain_settings.resolution_max", 16)),
+    "fluid_mesh": (fluid, setting("Water", "FLUID", "domain_settings.use_mesh", False)),
+    "fluid_cache_baked": (fluid, lose_files),
+    "dense_transform_keys": (recorded, fewer_keys),
+    "animated_shape_keys": (blended, no_blend),
+    "static_has_cache": (cloth, free),
+    "static_has_rigid_world": (rigid, no_world),
+    "static_has_solver": (cloth, without("Sheet", "CLOTH")),
+}
+
+
+def with_its_files(make, change):
+    """What is read after a change; files of a fluid that the change takes away are put back afterwards."""
+    files = os.path.join(PLACE, "water")
+    kept = f"{files}_kept"
+    if make is fluid:
+        shutil.copytree(files, kept)
+    try:
+        return read(os.path.join(PLACE, f"{make.__name__}.blend"), change)
+    finally:
+        if make is fluid:
+            bpy.ops.wm.read_factory_settings(use_empty=True)
+            shutil.rmtree(files)
+            os.rename(kept, files)
+
+
+def main():
+    found = {}
+    for name, (make, change) in CASES.items():
+        if make.__name__ not in found:
+            make()
+            found[make.__name__] = read(save(make.__name__))
+        found[name] = found[make.__name__]
+        found[f"{name}/broken"] = with_its_files(make, change)
+    finish(found)
+
+
+main()
