@@ -22,10 +22,10 @@ export UV_SYSTEM_CERTS ?= 1
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help setup kb test serve bench lint docs docs-check lock clean
+.PHONY: help setup kb test serve bench lint docs docs-check rule-pictures lock clean
 
 help: ## List the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 setup: $(STAMP) ## Make .venv with the pinned dependencies
 
@@ -37,8 +37,8 @@ kb: $(STAMP) ## Build the knowledge base of BLENDER=5.1 [MANUAL= GUIDES= BLENDER
 	  $(if $(SUMMARIES),--summaries "$(SUMMARIES)") \
 	  $(if $(REQUIRE),--require "$(REQUIRE)") $(KB_ARGS)
 
-test: $(STAMP) ## Run the tests [PYTEST_ARGS=]
-	@$(PY) -m pytest $(PYTEST_ARGS)
+test: $(STAMP) ## Run the tests, a file at a time on each core [PYTEST_ARGS=]
+	@$(PY) -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile $(PYTEST_ARGS)
 
 serve: $(STAMP) ## Serve blender_docs over MCP on stdio [SERVE_ARGS=]
 	@.venv/bin/simworlds serve $(SERVE_ARGS)
@@ -52,10 +52,15 @@ lint: $(STAMP) ## Check style, format and types
 	@.venv/bin/pyright
 
 docs: $(STAMP) ## Write the generated references
-	@$(PY) -m kb_serve.reference
+	@$(PY) -m agents.reference
+	@$(PY) -m bench.reference
+
+rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
+	@$(PY) tests/agents/protocol/rule_pictures.py $(RULES)
 
 docs-check: $(STAMP) ## Check that the generated references are up to date
-	@$(PY) -m kb_serve.reference --check
+	@$(PY) -m agents.reference --check
+	@$(PY) -m bench.reference --check
 
 lock: $(UV) ## Pin the newest dependencies in requirements.lock
 	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --group dev --universal --python-version 3.11 --upgrade \
@@ -73,7 +78,7 @@ $(STAMP): requirements.lock pyproject.toml | $(UV)
 	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
 	@$(UV_ENV) "$(UV)" pip sync --quiet --compile-bytecode --python $(PY) --require-hashes requirements.lock
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
-	@$(PY) -m compileall -q kb_build kb_serve agents
+	@$(PY) -m compileall -q kb_build kb_serve agents bench
 	@touch $(STAMP)
 
 # The lock pins uv too, since the project depends on it: that very version is fetched, its hashes checked.

@@ -65,7 +65,20 @@ RULES = (
             "kb_build.pipeline",
         ),
     ),
-    Rule("agents", ("kb_build", "kb_serve", "bench"), ("agents.cli:kb_build", "agents.cli:kb_serve")),
+    Rule(
+        "agents",
+        ("kb_build", "kb_serve", "bench"),
+        # The command mounts theirs, the references describe them; which Blender to start is known in one place.
+        (
+            "agents.cli:kb_build",
+            "agents.cli:kb_serve",
+            "agents.reference:kb_serve",
+            "agents.blender.launch:kb_build",
+            # How any MCP server is carried over stdio and HTTP, and who is let in: nothing of the base.
+            "agents.blender.cli:kb_serve.http",
+            "agents.blender.cli:kb_serve.stdio",
+        ),
+    ),
     Rule("agents.plan", ("agents.models", "agents.blender", "agents.roles", "agents.pipeline")),
     Rule("agents.protocol", ("agents.models", "agents.blender", "agents.roles", "agents.pipeline")),
     Rule("bench", ("agents.protocol",)),
@@ -121,6 +134,8 @@ def breaches_inside(module: str, path: Path, imported: set[str]) -> list[str]:
         return [f"{module} imports {name}" for name in sorted(imported) if name.split(".")[0] in BLENDERS_OWN]
     siblings = {neighbour.stem for neighbour in path.parent.glob("*.py")}
     allowed = BLENDERS_OWN | siblings | set(sys.stdlib_module_names) | {""}
+    if not below(module, "kb_build"):  # every Blender that scenes are built or judged in brings it
+        allowed |= {"numpy"}
     return [f"{module} imports {name}" for name in sorted(imported) if name.split(".")[0] not in allowed]
 
 

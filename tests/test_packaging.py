@@ -105,7 +105,7 @@ def test_every_dependency_is_pinned_to_a_version_that_it_allows() -> None:
     assert faults == []
 
 
-def test_the_wheel_holds_the_packages_and_the_table_of_sources(tmp_path: Path) -> None:
+def test_the_wheel_holds_the_packages_the_table_of_sources_and_the_prompts(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", str(tmp_path)],
         cwd=REPO,
@@ -120,5 +120,10 @@ def test_the_wheel_holds_the_packages_and_the_table_of_sources(tmp_path: Path) -
         entry_points = next(name for name in names if name.endswith("entry_points.txt"))
         commands = archive.read(entry_points).decode()
     assert {"corpora/sources.toml", "kb_build/sources.py", "kb_build/inside/extract.py"} <= names
-    assert not [name for name in names if name.startswith(("tests/", "bench/"))]
+    texts = {path.relative_to(REPO).as_posix() for path in (REPO / "agents").rglob("prompts/**/*.md")}
+    assert "agents/roles/prompts/stages/modeling.md" in texts
+    assert texts <= names
+    scenes = {path.relative_to(REPO).as_posix() for path in (REPO / "bench" / "scenes").glob("*.yaml")}
+    assert scenes | {"bench/cli.py", "bench/inside/entry.py"} <= names
+    assert not [name for name in names if name.startswith("tests/")]
     assert "simworlds = agents.cli:main" in commands
