@@ -128,11 +128,17 @@ def breaches_of_rules(module: str, imported: set[str]) -> list[str]:
     return found
 
 
+def inside_folders(path: Path) -> list[Path]:
+    """Its own, and those of the packages around it: the parts of one package share what they know of Blender."""
+    around = [parent / "inside" for parent in path.parent.parent.parents if parent.name in PACKAGES]
+    return [path.parent, *(folder for folder in around if folder.is_dir())]
+
+
 def breaches_inside(module: str, path: Path, imported: set[str]) -> list[str]:
     """What runs in Blender knows Blender, the standard library and its neighbours; nobody else knows bpy."""
     if "inside" not in module.split("."):
         return [f"{module} imports {name}" for name in sorted(imported) if name.split(".")[0] in BLENDERS_OWN]
-    siblings = {neighbour.stem for neighbour in path.parent.glob("*.py")}
+    siblings = {neighbour.stem for folder in inside_folders(path) for neighbour in folder.glob("*.py")}
     allowed = BLENDERS_OWN | siblings | set(sys.stdlib_module_names) | {""}
     if not below(module, "kb_build"):  # every Blender that scenes are built or judged in brings it
         allowed |= {"numpy"}

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An empty scene, what it is seen by, and what things look like. Lengths are metres, Z is up."""
+
+import math
+
+import bpy
+from mathutils import Vector
+
+FPS = 24
+
+
+def begin(frames):
+    """An empty scene of so many frames, from 1."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, frames
+    scene.render.fps = FPS
+    return scene
+
+
+def last():
+    """The clip's last frame."""
+    return bpy.context.scene.frame_end
+
+
+def paint(thing, *, colour=(0.6, 0.6, 0.6), roughness=0.6, metal=0.0, clear=0.0):
+    """Gives a thing a material of its own. ``colour``: red, green, blue; ``clear``: how much light passes (0 to 1)."""
+    material = bpy.data.materials.new(f"{thing.name} surface")
+    material.diffuse_color = (*colour, 1)
+    surface = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    surface.inputs["Base Color"].default_value = (*colour, 1)
+    surface.inputs["Roughness"].default_value = roughness
+    surface.inputs["Metallic"].default_value = metal
+    surface.inputs["Transmission Weight"].default_value = clear
+    thing.data.materials.clear()
+    thing.data.materials.append(material)
+    return thing
+
+
+def camera(at, towards, lens=35.0):
+    """The scene's camera."""
+    thing = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    bpy.context.scene.collection.objects.link(thing)
+    thing.location = at
+    thing.rotation_euler = (Vector(towards) - Vector(at)).to_track_quat("-Z", "Y").to_euler()
+    thing.data.lens = lens
+    bpy.context.scene.camera = thing
+    return thing
+
+
+def light(*, sun=3.0, elevation=50.0, azimuth=-40.0, sky=(0.6, 0.7, 0.85), colour=(1, 1, 1)):
+    """A sun (strength, degrees above the horizon, degrees from +Y), and a sky of one colour."""
+    thing = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    bpy.context.scene.collection.objects.link(thing)
+    thing.data.energy, thing.data.color, thing.data.angle = sun, colour, math.radians(2)
+    thing.rotation_euler = (math.radians(90 - elevation), 0, math.radians(azimuth))
+    world = bpy.data.worlds.new("World")
+    bpy.context.scene.world = world
+    background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
+    background.inputs["Color"].default_value = (*sky, 1)
+    return thing
+
+
+def keys(thing, path, values):
+    """Keys on a property: frame → value. Of things that are moved by hand: a tap that tilts, a plate that turns."""
+    owner, _, name = path.rpartition(".")
+    target = thing.path_resolve(owner) if owner else thing
+    for frame, value in values.items():
+        setattr(target, name, value)
+        target.keyframe_insert(name, frame=frame)
+
+
+def under(parent, *things):
+    """Makes things the children of another, where they are."""
+    bpy.context.view_layer.update()
+    for thing in things:
+        thing.parent = parent
+        thing.matrix_parent_inverse = parent.matrix_world.inverted()
+    return parent
