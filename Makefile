@@ -63,7 +63,7 @@ docs-check: $(STAMP) ## Check that the generated references are up to date
 	@$(PY) -m bench.reference --check
 
 lock: $(UV) ## Pin the newest dependencies in requirements.lock
-	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --group dev --universal --python-version 3.11 --upgrade \
+	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 --upgrade \
 	  --generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header --quiet \
 	  --output-file requirements.lock
 
