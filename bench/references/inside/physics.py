@@ -43,6 +43,18 @@ def soft(thing, *, goal="", mass=1.0, stiffness=0.7, bending=0.5, stretch=0.0, d
     return modifier
 
 
+def hook(thing, name, group, at):
+    """An empty that the points in a vertex group follow: they go, turn and stretch with it, from where they are."""
+    handle = bpy.data.objects.new(name, None)
+    bpy.context.scene.collection.objects.link(handle)
+    handle.location, handle.empty_display_size = at, 0.1
+    bpy.context.view_layer.update()
+    modifier = thing.modifiers.new("Hook", "HOOK")
+    modifier.object, modifier.vertex_group = handle, group
+    modifier.matrix_inverse = handle.matrix_world.inverted() @ thing.matrix_world
+    return handle
+
+
 def body(
     thing, kind="ACTIVE", *, shape="CONVEX_HULL", mass=1.0, friction=0.6, bounce=0.0, moved=False, margin=0.0
 ):

@@ -26,6 +26,20 @@ def box(name, size, at=(0, 0, 0), *, turn=(0, 0, 0), **look):
     return _made(name, at, turn, look, bmesh.ops.create_cube, size=1, matrix=Matrix.Diagonal((*size, 1)))
 
 
+def boxes(name, parts, at=(0, 0, 0), *, turn=(0, 0, 0), **look):
+    """Several boxes as one thing: ``parts`` are (size, middle), as seen from the thing's origin."""
+    made = bmesh.new()
+    for size, middle in parts:
+        placed = Matrix.Translation(middle) @ Matrix.Diagonal((*size, 1))
+        bmesh.ops.create_cube(made, size=1, matrix=placed)
+    return _finished(name, made, at, turn, look)
+
+
+def legs(x, y, height, thick=0.06):
+    """For ``boxes``: four legs of that height from the origin upwards, at the corners of a rectangle of half sides."""
+    return [((thick, thick, height), (i, j, height / 2)) for i in (-x, x) for j in (-y, y)]
+
+
 def ball(name, radius, at=(0, 0, 0), *, detail=3, **look):
     """A ball of even triangles."""
     thing = _made(name, at, (0, 0, 0), look, bmesh.ops.create_icosphere, subdivisions=detail, radius=radius)
