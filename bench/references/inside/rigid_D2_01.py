@@ -11,9 +11,8 @@ from things import box
 COUNT, APART = 12, 0.055
 THICK, WIDE, TALL = 0.016, 0.06, 0.12
 TOP = 0.72
-TIPPED = math.radians(
-    11
-)  # its balance is lost at 7.6 degrees, the arc tangent of its thickness by its height
+# Balance is lost at 7.6 degrees, the arc tangent of a domino's thickness by its height.
+TIPPED = math.radians(11)
 
 
 def build():
@@ -33,12 +32,8 @@ def build():
 
 def _domino(number):
     x = (number - (COUNT - 1) / 2) * APART
-    thing = box(
-        "Domino",
-        (THICK, WIDE, TALL),
-        (x, 0, TOP + TALL / 2),
-        colour=(0.85, 0.6, 0.35) if number % 2 else (0.6, 0.3, 0.15),
-    )
+    wood = (0.85, 0.6, 0.35) if number % 2 else (0.6, 0.3, 0.15)
+    thing = box("Domino", (THICK, WIDE, TALL), (x, 0, TOP + TALL / 2), colour=wood)
     body(thing, shape="BOX", mass=0.06, friction=0.6)
     return thing
 
