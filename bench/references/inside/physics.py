@@ -89,7 +89,8 @@ def joint(name, kind, one, two, at=(0, 0, 0), *, turn=(0, 0, 0), collide=False):
 def particles(
     thing, name, count, *, first=1, until=None, lifetime=50, size=0.02, shown=None, source="FACE", speed=1.0
 ):
-    """Particles that a thing emits, shown as the object ``shown`` (else as halos that renders leave out)."""
+    """Particles that a thing emits, shown as the object ``shown``, which is then hidden itself (else as halos that
+    renders leave out)."""
     modifier = thing.modifiers.new(name, "PARTICLE_SYSTEM")
     system = modifier.particle_system
     settings = system.settings
@@ -99,6 +100,7 @@ def particles(
     settings.particle_size, settings.display_size = size, size
     if shown is not None:
         settings.render_type, settings.instance_object = "OBJECT", shown
+        shown.hide_render = shown.hide_viewport = True
     system.point_cache.frame_end = last()
     return settings
 

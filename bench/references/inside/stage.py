@@ -23,8 +23,10 @@ def last():
     return bpy.context.scene.frame_end
 
 
-def paint(thing, *, colour=(0.6, 0.6, 0.6), roughness=0.6, metal=0.0, clear=0.0):
-    """Gives a thing a material of its own. ``colour``: red, green, blue; ``clear``: how much light passes (0 to 1)."""
+def paint(thing, *, colour=(0.6, 0.6, 0.6), roughness=0.6, metal=0.0, clear=0.0, glow=0.0):
+    """Gives a thing a material of its own. ``colour``: red, green, blue; ``clear``: how much light passes (0 to 1);
+    ``glow``: how much it gives.
+    """
     material = bpy.data.materials.new(f"{thing.name} surface")
     material.diffuse_color = (*colour, 1)
     surface = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
@@ -32,6 +34,32 @@ def paint(thing, *, colour=(0.6, 0.6, 0.6), roughness=0.6, metal=0.0, clear=0.0)
     surface.inputs["Roughness"].default_value = roughness
     surface.inputs["Metallic"].default_value = metal
     surface.inputs["Transmission Weight"].default_value = clear
+    surface.inputs["Emission Color"].default_value = (*colour, 1)
+    surface.inputs["Emission Strength"].default_value = glow
+    thing.data.materials.clear()
+    thing.data.materials.append(material)
+    return thing
+
+
+def vapour(thing, *, colour=(0.8, 0.8, 0.8), density=5.0, fire=0.0):
+    """Gives the domain of a gas a material that shows its smoke, and its flames by the light ``fire``."""
+    material = bpy.data.materials.new(f"{thing.name} vapour")
+    material.diffuse_color = (*colour, 1)
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.remove(next(node for node in nodes if node.type == "BSDF_PRINCIPLED"))
+    volume = nodes.new("ShaderNodeVolumePrincipled")
+    volume.inputs["Color"].default_value = (*colour, 1)
+    volume.inputs["Density"].default_value = density
+    links.new(
+        volume.outputs["Volume"], next(n for n in nodes if n.type == "OUTPUT_MATERIAL").inputs["Volume"]
+    )
+    if fire:
+        flame, brightness = nodes.new("ShaderNodeAttribute"), nodes.new("ShaderNodeMath")
+        flame.attribute_name = "flame"
+        brightness.operation, brightness.inputs[1].default_value = "MULTIPLY", fire
+        links.new(flame.outputs["Fac"], brightness.inputs[0])
+        links.new(brightness.outputs["Value"], volume.inputs["Emission Strength"])
+        volume.inputs["Emission Color"].default_value = (1, 0.3, 0.05, 1)
     thing.data.materials.clear()
     thing.data.materials.append(material)
     return thing
@@ -58,6 +86,15 @@ def light(*, sun=3.0, elevation=50.0, azimuth=-40.0, sky=(0.6, 0.7, 0.85), colou
     bpy.context.scene.world = world
     background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
     background.inputs["Color"].default_value = (*sky, 1)
+    return thing
+
+
+def lamp(name, power, at, *, colour=(1, 1, 1), size=0.1):
+    """A light that shines all around from a ball of that ``size`` (radius), in watts."""
+    thing = bpy.data.objects.new(name, bpy.data.lights.new(name, "POINT"))
+    bpy.context.scene.collection.objects.link(thing)
+    thing.location = at
+    thing.data.energy, thing.data.color, thing.data.shadow_soft_size = power, colour, size
     return thing
 
 
