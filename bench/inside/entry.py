@@ -22,6 +22,7 @@ JOBS = {
     "open": ("opening", "open_file"),
     "facts": ("facts", "read_facts"),
     "measure": ("measure", "measure"),
+    "frames": ("frames", "render"),
 }
 _LENGTH = struct.Struct(">I")
 _CHUNK = 1 << 20

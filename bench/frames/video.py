@@ -1,0 +1,92 @@
+"""Pictures out of a video, or of a picture file, that nobody trusts.
+
+Decoders are large programs that read what strangers write. They run in a process of their own (``decode.py``), confined
+as Blender is: no network, no second process, nothing to read but the file, nothing to write but one folder, limits of
+memory and time.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from contextlib import suppress
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from agents.blender.nursery import started_for_good
+from agents.blender.sandbox import GIB, Limits, best_sandbox, own_python
+from bench.untrusted import NotScored
+from kb_build.runtime import clean_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+PICTURES = (".png", ".jpg", ".jpeg", ".webp")
+VIDEOS = (".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif")
+SECONDS = 120.0
+_SCRIPT = Path(__file__).with_name("decode.py")
+_LIMITS = Limits(memory=2 * GIB, file_size=GIB // 4)
+_LARGEST = 256 << 20  # bytes of a picture
+
+
+def pictures(source: Path, shares: Sequence[float]) -> list[bytes]:
+    """The pictures (PNG) at ``shares`` (0 to 1) of a video, or the one of a picture file. Raises NotScored."""
+    path = source.expanduser().resolve()
+    if not path.is_file():
+        raise NotScored(f"there is no {source.name}")
+    if path.suffix.lower() not in PICTURES and find_spec("av") is None:
+        raise NotScored("frames of a video need the package av: install simworlds with its extra 'video'")
+    with tempfile.TemporaryDirectory(prefix="simworlds-frames-", ignore_cleanup_errors=True) as place:
+        folder = Path(place).resolve()
+        _decode(path, shares, folder)
+        return [_read(folder / f"{number}.png") for number in range(len(shares))]
+
+
+def _decode(path: Path, shares: Sequence[float], folder: Path) -> None:
+    words = [sys.executable, "-I", str(_SCRIPT), str(path), str(folder), json.dumps(list(shares))]
+    readable = [_SCRIPT, path, *map(Path, own_python())]
+    command = best_sandbox(limits=_LIMITS).command(words, read=readable, write=[folder])
+    log = folder / "log"
+    with log.open("wb") as said:
+        process = started_for_good(
+            lambda: subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=said,
+                stderr=subprocess.STDOUT,
+                env=clean_environment(folder),
+                cwd=folder,
+                start_new_session=True,
+            )
+        )
+    try:
+        code = process.wait(SECONDS)
+    except subprocess.TimeoutExpired:
+        raise NotScored(f"{path.name} was still being decoded when its {SECONDS:g} s were over") from None
+    finally:
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    if code != 0:
+        raise NotScored(f"{path.name} cannot be decoded: {_last_line(log) or f'exit code {code}'}")
+
+
+def _last_line(log: Path) -> str:
+    with log.open("rb") as file:
+        lines = file.read(100_000).decode(errors="replace").strip().splitlines()
+    return lines[-1][:200] if lines else ""
+
+
+def _read(path: Path) -> bytes:
+    """What the process wrote, if it is a plain file."""
+    try:
+        if path.is_symlink() or not path.is_file() or path.stat().st_size > _LARGEST:
+            raise NotScored("what was decoded is no picture")
+        return path.read_bytes()
+    except OSError as error:
+        raise NotScored(f"what was decoded cannot be read: {error.strerror or error}") from error
