@@ -1,9 +1,10 @@
 """Finds a spec's actors in a scene that knows nothing of the spec: by names, then by what marks their role.
 
 An actor is found as units, the things that stand for it (twelve dominoes: twelve), each of them an object with its
-descendants, or a collection's members. An object belongs to the actor that its own name speaks of best, else to that of
-the nearest parent or collection whose name does. Actors that no name speaks of are looked for among what is left, by
-the solver of their role, then by size, surface and place. Every step is in a fixed order.
+descendants, or a collection's members; what particles are shown as is a part of what emits them. An object belongs to
+the actor that its own name speaks of best, else to that of the nearest parent or collection whose name does. Actors
+that no name speaks of are looked for among what is left, by the solver of their role, then by size, surface and place.
+Every step is in a fixed order.
 """
 
 from __future__ import annotations
@@ -64,6 +65,11 @@ class _Cast:
         for one in scene.objects:
             if one.parent is not None:
                 self.children.setdefault(one.parent, []).append(one.name)
+        self.emitters: dict[str, list[str]] = {}
+        for one in scene.objects:
+            for shown in self._shown_by_particles(one):
+                self.children.setdefault(one.name, []).append(shown)
+                self.emitters.setdefault(shown, []).append(one.name)
         self.below: dict[str, list[str]] = {}
         for each in scene.collections:
             if each.parent is not None:
@@ -86,11 +92,23 @@ class _Cast:
         return best
 
     def _said_of(self, one: Object) -> tuple[Match, str] | None:
-        """By an object's own name; if that says nothing, by that of the collection that it shows, or of its data."""
+        """By an object's own name; if that says nothing, by that of what it or its particles show, or of its data."""
         if not one.in_scene or one.type not in _BODIES:
             return None
-        names = (one.name, one.instances, one.data)
+        names = (one.name, one.instances, *self._named_by_particles(one), one.data)
         return next((said for name in names if name and (said := self._best(name)) is not None), None)
+
+    def _named_by_particles(self, one: Object) -> Iterator[str]:
+        """Names of the objects or collections that its particles are shown as."""
+        for modifier in one.of_type("PARTICLE_SYSTEM"):
+            if modifier.particles is not None and modifier.particles.instance is not None:
+                yield modifier.particles.instance
+
+    def _shown_by_particles(self, one: Object) -> Iterator[str]:
+        """Names of the objects that its particles are shown as."""
+        for name in self._named_by_particles(one):
+            each = self.collections.get(name)
+            yield from (each.objects if each is not None and name not in self.objects else (name,))
 
     def _owner(self, one: Object) -> str | None:
         seen = set[str]()
@@ -234,12 +252,16 @@ class _Cast:
         return sorted(objects, key=rank)
 
     def _above(self, name: str) -> Iterator[str]:
-        seen = {name}
-        here = self.objects[name].parent
-        while here is not None and here not in seen and here in self.objects:
-            seen.add(here)
-            yield here
-            here = self.objects[here].parent
+        """Its parents, what emits it, and what is above these."""
+        seen, waiting = {name}, [name]
+        while waiting:
+            here = waiting.pop(0)
+            parent = self.objects[here].parent
+            for above in (*((parent,) if parent is not None else ()), *self.emitters.get(here, ())):
+                if above not in seen and above in self.objects:
+                    seen.add(above)
+                    waiting.append(above)
+                    yield above
 
     def tree(self, name: str) -> tuple[Object, ...]:
         """An object that nobody owns, with its descendants."""

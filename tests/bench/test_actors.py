@@ -154,6 +154,21 @@ def test_a_predicate_that_must_not_hold_passes_when_it_does_not(scenes: dict[str
     assert [check.outcome for check in found.actors[0].checks][-2:] == ["passed", "passed"]
 
 
+@pytest.mark.blender
+def test_what_particles_are_shown_as_is_part_of_what_emits_them(scenes: dict[str, Scene]) -> None:
+    check = ["particle_system"]
+    actors = [
+        {"name": "campfire", "synonyms": ["sparks"], "role": "particle_emitter", "must_have": check},
+        {"name": "snowflakes", "role": "particle_emitter", "must_have": check},
+    ]
+    asked = spec(id="particle_D1_99", category="particle", level="D1", actors=actors)
+    found = find_actors(asked, scenes["particles_shown_as_things"])
+    units = {
+        name: [[each.name for each in unit.objects] for unit in one.units] for name, one in found.items()
+    }
+    assert units == {"campfire": [["Campfire", "Spark"]], "snowflakes": [["Plane", "Snowflake"]]}
+
+
 @pytest.mark.parametrize(
     ("name", "words"),
     [

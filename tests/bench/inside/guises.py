@@ -137,9 +137,20 @@ def hidden_members():
     scene(names={"Base": "Mesh.3", "Shade": "Mesh.4"}, build=build)
 
 
+def particles_shown_as_things():
+    """What a campfire and an emitter without a speaking name give off is shown as objects that lie elsewhere."""
+    new()
+    for number, (name, shown) in enumerate((("Campfire", "Spark"), ("Plane", "Snowflake"))):
+        emitter = add("plane", name, (4 * number, 0, 1), size=2)
+        modifier = emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
+        modifier.particle_system.settings.render_type = "OBJECT"
+        modifier.particle_system.settings.instance_object = add("cube", shown, (0, 0, -9), size=0.1)
+    bake()
+
+
 GUISES = (
     *(plain, synonyms, other_units, nameless, parented, collected, duplicates, joined, instanced),
-    *(two_cloths, hidden_members),
+    *(two_cloths, hidden_members, particles_shown_as_things),
 )
 
 
