@@ -5,7 +5,8 @@ Caches cover the clip. Masses are kilograms, turns radians.
 """
 
 import bpy
-from stage import last
+from mathutils import Matrix, Vector
+from stage import FPS, keys, last
 
 
 def cloth(thing, *, pins="", mass=0.3, quality=6, self_collision=False, stiffness=15.0, distance=0.012):
@@ -21,10 +22,15 @@ def cloth(thing, *, pins="", mass=0.3, quality=6, self_collision=False, stiffnes
     return modifier
 
 
-def collider(thing, *, thickness=0.01, friction=20.0, damping=0.5):
-    """Stops cloth, soft bodies and particles. ``thickness``: how far outside of the surface they are stopped."""
+def collider(thing, *, thickness=0.01, inner=0.2, friction=20.0, damping=0.5):
+    """Stops cloth, soft bodies and particles. ``thickness``: how far outside of the surface they are stopped.
+
+    ``inner``: how deep a soft body may get and is still pushed back, through the face that it is behind. In a thing
+    that is thinner than twice that, it is pushed both ways, and falls through.
+    """
     modifier = thing.modifiers.new("Collision", "COLLISION")
-    thing.collision.thickness_outer, thing.collision.cloth_friction = thickness, friction
+    thing.collision.thickness_outer, thing.collision.thickness_inner = thickness, inner
+    thing.collision.cloth_friction = friction
     thing.collision.damping = damping
     return modifier
 
@@ -84,6 +90,25 @@ def joint(name, kind, one, two, at=(0, 0, 0), *, turn=(0, 0, 0), collide=False):
     tie = thing.rigid_body_constraint
     tie.object1, tie.object2, tie.disable_collisions = one, two, not collide
     return tie
+
+
+def limits(tie, **axes):
+    """How far a joint gives along or around its axes: ``lin_x=(0, 0)`` not at all, ``ang_z=(-1, 1)`` in radians."""
+    for axis, (low, high) in axes.items():
+        setattr(tie, f"use_limit_{axis}", True)
+        setattr(tie, f"limit_{axis}_lower", low)
+        setattr(tie, f"limit_{axis}_upper", high)
+
+
+def thrown(thing, velocity, spin=(0, 0, 0), *, until=3):
+    """A hand moves a rigid body at ``velocity`` (m/s) and ``spin`` (radians a second) until that frame, and lets go."""
+    time, start = (until - 1) / FPS, thing.rotation_euler.copy()
+    turned = Matrix.Rotation(Vector(spin).length * time, 3, Vector(spin) if any(spin) else Vector((0, 0, 1)))
+    end = (turned @ start.to_matrix()).to_euler(start.order, start)
+    place = thing.location.copy()
+    keys(thing, "location", {1: place, until: place + Vector(velocity) * time}, even=True)
+    keys(thing, "rotation_euler", {1: start, until: end}, even=True)
+    keys(thing, "rigid_body.kinematic", {1: True, until: False})
 
 
 def particles(

@@ -98,13 +98,22 @@ def lamp(name, power, at, *, colour=(1, 1, 1), size=0.1):
     return thing
 
 
-def keys(thing, path, values):
-    """Keys on a property: frame → value. Of things that are moved by hand: a tap that tilts, a plate that turns."""
+def keys(thing, path, values, *, even=False):
+    """Keys on a property: frame → value. Of things that are moved by hand: a tap that tilts, a plate that turns.
+
+    ``even``: at one speed from key to key, which it has at the last one too; else it starts and stops gently.
+    """
     owner, _, name = path.rpartition(".")
     target = thing.path_resolve(owner) if owner else thing
     for frame, value in values.items():
         setattr(target, name, value)
         target.keyframe_insert(name, frame=frame)
+    if even:
+        animation = thing.animation_data
+        strip = animation.action.layers[0].strips[0]
+        for curve in strip.channelbag(animation.action_slot).fcurves:
+            for key in curve.keyframe_points if curve.data_path == path else ():
+                key.interpolation = "LINEAR"
 
 
 def under(parent, *things):
