@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from bench.spec import Check, Spec
+    from bench.spr import Measurer
 
 Wanted = Literal["must_have", "must_not_have"]
 _SCENE: TypeAdapter[Scene] = TypeAdapter(Scene)
@@ -92,13 +93,17 @@ def audit(
     try:
         tell = progress or _silent
         with opened(blend, means, tell) as (file, scene):
-            found = find_actors(spec, scene)
-            result = audited(spec, scene, found)
             tell("measuring")
-            related = judge_relations(spec, scene, found, file)
-            return replace(result, relations=related, spr=share(related))
+            return audit_of(file, scene, spec)
     except NotScored as error:
         return Audit(spec.id, str(error))
+
+
+def audit_of(file: Measurer, scene: Scene, spec: Spec) -> Audit:
+    """The audit of an open file whose facts have been read."""
+    found = find_actors(spec, scene)
+    related = judge_relations(spec, scene, found, file)
+    return replace(audited(spec, scene, found), relations=related, spr=share(related))
 
 
 @contextmanager

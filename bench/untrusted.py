@@ -74,11 +74,21 @@ class Means:
 
 
 class Untrusted:
-    """A .blend, opened; to be used in a ``with``. Raises NotScored for the file, CannotStart where no Blender works."""
+    """A .blend, opened; to be used in a ``with``. Raises NotScored for the file, CannotStart where no Blender works.
 
-    def __init__(self, blend: Path, means: Means | None = None) -> None:
+    ``entry`` answers what is asked; ``workspace`` is where Blender may write, by default a folder that goes with it.
+    """
+
+    def __init__(
+        self,
+        blend: Path,
+        means: Means | None = None,
+        entry: Path | None = None,
+        workspace: Path | None = None,
+    ) -> None:
         self._means = means or Means()
         self._path = checked(blend)
+        self._entry, self._workspace = entry, workspace
         self._deadline = time.monotonic() + self._means.seconds
         self._doing = "opening it"
 
@@ -96,6 +106,12 @@ class Untrusted:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._end()
+
+    def reopen(self, blend: Path) -> None:
+        """Opens another file of the same folder instead, with as much time. Raises as the beginning does."""
+        path = checked(blend)
+        self._deadline = time.monotonic() + self._means.seconds
+        self.ask("open", path=str(path), doing="opening it")
 
     def ask(self, job: str, *, doing: str, **arguments: Any) -> Any:
         """What ``bench/inside/entry.py`` answers (JSON). ``doing``: in words, for errors.
@@ -144,8 +160,8 @@ class Untrusted:
         return bytes(found)
 
     def _start(self, place: Path) -> None:
-        workspace = place / "work"
-        workspace.mkdir()
+        workspace = self._workspace or place / "work"
+        workspace.mkdir(exist_ok=True)
         self._log = place / "log"
         limits = Limits(memory=self._means.memory, file_size=GIB)
         launch = Launch(
@@ -153,8 +169,8 @@ class Untrusted:
             workspace,
             place / "private",
             best_sandbox(limits=limits),
-            (*readable(self._path), *self._means.read),
-            ENTRY,
+            (*readable(self._path), ENTRY.parent, *self._means.read),
+            self._entry or ENTRY,
         )
         launch.prepare()
         self._socket, theirs = socket.socketpair()

@@ -54,11 +54,11 @@ def _send(descriptor, message):
         data = data[os.write(descriptor, data) :]
 
 
-def _answer(message):
+def _answer(message, jobs):
     from refusal import Refused
 
     try:
-        module, function = JOBS[message["job"]]
+        module, function = jobs[message["job"]]
         return {"value": getattr(importlib.import_module(module), function)(**message["arguments"])}
     except Refused as error:
         return {"refused": str(error)}
@@ -71,16 +71,19 @@ def _answer(message):
         return {"refused": f"{type(error).__name__}: {error}"}
 
 
-def serve(descriptor):
-    """Answers until the other end is closed. Blender that has run a fluid aborts when it ends in the usual way."""
+def serve(descriptor, jobs):
+    """Answers ``jobs`` until the other end is closed.
+
+    Blender that has run a fluid aborts when it ends in the usual way.
+    """
     import mantaflow
 
     mantaflow.mend()
     while (message := _receive(descriptor)) is not None:
-        _send(descriptor, _answer(message))
+        _send(descriptor, _answer(message, jobs))
     sys.stdout.flush()
     os._exit(0)
 
 
 if __name__ == "__main__":
-    serve(int(sys.argv[-1]))
+    serve(int(sys.argv[-1]), JOBS)
