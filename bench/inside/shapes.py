@@ -29,13 +29,13 @@ def shape_of(data):
 
 
 def _topology(mesh):
-    """Closed: every edge has two faces."""
+    """Closed: every edge of a face has two. Edges without a face are no surface: struts across a soft body's inside."""
     if not len(mesh.edges) or not len(mesh.polygons) or len(mesh.loops) > MOST_LOOPS:
         return "open"
     edges = numpy.empty(len(mesh.loops), dtype=numpy.int32)
     mesh.loops.foreach_get("edge_index", edges)
     uses = numpy.bincount(edges, minlength=len(mesh.edges))
-    return "closed" if bool((uses == 2).all()) else "open"
+    return "closed" if bool((uses[uses > 0] == 2).all()) else "open"
 
 
 def _islands(mesh):

@@ -162,6 +162,11 @@ def test_a_cache_that_ends_before_the_clip_is_not_baked_over_it(scenes: dict[str
 # The table
 
 
+def test_a_body_with_struts_inside_is_closed_and_a_sheet_is_open(scenes: dict[str, Scene]) -> None:
+    shapes = {one.name: one.topology for name in ("soft", "cloth") for one in scenes[name].objects}
+    assert (shapes["Jelly"], shapes["Sheet"]) == ("closed", "open")
+
+
 def test_the_table_has_the_predicates_of_the_catalogue_in_their_groups() -> None:
     wanted = {
         name: group

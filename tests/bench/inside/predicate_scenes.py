@@ -27,6 +27,8 @@ def cloth():
 def soft():
     new()
     jelly = add("cube", "Jelly")
+    jelly.data.edges.add(1)
+    jelly.data.edges[-1].vertices = 0, 7  # a strut, from corner to corner
     modifier = jelly.modifiers.new("Softbody", "SOFT_BODY")
     modifier.point_cache.frame_end = FRAMES
     modifier.settings.vertex_group_goal = weigh(jelly, "Held")
