@@ -9,6 +9,7 @@ import click
 # Command → the module that defines it, its attribute there, and its line in the list.
 _COMMANDS = {
     "audit": ("bench.cli_audit", "audit", "Audit a .blend by a scene's spec."),
+    "judge": ("bench.cli_judge", "judge", "Judge frames by a prompt, item by item."),
     "list": ("bench.cli_specs", "list_scenes", "List the scenes."),
     "show": ("bench.cli_specs", "show", "Show a scene: its prompt and what it is held to."),
 }

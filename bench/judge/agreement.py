@@ -1,0 +1,117 @@
+"""How far repeated judgements of the same frames agree: item by item, by dimension, and over all.
+
+Fleiss' kappa for two categories: with n judgements of each of N items, and k_i of them positive, observed agreement is
+the mean over items of (k_i (k_i - 1) + (n - k_i)(n - k_i - 1)) / (n (n - 1)), agreement by chance p² + (1 - p)² with p
+the share of all verdicts that are positive, and kappa is (observed - chance) / (1 - chance). Where all verdicts are the
+same, chance explains everything and kappa is not defined; observed agreement is then 1, which is why both are told.
+(J. L. Fleiss, "Measuring nominal scale agreement among many raters", 1971.)
+"""
+
+from __future__ import annotations
+
+from statistics import fmean, stdev
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel, ConfigDict
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from bench.judge.verdicts import Item, Judgement
+
+_DIGITS = 6
+
+
+class Agreed(BaseModel):
+    """Of one dimension, or of all together.
+
+    ``pairwise``: the share of pairs of judgements that say the same of an item, over all items. ``mean`` and ``sd``
+    (of a sample) are those of the score. None: not defined.
+    """
+
+    model_config = ConfigDict(frozen=True)
+
+    items: int
+    kappa: float | None
+    pairwise: float | None
+    mean: float | None
+    sd: float | None
+
+
+class Agreement(BaseModel):
+    """``shares``: item → the share of judgements by which it holds."""
+
+    model_config = ConfigDict(frozen=True)
+
+    judgements: int
+    shares: dict[str, float]
+    dimensions: dict[str, Agreed]
+    overall: Agreed
+
+
+def agreement(judgements: Sequence[Judgement]) -> Agreement:
+    """The agreement of at least two judgements of the same items. Raises ValueError for others."""
+    if len(judgements) < 2:
+        raise ValueError("agreement takes at least two judgements")
+    first = judgements[0]
+    if any(_asked(one.dimensions) != _asked(first.dimensions) for one in judgements):
+        raise ValueError("agreement takes judgements of the same items")
+    count = len(judgements)
+    held = {
+        name: [sum(one.dimensions[name][place].holds for one in judgements) for place in range(len(items))]
+        for name, items in first.dimensions.items()
+    }
+    shares = {
+        item.id: round(times / count, _DIGITS)
+        for name, items in first.dimensions.items()
+        for item, times in zip(items, held[name], strict=True)
+    }
+    return Agreement(
+        judgements=count,
+        shares=shares,
+        dimensions={
+            name: _agreed(times, count, [one.scores[name] for one in judgements])
+            for name, times in held.items()
+        },
+        overall=_agreed(
+            [each for times in held.values() for each in times], count, [one.score for one in judgements]
+        ),
+    )
+
+
+def observed_agreement(held: Sequence[int], count: int) -> float | None:
+    """The mean share of pairs of judgements that agree on an item, of which ``held[i]`` of ``count`` are positive."""
+    if count < 2 or not held:
+        return None
+    pairs = count * (count - 1)
+    return fmean((times * (times - 1) + (count - times) * (count - times - 1)) / pairs for times in held)
+
+
+def fleiss_kappa(held: Sequence[int], count: int) -> float | None:
+    """Fleiss' kappa of binary verdicts: of item i, ``held[i]`` of ``count`` are positive. None where not defined."""
+    observed = observed_agreement(held, count)
+    verdicts = count * len(held)
+    if observed is None or sum(held) in (0, verdicts):
+        return None
+    share = sum(held) / verdicts
+    chance = share**2 + (1 - share) ** 2
+    return (observed - chance) / (1 - chance)
+
+
+def _agreed(held: Sequence[int], count: int, scores: Sequence[float | None]) -> Agreed:
+    known = [score for score in scores if score is not None]
+    return Agreed(
+        items=len(held),
+        kappa=_rounded(fleiss_kappa(held, count)),
+        pairwise=_rounded(observed_agreement(held, count)),
+        mean=_rounded(fmean(known) if known else None),
+        sd=_rounded(stdev(known) if len(known) > 1 else None),
+    )
+
+
+def _asked(judged: Mapping[str, Sequence[Item]]) -> dict[str, list[tuple[str, str]]]:
+    return {name: [(item.id, item.text) for item in items] for name, items in judged.items()}
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else round(value, _DIGITS)

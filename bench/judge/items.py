@@ -1,0 +1,156 @@
+"""What of a prompt is judged: its items, listed once from its words alone, so that every result has the same.
+
+Each item stands on words of the prompt. What a model lists is held to that: a list with an item that the prompt does
+not bear out, with the same item twice, or without end, goes back with what is wrong.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel, ConfigDict
+
+from agents.models.structured import fits
+from bench.judge.asking import asked
+from bench.judge.dimensions import CHECKLISTS, Dimension, dimensions
+from bench.judge.questions import Enumeration, Named, enumeration, prompt_version
+from bench.judge.store import key_of
+from bench.judge.usage import Spent
+from kb_build.analysis import terms
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from typing import Any
+
+    from bench.judge.providers import Provider
+    from bench.judge.store import Store
+
+MOST = 40
+"""Items of one list; the longest prompt names half as many things."""
+_LONGEST_QUOTE = 25  # words; more is no anchor
+_LONGEST_TEXT = 240
+_WORD = re.compile(r"\w+(?:['’-]\w+)*")
+_ARTICLES = frozenset({"a", "an", "the"})
+_LISTS: dict[Dimension, str] = {
+    "objects_present": "objects",
+    "spatial_relations": "relations",
+    "actions_visible": "actions",
+}
+
+
+class Anchored(BaseModel):
+    """An item, and the words of the prompt that it stands on; of a fixed item, none."""
+
+    model_config = ConfigDict(frozen=True)
+
+    id: str
+    dimension: Dimension
+    text: str
+    words: str = ""
+
+
+class Items(BaseModel):
+    """All items of a prompt, who listed them (``provider/model``), and what that used up."""
+
+    model_config = ConfigDict(frozen=True)
+
+    by: str
+    items: tuple[Anchored, ...]
+    spent: Spent
+
+    def texts(self) -> dict[str, str]:
+        """Id → what is to be judged."""
+        return {item.id: item.text for item in self.items}
+
+
+def items_of(prompt: str, *, static: bool, provider: Provider, store: Store) -> Items:
+    """The items of a prompt: those that are kept for it, whoever listed them, or a new list. Raises NotJudged."""
+
+    def ask() -> Items:
+        found = asked(provider, enumeration(prompt, static=static), reader_of(prompt, static=static))
+        by = f"{provider.name}/{found.by or provider.model}"
+        return Items(by=by, items=_numbered(found.value, static=static), spent=found.spent)
+
+    return store.once("items", items_key(prompt, static=static), Items, ask)
+
+
+def kept_items(prompt: str, *, static: bool, store: Store) -> Items | None:
+    """The items that are kept for a prompt, if there are any; asks nobody."""
+    return store.kept("items", items_key(prompt, static=static), Items)
+
+
+def items_key(prompt: str, *, static: bool) -> str:
+    """The key of a prompt's list. Who lists is no part of it: judges that are compared judge the same items."""
+    return key_of({"prompt_version": prompt_version(), "prompt": prompt, "static": static})
+
+
+def reader_of(prompt: str, *, static: bool) -> Any:
+    """Takes an Enumeration that the prompt bears out."""
+    shaped = fits(Enumeration)
+
+    def reader(data: Any) -> tuple[Enumeration | None, Sequence[object]]:
+        found, wrong = shaped(data)
+        if found is None:
+            return None, wrong
+        faults = list(_faults(found, prompt, static=static))
+        return (None, faults) if faults else (found, [])
+
+    return reader
+
+
+def _numbered(found: Enumeration, *, static: bool) -> tuple[Anchored, ...]:
+    listed: list[Anchored] = []
+    for dimension in dimensions(static=static):
+        named: Sequence[Named] = getattr(found, _LISTS[dimension]) if dimension in _LISTS else ()
+        entries = [(" ".join(one.text.split()), one.words) for one in named]
+        entries += [(text, "") for text in CHECKLISTS.get(dimension, ())]
+        listed += [
+            Anchored(id=f"{dimension}.{number}", dimension=dimension, text=text, words=words)
+            for number, (text, words) in enumerate(entries, 1)
+        ]
+    return tuple(listed)
+
+
+def _faults(found: Enumeration, prompt: str, *, static: bool) -> Iterator[str]:
+    if not found.objects:
+        yield "objects: there is none; a request names at least one thing."
+    if static and found.actions:
+        yield "actions: in a still, nothing happens; leave the list empty."
+    if not static and not found.actions:
+        yield "actions: there is none; what happens in the film that is asked for?"
+    said = _plain(prompt)
+    for name in _LISTS.values():
+        named: Sequence[Named] = getattr(found, name)
+        if len(named) > MOST:
+            yield f"{name}: {len(named)} items are too many; at most {MOST}."
+        seen: dict[tuple[str, ...], int] = {}
+        for place, one in enumerate(named):
+            for fault in _faults_of(one, said):
+                yield f"{name}[{place}]: {fault}"
+            plain = tuple(word for word in _plain(one.text) if word not in _ARTICLES)
+            if plain in seen:
+                yield f"{name}[{place}]: the same as {name}[{seen[plain]}]."
+            seen.setdefault(plain, place)
+
+
+def _faults_of(one: Named, said: Sequence[str]) -> Iterator[str]:
+    quote = _plain(one.words)
+    if not terms(one.words) or not _contains(said, quote):
+        yield f"the words {one.words[:80]!r} are not in the request, in one piece."
+    elif len(quote) > _LONGEST_QUOTE:
+        yield f"{len(quote)} words are no anchor; quote at most {_LONGEST_QUOTE}."
+    elif not set(terms(one.words)) & set(terms(one.text)):
+        yield f"the item {one.text[:80]!r} uses none of the words {one.words[:80]!r} that it stands on."
+    if len(one.text) > _LONGEST_TEXT:
+        yield f"the text is too long ({len(one.text)} characters; at most {_LONGEST_TEXT})."
+
+
+def _plain(text: str) -> tuple[str, ...]:
+    """Words alone, in one case: how a quotation is set and what stands around it does not matter."""
+    return tuple(_WORD.findall(text.casefold()))
+
+
+def _contains(said: Sequence[str], quote: Sequence[str]) -> bool:
+    width = len(quote)
+    return any(tuple(said[at : at + width]) == tuple(quote) for at in range(len(said) - width + 1))

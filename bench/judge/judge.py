@@ -1,0 +1,122 @@
+"""Judges frames by a prompt: lists what the prompt asks for, once, then asks for a verdict on each item.
+
+The judge sees the prompt and the frames, and nothing else: no plan, no audit, no name of a file or a system. What was
+asked is kept by its content and never asked again, whenever the process ends; ``repetition`` asks once more on purpose.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from agents.models.request import clean
+from bench.judge.asking import asked
+from bench.judge.dimensions import dimensions
+from bench.judge.errors import NotJudged
+from bench.judge.items import Items, items_of
+from bench.judge.pictures import Shown, read_frames
+from bench.judge.questions import judging, prompt_version
+from bench.judge.store import Store, key_of
+from bench.judge.verdicts import Given, Item, Judgement, reader_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from bench.judge.providers import Provider
+
+LONGEST_PROMPT = 4000
+
+
+def judge(  # noqa: PLR0913
+    prompt: str,
+    frames: Sequence[Path],
+    *,
+    static: bool,
+    provider: Provider,
+    cache: Path | None,
+    scene: str = "",
+    repetition: int = 0,
+    tell: Callable[[str], object] = lambda _: None,
+) -> Judgement:
+    """The judgement of a result by its frames, evenly spread over a film, first and last included; of a still, one.
+
+    ``cache`` is the folder that answers are kept in. ``scene`` labels the judgement and is shown to nobody. ``tell``
+    hears what is being done. Raises NotJudged.
+    """
+    words = checked(prompt)
+    shown = read_frames(frames, static=static)
+    store = Store(cache)
+    tell("Listing what the prompt asks for")
+    items = items_of(words, static=static, provider=provider, store=store)
+    key = verdicts_key(
+        words, items, shown, provider.name, provider.model, static=static, repetition=repetition
+    )
+
+    def ask() -> Given:
+        question = judging(words, items.texts(), shown.pictures, static=static)
+        found = asked(provider, question, reader_of(items.texts(), len(shown.pictures)))
+        return Given(by=found.by or provider.model, verdicts=found.value.verdicts, spent=found.spent)
+
+    tell(f"Judging {len(items.items)} items by {len(frames)} frame{'s' if len(frames) > 1 else ''}")
+    given = store.once("verdicts", key, Given, ask)
+    return Judgement(
+        scene=scene,
+        provider=provider.name,
+        model=provider.model,
+        answered_by=given.by,
+        prompt_version=prompt_version(),
+        repetition=repetition,
+        dimensions=_judged(items, given, static=static),
+        usage=given.spent.usage,
+        cost=given.spent.cost,
+        items_by=items.by,
+        items_usage=items.spent.usage,
+        items_cost=items.spent.cost,
+    )
+
+
+def checked(prompt: str) -> str:
+    """A prompt as it is asked about. Raises NotJudged for one without words, or with too many."""
+    words = clean(" ".join(prompt.split()))
+    if not words:
+        raise NotJudged("prompt", "The prompt has no words to judge by.")
+    if len(words) > LONGEST_PROMPT:
+        raise NotJudged(
+            "prompt", f"The prompt has {len(words)} characters; at most {LONGEST_PROMPT} are judged."
+        )
+    return words
+
+
+def verdicts_key(  # noqa: PLR0913
+    prompt: str, items: Items, shown: Shown, provider: str, model: str, *, static: bool, repetition: int
+) -> str:
+    """The key of the verdicts: all that they depend on, and how often they were asked for before."""
+    ingredients = {
+        "prompt_version": prompt_version(),
+        "provider": provider,
+        "model": model,
+        "prompt": prompt,
+        "static": static,
+        "items": items.texts(),
+        "frames": shown.digests,
+        "repetition": repetition,
+    }
+    return key_of(ingredients)
+
+
+def _judged(items: Items, given: Given, *, static: bool) -> dict[str, tuple[Item, ...]]:
+    said = {one.id: one for one in given.verdicts}
+    return {
+        dimension: tuple(
+            Item(
+                id=item.id,
+                text=item.text,
+                holds=said[item.id].holds,
+                evidence=" ".join(said[item.id].evidence.split()),
+                frames=tuple(sorted(set(said[item.id].frames))),
+            )
+            for item in items.items
+            if item.dimension == dimension
+        )
+        for dimension in dimensions(static=static)
+    }

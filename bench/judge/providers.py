@@ -1,0 +1,107 @@
+"""Who judges: a model of a provider, reached when it is first asked, and the limit of what it may cost."""
+
+from __future__ import annotations
+
+import json
+import threading
+from dataclasses import replace
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from agents.models.base import Text
+from agents.models.errors import Rejected
+from agents.models.prices import Prices
+from agents.models.spending import Metered, Spending
+from bench.judge.errors import NotJudged
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from agents.models.base import Ask, Model, Turn
+    from agents.models.prices import Price
+    from agents.models.retries import Retry
+
+# One strong model with eyes of each: the newest of the line that builds the scenes, and the paper's own judge.
+DEFAULTS = {"anthropic": "claude-opus-5-5", "openai": "gpt-5.5"}
+MISSING = "The openai package is not installed. Install it with: pip install 'simworlds[openai]'"
+
+
+class Provider:
+    """A Model (``agents.models.base``) for structured answers: what it gives to the one tool of an Ask is its text."""
+
+    def __init__(
+        self,
+        name: str,
+        model: str,
+        connect: Callable[[], Model],
+        *,
+        spending: Spending | None = None,
+        prices: Prices | None = None,
+    ) -> None:
+        """``connect`` may raise Rejected, where a key is missing. ``spending`` counts, and holds the limit."""
+        self.name = name
+        self.model = model
+        self.prices = prices or Prices()
+        self.spending = spending or Spending(prices=self.prices)
+        self._connect = connect
+        self._connected: Model | None = None
+        self._lock = threading.Lock()
+
+    def ready(self) -> None:
+        """Finds out, without asking anything, whether a key and all packages are there. Raises NotJudged."""
+        with self._lock:
+            if self._connected is None:
+                try:
+                    self._connected = Metered(self._connect(), self.spending)
+                except Rejected as error:
+                    raise NotJudged("not set up", str(error)) from error
+
+    def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
+        """The turn, see Model. Raises ModelError, NotJudged."""
+        self.ready()
+        assert self._connected is not None
+        return _as_text(self._connected.answer(replace(ask, model=self.model), on_text))
+
+
+def provider_of(  # noqa: PLR0913
+    name: str,
+    *,
+    model: str | None = None,
+    base_url: str | None = None,
+    max_cost: float | None = None,
+    price: Price | None = None,
+    tell: Callable[[Retry], object] | None = None,
+) -> Provider:
+    """A judge of that provider; ``openai`` needs the extra of that name. Nothing is connected yet.
+
+    ``base_url``: another server that speaks the provider's API. ``max_cost``: US dollars, over all that it is asked.
+    ``price``: of a model that is in no list. ``tell`` hears of retries. Raises NotJudged, ValueError.
+    """
+    if name not in DEFAULTS:
+        raise ValueError(f"There is no provider {name!r}. Choose {' or '.join(DEFAULTS)}.")
+    chosen = model or DEFAULTS[name]
+    prices = Prices({chosen: price} if price else None)
+    spending = Spending(max_cost, prices)
+
+    def anthropic() -> Model:
+        from agents.models.claude import Claude, Settings  # noqa: PLC0415 - loads the package
+
+        return Claude(Settings(base_url=base_url, prices=prices), tell)
+
+    def openai() -> Model:
+        from bench.judge.openai_chat import Chat  # noqa: PLC0415
+
+        return Chat(base_url, prices)
+
+    if name == "openai" and find_spec("openai") is None:
+        raise NotJudged("not set up", MISSING)
+    connect = {"anthropic": anthropic, "openai": openai}[name]
+    return Provider(name, chosen, connect, spending=spending, prices=prices)
+
+
+def _as_text(turn: Turn) -> Turn:
+    """A turn whose words are the answer: what the tool was called with, or else what the model said."""
+    if not turn.calls:
+        return turn
+    given = "\n".join(json.dumps(call.input, ensure_ascii=False) for call in turn.calls)
+    return replace(turn, content=(Text(given),))

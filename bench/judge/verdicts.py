@@ -1,0 +1,119 @@
+"""One verdict for each item, and the judgement that they make together (paper, "Itemized VLM judge")."""
+
+from __future__ import annotations
+
+from collections import Counter
+from statistics import fmean
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ConfigDict, NonNegativeFloat, computed_field
+
+from agents.models.structured import Reader, fits
+from bench.judge.questions import Verdict, Verdicts
+from bench.judge.usage import Spent, Usage
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Sequence
+
+_DIGITS = 6
+_LONGEST_EVIDENCE = 1000
+
+
+class Item(BaseModel):
+    """What was judged, and how: ``frames`` (counted from 1) show what ``evidence`` tells."""
+
+    model_config = ConfigDict(frozen=True)
+
+    id: str
+    text: str
+    holds: bool
+    evidence: str
+    frames: tuple[int, ...] = ()
+
+
+class Judgement(BaseModel):
+    """What a judge says of one result. ``dimensions`` are in their order; one without items has no score.
+
+    ``scene`` is a label that no model saw. ``answered_by`` is the model as the provider names it, ``items_by`` who
+    listed the items. ``usage`` and ``cost`` (US dollars, None where no price is known) are of the verdicts, when they
+    were asked; ``items_usage`` and ``items_cost`` of the list, which is asked once for all results of a prompt.
+    """
+
+    model_config = ConfigDict(frozen=True)
+
+    scene: str
+    provider: str
+    model: str
+    answered_by: str
+    prompt_version: str
+    repetition: int
+    dimensions: dict[str, tuple[Item, ...]]
+    usage: Usage
+    cost: NonNegativeFloat | None
+    items_by: str
+    items_usage: Usage
+    items_cost: NonNegativeFloat | None
+
+    @computed_field
+    @property
+    def scores(self) -> dict[str, float | None]:
+        """Of each dimension, the share of its items that hold; None without items."""
+        return {name: _share(items) for name, items in self.dimensions.items()}
+
+    @computed_field
+    @property
+    def score(self) -> float | None:
+        """The mean over the dimensions that have items."""
+        known = [score for score in self.scores.values() if score is not None]
+        return round(fmean(known), _DIGITS) if known else None
+
+
+class Given(BaseModel):
+    """Verdicts as they are kept: what was answered, by which model, and what that used up."""
+
+    model_config = ConfigDict(frozen=True)
+
+    by: str
+    verdicts: tuple[Verdict, ...]
+    spent: Spent
+
+
+def reader_of(ids: Collection[str], frames: int) -> Reader[Verdicts]:
+    """Takes exactly one verdict for each item, borne out by frames that there are."""
+    shaped = fits(Verdicts)
+
+    def reader(data: Any) -> tuple[Verdicts | None, Sequence[object]]:
+        found, wrong = shaped(data)
+        if found is None:
+            return None, wrong
+        faults = list(_faults(found, ids, frames))
+        return (None, faults) if faults else (found, [])
+
+    return reader
+
+
+def _faults(found: Verdicts, ids: Collection[str], frames: int) -> Iterator[str]:
+    given = Counter(one.id for one in found.verdicts)
+    yield from (f"{name!r}: there is no verdict for this item." for name in ids if name not in given)
+    yield from (f"{name[:80]!r}: there is no such item." for name in given if name not in ids)
+    yield from (f"{name!r}: there are {times} verdicts for it." for name, times in given.items() if times > 1)
+    for one in found.verdicts:
+        if one.id in ids:
+            yield from (f"{one.id!r}: {fault}" for fault in _faults_of(one, frames))
+
+
+def _faults_of(one: Verdict, frames: int) -> Iterator[str]:
+    if not one.evidence.strip():
+        yield "the evidence is missing."
+    if len(one.evidence) > _LONGEST_EVIDENCE:
+        yield f"the evidence is too long ({len(one.evidence)} characters; one or two sentences)."
+    if none := sorted({number for number in one.frames if not 1 <= number <= frames}):
+        yield f"there is no frame {', '.join(map(str, none))}; they are numbered from 1 to {frames}."
+    elif one.holds and not one.frames:
+        yield "it holds, but no frame is named that shows it."
+    elif one.holds and one.id.startswith("actions_visible.") and len(set(one.frames)) < 2:
+        yield "one frame shows no motion; name at least two that differ."
+
+
+def _share(items: Sequence[Item]) -> float | None:
+    return round(fmean(item.holds for item in items), _DIGITS) if items else None
