@@ -100,8 +100,11 @@ def limits(tie, **axes):
         setattr(tie, f"limit_{axis}_upper", high)
 
 
-def thrown(thing, velocity, spin=(0, 0, 0), *, until=3):
-    """A hand moves a rigid body at ``velocity`` (m/s) and ``spin`` (radians a second) until that frame, and lets go."""
+def thrown(thing, velocity, spin=(0, 0, 0), *, until=4):
+    """A hand moves a rigid body at ``velocity`` (m/s) and ``spin`` (radians a second) until that frame, and lets go.
+
+    Let go before the fourth frame, it may be at rest: Blender makes the bodies at the second, moved or not.
+    """
     time, start = (until - 1) / FPS, thing.rotation_euler.copy()
     turned = Matrix.Rotation(Vector(spin).length * time, 3, Vector(spin) if any(spin) else Vector((0, 0, 1)))
     end = (turned @ start.to_matrix()).to_euler(start.order, start)
