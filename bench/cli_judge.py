@@ -12,18 +12,17 @@ import click
 from bench.cli_specs import chosen_spec
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Sequence
 
     from agents.models.prices import Price
-    from bench.judge.agreement import Agreed, Agreement
+    from bench.judge.agreement import Agreement
     from bench.judge.errors import NotJudged
-    from bench.judge.estimate import Asked, Question
+    from bench.judge.estimate import Asked
     from bench.judge.providers import Provider
-    from bench.judge.verdicts import Item, Judgement
+    from bench.judge.verdicts import Judgement
 
 _PATH = click.Path(path_type=Path)
 _PROVIDERS = ("anthropic", "openai")
-_WIDTH = 110
 _PASSING = ("refused", "cut short", "malformed")  # another time, the model may answer otherwise
 
 
@@ -56,14 +55,14 @@ def judge(frames: tuple[Path, ...], **given: Any) -> None:
     given["price"] = _price(given["price"])
     given["model"] = given["model"] or DEFAULTS[given["provider"]]
     given["cache"] = given["cache"] or _own_cache()
+    wanted = _wanted(frames, given)
+    if (frames and wanted is None) or not (frames or given["dry_run"]):
+        raise click.UsageError("Give the frames, and --scene or --prompt.")
     try:
         if given["dry_run"]:
-            _dry_run(_wanted(frames, given), given)
-            return
-        [wanted] = _wanted(frames, given)[:1] or [None]
-        if wanted is None or not frames:
-            raise click.UsageError("Give the frames, and --scene or --prompt.")
-        _judge(wanted, given)
+            _dry_run(wanted, given)
+        elif wanted is not None:
+            _judge(wanted, given)
     except NotJudged as error:
         click.echo(f"Not judged ({error.reason}): {error}", err=True)
         sys.exit(2)
@@ -72,21 +71,21 @@ def judge(frames: tuple[Path, ...], **given: Any) -> None:
         sys.exit(130)
 
 
-def _wanted(frames: Sequence[Path], given: dict[str, Any]) -> list[Asked]:
-    """What is to be judged; empty where nothing is named."""
+def _wanted(frames: Sequence[Path], given: dict[str, Any]) -> Asked | None:
+    """What is to be judged; None where nothing is named."""
     from bench.judge.estimate import Asked  # noqa: PLC0415 - not for --help
 
     if given["scene"] is not None and given["prompt"] is not None:
         raise click.UsageError("Give --scene or --prompt, not both.")
     if given["prompt"] is not None:
-        return [Asked(given["prompt"], given["static"], frames)]
+        return Asked(given["prompt"], given["static"], frames)
     if given["scene"] is None:
-        return []
+        return None
     spec = chosen_spec(given["scene"])
     static = spec.category == "static"
     if given["static"] and not static:
         raise click.UsageError(f"{spec.id} is no still.")
-    return [Asked(spec.prompt, static, frames)]
+    return Asked(spec.prompt, static, frames, spec.id)
 
 
 def _price(text: str | None) -> Price | None:
@@ -118,6 +117,7 @@ def _judge(wanted: Asked, given: dict[str, Any]) -> None:
     from bench.judge.errors import NotJudged  # noqa: PLC0415
     from bench.judge.judge import judge as run  # noqa: PLC0415
     from bench.judge.providers import provider_of  # noqa: PLC0415
+    from bench.judge.telling import judgement_lines  # noqa: PLC0415
 
     names = ("model", "base_url", "max_cost", "price")
     provider = provider_of(given["provider"], tell=_tell, **{name: given[name] for name in names})
@@ -132,7 +132,7 @@ def _judge(wanted: Asked, given: dict[str, Any]) -> None:
                     static=wanted.static,
                     provider=provider,
                     cache=given["cache"],
-                    scene=given["scene"] or "",
+                    scene=wanted.scene,
                     repetition=number,
                     tell=_tell,
                 )
@@ -144,8 +144,8 @@ def _judge(wanted: Asked, given: dict[str, Any]) -> None:
     agreed = agreement(judged) if len(judged) > 1 else None
     if given["as_json"]:
         click.echo(json.dumps(_as_json(judged, failed, agreed, provider), indent=1, ensure_ascii=False))
-    else:
-        click.echo("\n".join(_lines(judged, agreed, provider)))
+    elif judged:
+        click.echo("\n".join(judgement_lines(judged, agreed, provider.spending.total())))
     for number, error in failed:
         which = f" (repetition {number})" if given["repeat"] > 1 else ""
         click.echo(f"Not judged{which}: {error.reason}: {error}", err=True)
@@ -169,78 +169,17 @@ def _as_json(
     }
 
 
-def _lines(judged: Sequence[Judgement], agreed: Agreement | None, provider: Provider) -> Iterator[str]:
-    for one in judged:
-        yield from _judgement(one)
-        yield ""
-    if agreed:
-        yield from _agreement(agreed)
-        yield ""
-    spent = provider.spending.total()
-    if not spent.calls:
-        yield "Nothing was asked now: all answers were kept."
-    else:
-        cost = None if spent.unpriced else spent.cost
-        yield (
-            f"Asked now: {spent.calls} request{'s' if spent.calls > 1 else ''}, {_usd(cost)}, "
-            f"{spent.usage.prompt:,} tokens in, {spent.usage.output:,} out"
-        )
-
-
-def _judgement(one: Judgement) -> Iterator[str]:
-    label = f"{one.scene}: " if one.scene else ""
-    again = f", repetition {one.repetition}" if one.repetition else ""
-    yield f"{label}{one.provider}/{one.answered_by}, prompts {one.prompt_version}, items by {one.items_by}{again}"
-    for name, items in one.dimensions.items():
-        yield ""
-        yield f"{name} {_number(one.scores[name])}"
-        for item in items:
-            yield from _item(item)
-    yield ""
-    yield (
-        f"score {_number(one.score)}   {_usd(one.cost)} and, once for the prompt, {_usd(one.items_cost)}; "
-        f"{one.usage.input:,} tokens in, {one.usage.output:,} out"
-    )
-
-
-def _item(item: Item) -> Iterator[str]:
-    frames = f" [{', '.join(map(str, item.frames))}]" if item.frames else ""
-    yield f"  {'✓' if item.holds else '✗'} {item.text}"
-    yield click.wrap_text(f"{item.evidence}{frames}", _WIDTH, "      ", "      ")
-
-
-def _agreement(agreed: Agreement) -> Iterator[str]:
-    yield f"agreement of {agreed.judgements} judgements     κ  pairwise   score ± sd"
-    for name, one in (*agreed.dimensions.items(), ("all items", agreed.overall)):
-        yield _agreed(name, one)
-    split = {name: share for name, share in agreed.shares.items() if 0 < share < 1}
-    if split:
-        yield f"not of one mind on {', '.join(f'{name} ({share:.2f})' for name, share in split.items())}"
-
-
-def _agreed(name: str, one: Agreed) -> str:
-    sd = "" if one.sd is None else f" ± {one.sd:.3f}"
-    return f"  {name:<22}{_number(one.kappa):>11}{_number(one.pairwise):>10}   {_number(one.mean)}{sd}"
-
-
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.3f}"
-
-
-def _usd(value: float | None) -> str:
-    return "price not known" if value is None else f"${value:.4f}"
-
-
 # Asking nobody
 
 
-def _dry_run(wanted: Sequence[Asked], given: dict[str, Any]) -> None:
+def _dry_run(wanted: Asked | None, given: dict[str, Any]) -> None:
     from agents.models.prices import Prices  # noqa: PLC0415 - not for --help
     from bench.judge.estimate import Asked, estimate  # noqa: PLC0415
+    from bench.judge.telling import question_lines, sum_lines  # noqa: PLC0415
     from bench.spec import specs  # noqa: PLC0415
 
     prices = Prices({given["model"]: given["price"]} if given["price"] else None)
-    named = wanted or [Asked(spec.prompt, spec.category == "static") for spec in specs()]
+    named = [wanted] if wanted else [Asked(spec.prompt, spec.category == "static") for spec in specs()]
     questions = [
         question
         for one in named
@@ -259,37 +198,5 @@ def _dry_run(wanted: Sequence[Asked], given: dict[str, Any]) -> None:
         )
         return
     if wanted:
-        click.echo("\n".join(line for one in questions for line in _question(one)))
-    click.echo("\n".join(_sums(questions, f"{given['provider']}/{given['model']}")))
-
-
-def _question(one: Question) -> Iterator[str]:
-    times = "kept, not asked" if not one.times else f"asked {one.times} time{'s' if one.times > 1 else ''}"
-    yield f"═══ {one.stage}: {times}, {one.pictures} pictures, about {one.tokens:,} tokens ═══"
-    yield one.system
-    yield "─── the user ───"
-    yield from one.said
-    yield ""
-
-
-def _sums(questions: Sequence[Question], who: str) -> Iterator[str]:
-    yield f"{who} would be asked:"
-    for stage in dict.fromkeys(one.stage for one in questions):
-        rows = [one for one in questions if one.stage == stage]
-        cost = _total((one.cost, one.times) for one in rows)
-        most = _total((one.most, one.times) for one in rows)
-        yield (
-            f"  {stage:<9}{sum(one.times for one in rows):>5} times, {sum(one.tokens * one.times for one in rows):>9,} "
-            f"tokens and {sum(one.pictures * one.times for one in rows):>4} pictures in: {_usd(cost)} without the "
-            f"answers, {_usd(most)} with the longest there can be"
-        )
-    yield "An answer that is none is asked for again, at most twice. Tokens are estimates, rather too many."
-
-
-def _total(costs: Iterable[tuple[float | None, int]]) -> float | None:
-    total = 0.0
-    for cost, times in costs:
-        if cost is None:
-            return None
-        total += cost * times
-    return total
+        click.echo("\n".join(line for one in questions for line in question_lines(one)))
+    click.echo("\n".join(sum_lines(questions, f"{given['provider']}/{given['model']}")))

@@ -59,11 +59,15 @@ class Question(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """Of what a judgement is wanted. Without ``frames``, five (for a still: one) of a usual size are assumed."""
+    """What a judgement is wanted of. Without ``frames``, five (of a still, one) of a usual size are assumed.
+
+    ``scene`` is its label.
+    """
 
     prompt: str
     static: bool
     frames: Sequence[Path] = ()
+    scene: str = ""
 
 
 def estimate(  # noqa: PLR0913

@@ -85,6 +85,11 @@ def items_key(prompt: str, *, static: bool) -> str:
     return key_of({"prompt_version": prompt_version(), "prompt": prompt, "static": static})
 
 
+def one_line(text: str) -> str:
+    """What a model wrote, fit to be printed: in one line, without control characters."""
+    return " ".join("".join(char if char.isprintable() else " " for char in text).split())
+
+
 def reader_of(prompt: str, *, static: bool) -> Any:
     """Takes an Enumeration that the prompt bears out."""
     shaped = fits(Enumeration)
@@ -103,7 +108,7 @@ def _numbered(found: Enumeration, *, static: bool) -> tuple[Anchored, ...]:
     listed: list[Anchored] = []
     for dimension in dimensions(static=static):
         named: Sequence[Named] = getattr(found, _LISTS[dimension]) if dimension in _LISTS else ()
-        entries = [(" ".join(one.text.split()), one.words) for one in named]
+        entries = [(one_line(one.text), one.words) for one in named]
         entries += [(text, "") for text in CHECKLISTS.get(dimension, ())]
         listed += [
             Anchored(id=f"{dimension}.{number}", dimension=dimension, text=text, words=words)

@@ -12,7 +12,7 @@ from agents.models.request import clean
 from bench.judge.asking import asked
 from bench.judge.dimensions import dimensions
 from bench.judge.errors import NotJudged
-from bench.judge.items import Items, items_of
+from bench.judge.items import Items, items_of, one_line
 from bench.judge.pictures import Shown, read_frames
 from bench.judge.questions import judging, prompt_version
 from bench.judge.store import Store, key_of
@@ -112,7 +112,7 @@ def _judged(items: Items, given: Given, *, static: bool) -> dict[str, tuple[Item
                 id=item.id,
                 text=item.text,
                 holds=said[item.id].holds,
-                evidence=" ".join(said[item.id].evidence.split()),
+                evidence=one_line(said[item.id].evidence),
                 frames=tuple(sorted(set(said[item.id].frames))),
             )
             for item in items.items

@@ -55,6 +55,11 @@ def test_a_judgement_survives_being_written_and_read(api, frames):
     assert again.score == found.score
 
 
+def test_what_a_model_writes_cannot_move_a_terminals_cursor(claude, frames):
+    claude.script.evidence = "Seen\x1b[2J\n  twice\u202e."
+    assert judged(claude, frames).dimensions["aesthetics"][0].evidence == "Seen [2J twice ."
+
+
 def test_tokens_are_told_and_the_price_where_it_is_known(claude, frames):
     found = judged(claude, frames)
     assert (found.usage.input, found.usage.output, found.usage.cached) == (1000, 200, 0)

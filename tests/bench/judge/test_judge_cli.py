@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -10,8 +11,9 @@ from fake_messages_api import Status
 from judge_apis import LISTS, PROMPT, STILL, STILL_LISTS
 
 from agents.cli import main
-from bench.spec import spec_of
+from bench.spec import FOLDER, spec_of
 
+DOCS = Path(__file__).parents[3] / "docs" / "judge.md"
 TABLECLOTH = {
     "objects": [
         {"words": "red tablecloth", "text": "a red tablecloth"},
@@ -65,6 +67,12 @@ def test_a_scene_is_judged_by_its_own_prompt(api, on, frames):
     assert "cloth_D1_01" not in api.question(0)[0] + api.question(1)[0]
 
 
+def test_a_scene_of_ones_own_is_read_from_its_file(claude, frames):
+    claude.script.lists = TABLECLOTH
+    options = ["--scene", FOLDER / "cloth_D1_01.yaml", "--json", "--base-url", claude.server.base_url]
+    assert json.loads(run(*frames, *options).output)["judgements"][0]["scene"] == "cloth_D1_01"
+
+
 def test_repeated_judgements_come_with_their_agreement(claude, frames):
     options = ["--prompt", PROMPT, "--repeat", 3, "--base-url", claude.server.base_url]
     found = json.loads(run(*frames, *options, "--json").output)
@@ -101,6 +109,7 @@ def test_what_would_fail_again_is_not_tried_again(claude, frames):
     found = run(*frames, "--prompt", PROMPT, "--repeat", 5, "--base-url", claude.server.base_url)
     assert (found.exit_code, len(claude.server.requests)) == (2, 1)
     assert "Not judged (repetition 0): rejected:" in found.stderr
+    assert found.stdout == ""
 
 
 def test_a_still_is_told_by_the_scene_or_by_the_caller(claude, frames):
@@ -124,6 +133,8 @@ def test_a_limit_on_the_cost_is_kept(claude, frames):
     [
         (["--scene", "cloth_D1_01"], "Give the frames"),
         (["a.png"], "--scene or --prompt"),
+        (["a.png", "--dry-run"], "--scene or --prompt"),
+        ([], "Give the frames"),
         (["a.png", "--scene", "cloth_D1_01", "--prompt", "x"], "not both"),
         (["a.png", "--scene", "cloth_D9_01"], "no scene 'cloth_D9_01'"),
         (["a.png", "b.png", "--prompt", "x"], "a.png cannot be read"),
@@ -157,7 +168,7 @@ def test_a_dry_run_shows_what_would_be_asked_and_needs_no_key(frames, provider):
     assert "═══ verdicts: asked 1 time, 5 pictures" in found.output
     assert found.output.count("[picture, 64 × 36, about 6 tokens]") == 5
     assert PROMPT in found.output
-    assert ("price not known" in found.output) == (provider == "openai")
+    assert ("price is not known" in found.output) == (provider == "openai")
 
 
 @pytest.mark.usefixtures("_alone")
@@ -168,6 +179,14 @@ def test_a_dry_run_of_all_scenes_tells_what_one_system_costs():
     assert sum(row["times"] for row in asked["verdicts"]) == 100
     assert sorted({row["pictures"] for row in asked["verdicts"]}) == [1, 5]
     assert all(row["most"] > row["cost"] > 0 for row in rows)
+
+
+@pytest.mark.usefixtures("_alone")
+def test_the_costs_in_the_documentation_are_what_the_command_prints():
+    told = run("--dry-run").output.rpartition("An answer that is none")[0]
+    assert told in DOCS.read_text("utf-8"), (
+        "copy the output of 'simworlds bench judge --dry-run' to docs/judge.md"
+    )
 
 
 def test_a_dry_run_tells_what_is_kept_already_and_then_shows_the_items(claude, frames):
