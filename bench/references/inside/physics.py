@@ -169,7 +169,10 @@ def domain(thing, kind="LIQUID", *, resolution=40, mesh=True, adaptive=False):
 
 
 def flow(thing, kind="LIQUID", *, behavior="INFLOW", speed=None):
-    """Where a fluid comes from, or (``behavior`` GEOMETRY) is at the start. ``speed``: of what comes out, m/s."""
+    """Where a fluid comes from, or (``behavior`` GEOMETRY) is at the start: then it is not rendered, as what is there is
+    the fluid. ``speed``: of what comes out, m/s.
+    """
+    thing.hide_render = behavior == "GEOMETRY"
     modifier = thing.modifiers.new("Fluid", "FLUID")
     modifier.fluid_type = "FLOW"
     settings = modifier.flow_settings
