@@ -10,6 +10,7 @@ import base64
 import os
 from typing import TYPE_CHECKING, Any, cast
 
+import httpx2
 from pydantic import BaseModel, NonNegativeInt, ValidationError
 
 from agents.models.base import Picture, Text, Turn, Usage, whole
@@ -88,8 +89,11 @@ class Chat:
         timeout = openai.Timeout(_SECONDS, connect=_CONNECT_SECONDS)
         try:
             self._client = openai.OpenAI(api_key=key, base_url=base_url, timeout=timeout, max_retries=retries)
-        except (openai.OpenAIError, ValueError, TypeError) as error:
+        except (httpx2.InvalidURL, openai.OpenAIError, ValueError, TypeError) as error:
             raise Rejected(f"The model's address (OPENAI_BASE_URL) or a proxy's is none: {error}.") from error
+        address = self._client.base_url
+        if address.scheme not in ("http", "https") or not address.host:
+            raise Rejected(f"The model's address (OPENAI_BASE_URL), {address}, is no web address.")
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
         """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Refused, CutShort."""
@@ -105,7 +109,7 @@ class Chat:
             completion = _Completion.model_validate_json(reply.content)
         except package.APIStatusError as error:
             raise self._told(error.status_code, error.message) from error
-        except package.OpenAIError as error:
+        except (package.OpenAIError, httpx2.HTTPError, httpx2.InvalidURL) as error:
             cause = error.__cause__ or error
             words = f"{type(cause).__name__}: {cause}".rstrip(": ")
             raise Unreachable(f"No answer from {self._client.base_url}: {words}.") from error

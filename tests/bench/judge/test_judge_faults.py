@@ -208,6 +208,24 @@ def test_an_address_that_nobody_listens_at_is_told(frames):
         judged(api, frames, provider=api.provider(tries=1))
 
 
+@pytest.mark.parametrize("name", ["anthropic", "openai"])
+@pytest.mark.parametrize("address", ["nonsense", "ftp://models.invalid", "http://[::1"])
+def test_an_address_that_is_none_is_told_at_once(name, address):
+    with pytest.raises(NotJudged, match="The model's address") as caught:
+        provider_of(name, base_url=address).ready()
+    assert caught.value.reason == "not set up"
+
+
+NOWHERE = b"HTTP/1.1 302 Found\r\nLocation: http://[::1\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
+
+
+def test_a_server_that_sends_one_on_to_nowhere_gives_no_answer(api, frames):
+    api.fail(Raw(NOWHERE))
+    with pytest.raises(NotJudged, match="No answer from") as caught:
+        judged(api, frames, provider=api.provider(tries=1))
+    assert caught.value.reason == "unreachable"
+
+
 def test_nothing_is_asked_that_may_cost_more_than_the_limit(claude, frames):
     with pytest.raises(NotJudged, match=r"The limit of \$0.01 is reached") as caught:
         judged(claude, frames, provider=claude.provider(max_cost=0.01))
