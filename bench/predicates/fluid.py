@@ -117,17 +117,18 @@ def fluid_domain_exists(unit: Unit, stage: Stage, params: DomainKind) -> Verdict
     """There is a domain for the actor to be fluid in: an object of the scene with a FLUID modifier of type DOMAIN, of
     the kind asked for. Where the actor is a flow or an effector, its bounds must meet the domain's at the start,
     middle or end of the clip, and it must be in the domain's collection for such, where it has one: outside of them
-    it does nothing.
+    it does nothing. Whose role it is to flow or to stand in the way, and who does neither, is in no domain.
     """
     found = [
         (one, domain) for one, domain in _domains(stage.scene.objects) if admits(params.kind, domain.kind)
     ]
     parts = [(one, True) for one, _ in _fluids(unit.objects, "FLOW")]
     parts += [(one, False) for one, _ in _fluids(unit.objects, "EFFECTOR")]
+    anywhere = not parts and unit.role not in ("fluid_flow", "fluid_effector")
     reached = [
         owner.name
         for owner, domain in found
-        if not parts or any(_takes_in(domain, one, stage, flow=flow) for one, flow in parts)
+        if anywhere or any(_takes_in(domain, one, stage, flow=flow) for one, flow in parts)
     ]
     return judged(reached, domains=[one.name for one, _ in found][:8], reached=reached[:8])
 

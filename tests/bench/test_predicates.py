@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -157,6 +158,19 @@ def test_a_cache_that_ends_before_the_clip_is_not_baked_over_it(scenes: dict[str
         for least in (12, 24)
     ]
     assert outcomes == ["passed", "failed"]
+
+
+@pytest.mark.blender
+def test_what_should_flow_and_does_not_is_in_no_domain(scenes: dict[str, Scene]) -> None:
+    scene = scenes["fluid"]
+    paddle = next(one for one in scene.objects if one.name == "Paddle")
+    still = replace(paddle, modifiers=())
+    predicate = PREDICATES["fluid_domain_exists"]
+    outcomes = {
+        role: predicate.judge(Unit((still,), role), Stage(scene), predicate.read({})).outcome
+        for role in ("fluid_flow", "fluid_effector", "static")
+    }
+    assert outcomes == {"fluid_flow": "failed", "fluid_effector": "failed", "static": "passed"}
 
 
 # The table
