@@ -89,7 +89,7 @@ class Answerer:
         return _paged(text, draft, max_tokens, part)
 
     def _make_draft(self, text: str, limit: int) -> _Draft:
-        ranking = self._ranker.rank(text)
+        ranking = self._ranker.rank(text, limit)
         topic = "" if self._reader.entry(text) else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)

@@ -195,7 +195,7 @@ class Expressions:
 
     def _is_english(self, word: str) -> bool:
         forms = (word, word.removesuffix("s"))
-        return word in STOP_WORDS or any(self._reader.near(form) is not None for form in forms)
+        return word in STOP_WORDS or bool(self._reader.near(forms))
 
     def _affinity(self, entry: Entry, prose: set[str]) -> float:
         """How many of the words around a name belong to its owner, and how usual the owner is."""

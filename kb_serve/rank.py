@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import Reader
 
 SURE = 0.8  # from here on, what was named comes before what was found
-_FOUND = 40
+_FOUND = 12  # at least: what stands in for a class that is named already must be found too
 _CLOSE = 0.6  # share of the closest one's score down to which others are said to be close too
 
 
@@ -53,14 +53,14 @@ class Ranker:
         self.identifier = Identifier(reader)
         self.searcher = Searcher(reader)
 
-    def rank(self, query: str) -> Ranking:
-        """The ids that a query leads to."""
+    def rank(self, query: str, limit: int = _FOUND) -> Ranking:
+        """The ids that a query leads to; the first ``limit`` of them will be used."""
         identified = self.identifier.identify(query)
         best = identified.best
         if best is not None and best.sure >= 1.0:
             ranked = [Ranked(match.id, match.sure, match.why) for match in identified.matches]
             return Ranking(ranked, identified, named=True, notes=self._notes(identified))
-        found = self.searcher.search(prose_of(query), _FOUND, failed=is_message(query))
+        found = self.searcher.search(prose_of(query), max(limit, _FOUND), failed=is_message(query))
         ranked = self._merged(identified, found)
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         return Ranking(ranked, identified, named, self._notes(identified))

@@ -13,7 +13,7 @@ from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, read_only_uri, unpac
 from kb_serve.errors import BaseMissing, BaseUnreadable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Collection, Iterator
     from pathlib import Path
 
 _Record = TypeVar("_Record")
@@ -103,9 +103,12 @@ class Reader:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._connection = open_file(path)
-        self.entry = lru_cache(maxsize=20_000)(self._entry)
-        self.members = lru_cache(maxsize=2_000)(self._members)
-        self.subclasses = lru_cache(maxsize=2_000)(self._subclasses)
+        # A symbol's or page's row, or None; the members of a class or module by name; the classes right below one.
+        # An entry takes nearly a kilobyte, and a class has fifty members.
+        self.entry = lru_cache(maxsize=4_000)(self._entry)
+        self.members = lru_cache(maxsize=64)(self._members)
+        self.subclasses = lru_cache(maxsize=64)(self._subclasses)
+        self.page_entry = lru_cache(maxsize=500)(self._page_entry)
 
     def close(self) -> None:
         """Closes the file."""
@@ -207,16 +210,18 @@ class Reader:
         rows = self.rows("SELECT version FROM since WHERE path = ?", path)
         return rows[0][0] if rows else ""
 
-    def near(self, word: str) -> list[tuple[str, float]] | None:
-        """Stems of the corpus that mean nearly what an English word means, with the similarity, nearest first.
+    def near(self, words: Collection[str]) -> dict[str, list[tuple[str, float]]]:
+        """Stems of the corpus that mean nearly what English words mean, with the similarity, nearest first.
 
-        None for what is no English word: a name, or a misspelling.
+        What is no English word, a name or a misspelling, is left out.
         """
-        rows = self.rows("SELECT stems FROM near WHERE word = ?", word)
-        if not rows:
-            return None
-        parts = rows[0][0].split()
-        return [(parts[i], int(parts[i + 1]) / 100) for i in range(0, len(parts), 2)]
+        marks = ",".join("?" * len(words))
+        rows = self.rows(f"SELECT word, stems FROM near WHERE word IN ({marks})", *words)
+        told = ((word, stems.split()) for word, stems in rows)
+        return {
+            word: [(parts[i], int(parts[i + 1]) / 100) for i in range(0, len(parts), 2)]
+            for word, parts in told
+        }
 
     def links_from(self, source: str, kind: str) -> list[str]:
         """Targets of a symbol's or page's links of one kind."""
@@ -225,8 +230,7 @@ class Reader:
             for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)
         ]
 
-    def page_entry(self, slug: str) -> PageEntry | None:
-        """A page's row, or None."""
+    def _page_entry(self, slug: str) -> PageEntry | None:
         rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE slug = ?", slug)
         return PageEntry(*rows[0]) if rows else None
 

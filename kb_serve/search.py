@@ -14,26 +14,25 @@ BM25F over two levels (a unit and the topic around it), with five additions, eac
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
 from kb_build.analysis import STOP_WORDS, stem, words
+from kb_serve.inverted import InvertedIndex
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from numpy.typing import NDArray
+
+    from kb_serve.inverted import Scores
     from kb_serve.reader import Reader
 
-Scores = NDArray[np.float32]
-
-K1 = 2.2
 NEAR_WEIGHT = 0.7  # a near word counts by its similarity, times this
 RARE = 3.0  # idf from which on a word's near words are looked at: a common one is Blender's own already
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
@@ -49,9 +48,8 @@ CODE_WEIGHT = 0.6
 FAILED_WEIGHT = 0.3  # the same for an error's message, which a setting may be to blame for too
 UNKNOWN_IDF = 6.0
 _MAX_WORDS = 40
-_KEPT_POSTINGS = 1_500
 _CANDIDATES = 400
-_READ_AHEAD = 80
+_READ_AHEAD = 32
 _MEMBERS = frozenset({"property", "function", "socket"})
 _EXPLAINED_WHOLE = frozenset({"class", "operator"})  # by the page that Blender's table links them to
 _DIFFERENT = 5
@@ -80,71 +78,12 @@ class Concept:
     idf: float
 
 
-@dataclass(frozen=True, slots=True)
-class _Level:
-    """The documents of one level, by number: their topics, chapters, weights, and which are about code."""
-
-    count: int
-    topics: NDArray[np.int32]
-    chapters: NDArray[np.int32]
-    weights: Scores
-    code: NDArray[np.bool_]
-
-
 class Searcher:
-    """Searches one base. The inverted lists that queries touch are kept."""
+    """Searches one base."""
 
     def __init__(self, reader: Reader) -> None:
         self._reader = reader
-        self._postings = lru_cache(maxsize=_KEPT_POSTINGS)(self._read_postings)
-
-    @cached_property
-    def _levels(self) -> tuple[_Level, _Level]:
-        units, topics = self._read_level(0), self._read_level(1)
-        if not _within(units.topics, -1, topics.count):
-            raise self._reader.damaged("its index points at topics that it has not")
-        return units, topics
-
-    def _read_level(self, level: int) -> _Level:
-        sql = "SELECT count, topics, chapters, weights, code FROM levels WHERE level = ?"
-        try:
-            ((count, topics, chapters, weights, code),) = self._reader.rows(sql, level)
-            read = _Level(
-                count,
-                np.frombuffer(topics, np.int32),
-                np.frombuffer(chapters, np.int32),
-                np.frombuffer(weights, np.float32),
-                np.frombuffer(code, np.bool_),
-            )
-        except (ValueError, TypeError) as error:
-            raise self._reader.damaged(error) from error
-        arrays = (read.topics, read.chapters, read.weights, read.code)
-        sound = all(len(array) == count for array in arrays) and np.isfinite(read.weights).all()
-        if not (sound and _within(read.chapters, 0, count)):
-            raise self._reader.damaged(f"level {level} of its index")
-        return read
-
-    def _read_postings(self, level: int, term: str) -> tuple[NDArray[np.uint32], Scores] | None:
-        rows = self._reader.rows("SELECT df, data FROM postings WHERE level = ? AND stem = ?", level, term)
-        if not rows:
-            return None
-        count, data = rows[0]
-        try:
-            numbers = np.frombuffer(data, np.uint32, count)
-            weights = np.frombuffer(data, np.float16, count, offset=4 * count).astype(np.float32)
-        except (ValueError, TypeError) as error:
-            raise self._reader.damaged(error) from error
-        if not (_within(numbers, 0, self._levels[level].count) and np.isfinite(weights).all()):
-            raise self._reader.damaged(f"the postings of {term!r}")
-        return numbers, np.asarray(weights * (K1 + 1) / (weights + K1), np.float32)
-
-    def idf(self, term: str) -> float:
-        """How much a stem tells: ln(1 + (N - df + ½) / (df + ½)) over the units; 0 for an unknown one."""
-        found = self._postings(0, term)
-        if found is None:
-            return 0.0
-        total, df = self._levels[0].count, len(found[0])
-        return math.log(1 + (total - df + 0.5) / (df + 0.5))
+        self.index = InvertedIndex(reader)
 
     # The query
 
@@ -164,64 +103,77 @@ class Searcher:
         allowed = 1 if len(word) < 6 else 2
         matches = process.extract(word, self._spellings, scorer=OSA.distance, score_cutoff=allowed, limit=5)
         same_start = [match for match in matches if match[0][0] == word[0]]
-        ranked = sorted(same_start or matches, key=lambda match: (match[1], -self._frequency(match[0])))
+        ranked = sorted(
+            same_start or matches, key=lambda match: (match[1], -self.index.frequency(stem(match[0])))
+        )
         return ranked[0][0] if ranked else ""
 
-    def _frequency(self, word: str) -> int:
-        found = self._postings(0, stem(word))
-        return 0 if found is None else len(found[0])
-
-    def concepts(self, text: str) -> Iterator[Concept]:
+    def concepts(self, text: str) -> list[Concept]:
         """The query's words with what stands for each in this corpus."""
-        seen: set[str] = set()
+        asked: dict[str, str] = {}
         for word in words(text)[:_MAX_WORDS]:
-            own = stem(word)
-            if word in STOP_WORDS or own in seen:
-                continue
-            seen.add(own)
-            yield self._concept(word, own)
+            if word not in STOP_WORDS:
+                asked.setdefault(stem(word), word)
+        self.index.load(asked)
+        near = self._reader.near(asked.values())
+        concepts = [self._concept(word, own, near.get(word)) for own, word in asked.items()]
+        self.index.load(term for concept in concepts for term, _ in concept.stems)
+        return concepts
 
-    def _concept(self, word: str, own: str) -> Concept:
-        idf = self.idf(own)
+    def _concept(self, word: str, own: str, near: Sequence[tuple[str, float]] | None) -> Concept:
+        """What stands for a word; ``near`` is None for one that is no English."""
+        idf = self.index.idf(own)
         stems: dict[str, float] = {own: 1.0} if idf else {}
-        near = self._reader.near(word)
         if not idf or idf >= RARE:
             for other, similarity in near or ():
                 stems.setdefault(other, NEAR_WEIGHT * similarity)
         if not stems and near is None and (corrected := self.correction(word)):
             stems[stem(corrected)] = 0.95
         if not idf:
-            idf = max((self.idf(term) for term in stems), default=UNKNOWN_IDF)
+            self.index.load(stems)
+            idf = max((self.index.idf(term) for term in stems), default=UNKNOWN_IDF)
         return Concept(word, tuple(stems.items()), idf)
 
     # Scores
 
     def _score(self, level: int, concepts: Sequence[Concept]) -> tuple[Scores, Scores]:
         """(scores, coverages) of every document of a level."""
-        count = self._levels[level].count
+        count = self.index.levels[level].count
         scores, covered = np.zeros(count, np.float32), np.zeros(count, np.float32)
         total = sum(concept.idf for concept in concepts) or 1.0
         for concept in concepts:
+            lists = [
+                (term, weight, found)
+                for term, weight in concept.stems
+                if (found := self.index.postings(level, term)) is not None
+            ]
+            if len(lists) == 1:  # nothing to choose the best of
+                term, weight, found = lists[0]
+                scores[found.numbers] += (
+                    np.float32(weight * self._tells(concept, term, weight)) * found.saturated
+                )
+                covered[found.numbers] += np.float32(concept.idf * weight)
+                continue
             best, spoken = np.zeros(count, np.float32), np.zeros(count, np.float32)
-            for term, weight in concept.stems:
-                postings = self._postings(level, term)
-                if postings is None:
-                    continue
-                numbers, saturated = postings
-                idf = concept.idf if weight == 1.0 else min(concept.idf, self.idf(term))
-                best[numbers] = np.maximum(best[numbers], weight * idf * saturated)
-                spoken[numbers] = np.maximum(spoken[numbers], weight)
+            for term, weight, found in lists:
+                told = np.float32(weight * self._tells(concept, term, weight)) * found.saturated
+                best[found.numbers] = np.maximum(best[found.numbers], told)
+                spoken[found.numbers] = np.maximum(spoken[found.numbers], weight)
             scores += best
             covered += concept.idf * spoken
         covered /= total
         return np.asarray(scores * covered**COVERAGE, np.float32), covered
 
+    def _tells(self, concept: Concept, term: str, weight: float) -> float:
+        """How much a stem tells: the query's own word by itself, another no more than the word it stands for."""
+        return concept.idf if weight == 1.0 else min(concept.idf, self.index.idf(term))
+
     def search(self, text: str, limit: int = 50, *, failed: bool = False) -> list[Found]:
         """The best documents for a text, best first, each id once. ``failed`` where it is an error's message."""
-        concepts = list(self.concepts(text))
-        if not self._levels[0].count or not any(concept.stems for concept in concepts):
+        concepts = self.concepts(text)
+        if not self.index.levels[0].count or not any(concept.stems for concept in concepts):
             return []
-        units, _ = self._levels
+        units, _ = self.index.levels
         own, covered = self._score(0, concepts)
         topical, _ = self._score(1, concepts)
         around = np.where(units.topics >= 0, topical[units.topics], ALONE * own)
@@ -236,7 +188,7 @@ class Searcher:
 
     def _chapter_votes(self, scores: Scores) -> Scores:
         """How much each document's chapter is favoured by the best documents, 0…1."""
-        chapters = self._levels[0].chapters
+        chapters = self.index.levels[0].chapters
         best = _top(scores, _FEEDBACK)
         strength = (scores[best] / max(float(scores[best[0]]), 1e-9)) ** _FEEDBACK_POWER
         votes = np.bincount(chapters[best], strength, int(chapters.max()) + 1).astype(np.float32)
@@ -248,9 +200,9 @@ class Searcher:
         A class or operator and the page that explains it say the same: the second of them waits until the first
         few different things have been named.
         """
-        units, _ = self._levels
+        units, _ = self.index.levels
         first: list[Found] = []
-        same: list[Found] = []
+        waiting: list[Found] = []
         later: list[Found] = []
         seen: set[str | int] = set()
         for number, ref, kind, title, anchor, page in self._documents(order[scores[order] > 0].tolist()):
@@ -262,14 +214,17 @@ class Searcher:
             explained = page.partition("#")[0] if kind in _EXPLAINED_WHOLE else ref
             if topic in seen or name in seen:
                 later.append(found)
-            elif f"/{explained}" in seen:
-                same.append(found)
+            elif f"/{explained}" in seen and len(first) < _DIFFERENT:
+                waiting.append(found)
             else:
                 first.append(found)
+                if len(first) == _DIFFERENT:
+                    first += waiting
             seen.update((ref, name, f"/{explained}", *((topic,) if topic >= 0 else ())))
-            if len(first) == limit:
-                break
-        return (first[:_DIFFERENT] + same + first[_DIFFERENT:] + later)[:limit]
+            if len(first) >= limit:
+                return first[:limit]
+        few = waiting if len(first) < _DIFFERENT else []
+        return [*first, *few, *later][:limit]
 
     def _documents(self, numbers: Sequence[int]) -> Iterator[tuple[int, str, str, str, str, str]]:
         """(number, ref, kind, title, anchor, manual page) of units, in the order given, read as far as wanted."""
@@ -283,10 +238,6 @@ class Searcher:
             if len(rows) < len(wanted):
                 raise self._reader.damaged("documents of its index are gone")
             yield from (rows[number] for number in wanted)
-
-
-def _within(numbers: NDArray[Any], low: int, high: int) -> bool:
-    return not len(numbers) or (int(numbers.min()) >= low and int(numbers.max()) < high)
 
 
 def _top(scores: Scores, count: int) -> NDArray[np.intp]:
