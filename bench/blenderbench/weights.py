@@ -1,0 +1,96 @@
+"""Where CLIP's weights come from: a folder of the user's, or the hub, and only if that is asked for by name."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from bench.blenderbench.clip import SHAPES, Tower
+from bench.blenderbench.errors import NoWeights
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+HUB = "hub"
+REPO = "openai/clip-vit-base-patch32"
+# The conversion of OpenAI's weights to safetensors, which lies beside the repository's main branch; it is the same
+# file in all of them.
+REVISION = "b33cedfd0df4e43b8238760678fcc89e1a0d38b3"
+SHA256 = "99d28a652e6ec46629ab7047a0ac82c69b1fe11e0ce672c43af65d3a9a3fc05d"
+FILE = "model.safetensors"
+MEGABYTES = 605
+_WITHOUT_NETWORK = (
+    f"Without network: where there is one, run 'hf download {REPO} {FILE} --revision {REVISION} --local-dir clip', "
+    f"bring the folder here, and name it: --clip clip ({MEGABYTES} MB)."
+)
+_NO_PACKAGES = "N-CLIP needs the packages of the extra 'clip': pip install 'simworlds[clip]'."
+
+
+@dataclass(frozen=True, slots=True)
+class Clip:
+    """A tower, and which weights it has: where they are from, their SHA-256, whether they are OpenAI's."""
+
+    tower: Tower
+    source: str
+    sha256: str
+
+    @property
+    def told(self) -> dict[str, str | bool]:
+        """For a record."""
+        return {"source": self.source, "sha256": self.sha256, "openai": self.sha256 == SHA256}
+
+
+def load_clip(asked: str, tell: Callable[[str], object]) -> Clip:
+    """The weights in a folder or file; ``hub``: from the hub, or what was fetched from there before.
+
+    Raises NoWeights, and says how to get them.
+    """
+    file, source = _fetched(tell) if asked == HUB else _found(Path(asked).expanduser())
+    tell(f"reading {file}")
+    return Clip(Tower(_read(file)), source, _digest(file))
+
+
+def _found(path: Path) -> tuple[Path, str]:
+    file = path / FILE if path.is_dir() else path
+    if not file.is_file():
+        raise NoWeights(f"There are no weights of CLIP at {file}. {_WITHOUT_NETWORK}")
+    return file, str(file.resolve())
+
+
+def _fetched(tell: Callable[[str], object]) -> tuple[Path, str]:
+    try:
+        from huggingface_hub import hf_hub_download  # noqa: PLC0415 - of an extra
+    except ImportError as error:
+        raise NoWeights(_NO_PACKAGES) from error
+    source = f"{REPO}@{REVISION}"
+    try:
+        kept = hf_hub_download(REPO, FILE, revision=REVISION, local_files_only=True)
+    except (OSError, ValueError):
+        tell(f"fetching {source} ({MEGABYTES} MB)")
+        try:
+            kept = hf_hub_download(REPO, FILE, revision=REVISION)
+        except (OSError, ValueError) as error:
+            said = next(iter(str(error).splitlines()), "") or type(error).__name__
+            raise NoWeights(f"{source} cannot be fetched: {said} {_WITHOUT_NETWORK}") from error
+    return Path(kept), source
+
+
+def _read(file: Path) -> dict[str, Any]:
+    """The vision tower's tensors, and no others."""
+    try:
+        from safetensors import SafetensorError, safe_open  # noqa: PLC0415 - of an extra
+    except ImportError as error:
+        raise NoWeights(_NO_PACKAGES) from error
+    try:
+        with safe_open(file, framework="numpy") as opened:
+            names = SHAPES.keys() & set(opened.keys())
+            return {name: opened.get_tensor(name).astype("float32") for name in names}
+    except (SafetensorError, OSError, ValueError, TypeError, MemoryError) as error:
+        raise NoWeights(f"{file} cannot be read as safetensors: {error}. {_WITHOUT_NETWORK}") from error
+
+
+def _digest(file: Path) -> str:
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()
