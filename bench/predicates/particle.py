@@ -112,13 +112,19 @@ def _comes_out(one: Object, system: Particles, stage: Stage, params: Source) -> 
 
 def particle_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
     """The particles' motion is kept: the cache of one of its emitters, or of its hair with dynamics, is marked as
-    baked, its range covers 95 % of the scene's frames and of the least length of the clip, and it holds 95 % of the
-    frames in which there are particles. Hair without dynamics has no cache, and fails.
+    baked, its range covers 95 % of the scene's frames and of the least length of the clip, not counting those before
+    the first particle is born (Blender begins the cache there), and it holds 95 % of the frames in which there are
+    particles. Hair without dynamics has no cache, and fails.
     """
     del params
-    found = [system.cache for _, system in _systems(unit) if system.cache is not None]
-    filled = [cache for cache in found if is_filled(cache, stage)]
-    return judged(filled, caches=[cache_seen(cache, stage) for cache in found][:4])
+    found = [(system.cache, system) for _, system in _systems(unit) if system.cache is not None]
+    filled = [cache for cache, system in found if is_filled(cache, stage, _since(system))]
+    return judged(filled, caches=[cache_seen(cache, stage) for cache, _ in found][:4])
+
+
+def _since(system: Particles) -> float | None:
+    """When its first particle is born; hair is there from the start."""
+    return system.emission[0] if system.type == "EMITTER" else None
 
 
 def particle_collision_partners(unit: Unit, stage: Stage, params: Partners) -> Verdict:

@@ -49,15 +49,20 @@ def common(first: tuple[int, int], second: tuple[int, int]) -> int:
     return max(0, min(first[1], second[1]) - max(first[0], second[0]) + 1)
 
 
-def spans(frames: tuple[int, int], stage: Stage) -> bool:
-    """Whether a range covers the scene's, and the least length that the scene's spec asks for."""
+def spans(frames: tuple[int, int], stage: Stage, since: float | None = None) -> bool:
+    """Whether a range covers the scene's, and the least length that the scene's spec asks for.
+
+    ``since``: the first frame at which there is anything; those of the scene before it need not be covered.
+    """
     shared = common(frames, stage.scene.range)
-    return shared >= COVERED * stage.scene.length and shared >= COVERED * stage.least_frames
+    before = max(0.0, since - stage.scene.range[0]) if since is not None else 0.0
+    return shared >= COVERED * (max(stage.scene.length, stage.least_frames) - before)
 
 
-def is_filled(cache: PointCache, stage: Stage) -> bool:
-    """Whether a cache is baked, over the clip, and holds the frames."""
-    return cache.is_baked and spans(cache.range, stage) and cache.frames >= max(1.0, COVERED * cache.expected)
+def is_filled(cache: PointCache, stage: Stage, since: float | None = None) -> bool:
+    """Whether a cache is baked, over the clip (from ``since`` on, as for spans), and holds the frames."""
+    held = cache.frames >= max(1.0, COVERED * cache.expected)
+    return cache.is_baked and held and spans(cache.range, stage, since)
 
 
 def cache_seen(cache: PointCache, stage: Stage) -> dict[str, Any]:

@@ -176,6 +176,13 @@ def test_what_should_flow_and_does_not_is_in_no_domain(scenes: dict[str, Scene])
 # The table
 
 
+@pytest.mark.blender
+def test_particles_that_are_born_late_need_no_cache_before(scenes: dict[str, Scene]) -> None:
+    late = judge("particle_cache_baked", scenes["particles"])
+    assert (late.outcome, late.seen["caches"][0]["cache_range"]) == ("passed", [4, 12])
+
+
+@pytest.mark.blender
 def test_a_body_with_struts_inside_is_closed_and_a_sheet_is_open(scenes: dict[str, Scene]) -> None:
     shapes = {one.name: one.topology for name in ("soft", "cloth") for one in scenes[name].objects}
     assert (shapes["Jelly"], shapes["Sheet"]) == ("closed", "open")

@@ -60,7 +60,8 @@ def particles():
     cloth_on(flag).settings.vertex_group_mass = weigh(flag, "Pins")
     flag.modifiers.new("Dust", "PARTICLE_SYSTEM")
     system = flag.particle_systems[0]
-    system.settings.count, system.settings.frame_end, system.settings.lifetime = 30, 8, 20
+    system.settings.count, system.settings.lifetime = 30, 20
+    system.settings.frame_start, system.settings.frame_end = 4, 8
     system.point_cache.frame_end = FRAMES
     add("cube", "Wall", (3, 0, 0)).modifiers.new("Collision", "COLLISION")
     bpy.ops.object.effector_add(type="WIND", location=(0, 0, -2))
