@@ -17,10 +17,7 @@ def build():
     collider(box("Lawn", (9, 7, 0.1), (1, 0, -0.05), colour=(0.12, 0.35, 0.08)), friction=60)
     walls = _slab("Walls", WALL, 0.9, colour=(0.4, 0.25, 0.14))
     slates = _slab("Slates", ROOF, 1.05, colour=(0.2, 0.22, 0.26), roughness=0.2)
-    shed = joined("Garden shed", walls, slates)
-    collider(shed, friction=4)  # wet slate
-    # Told from inside by normals, large faces that are not level let cloth through.
-    shed.collision.use_culling = False
+    collider(joined("Garden shed", walls, slates), friction=4)  # wet slate
     wool = sheet(
         "Striped wool blanket",
         (1.2, 1.5),

@@ -31,6 +31,7 @@ def collider(thing, *, thickness=0.01, inner=0.2, friction=20.0, damping=0.5):
     modifier = thing.modifiers.new("Collision", "COLLISION")
     thing.collision.thickness_outer, thing.collision.thickness_inner = thickness, inner
     thing.collision.cloth_friction = friction
+    thing.collision.use_culling = False  # else cloth sinks through faces that are not level
     thing.collision.damping = thing.collision.damping_factor = damping
     return modifier
 
