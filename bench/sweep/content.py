@@ -1,0 +1,53 @@
+"""Content is what things are known by: digests of files and of data, and files that are written whole or not at all."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+
+def digest_of(value: Any) -> str:
+    """SHA-256 of data that JSON can hold; the order of keys does not matter."""
+    text = json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
+    return hashlib.sha256(text.encode("ascii")).hexdigest()
+
+
+def digest_of_bytes(content: bytes) -> str:
+    """SHA-256 of some bytes."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def digest_of_file(path: Path) -> str:
+    """SHA-256 of a file. Raises OSError."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def digests(folder: Path, files: Iterable[Path]) -> dict[str, str]:
+    """{path below ``folder``: SHA-256} of its ``files``, sorted. Raises OSError."""
+    return {path.relative_to(folder).as_posix(): digest_of_file(path) for path in sorted(files)}
+
+
+def files_below(folder: Path) -> list[Path]:
+    """The plain files below a folder, sorted; links to folders are not followed."""
+    return sorted(path for path in folder.rglob("*") if path.is_file())
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Writes a file so that whoever reads it, whenever this ends, finds the old one or the new one. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with part.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,100 @@
+"""Where a result comes from: the commit, the versions, and the very code that a step stands on."""
+
+from __future__ import annotations
+
+import ast
+import os
+import platform
+import subprocess
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.sweep.content import digest_of, digest_of_file
+from bench.sweep.records import Provenance
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_BENCH = Path(__file__).resolve().parent.parent
+_PACKAGES = ("anthropic", "av", "bpy", "numpy", "openai", "pillow", "pydantic", "ray")
+
+
+@cache
+def code_of(module: str, *beside: str) -> str:
+    """Digest of a module of ``bench`` with all of ``bench`` that it imports, and of files ``beside`` (globs in it)."""
+    paths = {*_closure(module), *(path for pattern in beside for path in _BENCH.glob(pattern))}
+    return digest_of({path.relative_to(_BENCH).as_posix(): digest_of_file(path) for path in paths})
+
+
+def provenance(code: str, blender: str | None = None) -> Provenance:
+    """Of a step that stands on ``code``, done here and now; ``blender``: the version that it used."""
+    commit, dirty = _commit()
+    return Provenance(
+        simworlds=_version("simworlds") or "from source",
+        commit=commit,
+        dirty=dirty,
+        code=code,
+        python=platform.python_version(),
+        packages={name: version for name in _PACKAGES if (version := _version(name))},
+        blender=blender,
+        machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+    )
+
+
+def _closure(module: str) -> set[Path]:
+    """The files of a module and of all of ``bench`` that it imports, at whatever place."""
+    found: set[Path] = set()
+    waiting = [module]
+    while waiting:
+        path = _file_of(waiting.pop())
+        if path is not None and path not in found:
+            found.add(path)
+            waiting += _imported(ast.parse(path.read_bytes()))
+    return found
+
+
+def _imported(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def _file_of(module: str) -> Path | None:
+    top, *parts = module.split(".")
+    if top != _BENCH.name or not parts:
+        return None
+    path = _BENCH.joinpath(*parts).with_suffix(".py")
+    return path if path.is_file() else None
+
+
+@cache
+def _version(package: str) -> str | None:
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+@cache
+def _commit() -> tuple[str | None, bool | None]:
+    """The commit of the checkout that this code is in, and whether tracked files differ from it."""
+    if not (_BENCH.parent / ".git").exists():
+        return None, None
+    commit = _git("rev-parse", "HEAD")
+    changes = _git("status", "--porcelain", "--untracked-files=no")
+    return commit or None, None if changes is None else bool(changes)
+
+
+def _git(*words: str) -> str | None:
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(_BENCH.parent), *words], capture_output=True, text=True, check=False, timeout=20
+        )
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip() if done.returncode == 0 else None

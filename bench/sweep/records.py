@@ -1,0 +1,164 @@
+"""What is known of one scene by one system: ``record.json`` in its folder of the results.
+
+Four steps leave their part: what the system produced, the audit, the frames, the judgement. Each part carries the
+``key`` of all that it was made from, so that a step whose inputs are the same is not done again, and the provenance of
+the code that made it, which may be another for each. A part without a result says why in words.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from bench.sweep.content import write_whole
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+NAME, AUDIT, JUDGEMENT, FRAMES, WORK = "record.json", "audit.json", "judgement.json", "frames", "work"
+FORMAT = 1
+Kind: TypeAlias = Literal["simworlds", "replay", "folder"]
+Ablation: TypeAlias = Literal["no-verifier", "no-stages"]
+# taken: it was there. done, aborted: the system came to its end. Others are tried again by the next sweep.
+Outcome: TypeAlias = Literal["taken", "done", "aborted", "failed", "stopped", "missing"]
+FINAL: tuple[Outcome, ...] = ("taken", "done", "aborted")
+
+
+class BadRecord(Exception):  # noqa: N818 - reads as the state it names
+    """A record that is none; the message says which file, and what is wrong."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class SystemInfo(_Part):
+    """A system as the results know it. ``settings``: all that its results depend on (model, limits, folder, …)."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._+-]{0,79}$")
+    kind: Kind
+    ablations: tuple[Ablation, ...] = ()
+    settings: dict[str, Any] = Field(default_factory=dict[str, Any])
+
+
+class Provenance(_Part):
+    """Which code did a step, with which versions, on what. ``code``: digest of the modules that the step stands on.
+
+    ``commit`` is None where it is not known (an installed package); ``dirty``: tracked files differed from it.
+    """
+
+    simworlds: str
+    commit: str | None
+    dirty: bool | None
+    code: str
+    python: str
+    packages: dict[str, str]
+    blender: str | None
+    machine: str
+
+
+class File(_Part):
+    """A file of the results, or (``source``) of the folder that the system's files are taken from."""
+
+    path: str
+    sha256: str
+    bytes: int
+    source: bool = False
+
+
+class Step(_Part):
+    """What every step leaves: the key of its inputs, when it was done (UTC), how long it took."""
+
+    key: str
+    at: str
+    seconds: float
+    provenance: Provenance
+
+
+class Produced(Step):
+    """What a system made of a prompt. ``prompt`` is what it was given; ``beside``, a digest of the caches it brought.
+
+    ``cost`` (US dollars), ``minutes``, ``models`` and ``tokens`` are the system's own; None where they are not known.
+    """
+
+    outcome: Outcome
+    why: str = ""
+    prompt: str
+    blend: File | None = None
+    beside: str = ""
+    video: File | None = None
+    models: dict[str, str] = Field(default_factory=dict[str, str])
+    cost: float | None = None
+    minutes: float | None = None
+    tokens: dict[str, int] = Field(default_factory=dict[str, int])
+
+
+class Audited(Step):
+    """The audit's scores; the rest is in audit.json. ``why``: it was not scored, for this reason."""
+
+    why: str | None
+    spec: str
+    mpr: float | None = None
+    spr: float | None = None
+    file: File | None = None
+
+
+class Framed(Step):
+    """The frames; ``why`` there are none. ``seed``: of the renderer, where it rendered."""
+
+    why: str | None
+    origin: Literal["blend", "video", "picture"] | None = None
+    frames: tuple[File, ...] = ()
+    notes: tuple[str, ...] = ()
+    seed: int | None = None
+
+
+class Judged(Step):
+    """The judge's scores; the rest is in judgement.json. ``why``: it was not judged, for this reason.
+
+    ``frames``: the digest of the frames that it is about.
+    """
+
+    why: str | None
+    frames: str = ""
+    provider: str = ""
+    model: str = ""
+    prompt_version: str = ""
+    score: float | None = None
+    scores: dict[str, float | None] = Field(default_factory=dict[str, float | None])
+    cost: float | None = None
+    items_cost: float | None = None
+    file: File | None = None
+
+
+class Record(_Part):
+    """One scene by one system."""
+
+    format: Literal[1] = FORMAT
+    scene: str
+    system: SystemInfo
+    produced: Produced | None = None
+    audited: Audited | None = None
+    framed: Framed | None = None
+    judged: Judged | None = None
+
+
+def read_record(folder: Path) -> Record | None:
+    """The record in a scene's folder; None where there is none. Raises BadRecord."""
+    path = folder / NAME
+    try:
+        return Record.model_validate_json(path.read_bytes())
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise BadRecord(f"{path} cannot be read: {error.strerror or error}") from error
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        where = ".".join(map(str, first["loc"])) or "the file"
+        raise BadRecord(f"{path} is no record: {where}: {first['msg']}") from error
+
+
+def write_record(folder: Path, record: Record) -> None:
+    """Writes the record, whole or not at all. Raises OSError."""
+    write_whole(folder / NAME, record.model_dump_json(indent=1).encode() + b"\n")
