@@ -25,11 +25,11 @@ from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from bench.echo import TOOL as ECHO
-from bench.report import Figure, Part, Table
-from bench.setting import REPO, brief, environment, percentile, say, simworlds
+from bench.report import Figure, Part, Table, in_steps
+from bench.setting import REPO, environment, percentile, say, simworlds
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, Callable, Sequence
+    from collections.abc import AsyncGenerator, Sequence
 
     from bench.setting import Setting
 
@@ -58,27 +58,15 @@ len(bpy.data.objects)
 
 
 def measure(setting: Setting) -> Part:
-    """Everything that an agent waits for. What does not work is skipped, and named with the reason."""
-    steps: dict[str, Callable[[Setting], Part]] = {
-        "worker": _worker,
-        "over MCP": lambda setting: anyio.run(_over_mcp, setting),
-        "scenes": lambda setting: anyio.run(_scenes, setting),
-    }
-    parts = [_tried(name, step, setting) for name, step in steps.items()]
-    return Part(
+    """Everything that an agent waits for."""
+    return in_steps(
         "blender",
-        tuple(figure for part in parts for figure in part.figures),
-        tuple(table for part in parts for table in part.tables),
-        tuple(f"{part.name}: {reason}" for part in parts for reason in part.skipped),
-        {part.name: part.data for part in parts},
+        {
+            "worker": lambda: _worker(setting),
+            "over MCP": lambda: anyio.run(_over_mcp, setting),
+            "scenes": lambda: anyio.run(_scenes, setting),
+        },
     )
-
-
-def _tried(name: str, step: Callable[[Setting], Part], setting: Setting) -> Part:
-    try:
-        return step(setting)
-    except Exception as error:  # whatever a broken server makes the client raise
-        return Part(name, skipped=(brief(error),))
 
 
 # The worker by itself

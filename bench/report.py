@@ -14,11 +14,11 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.setting import REPO
+from bench.setting import REPO, brief
 from bench.targets import TARGETS, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 _PACKAGES = (
     "simworlds", "bpy", "mcp", "rank-bm25", "numpy", "rapidfuzz", "sphinx", "beautifulsoup4", "sqlite-utils",
@@ -55,6 +55,25 @@ class Part:
     tables: tuple[Table, ...] = ()
     skipped: tuple[str, ...] = ()
     data: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+
+def in_steps(name: str, steps: Mapping[str, Callable[[], Part]]) -> Part:
+    """A part that is measured step by step. A step that does not work is skipped, and named with the reason."""
+    parts = [_tried(each, step) for each, step in steps.items()]
+    return Part(
+        name,
+        tuple(figure for part in parts for figure in part.figures),
+        tuple(table for part in parts for table in part.tables),
+        tuple(f"{part.name}: {reason}" for part in parts for reason in part.skipped),
+        {part.name: part.data for part in parts},
+    )
+
+
+def _tried(name: str, step: Callable[[], Part]) -> Part:
+    try:
+        return step()
+    except Exception as error:  # whatever a broken server, Blender or command leads to
+        return Part(name, skipped=(brief(error),))
 
 
 def markdown(parts: Sequence[Part], facts: Mapping[str, str]) -> str:

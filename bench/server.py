@@ -10,7 +10,8 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import anyio
@@ -21,12 +22,12 @@ from mcp.client.stdio import stdio_client
 from bench import load
 from bench.echo import TOOL as ECHO
 from bench.memory import children, resident_mb
-from bench.report import Figure, Part, Table
+from bench.report import Figure, Part, Table, in_steps
 from bench.retrieval import read_queries
-from bench.setting import BLENDER, REPO, brief, environment, percentile, say, simworlds
+from bench.setting import BLENDER, REPO, environment, percentile, say, simworlds
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from bench.setting import Setting
 
@@ -47,29 +48,13 @@ class _Stdio:
 
 
 def measure(setting: Setting) -> Part:
-    """Everything that a client or a shell sees. What does not work is skipped, and named with the reason."""
+    """Everything that a client or a shell sees."""
     if reason := _unusable(setting):
         return Part("server", skipped=(reason,))
     steps = {"over stdio": _over_stdio, "simworlds docs": _cold, "under HTTP load": _under_load}
-    parts = [_tried(name, step, setting) for name, step in steps.items()]
-    memory = [(size, part.name) for part in parts for size in part.data.get("resident_mb", ())]
-    return Part(
-        "server",
-        (
-            *(figure for part in parts for figure in part.figures),
-            *(Figure("memory", *most) for most in sorted(memory)[-1:]),
-        ),
-        tuple(table for part in parts for table in part.tables),
-        tuple(f"{part.name}: {reason}" for part in parts for reason in part.skipped),
-        {part.name: part.data for part in parts},
-    )
-
-
-def _tried(name: str, step: Callable[[Setting], Part], setting: Setting) -> Part:
-    try:
-        return step(setting)
-    except Exception as error:  # whatever a broken server makes the client raise
-        return Part(name, skipped=(brief(error),))
+    part = in_steps("server", {name: partial(step, setting) for name, step in steps.items()})
+    memory = sorted((size, name) for name, data in part.data.items() for size in data.get("resident_mb", ()))
+    return replace(part, figures=(*part.figures, *(Figure("memory", *most) for most in memory[-1:])))
 
 
 def _over_stdio(setting: Setting) -> Part:

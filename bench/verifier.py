@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,8 +21,8 @@ from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from bench import verifier_scenes
-from bench.report import Figure, Part, Table
-from bench.setting import REPO, brief, environment, percentile, say, simworlds
+from bench.report import Figure, Part, Table, in_steps
+from bench.setting import REPO, environment, percentile, say, simworlds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -58,27 +59,14 @@ class _Check:
 
 
 def measure(setting: Setting) -> Part:
-    """Everything that is measured of the verifier. What does not work is skipped, and named with the reason."""
-    steps: dict[str, Callable[[Setting, Path], Part]] = {
-        "growth": _growth,
-        "motion": _motion,
-        "loose": _loose,
-        "mutations": _mutations,
-    }
-    parts: list[Part] = []
-    for name, step in steps.items():
-        with tempfile.TemporaryDirectory(prefix="bench-verify-", ignore_cleanup_errors=True) as place:
-            try:
-                parts.append(step(setting, Path(place).resolve()))
-            except Exception as error:  # whatever a broken Blender or command leads to
-                parts.append(Part(name, skipped=(brief(error),)))
-    return Part(
-        "verifier",
-        tuple(figure for part in parts for figure in part.figures),
-        tuple(table for part in parts for table in part.tables),
-        tuple(f"{part.name}: {reason}" for part in parts for reason in part.skipped),
-        {part.name: part.data for part in parts},
-    )
+    """Everything that is measured of the verifier; each step in a folder of its own."""
+    steps = {"growth": _growth, "motion": _motion, "loose": _loose, "mutations": _mutations}
+    return in_steps("verifier", {name: partial(_in_a_folder, step, setting) for name, step in steps.items()})
+
+
+def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Part:
+    with tempfile.TemporaryDirectory(prefix="bench-verify-", ignore_cleanup_errors=True) as place:
+        return step(setting, Path(place).resolve())
 
 
 # What a check costs

@@ -7,6 +7,7 @@ could not understand; readers refuse a newer one.
 from __future__ import annotations
 
 import json
+import sqlite3
 import zlib
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -118,9 +119,46 @@ CREATE INDEX pages_parent ON pages (parent, position);
 """
 
 
-def read_only_uri(path: Path) -> str:
-    """How SQLite opens a base: read-only, and unchanging as long as it is open."""
-    return f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1"
+class NoBase(Exception):  # noqa: N818 - reads as the state it names
+    """A file that is no base this SimWorlds reads; the message says why, and what helps besides building it again."""
+
+
+def open_read_only(path: Path, *, threads: bool = False) -> sqlite3.Connection:
+    """Opens a base read-only, and unchanging as long as it is open. Raises FileNotFoundError and NoBase.
+
+    ``threads``: whether other threads than this one will use it.
+    """
+    if not path.is_file():
+        raise FileNotFoundError(path)
+    uri = f"file:{quote(str(path.resolve()))}?mode=ro&immutable=1"
+    try:
+        connection = sqlite3.connect(uri, uri=True, check_same_thread=not threads)
+    except sqlite3.Error as error:
+        raise NoBase(f"cannot be opened ({error})") from error
+    try:
+        _check(connection)
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _check(connection: sqlite3.Connection) -> None:
+    try:
+        application, version = (
+            int(connection.execute(f"PRAGMA {name}").fetchone()[0])
+            for name in ("application_id", "user_version")
+        )
+    except sqlite3.Error as error:
+        raise NoBase(f"not readable as a knowledge base ({error})") from error
+    if application != APPLICATION_ID:
+        raise NoBase("an SQLite file of something else, not a knowledge base")
+    if version > SCHEMA_VERSION:
+        raise NoBase(
+            f"written by a newer SimWorlds (layout {version}, this one reads {SCHEMA_VERSION}), which reads it: upgrade"
+        )
+    if version < SCHEMA_VERSION:
+        raise NoBase(f"of an older layout ({version}, needed {SCHEMA_VERSION})")
 
 
 def pack(record: dict[str, Any]) -> bytes:

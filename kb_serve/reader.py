@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
-from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, read_only_uri, unpack
+from kb_build.schema import NoBase, open_read_only, unpack
 from kb_serve.errors import BaseMissing, BaseUnreadable
 
 if TYPE_CHECKING:
@@ -64,37 +64,12 @@ _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
 def open_file(path: Path) -> sqlite3.Connection:
     """Opens a base read-only and checks that it is one. Raises BaseMissing or BaseUnreadable."""
-    if not path.is_file():
-        raise BaseMissing(f"{path}: no knowledge base here. Build it first: simworlds kb build")
     try:
-        connection = sqlite3.connect(read_only_uri(path), uri=True, check_same_thread=False)
-    except sqlite3.Error as error:
-        raise BaseUnreadable(f"{path}: cannot be opened ({error}). {_REBUILD}") from error
-    try:
-        _check(connection, path)
-    except BaseException:
-        connection.close()
-        raise
-    return connection
-
-
-def _check(connection: sqlite3.Connection, path: Path) -> None:
-    try:
-        application = connection.execute("PRAGMA application_id").fetchone()[0]
-        version = connection.execute("PRAGMA user_version").fetchone()[0]
-    except sqlite3.Error as error:
-        raise BaseUnreadable(f"{path}: not readable as a knowledge base ({error}). {_REBUILD}") from error
-    if application != APPLICATION_ID:
-        raise BaseUnreadable(f"{path}: an SQLite file of something else, not a knowledge base. {_REBUILD}")
-    if version > SCHEMA_VERSION:
-        raise BaseUnreadable(
-            f"{path}: written by a newer SimWorlds (schema {version}, this one reads {SCHEMA_VERSION}). "
-            "Upgrade SimWorlds, or build the base again with this one: simworlds kb build --force"
-        )
-    if version < SCHEMA_VERSION:
-        raise BaseUnreadable(
-            f"{path}: of an older layout (schema {version}, needed {SCHEMA_VERSION}). {_REBUILD}"
-        )
+        return open_read_only(path, threads=True)
+    except FileNotFoundError:
+        raise BaseMissing(f"{path}: no knowledge base here. Build it first: simworlds kb build") from None
+    except NoBase as error:
+        raise BaseUnreadable(f"{path}: {error}. {_REBUILD}") from error
 
 
 class Reader:

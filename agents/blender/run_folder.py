@@ -17,7 +17,7 @@ from agents.blender.bounds import sweep
 from agents.blender.errors import Refusal
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Generator, Iterator
 
 _NAME = re.compile(r"[\w .()+-]{1,100}")
 SCENE_FILE = "scene.blend"  # in the workspace: the run's own file, as Blender has it open
@@ -143,11 +143,15 @@ def take_beneath(root: Path, relative: str, target: Path, *, durable: bool = Tru
             os.unlink(name, dir_fd=folder)
 
 
+def roots(runs: Path) -> Iterator[Path]:
+    """Folders below ``runs`` that a run may be in, named after the time; each may be taken."""
+    stamp = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
+    return (runs / (stamp if number == 1 else f"{stamp}-{number}") for number in range(1, 1000))
+
+
 def new_run(runs: Path) -> RunFolder:
     """A fresh folder below ``runs``, named after the time."""
-    stamp = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
-    for number in range(1, 1000):
-        root = runs / (stamp if number == 1 else f"{stamp}-{number}")
+    for root in roots(runs):
         try:
             root.mkdir(parents=True)
         except FileExistsError:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from typing import TYPE_CHECKING
 
 from agents.blender.launch import runs_folder
+from agents.blender.run_folder import roots
 from agents.pipeline.errors import NoRun
 from agents.pipeline.history import Ending, History
 from agents.pipeline.journal import NAME
@@ -21,12 +21,7 @@ if TYPE_CHECKING:
 
 def new_root(runs: Path) -> Path:
     """A folder below ``runs`` that is not there yet, named after the time."""
-    stamp = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
-    return next(
-        path
-        for number in range(1, 1000)
-        if not (path := runs / (stamp if number == 1 else f"{stamp}-{number}")).exists()
-    )
+    return next(path for path in roots(runs) if not path.exists())
 
 
 def table_of_runs() -> Table:

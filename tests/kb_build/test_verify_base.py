@@ -121,7 +121,7 @@ def test_what_is_no_base_is_refused(tmp_path: Path, content: bytes | None, messa
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
-        ("PRAGMA user_version = 99", "its layout is number 99"),
+        ("PRAGMA user_version = 99", "newer SimWorlds.*layout 99"),
         ("PRAGMA application_id = 1", "of something else"),
     ],
 )

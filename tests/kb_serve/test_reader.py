@@ -170,7 +170,7 @@ def set_number(path: Path, name: str, value: int) -> None:
 
 @pytest.mark.parametrize(
     ("version", "said"),
-    [(SCHEMA_VERSION + 1, "newer SimWorlds.*Upgrade"), (99, "newer"), (0, "older layout.*--force")],
+    [(SCHEMA_VERSION + 1, "newer SimWorlds.*upgrade"), (99, "newer"), (0, "older layout.*--force")],
 )
 def test_another_layout_is_refused_with_what_to_do(copy: Path, version: int, said: str) -> None:
     set_number(copy, "user_version", version)

@@ -115,6 +115,27 @@ def instances_of(graph):
     return by_maker
 
 
+class Instances:
+    """What the objects of one dependency graph make instances of, found out when it is first asked for."""
+
+    def __init__(self, graph):
+        self._graph = graph
+        self._found = None
+
+    def of(self, thing):
+        """[(shape, matrix)] of the instances that an object makes. Raises TooManyInstances."""
+        if not may_instance(thing):
+            return ()
+        if self._found is None:
+            try:
+                self._found = instances_of(self._graph)
+            except TooManyInstances as reason:
+                self._found = reason
+        if isinstance(self._found, TooManyInstances):
+            raise TooManyInstances(*self._found.args)
+        return self._found.get(thing.name_full, ())
+
+
 def may_instance(thing):
     """Whether an object may make instances."""
     return thing.instance_type != "NONE" or any(modifier.type == "NODES" for modifier in thing.modifiers)

@@ -6,11 +6,10 @@ import math
 import numpy
 from evaluated import (
     AS_MESH,
+    Instances,
     TooManyInstances,
     are_numbers,
     coordinates,
-    instances_of,
-    may_instance,
     mesh_of,
     rendered,
     transformed,
@@ -25,7 +24,7 @@ class GeometryFacts:
     def __init__(self, scene, graph):
         self._graph = graph
         self._rendered = rendered(scene)
-        self._instances = None
+        self._instances = Instances(graph)
 
     def of(self, thing):
         """What the facts say of an object's place and geometry."""
@@ -60,7 +59,7 @@ class GeometryFacts:
             lengths = numpy.linalg.norm(numpy.array(matrix, dtype=float)[:3, :3], axis=0)
             told["dimensions"] = _numbers((points.max(axis=0) - points.min(axis=0)) * lengths)
             boxes.append(transformed(points, matrix))
-        for shape, where in self._made_by(thing):
+        for shape, where in self._instances.of(thing):
             told["polygons"] += shape.polygons
             boxes.append(transformed(shape.corners, where))
         told["surface"] = told["polygons"] > 0
@@ -73,19 +72,6 @@ class GeometryFacts:
             else:
                 told["fault"] = "what it makes instances of is at places that are not numbers"
         return told
-
-    def _made_by(self, thing):
-        """[(shape, matrix)] of the instances that an object makes."""
-        if not may_instance(thing):
-            return ()
-        if self._instances is None:
-            try:
-                self._instances = instances_of(self._graph)
-            except TooManyInstances as reason:
-                self._instances = reason
-        if isinstance(self._instances, TooManyInstances):
-            raise self._instances
-        return self._instances.get(thing.name_full, ())
 
 
 def _own(source):

@@ -3,7 +3,7 @@
 
 import bpy
 import numpy
-from evaluated import Shape, TooManyInstances, are_numbers, instances_of, may_instance, mesh_of
+from evaluated import Instances, Shape, TooManyInstances, are_numbers, mesh_of
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
@@ -180,7 +180,8 @@ class Solids:
     def __init__(self):
         self._graph = bpy.context.evaluated_depsgraph_get()
         self._made = {}
-        self._things = self._instances = None
+        self._instances = Instances(self._graph)
+        self._things = None
         camera = bpy.context.scene.camera
         self._eye = None
         if camera is not None:
@@ -240,16 +241,10 @@ class Solids:
 
     def _instanced(self, thing):
         """[(shape, matrix)] of the instances that an object makes."""
-        if not may_instance(thing):
-            return ()
-        if self._instances is None:
-            try:
-                self._instances = instances_of(self._graph)
-            except TooManyInstances as reason:
-                self._instances = Unmeasurable(str(reason))
-        if isinstance(self._instances, Unmeasurable):
-            raise Unmeasurable(*self._instances.args)
-        return self._instances.get(thing.name_full, ())
+        try:
+            return self._instances.of(thing)
+        except TooManyInstances as reason:
+            raise Unmeasurable(str(reason)) from None
 
 
 # Which triangles meet
