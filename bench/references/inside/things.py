@@ -139,8 +139,9 @@ def joined(name, *things):
 
 
 def smooth(thing):
-    """Shades a thing smoothly."""
+    """Shades a thing smoothly, but for its edges."""
     thing.data.shade_smooth()
+    thing.data.set_sharp_from_angle(angle=math.radians(40))
     return thing
 
 
