@@ -22,10 +22,10 @@ export UV_SYSTEM_CERTS ?= 1
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help setup kb test serve bench lint docs docs-check rule-pictures lock clean
+.PHONY: help setup kb test serve bench bench-validate lint docs docs-check rule-pictures lock clean
 
 help: ## List the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-13s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-15s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 setup: $(STAMP) ## Make .venv with the pinned dependencies
 
@@ -45,6 +45,9 @@ serve: $(STAMP) ## Serve blender_docs over MCP on stdio [SERVE_ARGS=]
 
 bench: $(STAMP) ## Measure retrieval, latency and builds, beside the peers [BENCH_ARGS=]
 	@$(PY) -m bench $(BENCH_ARGS)
+
+bench-validate: $(STAMP) ## Prove what the benchmark must prove about itself, over all scenes [VALIDATE_ARGS=]
+	@.venv/bin/simworlds bench validate --jobs 2 $(VALIDATE_ARGS)
 
 lint: $(STAMP) ## Check style, format and types
 	@.venv/bin/ruff check .

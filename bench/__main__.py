@@ -1,4 +1,4 @@
-"""``python -m bench``: retrieval, latency, servers, builds, Blender and the verifier, beside targets and peers."""
+"""``python -m bench``: retrieval, latency, servers, builds, Blender, the verifier and audits, beside targets."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from kb_serve.errors import KBServeError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-PARTS = ("retrieval", "latency", "server", "builds", "blender", "verifier")
+PARTS = ("retrieval", "latency", "server", "builds", "blender", "verifier", "audits")
 _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")
 
 
