@@ -15,15 +15,16 @@ def build():
     begin(84)
     collider(box("Floorboards", (6, 5, 0.1), (0, 0, -0.05), colour=BOARDS), friction=40)
     collider(_chair(), friction=30)
+    box("Gable wall", (6.2, 0.1, 2.6), (0, 2.55, 1.3), colour=(0.6, 0.52, 0.42))
     beams = [((0.14, 5, 0.2), (x, 0, 2.5)) for x in (-1.4, 0, 1.4)]
-    boxes(
-        "Rafters", [*beams, ((6, 0.16, 0.2), (0, 2.3, 2.3)), ((6, 0.16, 0.2), (0, -2.3, 2.3))], colour=BOARDS
-    )
+    purlins = [((6, 0.16, 0.2), (0, y, 2.3)) for y in (2.42, -2.3)]
+    posts = [((0.16, 0.16, 2.2), (x, -2.3, 1.1)) for x in (-2.9, 2.9)]
+    boxes("Rafters", [*beams, *purlins, *posts], colour=BOARDS)
     linen = sheet(
         "Linen bedsheet", (2.7, 2.5), (54, 50), (0, 0, 1.75), turn=(0, 6, 20), colour=(0.9, 0.88, 0.84)
     )
-    cloth(linen, mass=0.2, stiffness=10, self_collision=True)
-    camera((3.5, -3.2, 1.9), (0, 0, 1.0), lens=27)
+    cloth(linen, mass=0.2, stiffness=10, quality=8, self_collision=True).settings.air_damping = 2  # billows
+    camera((1.9, -4.3, 1.9), (0, 0, 1.0), lens=30)
     light(elevation=60, azimuth=-70, sky=(0.55, 0.5, 0.42))
 
 
