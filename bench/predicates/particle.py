@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, Literal
 from pydantic import Field
 
 from bench.predicates.base import Params, Verdict, judged
-from bench.predicates.reading import admits, cache_seen, collides, is_filled, members, number, partners_of
+from bench.predicates.reading import (
+    admits,
+    blows,
+    cache_seen,
+    collides,
+    is_filled,
+    members,
+    number,
+    partners_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -162,8 +171,8 @@ def particle_from_deformed(unit: Unit, stage: Stage, params: Deformer) -> Verdic
 
 def particle_force_fields(unit: Unit, stage: Stage, params: Fields) -> Verdict:
     """Something moves the particles besides gravity: at least ``min`` objects of the scene have a force field of the
-    types asked for, with a strength other than zero, that reaches the actor's particles: in the collection of their
-    effectors, where they have one, and with a weight above zero for such fields and for all.
+    types asked for, with a strength other than zero or an animated one, that reaches the actor's particles: in the
+    collection of their effectors, where they have one, and with a weight above zero for such fields and for all.
     """
     found: set[str] = set()
     for _, system in _systems(unit):
@@ -171,7 +180,7 @@ def particle_force_fields(unit: Unit, stage: Stage, params: Fields) -> Verdict:
         weights = system.effectors.weights
         for one in stage.scene.objects:
             force = one.force
-            if force is None or force.strength == 0 or (params.types and force.type not in params.types):
+            if force is None or not blows(one) or (params.types and force.type not in params.types):
                 continue
             weight = weights.get("ALL", 1.0) * weights.get(force.type, 1.0)
             if weight > 0 and (within is None or one.name in within):

@@ -118,6 +118,12 @@ def collides(one: Object) -> bool:
     return any(modifier.on for modifier in one.of_type("COLLISION"))
 
 
+def blows(one: Object) -> bool:
+    """Whether it is a force field that has a strength, or at some time gets one: a gust begins with none."""
+    animated = any(channel.path == "field.strength" and channel.varies for channel in one.channels)
+    return one.force is not None and (one.force.strength != 0 or animated)
+
+
 def partners_of(unit: Unit, stage: Stage, names: Iterable[str]) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """Each partner's name with its objects; of none, ``"anything"`` with all objects but the unit's."""
     given = tuple(names)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.facts import GEOMETRY, SOLVERS
 from bench.predicates.base import Verdict, judged
+from bench.predicates.reading import blows
 from bench.roles import UNMARKED, modifiers_of_role, plays
 
 if TYPE_CHECKING:
@@ -37,8 +38,8 @@ def solver_enabled(unit: Unit, stage: Stage, params: Params) -> Verdict:
     """What simulates the actor is switched on where it is edited and where it is rendered. Looked at are the
     modifiers of its role (for a role without any, its solver modifiers), each of which must be shown in the viewport
     and in renders, since a solver that is off in one of the two leaves a different film; of a rigid body, that the
-    body and its world are enabled. An actor without a solver fails, unless its role needs none: then this does not
-    apply.
+    body and its world are enabled; of a force field, that it has a strength other than zero or an animated one. An
+    actor without a solver fails, unless its role needs none: then this does not apply.
     """
     del params
     seen: dict[str, Any] = {}
@@ -57,7 +58,7 @@ def solver_enabled(unit: Unit, stage: Stage, params: Params) -> Verdict:
             seen[f"{one.name}: rigid body"] = {"enabled": on}
             states.append(on)
     if unit.role == "force":
-        states += [one.force.strength != 0 for one in unit.objects if one.force is not None]
+        states += [blows(one) for one in unit.objects if one.force is not None]
     if not states and unit.role in UNMARKED:
         return Verdict("not_applicable", {"role": unit.role})
     return judged(states and all(states), solvers=dict(sorted(seen.items())[:8]))

@@ -183,6 +183,18 @@ def test_particles_that_are_born_late_need_no_cache_before(scenes: dict[str, Sce
 
 
 @pytest.mark.blender
+def test_a_gust_blows_that_begins_with_no_strength(scenes: dict[str, Scene]) -> None:
+    gust = next(one for one in scenes["particles"].objects if one.name == "Gust")
+    assert gust.force is not None
+    assert gust.force.strength == 0
+    stage, whole = Stage(scenes["particles"]), PREDICATES["solver_enabled"]
+    assert whole.judge(Unit((gust,), "force"), stage, whole.read({})).outcome == "passed"
+    fields = PREDICATES["particle_force_fields"]
+    flag = Unit(tuple(one for one in scenes["particles"].objects if one.name == "Flag"))
+    assert fields.judge(flag, stage, fields.read({"types": ["TURBULENCE"]})).outcome == "passed"
+
+
+@pytest.mark.blender
 def test_a_body_with_struts_inside_is_closed_and_a_sheet_is_open(scenes: dict[str, Scene]) -> None:
     shapes = {one.name: one.topology for name in ("soft", "cloth") for one in scenes[name].objects}
     assert (shapes["Jelly"], shapes["Sheet"]) == ("closed", "open")

@@ -66,6 +66,10 @@ def particles():
     add("cube", "Wall", (3, 0, 0)).modifiers.new("Collision", "COLLISION")
     bpy.ops.object.effector_add(type="WIND", location=(0, 0, -2))
     bpy.context.object.name = "Wind"
+    bpy.ops.object.effector_add(type="TURBULENCE")
+    bpy.context.object.name = "Gust"
+    keys(get("Gust"), "field.strength", [0.0, 5.0], [1, FRAMES])
+    bpy.context.scene.frame_set(1)
     bake()
 
 
