@@ -9,7 +9,12 @@ import click
 # Command → the module that defines it, its attribute there, and its line in the list.
 _COMMANDS = {
     "audit": ("bench.cli_audit", "audit", "Audit a .blend by a scene's spec."),
+    "blenderbench": ("bench.blenderbench.cli", "blenderbench", "Score edits on BlenderBench."),
     "judge": ("bench.cli_judge", "judge", "Judge frames by a prompt, item by item."),
+    "estimate": ("bench.cli_results", "estimate", "Tell how long a larger sweep takes."),
+    "report": ("bench.cli_results", "report", "Print the tables of results, and write their page."),
+    "rescore": ("bench.cli_sweep", "rescore", "Score results anew, as far as something changed."),
+    "run": ("bench.cli_sweep", "run", "Score a system on the benchmark's scenes."),
     "list": ("bench.cli_specs", "list_scenes", "List the scenes."),
     "show": ("bench.cli_specs", "show", "Show a scene: its prompt and what it is held to."),
 }

@@ -5,6 +5,7 @@ BlenderBenchError
 ├── BadPicture   a picture that cannot be compared: no PNG, broken, or too large
 ├── NoWeights    CLIP's weights are not there, or are something else
 ├── BadResults   a folder of results that cannot be gone on with, or read
+├── NotReady     a system that cannot be run here; no task could be
 └── NotDone      a task that came to nothing; its record says why, and the others go on
 """
 
@@ -29,6 +30,10 @@ class NoWeights(BlenderBenchError):  # noqa: N818
 
 class BadResults(BlenderBenchError):  # noqa: N818
     """Results cannot be gone on with, or read."""
+
+
+class NotReady(BlenderBenchError):  # noqa: N818
+    """A system cannot be run here."""
 
 
 class NotDone(BlenderBenchError):  # noqa: N818

@@ -67,11 +67,11 @@ def _fetched(tell: Callable[[str], object]) -> tuple[Path, str]:
     source = f"{REPO}@{REVISION}"
     try:
         kept = hf_hub_download(REPO, FILE, revision=REVISION, local_files_only=True)
-    except (OSError, ValueError):
+    except Exception:  # what it raises has no common root
         tell(f"fetching {source} ({MEGABYTES} MB)")
         try:
             kept = hf_hub_download(REPO, FILE, revision=REVISION)
-        except (OSError, ValueError) as error:
+        except Exception as error:
             said = next(iter(str(error).splitlines()), "") or type(error).__name__
             raise NoWeights(f"{source} cannot be fetched: {said} {_WITHOUT_NETWORK}") from error
     return Path(kept), source

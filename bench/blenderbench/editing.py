@@ -1,0 +1,149 @@
+"""SimWorlds' edit mode as a system: the command itself, in a process of its own, taken up again where it was killed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from agents.pipeline.errors import RunError
+from agents.pipeline.journal import NAME as JOURNAL
+from agents.pipeline.retelling import read_history
+from agents.pipeline.stage import MAX_REPLANS_PER_STAGE, MAX_RETRIES_PER_STAGE
+from bench.blenderbench.errors import NotDone, NotReady
+from bench.blenderbench.making import Made, begun
+from bench.blenderbench.results import round_file
+from bench.blenderbench.scenes import Look, render
+from bench.setting import simworlds
+from bench.sweep.ending import ending_with_this
+from bench.sweep.runs import KEYS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from agents.pipeline.history import History
+    from bench.blenderbench.layout import Task
+    from bench.blenderbench.making import Tell
+    from bench.blenderbench.results import Place
+
+Reference = Literal["goal", "visprompt"]
+BUDGET = (
+    f"SimWorlds' own: {MAX_RETRIES_PER_STAGE} retries and {MAX_REPLANS_PER_STAGE} replans a stage (the paper compares "
+    "at 6 iterations)"
+)
+_ENDED = ("done", "aborted")
+_LOG = "edit.log"
+_GRACE_SECONDS = 20.0
+_LAST_WORDS = 600
+
+
+@dataclass(frozen=True, slots=True)
+class SimWorlds:
+    """``simworlds edit`` with the instruction and the goal; its scene, rendered. One round: the finished scene.
+
+    ``reference``: which picture it is given; where a task has no visprompt, the goal. ``options``: further ones of
+    the command, as of its model; ``limits``: of one sitting at it.
+    """
+
+    look: Look
+    reference: Reference = "goal"
+    options: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()
+    kind: str = "simworlds"
+    name: str = "SimWorlds"
+    takes_over: bool = False
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All that the result depends on."""
+        told = {"samples": self.look.samples, "reference": self.reference, "options": list(self.options)}
+        return {**told, "budget": BUDGET}
+
+    def make(self, task: Task, place: Place, tell: Tell) -> Made:
+        """Edits, or goes on with an edit that was broken off; renders what came of it."""
+        before = _history(place)
+        ended = before is not None and before.outcome in _ENDED
+        if not ended and not any(os.environ.get(name) for name in KEYS):
+            raise NotReady(f"'simworlds edit' asks a language model and needs a key: set {KEYS[0]}.")
+        started, loss = begun(task, place, self.look, tell)
+        if not ended:
+            tell("editing")
+            self._run(task, place)
+        history = _history(place)
+        if history is None:
+            raise NotDone(f"the edit did not begin: {_last_words(place)}")
+        file, notes = _result(history, place)
+        tell("rendering the result")
+        rendered = render(file, place.root / round_file(1), task.size, self.look)
+        if rendered.camera != started.rendered.camera:
+            notes += (f"seen by {rendered.camera!r}, not by {started.rendered.camera!r} as the start was",)
+        total = history.total
+        cost = None if total.unpriced else total.cost
+        notes = (*started.notes, *notes)
+        return Made((round_file(1),), loss, rendered, dict(history.models), cost, notes)
+
+    def _run(self, task: Task, place: Place) -> None:
+        given = task.visprompt if self.reference == "visprompt" and task.visprompt else task.goal
+        if (place.edit / JOURNAL).exists():
+            words = ["resume", *self.limits, "--quiet", "--", str(place.edit)]
+        else:
+            look = ["--reference", str(given), "--samples", str(self.look.samples)]
+            words = ["edit", "--run", str(place.edit), *look, *self.options, *self.limits, "--quiet"]
+            words += ["--", str(place.start), task.instruction]
+        _call(words, place.root / _LOG)
+
+
+def _call(words: Sequence[str], log: Path) -> None:
+    """Runs ``simworlds``, which ends with this process, and with it all that it started."""
+    with log.open("ab") as said:
+        process = subprocess.Popen(
+            ending_with_this([*simworlds(), *words]),
+            stdin=subprocess.DEVNULL,
+            stdout=said,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+    try:
+        process.wait()
+    except KeyboardInterrupt:
+        for _ in range(2):  # the first asks for a stop at a safe point, the second for one now
+            process.send_signal(signal.SIGINT)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(_GRACE_SECONDS)
+        raise
+    finally:
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
+def _history(place: Place) -> History | None:
+    """What the journal of the edit tells; None where none was begun."""
+    try:
+        return read_history(place.edit)
+    except RunError:
+        return None
+
+
+def _last_words(place: Place) -> str:
+    with suppress(OSError):
+        said = (place.root / _LOG).read_bytes()[-4 * _LAST_WORDS :].decode(errors="replace")
+        return " ".join(said.split())[-_LAST_WORDS:]
+    return "it said nothing"
+
+
+def _result(history: History, place: Place) -> tuple[Path, tuple[str, ...]]:
+    """The scene that counts, and what is to be said of it. Raises NotDone where there is none."""
+    ending = history.ending
+    if ending is None:
+        raise NotDone(f"the edit was broken off: {_last_words(place)}")
+    file = place.edit / ending.file if ending.file else None
+    if ending.outcome == "done" and file is not None and file.is_file():
+        return file, ()
+    if ending.outcome == "aborted" and file is not None and file.is_file():
+        return file, (f"the edit was aborted, and the last stage that was closed counts: {ending.why}",)
+    raise NotDone(f"the edit {ending.outcome}: {ending.why}")

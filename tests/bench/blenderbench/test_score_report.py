@@ -1,0 +1,258 @@
+"""Scores of what was made, without making it again, and the table of them."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from statistics import fmean
+from typing import TYPE_CHECKING, Any
+
+import clip_sample
+import pytest
+from click.testing import CliRunner
+from fake_messages_api import FakeMessagesAPI, Reply, Status
+from PIL import Image
+from test_vlm import marks
+
+from agents.cli import main
+from bench.blenderbench.clip import Tower, clip_distance
+from bench.blenderbench.layout import LEVELS, Task, TaskSet
+from bench.blenderbench.photometric import photometric_loss
+from bench.blenderbench.pictures import read_picture
+from bench.blenderbench.published import OVERALL, PUBLISHED, TASKS
+from bench.blenderbench.report import as_markdown, read_results
+from bench.blenderbench.results import Score, place_of, read
+from bench.blenderbench.run import run
+from bench.blenderbench.score import Rule, score
+from bench.blenderbench.systems import Folder
+from bench.blenderbench.weights import Clip
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+GREY = 100
+
+
+def bench(*words: object) -> Any:
+    return CliRunner().invoke(main, ["bench", "blenderbench", *map(str, words)])
+
+
+@pytest.fixture
+def found(tmp_path: Path) -> TaskSet:
+    """A set whose goals are grey; nobody opens its scenes."""
+    tasks: list[Task] = []
+    for level, name in (("level1", "a1"), ("level1", "a2"), ("level2", "b1"), ("level3", "c1")):
+        folder = tmp_path / "set" / level / name
+        goal = folder / "renders" / "goal" / "render1.png"
+        goal.parent.mkdir(parents=True)
+        grey(goal, GREY)
+        for file in ("blender_file.blend", "start.py", "task.txt"):
+            (folder / file).write_bytes(b"BLENDER")
+        tasks.append(
+            Task(level, name, folder, folder / "blender_file.blend", "", f"Do {name}.", goal, (32, 16))
+        )
+    return TaskSet(tmp_path / "set", tuple(tasks), ("level1/a3/task.txt is missing.",))
+
+
+def grey(path: Path, shade: int) -> None:
+    Image.new("RGB", (32, 16), (shade, shade, shade)).save(path)
+
+
+@pytest.fixture
+def out(found: TaskSet, tmp_path: Path) -> Path:
+    """Rounds of somebody: all but one task, whose shades differ from the goals' by so many steps."""
+    theirs = tmp_path / "theirs"
+    for task, steps in (("level1/a1", (51, 0, 51)), ("level1/a2", (102,)), ("level2/b1", (0, 51))):
+        (theirs / task).mkdir(parents=True)
+        for number, step in enumerate(steps, 1):
+            grey(theirs / task / f"{number}.png", GREY + step)
+    run(found, found.tasks, Folder(theirs), tmp_path / "out")
+    return tmp_path / "out"
+
+
+def test_the_last_round_counts_and_its_loss_is_the_one_by_hand(out: Path) -> None:
+    scores = {one.task: one for one in score(out, Rule())}
+    assert scores["level1/a1"].pl == pytest.approx(4.0, abs=1e-5)  # 0.2² × 100
+    assert [each.pl for each in scores["level1/a1"].rounds] == pytest.approx([4.0, 0.0, 4.0], abs=1e-5)
+    assert scores["level1/a2"].pl == pytest.approx(16.0, abs=1e-5)
+    assert scores["level2/b1"].chosen == "renders/02.png"
+    assert (scores["level1/a1"].n_clip, scores["level1/a1"].vlm) == (None, None)
+
+
+def test_what_came_to_nothing_is_not_a_zero_and_says_why(out: Path) -> None:
+    last = score(out, Rule())[-1]
+    assert (last.task, last.pl, last.rounds) == ("level3/c1", None, ())
+    assert "has no render" in last.missing["pl"]
+
+
+def test_the_peers_convention_multiplies_nothing(out: Path) -> None:
+    assert score(out, Rule(convention="peer"))[0].pl == pytest.approx(0.04, abs=1e-7)
+
+
+class Shades:
+    """In the place of the tower: pictures are as far apart as their shades."""
+
+    def embed(self, pictures: list[Image.Image]) -> Any:
+        import numpy as np
+
+        turns = [picture.getpixel((0, 0))[0] / 255 for picture in pictures]  # type: ignore[index]
+        return np.array([[np.cos(turn), np.sin(turn)] for turn in turns])
+
+
+def clip() -> Clip:
+    tower: Any = Shades()
+    return Clip(tower, "made up", "0" * 64)
+
+
+def test_the_best_round_is_chosen_by_n_clip_only_where_that_is_asked_for(out: Path) -> None:
+    plain = {one.task: one for one in score(out, Rule(clip=clip()))}
+    best = {one.task: one for one in score(out, Rule(clip=clip(), best_round=True))}
+    assert (plain["level1/a1"].chosen, best["level1/a1"].chosen) == ("renders/03.png", "renders/02.png")
+    assert (plain["level2/b1"].chosen, best["level2/b1"].chosen) == ("renders/02.png", "renders/01.png")
+    assert best["level1/a1"].pl == pytest.approx(0, abs=1e-6)
+    text = as_markdown([read_results(out)])
+    assert "the round that N-CLIP likes best counts" in text
+    assert "other weights than OpenAI's: made up" in text
+
+
+def test_the_best_round_without_weights_is_an_error_and_nothing_is_scored(out: Path) -> None:
+    done = bench("score", out, "--best-round")
+    assert done.exit_code == 2
+    assert "--best-round chooses by N-CLIP" in done.stderr
+    assert not place_of(out, "level1/a1").scores.exists()
+
+
+def test_means_are_over_tasks_and_what_is_missing_is_counted(out: Path) -> None:
+    score(out, Rule())
+    found = read_results(out)
+    assert found.rows["level1"]["pl"].mean == pytest.approx(10, abs=1e-5)
+    assert (found.rows["level3"]["pl"].mean, found.rows["level3"]["pl"].tasks) == (None, 0)
+    assert found.rows[OVERALL]["pl"].mean == pytest.approx(fmean([4, 16, 4]), abs=1e-5)
+    assert found.rows[OVERALL]["pl"].tasks == 3
+
+
+def test_the_table_says_what_it_stands_on(out: Path) -> None:
+    score(out, Rule())
+    text = as_markdown([read_results(out)], published=True)
+    rows = {line.split("|")[1].strip(): line for line in text.splitlines() if line.startswith("| ")}
+    assert rows["Level 1"].split("|")[2].strip() == "10.00"
+    assert rows["Overall"].split("|")[2].strip() == "8.00 (3 of 4)"
+    assert rows["Level 3"].split("|")[2].strip() == "–"
+    assert [cell.strip() for cell in rows["Overall"].split("|")[5:11]] == [
+        "6.02",
+        "5.28",
+        "2.76",
+        "4.63",
+        "4.80",
+        "3.41",
+    ]
+    assert "theirs: 4 of 4 tasks; distances at the goal's size, × 100; the last round counts" in text
+    assert "level1/a3/task.txt is missing." in text
+    assert "level3/c1 has no PL: " in text
+
+
+def test_published_figures_do_not_stand_beside_those_of_another_convention(out: Path) -> None:
+    score(out, Rule(convention="peer"))
+    done = bench("report", out, "--paper")
+    assert done.exit_code == 2
+    assert "Score without --peer" in done.stderr
+
+
+@pytest.mark.parametrize("system", PUBLISHED)
+@pytest.mark.parametrize("metric", [0, 1, 2])
+def test_the_published_overall_figures_are_means_over_26_tasks(system: str, metric: int) -> None:
+    rows = PUBLISHED[system]
+    mean = sum(rows[level][metric] * TASKS[level] for level in LEVELS) / sum(TASKS.values())
+    assert mean == pytest.approx(rows[OVERALL][metric], abs=0.01)
+    if metric == 0:  # and not over nine of each level
+        assert fmean(rows[level][metric] for level in LEVELS) != pytest.approx(rows[OVERALL][metric], abs=0.1)
+
+
+def test_results_that_are_not_scored_alike_are_not_put_together(out: Path, tmp_path: Path) -> None:
+    done = bench("report", out)
+    assert done.exit_code == 2
+    assert "not scored yet" in done.stderr
+    score(out, Rule())
+    shutil.copytree(out, tmp_path / "other")
+    score(tmp_path / "other", Rule(convention="peer"))
+    assert "both conventions" in bench("report", out, tmp_path / "other").stderr
+    shutil.copy(place_of(tmp_path / "other", "level1/a1").scores, place_of(out, "level1/a1").scores)
+    assert "scored in different ways" in bench("report", out).stderr
+
+
+def test_programs_get_every_score_with_its_provenance(out: Path) -> None:
+    score(out, Rule())
+    done = bench("report", out, "--json")
+    assert done.exit_code == 0
+    [told] = json.loads(done.stdout)
+    assert (told["system"], told["convention"], told["best_round"]) == ("theirs", "paper", False)
+    assert told["rows"]["level1"]["pl"] == {"mean": pytest.approx(10, abs=1e-5), "tasks": 2}
+    assert [one["task"] for one in told["scores"]] == ["level1/a1", "level1/a2", "level2/b1", "level3/c1"]
+    assert len(told["scores"][0]["provenance"]["code"]) == 64
+
+
+def test_a_goal_that_was_lost_is_a_reason_and_no_crash(out: Path) -> None:
+    place_of(out, "level1/a1").goal.write_bytes(b"")
+    done = bench("score", out)
+    assert done.exit_code == 1
+    assert "level1/a1: pl is not scored" in done.stderr
+
+
+@pytest.mark.parametrize(("name", "told"), [("none", "holds no results"), ("set", "holds no results")])
+def test_a_folder_without_results_says_so(name: str, told: str, found: TaskSet, tmp_path: Path) -> None:
+    for command in ("score", "report"):
+        done = bench(command, tmp_path / name)
+        assert done.exit_code == 2
+        assert told in done.stderr
+
+
+# Marks
+
+
+def test_the_judge_marks_the_round_that_counts_and_one_who_fails_is_counted(
+    out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with FakeMessagesAPI(lambda params: Reply(json.dumps(marks(3, 4, 4, 4)))) as api:
+        monkeypatch.setenv("ANTHROPIC_API_KEY", "any")
+        api.fail("POST /v1/messages", Status(400))
+        words = ("--judge", "anthropic", "--base-url", api.base_url, "--cache", tmp_path / "kept")
+        done = bench("score", out, *words)
+        assert done.exit_code == 1
+        assert "level1/a1: vlm is not scored: rejected" in done.stderr
+        assert read(place_of(out, "level1/a2").scores, Score).vlm == 3.75
+        asked = len(api.received("POST /v1/messages"))
+        assert bench("score", out, *words).exit_code == 1  # level3/c1 has nothing to show
+        assert len(api.received("POST /v1/messages")) == asked + 1
+    text = as_markdown([read_results(out)])
+    assert "marks by claude-opus-5-5, wording " in text
+    assert "| 3.75" in text
+
+
+def test_a_judge_without_a_key_is_an_error_before_anything_is_scored(out: Path) -> None:
+    done = bench("score", out, "--judge", "anthropic")
+    assert done.exit_code == 2
+    assert "set ANTHROPIC_API_KEY" in done.stderr
+    assert not place_of(out, "level1/a1").scores.exists()
+
+
+# The whole way, with a tower of CLIP's architecture
+
+
+def test_a_set_is_scored_from_raw_files_to_the_table(unedited: Path, mini: TaskSet, tmp_path: Path) -> None:
+    safetensors = pytest.importorskip("safetensors.numpy")
+    safetensors.save_file(clip_sample.weights(), tmp_path / "model.safetensors")
+    out = tmp_path / "out"
+    shutil.copytree(unedited, out)
+    for name in ("level1/table2", "level2", "level3"):
+        shutil.rmtree(out / name)
+    done = bench("score", out, "--clip", tmp_path)
+    assert done.exit_code == 0, done.output
+    task = mini.tasks[0]
+    render, goal = (read_picture(path) for path in (out / task.id / "renders" / "01.png", task.goal))
+    kept = read(place_of(out, task.id).scores, Score)
+    assert kept.pl == pytest.approx(photometric_loss(render, goal))
+    assert kept.n_clip == pytest.approx(clip_distance(Tower(clip_sample.weights()), render, goal), abs=1e-3)
+    assert kept.n_clip > 0
+    text = bench("report", out, "--paper").stdout
+    assert "unedited: 1 of 4 tasks" in text
+    assert "differ from the set's own renders by PL 0.00" in text
