@@ -3,7 +3,7 @@
 
 from physics import cloth, collider
 from stage import begin, camera, light
-from things import box, joined, mesh, sheet
+from things import box, joined, prism, sheet
 
 PITCH = 28  # degrees
 # The roof in the plane of its fall, from ridge to eave (x, z): a slab 0.12 m thick, over walls that follow it.
@@ -15,8 +15,8 @@ def build():
     """Builds the scene."""
     begin(84)
     collider(box("Lawn", (9, 7, 0.1), (1, 0, -0.05), colour=(0.12, 0.35, 0.08)), friction=60)
-    walls = _slab("Walls", WALL, 0.9, colour=(0.4, 0.25, 0.14))
-    slates = _slab("Slates", ROOF, 1.05, colour=(0.2, 0.22, 0.26), roughness=0.2)
+    walls = prism("Walls", WALL, 1.8, colour=(0.4, 0.25, 0.14))
+    slates = prism("Slates", ROOF, 2.1, colour=(0.2, 0.22, 0.26), roughness=0.2)
     collider(joined("Garden shed", walls, slates), friction=4)  # wet slate
     wool = sheet(
         "Striped wool blanket",
@@ -30,14 +30,6 @@ def build():
     cloth(wool, mass=0.4, self_collision=True)
     camera((5.6, -3.9, 2.0), (0.9, 0, 0.9), lens=31)
     light(sun=2.5, elevation=15, azimuth=60, sky=(0.8, 0.6, 0.5), colour=(1, 0.8, 0.6))
-
-
-def _slab(name, outline, half, **look):
-    """An outline (x, z) as a solid from -half to half along y."""
-    count = len(outline)
-    points = [(x, y, z) for y in (-half, half) for x, z in outline]
-    sides = [(i, (i + 1) % count, (i + 1) % count + count, i + count) for i in range(count)]
-    return mesh(name, points, [tuple(range(count))[::-1], tuple(range(count, 2 * count)), *sides], **look)
 
 
 def _stripe(thing, colour):

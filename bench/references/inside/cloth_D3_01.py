@@ -3,19 +3,16 @@
 
 from physics import body, cloth, collider
 from stage import begin, camera, light
-from things import ball, box, boxes, mesh, sheet, weigh
+from things import ball, box, boxes, prism, sheet, weigh
 
 OAK = (0.42, 0.26, 0.12)
-# A wedge: its ends are triangles, its slope falls 0.9 m on 2 m.
-WEDGE = [(x, y, z) for y in (-0.4, 0.4) for x, z in ((-1, 0), (1, 0), (-1, 0.9))]
-SIDES = [(0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)]
 
 
 def build():
     """Builds the scene."""
     begin(84)
     body(box("Flagstones", (12, 6, 0.2), (1.5, 0, -0.1), colour=(0.5, 0.48, 0.44)), "PASSIVE", shape="BOX")
-    body(mesh("Oak ramp", WEDGE, SIDES, (-2, 0, 0), colour=OAK), "PASSIVE", friction=0.8)
+    body(prism("Oak ramp", [(-3, 0), (-1, 0), (-3, 0.9)], 0.8, colour=OAK), "PASSIVE", friction=0.8)
     shot = ball("Cannonball", 0.22, (-2.66, 0, 0.99), colour=(0.08, 0.08, 0.09), roughness=0.5)
     # The damping is what rough stones do to a ball: it stays in sight.
     body(shot, shape="SPHERE", mass=60, friction=0.8).linear_damping = 0.45

@@ -40,6 +40,18 @@ def legs(x, y, height, thick=0.06):
     return [((thick, thick, height), (i, j, height / 2)) for i in (-x, x) for j in (-y, y)]
 
 
+def prism(name, outline, width, at=(0, 0, 0), *, turn=(0, 0, 0), **look):
+    """An outline in the plane of x and z, pairs of these, as a solid of that ``width`` along y, half to either side."""
+    made = bmesh.new()
+    near, far = ([made.verts.new((x, y, z)) for x, z in outline] for y in (-width / 2, width / 2))
+    made.faces.new(near)
+    made.faces.new(far)
+    for one, after in pairwise([*range(len(outline)), 0]):
+        made.faces.new((near[one], near[after], far[after], far[one]))
+    bmesh.ops.recalc_face_normals(made, faces=made.faces)
+    return _finished(name, made, at, turn, look)
+
+
 def ball(name, radius, at=(0, 0, 0), *, detail=3, **look):
     """A ball of even triangles."""
     thing = _made(name, at, (0, 0, 0), look, bmesh.ops.create_icosphere, subdivisions=detail, radius=radius)
