@@ -45,7 +45,8 @@ class Crew(Protocol):
     def work(self, tasks: Sequence[Task], tell: Callable[[Task | None, str], None]) -> Generator[Done]:
         """Does all of them; gives each when it is done.
 
-        ``tell`` hears what is being done for which task; with None, for the whole. When the caller closes the generator, or KeyboardInterrupt goes through it, nothing goes on.
+        ``tell`` hears what is being done for which task; with None, for the whole. When the caller closes the
+        generator, or KeyboardInterrupt goes through it, nothing goes on.
         """
         ...
 

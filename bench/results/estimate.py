@@ -1,0 +1,103 @@
+"""How long a sweep of many systems takes on many machines, from the times of tasks that were measured."""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass
+from statistics import fmean
+from typing import TYPE_CHECKING
+
+from bench.spec import specs
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from bench.results.scores import Results, Scored
+    from bench.spec import Spec
+
+STEPS = ("produced", "audited", "framed", "judged")
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """Seconds. ``work``: by step, over all scenes of one system; ``one``: done one after the other.
+
+    ``measured``: of how many scenes the times were measured; the others are taken to last as long as those of their
+    category do, or else as all do. ``together``: from begin to end, all systems on all machines. ``longest``: of one
+    scene.
+    """
+
+    measured: int
+    scenes: int
+    systems: int
+    machines: int
+    at_a_time: int
+    work: dict[str, float]
+    one: float
+    together: float
+    longest: float
+
+
+def estimate(results: Results, *, systems: int, machines: int, at_a_time: int) -> Estimate | None:
+    """All scenes by so many systems like those measured, ``at_a_time`` on each machine; None without measurements."""
+    times = _measured(results)
+    if not times:
+        return None
+    every = specs()
+    by_scene = {spec.id: _of(spec, times) for spec in every}
+    work = {step: sum(each[step] for each in by_scene.values()) for step in STEPS}
+    tasks = [sum(each.values()) for each in by_scene.values()]
+    return Estimate(
+        measured=len(times),
+        scenes=len(every),
+        systems=systems,
+        machines=machines,
+        at_a_time=at_a_time,
+        work=work,
+        one=sum(tasks),
+        together=makespan(tasks * systems, machines * at_a_time),
+        longest=max(tasks),
+    )
+
+
+def makespan(tasks: Sequence[float], workers: int) -> float:
+    """When the last of ``workers`` is done, if each takes the next task when it is free, in the order given."""
+    free = [0.0] * min(workers, max(1, len(tasks)))
+    for seconds in tasks:
+        heapq.heapreplace(free, free[0] + seconds)
+    return max(free)
+
+
+def _measured(results: Results) -> dict[str, dict[str, float]]:
+    """Scene → step → seconds, the mean over systems."""
+    found: dict[str, list[dict[str, float]]] = {}
+    for system in results.systems:
+        for name, scene in system.scenes.items():
+            if scene.record.audited is not None and scene.record.audited.file is not None:
+                found.setdefault(name, []).append(_seconds(scene))
+    return {
+        name: {step: fmean(each[step] for each in several) for step in STEPS}
+        for name, several in found.items()
+    }
+
+
+def _seconds(scene: Scored) -> dict[str, float]:
+    """What a system took itself is in its minutes: it may have worked in several sittings."""
+    record = scene.record
+    parts = {
+        "produced": record.produced,
+        "audited": record.audited,
+        "framed": record.framed,
+        "judged": record.judged,
+    }
+    seconds = {step: part.seconds if part is not None and part.key else 0.0 for step, part in parts.items()}
+    if record.produced is not None and record.produced.minutes is not None:
+        seconds["produced"] = record.produced.minutes * 60
+    return seconds
+
+
+def _of(spec: Spec, times: dict[str, dict[str, float]]) -> dict[str, float]:
+    if spec.id in times:
+        return times[spec.id]
+    kin = [each for name, each in times.items() if name.partition("_")[0] == spec.category]
+    return {step: fmean(each[step] for each in kin or times.values()) for step in STEPS}

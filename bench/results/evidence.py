@@ -1,0 +1,281 @@
+"""What lies behind a score, as a page shows it: frames, what failed and the values seen, what the judge said.
+
+Results may come from anybody: files are read only below a scene's own folder, pictures are made anew from their pixels,
+and what is not of its shape is left out, and said to be.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import math
+import warnings
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING, Any
+
+from PIL import Image
+from pydantic import ValidationError
+
+from bench.judge.verdicts import Judgement
+from bench.results.audit_file import AuditFile
+from bench.results.scores import METRICS, TITLES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from bench.results.audit_file import Actor, Check, Relation
+    from bench.results.scores import Scored
+    from bench.sweep.records import File
+
+_WIDTH = 480  # pixels of a frame on the page
+_QUALITY = 74
+_MOST_PIXELS = 20_000_000
+_LARGEST = 64 << 20  # bytes of a file of the results
+_SEEN = 260  # letters
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A picture as data of the page."""
+
+    src: str
+    label: str
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """Something that was checked: whether it ``holds`` (None: undecided), and the values seen.
+
+    ``name``: of the predicate or relation that it is. ``negated``: it is asked that this does not hold.
+    """
+
+    what: str
+    holds: bool | None
+    seen: str
+    name: str = ""
+    negated: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What belongs together: an actor's checks, the relations, the items of one dimension. ``how``: more of ``title``.
+
+    ``missing``: there is nothing to check, and so no check passes.
+    """
+
+    title: str
+    how: str
+    score: float | None
+    lines: tuple[Line, ...]
+    missing: bool = False
+
+    @property
+    def failed(self) -> tuple[Line, ...]:
+        """What does not hold."""
+        return tuple(line for line in self.lines if line.holds is False)
+
+    @property
+    def others(self) -> tuple[Line, ...]:
+        """What holds, or is undecided."""
+        return tuple(line for line in self.lines if line.holds is not False)
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """All of one scene by one system. ``notices``: what there is not, or is to be known. ``made``: by whom, and when."""
+
+    frames: tuple[Frame, ...]
+    notices: tuple[str, ...]
+    mechanism: tuple[Part, ...]
+    relations: tuple[Part, ...]
+    judged: tuple[Part, ...]
+    made: str
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """All of them."""
+        return (*self.mechanism, *self.relations, *self.judged)
+
+
+def evidence_of(scene: Scored) -> Evidence:
+    """What is there of a scene."""
+    record = scene.record
+    audit = _audit(scene.folder, record.audited.file if record.audited is not None else None)
+    judgement = _judgement(scene.folder, record.judged.file if record.judged is not None else None)
+    judged = record.judged is not None and record.judged.why is None
+    return Evidence(
+        frames=tuple(_frames(scene)),
+        notices=tuple(_notices(scene, audit)),
+        mechanism=tuple(_mechanism(audit)) if audit is not None else (),
+        relations=tuple(_relations(audit, scene.score("spr"))) if audit is not None else (),
+        judged=tuple(_judged(judgement)) if judgement is not None and judged else (),
+        made=_made(scene),
+    )
+
+
+def _made(scene: Scored) -> str:
+    produced, audited = scene.record.produced, scene.record.audited
+    told: list[str] = []
+    if produced is not None:
+        told += sorted({*produced.models.values()})
+        told += [f"{produced.minutes:.1f} min"] if produced.minutes is not None else []
+        told += [f"${produced.cost:.2f}"] if produced.cost is not None else []
+        told += [f"{produced.blend.path} {produced.blend.sha256[:12]}"] if produced.blend is not None else []
+    if audited is not None and audited.why is None:
+        by = audited.provenance
+        commit = f", commit {by.commit[:12]}{' with changes' if by.dirty else ''}" if by.commit else ""
+        told.append(
+            f"audited {audited.at[:16].replace('T', ' ')} by SimWorlds {by.simworlds}{commit}, Blender {by.blender}"
+        )
+    return " · ".join(told)
+
+
+def _notices(scene: Scored, audit: AuditFile | None) -> Iterator[str]:
+    record = scene.record
+    yield from dict.fromkeys(
+        f"{TITLES[metric]}: not {'judged' if metric == 'vlm' else 'scored'}: {why}"
+        for metric in METRICS
+        if (why := scene.why_not(metric))
+    )
+    if record.produced is not None:
+        if record.produced.outcome not in ("taken", "done", "missing"):
+            why = f": {record.produced.why}" if record.produced.why else ""
+            yield f"The system's run ended as {record.produced.outcome}{why}"
+        if record.produced.prompt != scene.spec.prompt:
+            yield f"It was asked for something else: {record.produced.prompt}"
+    if audit is not None and audit.blend.get("unplayed"):
+        yield f"Motion not looked at: {audit.blend['unplayed']}"
+    if record.framed is not None:
+        yield from (f"Frames: {note}" for note in record.framed.notes)
+        if record.framed.why:
+            yield f"No frames: {record.framed.why}"
+
+
+# The audit
+
+
+def _mechanism(audit: AuditFile) -> Iterator[Part]:
+    for actor in audit.actors:
+        lines = tuple(_check(check) for check in actor.checks)
+        yield Part(
+            actor.name, _found(actor), actor.score, lines, actor.outcome != "resolved" and not actor.score
+        )
+    if audit.assertions:
+        yield Part("the scene as a whole", "", None, tuple(_check(check) for check in audit.assertions))
+
+
+def _found(actor: Actor) -> str:
+    objects = ", ".join(map(str, actor.evidence.get("objects", ())[:6]))
+    how = f"{actor.outcome} by {actor.by}: {objects}" if objects else actor.outcome
+    return f"{actor.role.replace('_', ' ')}, {how}"
+
+
+def _check(check: Check) -> Line:
+    holds = {"passed": True, "failed": False}.get(check.outcome)
+    params = _told(check.params)
+    what = f"{check.predicate} ({params})" if params else check.predicate
+    return Line(what, holds, _cut(_told(check.seen)), check.predicate, check.wanted == "must_not_have")
+
+
+def _relations(audit: AuditFile, score: float | None) -> Iterator[Part]:
+    if audit.relations:
+        yield Part("Relations", "", score, tuple(_relation(one) for one in audit.relations))
+
+
+def _relation(one: Relation) -> Line:
+    seen = one.why or "; ".join(f"{at.when}: {at.unit} {_told(at.seen)}" for at in one.moments)
+    holds = {"holds": True, "does not hold": False}.get(one.outcome)
+    return Line(f"{one.a} {one.type} {one.b}", holds, _cut(seen), one.type)
+
+
+def _told(values: Any) -> str:
+    """Values as a person reads them."""
+    if isinstance(values, dict):
+        return ", ".join(f"{str(name).replace('_', ' ')} {_told(value)}" for name, value in values.items())
+    if isinstance(values, list):
+        nested = any(isinstance(each, (dict, list)) for each in values)
+        return ("; " if nested else " ").join(map(_told, values)) or "none"
+    return values if isinstance(values, str) else json.dumps(values)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= _SEEN else f"{text[: _SEEN - 1]}…"
+
+
+# The judge
+
+
+def _judged(judgement: Judgement) -> Iterator[Part]:
+    for dimension, items in judgement.dimensions.items():
+        lines = tuple(Line(item.text, item.holds, _cut(item.evidence)) for item in items)
+        yield Part(dimension.replace("_", " ").capitalize(), "", judgement.scores[dimension], lines)
+
+
+# Files
+
+
+def _audit(folder: Path, file: File | None) -> AuditFile | None:
+    content = _read(folder, file)
+    try:
+        return AuditFile.model_validate_json(content) if content is not None else None
+    except ValidationError:
+        return None
+
+
+def _judgement(folder: Path, file: File | None) -> Judgement | None:
+    content = _read(folder, file)
+    try:
+        return Judgement.model_validate_json(content) if content is not None else None
+    except ValidationError:
+        return None
+
+
+def _frames(scene: Scored) -> Iterator[Frame]:
+    framed = scene.record.framed
+    for file in framed.frames if framed is not None else ():
+        content = _read(scene.folder, file)
+        frame = _picture(
+            content, f"{int(stem)} %" if (stem := PurePosixPath(file.path).stem).isdecimal() else ""
+        )
+        if frame is not None:
+            yield frame
+
+
+def _read(folder: Path, file: File | None) -> bytes | None:
+    """A plain file of the scene's folder."""
+    if file is None or file.source:
+        return None
+    relative = PurePosixPath(file.path)
+    if relative.is_absolute() or ".." in relative.parts or "\0" in file.path:
+        return None
+    try:
+        path = (folder / relative).resolve()
+        inside = path.is_relative_to(folder.resolve()) and path.is_file()
+        return path.read_bytes() if inside and path.stat().st_size <= _LARGEST else None
+    except (OSError, RuntimeError):
+        return None
+
+
+def _picture(content: bytes | None, label: str) -> Frame | None:
+    if content is None:
+        return None
+    try:
+        with (
+            warnings.catch_warnings(action="error"),
+            Image.open(io.BytesIO(content), formats=("PNG",)) as image,
+        ):
+            if math.prod(image.size) > _MOST_PIXELS:
+                return None
+            small = image.convert("RGB")
+            small.thumbnail((_WIDTH, _WIDTH))
+            made = io.BytesIO()
+            small.save(made, "WEBP", quality=_QUALITY, method=4)
+    except Exception:  # a file that is no picture fails in any way
+        return None
+    src = f"data:image/webp;base64,{base64.b64encode(made.getvalue()).decode()}"
+    return Frame(src, label, small.width, small.height)

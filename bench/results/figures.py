@@ -1,0 +1,155 @@
+"""The numbers of a report: of each system by category and overall, of pairs of systems, of ablations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from bench.results import statistics
+from bench.results.scores import METRICS
+from bench.spec import CATEGORIES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from bench.results.scores import Metric, Results, Scored, SystemResults
+
+OVERALL = "overall"
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A macro average over cells. ``low`` to ``high``: its 95 % interval, None where nothing is known of it.
+
+    ``scenes`` were scored of those ``asked``, in so many ``cells``. ``bound``: the same with those not scored as 0;
+    None where no scene was.
+    """
+
+    value: float | None
+    low: float | None
+    high: float | None
+    bound: float | None
+    scenes: int
+    asked: int
+    cells: int
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """``first`` minus ``second`` over the scenes that both have a score for; ``p`` of the paired permutation test."""
+
+    first: str
+    second: str
+    metric: Metric
+    scenes: int
+    difference: float | None
+    low: float | None
+    high: float | None
+    p: float | None
+    exact: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """One row of the ablations: a system with or without some of its parts, over scenes that all its kin have."""
+
+    system: str
+    without: tuple[str, ...]
+    scores: dict[Metric, float | None]
+    scenes: dict[Metric, int]
+
+
+def figures_of(system: SystemResults) -> dict[Metric, dict[str, Figure]]:
+    """By metric, the figures of each category that has scenes, and OVERALL."""
+    return {metric: _by_category(system, metric) for metric in METRICS}
+
+
+def _by_category(system: SystemResults, metric: Metric) -> dict[str, Figure]:
+    asked = [scene for scene in system.scenes.values() if scene.asks(metric)]
+    found: dict[str, Figure] = {}
+    for category in CATEGORIES:
+        own = [scene for scene in asked if scene.spec.category == category]
+        if own:
+            found[category] = figure(own, metric)
+    found[OVERALL] = figure(asked, metric)
+    return found
+
+
+def figure(asked: Sequence[Scored], metric: Metric) -> Figure:
+    """The figure of some scenes."""
+    scored = [scene for scene in asked if scene.score(metric) is not None]
+    cells = _cells(scored, lambda scene: scene.score(metric) or 0.0)
+    low, high = statistics.interval(cells) or (None, None)
+    bound = statistics.macro(_cells(asked, lambda scene: scene.score(metric) or 0.0)) if scored else None
+    return Figure(statistics.macro(cells), low, high, bound, len(scored), len(asked), len(cells))
+
+
+def _cells(scenes: Iterable[Scored], value: Callable[[Scored], float]) -> dict[str, list[float]]:
+    found: dict[str, list[float]] = {}
+    for scene in sorted(scenes, key=lambda scene: scene.spec.id):
+        found.setdefault(scene.spec.cell, []).append(value(scene))
+    return found
+
+
+def compare(first: SystemResults, second: SystemResults, metric: Metric) -> Comparison:
+    """The paired comparison of two systems."""
+    one, other = (_scores(system, metric) for system in (first, second))
+    cells = {name: scene.spec.cell for name, scene in first.scenes.items()}
+    pairs = statistics.differences(one, other, cells)
+    low, high = statistics.interval(pairs) or (None, None)
+    p, exact = statistics.permutation(pairs) or (None, True)
+    count = sum(len(values) for values in pairs.values())
+    return Comparison(first.name, second.name, metric, count, statistics.macro(pairs), low, high, p, exact)
+
+
+def _scores(system: SystemResults, metric: Metric) -> dict[str, float]:
+    return {
+        name: value
+        for name, scene in sorted(system.scenes.items())
+        if (value := scene.score(metric)) is not None
+    }
+
+
+def comparisons(results: Results, baseline: str | None = None) -> list[Comparison]:
+    """Every other system against the ``baseline`` (the first), by each metric that both have a score of."""
+    against = results.system(baseline) if baseline is not None else next(iter(results.systems), None)
+    if against is None:
+        return []
+    every = (
+        compare(system, against, metric)
+        for system in results.systems
+        if system is not against
+        for metric in METRICS
+    )
+    return [one for one in every if one.scenes]
+
+
+def ablations(results: Results) -> list[Configuration]:
+    """The configurations of one system, the full one first; [] where no part of any was left out.
+
+    They are of one system if all their settings are the same; their scores are over the scenes that all have.
+    """
+    kin: dict[str, list[SystemResults]] = {}
+    for system in results.systems:
+        kin.setdefault(f"{system.info.kind} {sorted(system.info.settings.items())}", []).append(system)
+    families = [each for each in kin.values() if len(each) > 1 and any(one.info.ablations for one in each)]
+    return [row for family in families for row in _configurations(family)]
+
+
+def _configurations(family: list[SystemResults]) -> list[Configuration]:
+    common = {
+        metric: set[str].intersection(*({*_scores(system, metric)} for system in family))
+        for metric in METRICS
+    }
+    rows: list[Configuration] = []
+    for system in sorted(family, key=lambda one: (len(one.info.ablations), one.info.ablations)):
+        shared = {metric: [system.scenes[name] for name in sorted(common[metric])] for metric in METRICS}
+        rows.append(
+            Configuration(
+                system.name,
+                system.info.ablations,
+                {metric: figure(shared[metric], metric).value for metric in METRICS},
+                {metric: len(shared[metric]) for metric in METRICS},
+            )
+        )
+    return rows

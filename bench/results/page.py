@@ -1,0 +1,156 @@
+"""The page of a report: tables, and every scene with its frames, what failed and why; one file, read without a network.
+
+Whatever comes from outside (prompts, names of objects, a judge's words) is text, and escaped as such.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import inspect
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from bench.predicates.table import PREDICATES
+from bench.relations import KINDS
+from bench.results.evidence import Evidence, evidence_of
+from bench.results.scores import METRICS, TITLES
+from bench.results.tables import NAMES, models, number
+from bench.spec import CATEGORIES, specs
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from bench.report import Table
+    from bench.results.scores import Metric, Results, Scored, SystemResults
+    from bench.spec import Spec
+    from bench.sweep.records import Provenance
+
+_FOLDER = Path(__file__).parent / "templates"
+_LEVELS = ("D1", "D2", "D3")
+# What HTML has no place for, and what turns the direction of the text that is read.
+_UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
+
+
+@dataclass(frozen=True, slots=True)
+class Card:
+    """One scene by one system. ``scores``: title → value; ``best``: titles of those that no other system exceeds."""
+
+    system: str
+    scene: Scored | None
+    scores: dict[str, float | None]
+    best: frozenset[str]
+    evidence: Evidence | None
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether anything of it does not hold, or was not scored."""
+        if self.scene is None or self.evidence is None:
+            return False
+        return any(part.failed for part in self.evidence.parts) or any(
+            self.scene.why_not(metric) for metric in METRICS
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A scene, with a card for each system."""
+
+    spec: Spec
+    cards: tuple[Card, ...]
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether there is something to look into."""
+        return any(card.has_failed for card in self.cards)
+
+
+def page(results: Results, tables: Sequence[Table], notes: Sequence[str], seal: Provenance) -> str:
+    """The page as HTML. ``seal``: of the code that makes it."""
+    script = (_FOLDER / "script.js").read_text("utf-8")
+    shown = _shown(results)
+    text = (
+        _environment()
+        .get_template("page.html.jinja")
+        .render(
+            results=results,
+            models=models,
+            tables=tables,
+            notes=notes,
+            seal=seal,
+            scenes=shown,
+            categories=[name for name in CATEGORIES if any(one.spec.category == name for one in shown)],
+            names=NAMES,
+            levels=_LEVELS,
+            total=len(specs()),
+            glossary=_glossary(shown),
+            style=Markup((_FOLDER / "style.css").read_text("utf-8")),  # noqa: S704 - our own file
+            script=Markup(script),  # noqa: S704 - our own file
+            script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        )
+    )
+    return _UNFIT.sub("\N{REPLACEMENT CHARACTER}", text)
+
+
+@cache
+def _environment() -> Environment:
+    made = Environment(
+        loader=FileSystemLoader(_FOLDER),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.filters["score"] = number
+    return made
+
+
+def _shown(results: Results) -> list[Shown]:
+    return [
+        Shown(spec, _cards(spec, results.systems))
+        for spec in specs()
+        if any(spec.id in system.scenes for system in results.systems)
+    ]
+
+
+def _cards(spec: Spec, systems: Sequence[SystemResults]) -> tuple[Card, ...]:
+    scenes = [system.scenes.get(spec.id) for system in systems]
+    best = {metric: _best(scenes, metric) for metric in METRICS}
+    return tuple(
+        Card(
+            system.name,
+            scene,
+            {TITLES[metric]: scene.score(metric) for metric in METRICS if scene.asks(metric)}
+            if scene
+            else {},
+            frozenset(TITLES[metric] for metric in METRICS if scene and scene.score(metric) == best[metric]),
+            evidence_of(scene) if scene else None,
+        )
+        for system, scene in zip(systems, scenes, strict=True)
+    )
+
+
+def _best(scenes: Sequence[Scored | None], metric: Metric) -> float | None:
+    """The highest score, where there are several to choose from, and not all the same; -1 for none."""
+    known = {score for scene in scenes if scene is not None and (score := scene.score(metric)) is not None}
+    return max(known) if len(known) > 1 else -1.0
+
+
+def _glossary(scenes: Sequence[Shown]) -> dict[str, str]:
+    """What the predicates and relations that occur are, by name, as their code says it."""
+    named = {
+        line.name
+        for scene in scenes
+        for card in scene.cards
+        if card.evidence is not None
+        for part in card.evidence.parts
+        for line in part.lines
+    }
+    known = {name: one.definition for name, one in (*PREDICATES.items(), *KINDS.items())}
+    return {name: inspect.cleandoc(known[name]).replace("``", "") for name in sorted(named & known.keys())}

@@ -1,0 +1,242 @@
+"""The tables of a report, as texts: the paper's Table 1, coverage, comparisons, ablations, cost."""
+
+from __future__ import annotations
+
+from collections import Counter
+from statistics import fmean, median
+from typing import TYPE_CHECKING
+
+from bench.report import Table
+from bench.results import paper
+from bench.results.figures import OVERALL, ablations, comparisons, figures_of
+from bench.results.scores import METRICS, TITLES
+from bench.spec import CATEGORIES, specs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from bench.results.figures import Comparison, Configuration
+    from bench.results.scores import Metric, Results, SystemResults
+
+NONE = "–"
+NAMES = {
+    "cloth": "Cloth",
+    "fluid": "Fluid",
+    "rigid": "Rigid body",
+    "particle": "Particle",
+    "soft": "Soft body",
+    "static": "Static",
+    OVERALL: "Overall",
+}
+_CELLS: dict[str, int] = {"mpr": 15, "spr": 17, "vlm": 17}
+_SIDE_BY_SIDE = 2  # systems, with all metrics in one table as the paper has it
+
+
+def tables(results: Results, *, baseline: str | None = None, with_paper: bool = False) -> list[Table]:
+    """All tables that there is something to say in."""
+    found = [*table_1(results, with_paper=with_paper), coverage(results)]
+    if (missing := not_scored(results)) is not None:
+        found.append(missing)
+    if rows := comparisons(results, baseline):
+        found.append(_comparisons(rows))
+    if configurations := ablations(results):
+        found.append(_ablations(configurations, with_paper=with_paper))
+    return [*found, cost(results)]
+
+
+# Table 1
+
+
+def table_1(results: Results, *, with_paper: bool = False) -> Iterator[Table]:
+    """Per category and overall; one table for few systems, else one for each metric."""
+    columns = {system.name: _columns(system) for system in results.systems}
+    if with_paper:
+        columns |= {f"{name} ({paper.SOURCE})": _published(name) for name in paper.TABLE_1}
+    if len(columns) <= _SIDE_BY_SIDE:
+        yield _table_1(METRICS, columns, "Results by category")
+    else:
+        for metric in METRICS:
+            yield _table_1((metric,), columns, f"{TITLES[metric]} by category")
+
+
+def _table_1(
+    metrics: Sequence[Metric], columns: Mapping[str, Mapping[Metric, dict[str, str]]], title: str
+) -> Table:
+    many = len(metrics) > 1
+    header = [f"{TITLES[metric]} {name}" if many else name for metric in metrics for name in columns]
+    rows: list[tuple[str, ...]] = []
+    for category in (*CATEGORIES, OVERALL, "interval", "bound"):
+        cells = [
+            column.get(metric, {}).get(category, NONE) for metric in metrics for column in columns.values()
+        ]
+        if any(cell != NONE for cell in cells):
+            rows.append((_ROWS.get(category, NAMES.get(category, category)), *cells))
+    cells = ", ".join(f"{_CELLS[metric]} of {TITLES[metric]}" for metric in metrics)
+    note = (
+        f"A category's score is the mean of its levels' means; overall is the macro average over cells ({cells}, where "
+        "all are scored), with its 95 % interval by the bootstrap over scenes within cells. "
+        "The last row counts what was not scored as 0."
+    )
+    return Table(title, ("category", *header), tuple(rows), note)
+
+
+_ROWS = {"interval": "95 % interval", "bound": "if not scored is 0"}
+
+
+def _columns(system: SystemResults) -> dict[Metric, dict[str, str]]:
+    found: dict[Metric, dict[str, str]] = {}
+    for metric, figures in figures_of(system).items():
+        overall = figures[OVERALL]
+        found[metric] = {category: number(figure.value) for category, figure in figures.items()}
+        found[metric] |= {"interval": span(overall.low, overall.high), "bound": number(overall.bound)}
+    return found
+
+
+def _published(name: str) -> dict[Metric, dict[str, str]]:
+    return {
+        metric: {category: number(value) for category, value in rows.items()}
+        for metric, rows in paper.TABLE_1[name].items()
+    }
+
+
+# Coverage
+
+
+def coverage(results: Results) -> Table:
+    """How much of the benchmark the scores stand on."""
+    rows = [
+        (
+            system.name,
+            f"{len(system.scenes)} of {len(specs())}",
+            *(
+                f"{figures[OVERALL].scenes} of {figures[OVERALL].asked}"
+                for figures in figures_of(system).values()
+            ),
+        )
+        for system in results.systems
+    ]
+    header = ("system", "scenes", *(f"{TITLES[metric]} scored" for metric in METRICS))
+    return Table("Coverage", header, tuple(rows), "Scenes that a system was not asked for count nowhere.")
+
+
+def not_scored(results: Results) -> Table | None:
+    """What was not scored or judged, and why, the most frequent first; None where all was."""
+    whys = Counter(
+        (system.name, "not judged" if metric == "vlm" else "not scored", why)
+        for system in results.systems
+        for scene in system.scenes.values()
+        for metric in ("mpr" if scene.asks("mpr") else "spr", "vlm")
+        if (why := scene.why_not(metric))
+    )
+    rows = tuple((name, str(count), what, why[:200]) for (name, what, why), count in whys.most_common())
+    return Table("Not scored", ("system", "scenes", "", "why"), rows) if rows else None
+
+
+# Comparisons and ablations
+
+
+def _comparisons(rows: Iterable[Comparison]) -> Table:
+    told = tuple(
+        (
+            f"{one.first} − {one.second}",
+            TITLES[one.metric],
+            str(one.scenes),
+            number(one.difference, signed=True),
+            span(one.low, one.high, signed=True),
+            probability(one),
+        )
+        for one in rows
+    )
+    note = (
+        "Differences of the macro averages over the scenes that both systems have; the interval by the paired "
+        "bootstrap; p by the paired permutation test, two-sided, not corrected for the number of comparisons."
+    )
+    return Table(
+        "Systems compared", ("systems", "score", "scenes", "difference", "95 % interval", "p"), told, note
+    )
+
+
+def probability(one: Comparison) -> str:
+    """p, and whether it is exact."""
+    return NONE if one.p is None else f"{one.p:.4f}{'' if one.exact else ' (drawn)'}"
+
+
+def _ablations(rows: Sequence[Configuration], *, with_paper: bool) -> Table:
+    told = [
+        (
+            row.system,
+            " and ".join(part.replace("-", " ") for part in row.without) or "full",
+            *(number(row.scores[metric]) for metric in METRICS),
+            str(max(row.scenes.values())),
+        )
+        for row in rows
+    ]
+    if with_paper:
+        told += [
+            (f"SimWorlds ({paper.SOURCE})", " and ".join(without).replace("-", " ") or "full",
+             *(number(scores[metric]) for metric in METRICS), "15")
+            for without, scores in paper.ABLATIONS.items()
+        ]  # fmt: skip
+    note = "Over the scenes that all configurations of a system have a score for."
+    header = ("system", "configuration", *(TITLES[metric] for metric in METRICS), "scenes")
+    return Table("Ablations", header, tuple(told), note)
+
+
+# What it took
+
+
+def cost(results: Results) -> Table:
+    """What a scene took: of the system, of scoring it, of judging it."""
+    header = ("system", "models", "$ a scene", "minutes a scene", "audit s", "frames s", "judge $")
+    rows = tuple(
+        (system.name, ", ".join(models(system)) or NONE, *_took(system)) for system in results.systems
+    )
+    note = "Means, with the median of the minutes in brackets; what is not known is left out."
+    return Table("What a scene takes", header, rows, note)
+
+
+def models(system: SystemResults) -> list[str]:
+    """The models that made a system's scenes."""
+    found = Counter(
+        name
+        for scene in system.scenes.values()
+        if scene.record.produced is not None
+        for name in {*scene.record.produced.models.values()}
+    )
+    return sorted(found)
+
+
+def _took(system: SystemResults) -> Iterator[str]:
+    records = [scene.record for scene in system.scenes.values()]
+    produced = [record.produced for record in records if record.produced is not None]
+    costs = [one.cost for one in produced if one.cost is not None]
+    minutes = [one.minutes for one in produced if one.minutes is not None]
+    audits = [
+        one.seconds for record in records if (one := record.audited) is not None and one.file is not None
+    ]
+    frames = [one.seconds for record in records if (one := record.framed) is not None and one.frames]
+    judged = [one.cost for record in records if (one := record.judged) is not None and one.cost is not None]
+    yield f"{fmean(costs):.2f}" if costs else NONE
+    yield f"{fmean(minutes):.1f} ({median(minutes):.1f})" if minutes else NONE
+    yield f"{fmean(audits):.1f}" if audits else NONE
+    yield f"{fmean(frames):.1f}" if frames else NONE
+    yield f"{fmean(judged):.3f}" if judged else NONE
+
+
+# Numbers
+
+
+def number(value: float | None, *, signed: bool = False) -> str:
+    """Two digits behind the point, as the paper has them."""
+    if value is None:
+        return NONE
+    return f"{value:+.2f}".replace("-", "−") if signed else f"{value:.2f}"
+
+
+def span(low: float | None, high: float | None, *, signed: bool = False) -> str:
+    """An interval."""
+    return (
+        NONE
+        if low is None or high is None
+        else f"{number(low, signed=signed)} to {number(high, signed=signed)}"
+    )
