@@ -71,7 +71,13 @@ def tasks(folder: Path) -> None:
 @click.option("--model", metavar="NAME", help="Of SimWorlds.  [default: as of 'simworlds edit']")
 @click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="Of SimWorlds, for each task.")
 @click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help="Of SimWorlds, for each task.")
-@click.option("--seconds", default=1800.0, show_default=True, help="How long a step in Blender may take.")
+@click.option(
+    "--seconds",
+    type=click.FloatRange(1),
+    default=1800.0,
+    show_default=True,
+    help="How long a step in Blender may take.",
+)
 @click.option("--memory", type=click.FloatRange(0.25), help="How much memory Blender may take (GiB).")
 @click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
 @click.option(

@@ -6,6 +6,8 @@ import shutil
 import time
 from typing import TYPE_CHECKING
 
+from pydantic import ValidationError
+
 from agents.blender.errors import Refusal
 from agents.blender.run_folder import locked
 from bench.blenderbench.errors import BadResults, NotDone
@@ -39,7 +41,13 @@ def run(  # noqa: PLR0913
     is being done. Raises BadResults for a folder that holds something else, NotReady for a system that cannot be run,
     CannotStart where no Blender works, OSError where nothing can be written.
     """
-    setup = Setup(name=name or system.name, system=system.kind, set=str(found.root), settings=system.settings)
+    called = {"name": name or system.name, "system": system.kind, "set": str(found.root)}
+    try:
+        setup = Setup(**called, settings=system.settings)
+    except ValidationError as error:
+        raise BadResults(
+            f"{called['name']!r} cannot stand in a table: give 40 letters, digits, spaces and ._+- at most (--name)."
+        ) from error
     try:
         out.mkdir(parents=True, exist_ok=True)
         with locked(out):

@@ -60,7 +60,8 @@ class Folder:
     @property
     def name(self) -> str:
         """The folder's own, as far as a table can have it."""
-        return re.sub(r"[^A-Za-z0-9._+ -]+", "-", self.root.name).strip("-. ")[:40] or "folder"
+        plain = re.sub(r"[^A-Za-z0-9._+ -]+", "-", self.root.name)
+        return re.sub(r"^[^A-Za-z0-9]+", "", plain)[:40] or "folder"
 
     @property
     def settings(self) -> dict[str, Any]:

@@ -238,6 +238,22 @@ def test_a_folder_of_other_results_is_not_mixed_with(mini: TaskSet, look: Look, 
         run(mini, mini.tasks[:1], Folder(theirs), theirs)
 
 
+@pytest.mark.parametrize(
+    ("folder", "name"), [("_viga 2", "viga 2"), ("rendus été", "rendus -t-"), ("результат", "folder")]
+)
+def test_a_folder_gives_its_name_as_far_as_a_table_can_have_it(
+    folder: str, name: str, tmp_path: Path
+) -> None:
+    assert Folder(tmp_path / folder).name == name
+
+
+def test_a_name_that_no_table_can_have_is_an_error(mini: TaskSet, tmp_path: Path) -> None:
+    words = ("--system", f"folder={tmp_path}", "--out", tmp_path / "out", "--name", "a|b\n")
+    done = bench("run", mini.root, *words)
+    assert done.exit_code == 2
+    assert "cannot stand in a table" in done.stderr
+
+
 # SimWorlds itself, but for the model
 
 MOVED = """\
