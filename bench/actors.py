@@ -197,7 +197,7 @@ class _Cast:
         return top
 
     def _members(self, collection: str, owner: str) -> tuple[str, ...]:
-        """The objects in a collection and below it that are the owner's, each followed by its descendants."""
+        """The scene's objects in a collection and below it that are the owner's, each followed by its descendants."""
         found: dict[str, None] = {}
         waiting, seen = [collection], set[str]()
         while waiting:
@@ -206,7 +206,7 @@ class _Cast:
                 continue
             seen.add(name)
             for member in self.collections[name].objects:
-                if self.owners.get(member) == owner:
+                if self.owners.get(member) == owner and self.objects[member].in_scene:
                     found.update(dict.fromkeys(self._tree(member, owner)))
             waiting += self.below.get(name, [])
         return tuple(found)

@@ -108,6 +108,13 @@ def test_it_is_told_by_what_an_actor_was_found(scenes: dict[str, Scene]) -> None
 
 
 @pytest.mark.blender
+def test_what_an_instance_shows_is_no_thing_beside_it(scenes: dict[str, Scene]) -> None:
+    units = find_actors(spec(), scenes["instanced"])["lamp"].units
+    assert [unit.name for unit in units] == ["Lamp"]
+    assert units[0].names == {"Lamp", "Base", "Shade"}
+
+
+@pytest.mark.blender
 def test_lengths_are_metres_whatever_the_unit(scenes: dict[str, Scene]) -> None:
     sizes = [
         {one.name: one.size for one in scenes[guise].objects}["Table"] for guise in ("plain", "other_units")
