@@ -150,12 +150,12 @@ def joined(name, *things):
     return things[0]
 
 
-def fused(name, cell, *things):
-    """Solids that overlap, as one closed solid of even faces of about ``cell``; the look is the first one's."""
+def fused(name, cell, *things, **look):
+    """Solids that overlap, as one closed solid of even faces of about ``cell``."""
     thing = joined(name, *things)
     thing.data.remesh_voxel_size = cell
     bpy.ops.object.voxel_remesh()
-    return smooth(thing)
+    return paint(smooth(thing), **look)
 
 
 def smooth(thing):
