@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import clip_sample
 import pytest
 import team
 from click.testing import CliRunner
@@ -18,11 +19,12 @@ from fake_messages_api import FakeMessagesAPI
 from PIL import Image
 
 from agents.cli import main
+from bench.blenderbench.clip import Tower, clip_distance
 from bench.blenderbench.errors import BadResults
 from bench.blenderbench.layout import read_set
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
-from bench.blenderbench.results import Record, place_of, read, read_run
+from bench.blenderbench.results import Record, Score, place_of, read, read_run
 from bench.blenderbench.run import run
 from bench.blenderbench.scenes import render
 from bench.blenderbench.systems import Folder, Unedited
@@ -368,3 +370,26 @@ def test_a_record_that_is_none_is_an_error_that_names_it(mini: TaskSet, tmp_path
         done = bench("score", out)
         assert done.exit_code == 2
         assert str(path) in done.stderr
+
+
+# The whole way, with a tower of CLIP's architecture
+
+
+def test_a_set_is_scored_from_raw_files_to_the_table(unedited: Path, mini: TaskSet, tmp_path: Path) -> None:
+    safetensors = pytest.importorskip("safetensors.numpy")
+    safetensors.save_file(clip_sample.weights(), tmp_path / "model.safetensors")
+    out = tmp_path / "out"
+    shutil.copytree(unedited, out)
+    for name in ("level1/table2", "level2", "level3"):
+        shutil.rmtree(out / name)
+    done = bench("score", out, "--clip", tmp_path)
+    assert done.exit_code == 0, done.output
+    task = mini.tasks[0]
+    render, goal = (read_picture(path) for path in (out / task.id / "renders" / "01.png", task.goal))
+    kept = read(place_of(out, task.id).scores, Score)
+    assert kept.pl == pytest.approx(photometric_loss(render, goal))
+    assert kept.n_clip == pytest.approx(clip_distance(Tower(clip_sample.weights()), render, goal), abs=1e-3)
+    assert kept.n_clip > 0
+    text = bench("report", out, "--paper").stdout
+    assert "unedited: 1 of 4 tasks" in text
+    assert "differ from the set's own renders by PL 0.00" in text
