@@ -87,7 +87,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """All of one scene by one system. ``notices``: what there is not, or is to be known. ``made``: by whom, and when."""
+    """All of one scene by one system. ``notices``: what there is not, or is to be known. ``made``: by whom, when."""
 
     frames: tuple[Frame, ...]
     notices: tuple[str, ...]

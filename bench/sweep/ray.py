@@ -8,6 +8,7 @@ again elsewhere. Every node needs this very version of SimWorlds with its Blende
 from __future__ import annotations
 
 import os
+import socket
 import tempfile
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, replace
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 _RETRIES = 5  # of a task whose node or worker died
 _AHEAD = 2  # tasks for each processor of the cluster that wait there with their files
+_CONNECT_SECONDS = 10.0
 _WAIT_SECONDS = 5.0  # between two looks at how many processors there are
 
 
@@ -81,22 +83,30 @@ def _connected(address: str) -> Generator[Any]:
     except ImportError as error:
         raise NotReady("--ray needs Ray: install simworlds with its extra 'ray', on every node.") from error
     try:
+        _reach(address)
         ray.init(address=address, log_to_driver=False, configure_logging=False)
-    except (ConnectionError, RuntimeError, ValueError) as error:
+    except (OSError, RuntimeError, ValueError) as error:
         raise NotReady(
             f"There is no Ray cluster at {address!r}: {' '.join(str(error).split())[:300]} Start one with 'ray start "
             "--head', and 'ray start --address=HOST:6379' on other machines."
         ) from error
-    try:
-        # Ray prints there what it does about dead nodes.
-        with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
+    # Ray prints there what it does about dead nodes, some of it only when it is shut down.
+    with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
+        try:
             yield ray
-    except (ConnectionError, RayError) as error:
-        raise NotReady(
-            f"The Ray cluster {address!r} was lost: {' '.join(str(error).split())[:300]}. What was done is kept."
-        ) from error
-    finally:
-        ray.shutdown()
+        except (ConnectionError, RayError) as error:
+            raise NotReady(
+                f"The Ray cluster {address!r} was lost: {' '.join(str(error).split())[:300]}. What was done is kept."
+            ) from error
+        finally:
+            ray.shutdown()
+
+
+def _reach(address: str) -> None:
+    """Raises OSError where nobody listens: Ray would end the whole process over it."""
+    host, _, port = address.removeprefix("ray://").rpartition(":")
+    if host and port.isdecimal():
+        socket.create_connection((host, int(port)), _CONNECT_SECONDS).close()
 
 
 def _outward(task: Task) -> tuple[Parcel, Parcel | None]:
