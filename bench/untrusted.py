@@ -55,6 +55,10 @@ class Crashed(NotScored):
     """Blender ended over the file."""
 
 
+class Refused(NotScored):
+    """What was asked for is not to be had of this file."""
+
+
 @dataclass(frozen=True)
 class Means:
     """Which Blender looks (by default this environment's), how long a file may take (seconds), how much memory (bytes).
@@ -135,12 +139,14 @@ class Untrusted:
             raise Crashed(f"Blender {self._ending()} {self._doing}") from None
         except ValueError:
             raise NotScored(f"Blender answered what is no JSON after {self._doing}") from None
-        if not isinstance(answer, dict) or not answer.keys() & {"value", "refused", "unable"}:
+        if not isinstance(answer, dict) or not answer.keys() & {"value", "refused", "failed", "unable"}:
             raise NotScored(f"Blender answered what it was not asked after {self._doing}")
         if "unable" in answer:
             raise CannotStart(f"{answer['unable']}. Name another Blender, or install what is missing.")
         if "refused" in answer:
-            raise NotScored(str(answer["refused"])[:600])
+            raise Refused(str(answer["refused"])[:600])
+        if "failed" in answer:
+            raise NotScored(str(answer["failed"])[:600])
         return answer["value"]
 
     def _left(self) -> float:

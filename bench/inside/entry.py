@@ -2,9 +2,9 @@
 """Answers what the audit asks about one untrusted .blend: ``entry.py -- DESCRIPTOR``.
 
 The descriptor is a socket that nothing but this module writes to: what Blender prints, about whatever is in the file,
-goes to stdout. Messages are a length (4 bytes, big-endian) and JSON: {"job", "arguments"} in; {"value"}, {"refused"}
-or {"unable"} (a sentence, of the file's fault or of this Blender's) out. No script of the file runs, so nobody else in
-this process knows of the descriptor.
+goes to stdout. Messages are a length (4 bytes, big-endian) and JSON: {"job", "arguments"} in; {"value"}, or in a
+sentence {"refused"} (the file is not fit for it), {"failed"} (nobody knows why) or {"unable"} (this Blender is not)
+out. No script of the file runs, so nobody else in this process knows of the descriptor.
 """
 
 import importlib
@@ -68,7 +68,7 @@ def _answer(message, jobs):
         return {"refused": "it needs more memory than it may have"}
     except Exception as error:
         # A file can be strange in ways that nobody has thought of; that is no reason to say nothing.
-        return {"refused": f"{type(error).__name__}: {error}"}
+        return {"failed": f"{type(error).__name__}: {error}"}
 
 
 def serve(descriptor, jobs):

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a clip shows, frame by frame: where everything is, what shape it has, which particles there are."""
+
+import bpy
+import numpy
+
+_SAME = 1e-5  # of the scene's units, and of a rotation's entries
+
+
+class Film:
+    """``frames``; for each of them, by object's name: ``poses`` (4 × 4) and ``shapes`` (points of meshes, own space).
+
+    ``particles``: for each frame {(emitter, system, number): (object shown, its 4 × 4 in the world)}. ``hair``: for
+    each frame {(object, system): strands, each an array of points in the world}.
+    """
+
+    def __init__(self):
+        self.frames = list(clip())
+        self.poses, self.shapes, self.particles, self.hair = {}, {}, [], []
+
+    def take(self):
+        """Plays the clip and takes everything down. Returns the film."""
+        scene = bpy.context.scene
+        for frame in self.frames:
+            scene.frame_set(frame)
+            graph = bpy.context.evaluated_depsgraph_get()
+            for thing in scene.objects:
+                evaluated = thing.evaluated_get(graph)
+                self.poses.setdefault(thing.name, []).append(numpy.array(evaluated.matrix_world))
+                if thing.type == "MESH":
+                    self.shapes.setdefault(thing.name, []).append(points_of(evaluated.data))
+            self.particles.append(_particles(graph))
+            self.hair.append(_hair(scene, graph))
+        return self
+
+    def moved(self, other):
+        """Names of the objects that are elsewhere in another film of the scene, or not there."""
+        return {name for name, poses in self.poses.items() if not _alike(poses, other.poses.get(name, ()))}
+
+    def shaped(self, other):
+        """Names of the objects that have another shape there, or none."""
+        return {
+            name for name, shapes in self.shapes.items() if not _alike(shapes, other.shapes.get(name, ()))
+        }
+
+    def changes_points(self, name):
+        """Whether a shape has not always as many points."""
+        return len({len(points) for points in self.shapes[name]}) > 1
+
+
+def clip():
+    """The scene's frames."""
+    scene = bpy.context.scene
+    return range(scene.frame_start, scene.frame_end + 1)
+
+
+def points_of(mesh):
+    """The points of a mesh, in its own space (n × 3)."""
+    flat = numpy.empty(3 * len(mesh.vertices), dtype=numpy.float32)
+    mesh.vertices.foreach_get("co", flat)
+    return flat.reshape(-1, 3)
+
+
+def _alike(first, second):
+    return len(first) == len(second) and all(
+        a.shape == b.shape and numpy.allclose(a, b, rtol=0, atol=_SAME)
+        for a, b in zip(first, second, strict=True)
+    )
+
+
+def _particles(graph):
+    found = {}
+    for instance in graph.object_instances:
+        if instance.is_instance and instance.particle_system is not None:
+            key = (instance.parent.original.name, instance.particle_system.name, instance.persistent_id[0])
+            found[key] = (instance.object.original.name, numpy.array(instance.matrix_world))
+    return found
+
+
+def _hair(scene, graph):
+    found = {}
+    for thing in scene.objects:
+        evaluated = thing.evaluated_get(graph)
+        for system in evaluated.particle_systems:
+            settings = system.settings
+            if settings.type == "HAIR" and settings.render_type == "PATH":
+                steps = range(2**settings.display_step + 1)
+                count = len(system.particles) + len(system.child_particles)
+                found[thing.name, system.name] = [
+                    numpy.array(
+                        [system.co_hair(object=evaluated, particle_no=number, step=step) for step in steps]
+                    )
+                    for number in range(count)
+                ]
+    return found

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small pictures of the open scene, and how much two series of them differ."""
+
+import bpy
+import numpy
+
+_WIDTH, _HEIGHT = 160, 90
+_GAS_WIDTH, _GAS_HEIGHT, _SAMPLES = 96, 54, 16
+
+
+def take(path, gases):
+    """Renders start, middle and end to ``path`` with -0, -1, -2.png.
+
+    By Workbench; where there are ``gases``, of which that shows nothing when they are volumes, by Cycles.
+    """
+    scene = bpy.context.scene
+    render = scene.render
+    render.resolution_percentage, render.use_motion_blur = 100, False
+    render.use_compositing = render.use_sequencer = False
+    render.image_settings.file_format, render.image_settings.color_mode = "PNG", "RGB"
+    if gases:
+        render.engine = "CYCLES"
+        render.resolution_x, render.resolution_y = _GAS_WIDTH, _GAS_HEIGHT
+        cycles = scene.cycles
+        cycles.samples, cycles.seed, cycles.use_denoising = _SAMPLES, 0, False
+        cycles.use_adaptive_sampling, cycles.max_bounces = False, 2
+        cycles.volume_biased = True  # by far the quicker way at this size
+    else:
+        render.engine = "BLENDER_WORKBENCH"
+        render.resolution_x, render.resolution_y = _WIDTH, _HEIGHT
+    first, last = scene.frame_start, scene.frame_end
+    for number, frame in enumerate((first, (first + last) // 2, last)):
+        scene.frame_set(frame)
+        render.filepath = f"{path}-{number}.png"
+        bpy.ops.render.render(write_still=True)
+
+
+def compare(first, second):
+    """The mean absolute difference of red, green and blue (0 to 1) over both series, as they were saved."""
+    pairs = [(_pixels(f"{first}-{number}.png"), _pixels(f"{second}-{number}.png")) for number in range(3)]
+    return float(numpy.mean([numpy.abs(one - two).mean() for one, two in pairs]))
+
+
+def _pixels(path):
+    image = bpy.data.images.load(path)
+    try:
+        image.colorspace_settings.name = "Non-Color"
+        flat = numpy.empty(len(image.pixels), dtype=numpy.float32)
+        image.pixels.foreach_get(flat)
+        return flat.reshape(-1, image.channels)[:, :3]
+    finally:
+        bpy.data.images.remove(image)

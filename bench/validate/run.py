@@ -1,0 +1,136 @@
+"""Proves properties of scenes, several scenes at a time, each in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import active_children, get_context
+from typing import TYPE_CHECKING
+
+from agents.blender.errors import BlenderError
+from agents.blender.launch import find_blender
+from bench.references.build import CannotBuild, build, has_reference
+from bench.spec import specs
+from bench.untrusted import Means, NotScored
+from bench.validate.desk import Desk
+from bench.validate.kept import keep, kept_proof, key_of
+from bench.validate.proof import Proof
+from bench.validate.properties import ASKED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from bench.spec import Spec
+    from bench.validate.proof import Property
+
+# One scene may have three dozen variants; each file has its own time within this.
+_SECONDS = 300.0
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A scene, what is to be proven of it, and whether what is kept is to be proven again.
+
+    ``blend``: the scene's file; None: its reference, built where it is not there.
+    """
+
+    spec: Spec
+    properties: tuple[Property, ...]
+    again: bool = False
+    blend: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """What came of a task: a proof for each property; how many of them were kept; seconds of building and proving."""
+
+    scene: str
+    proofs: tuple[Proof, ...]
+    kept: int
+    built: float
+    proven: float
+
+
+def subset() -> tuple[Spec, ...]:
+    """One scene of each category and level: its first."""
+    first: dict[str, Spec] = {}
+    for spec in specs():
+        first.setdefault(spec.cell, spec)
+    return tuple(first.values())
+
+
+def prove_all(tasks: Sequence[Task], jobs: int) -> Iterator[Done]:
+    """Does tasks, as many at a time as ``jobs``; what is done first comes first. An interrupt ends all of them."""
+    if jobs <= 1:
+        yield from map(prove, tasks)
+        return
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_begin) as pool:
+        waiting = [pool.submit(prove, task) for task in tasks]
+        try:
+            for future in as_completed(waiting):
+                yield future.result()
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for child in active_children():
+                os.kill(child.pid or 0, signal.SIGINT)
+            raise
+
+
+def _begin() -> None:
+    """Leaves a terminal's interrupts to the first process, which passes them on once."""
+    os.setpgid(0, 0)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def prove(task: Task) -> Done:
+    """Does one task. What hinders it is told in its proofs."""
+    started = time.monotonic()
+    scene = task.spec.id
+    try:
+        blend = task.blend or _reference(task.spec)
+        key = key_of(task.spec, blend, find_blender().version)
+    except (CannotBuild, BlenderError, OSError) as error:
+        return Done(scene, tuple(_unable(scene, each, error) for each in task.properties), 0, 0.0, 0.0)
+    built = time.monotonic()
+    proofs = {} if task.again else {each: kept_proof(scene, each, key) for each in task.properties}
+    missing = tuple(each for each in task.properties if proofs.get(each) is None)
+    made = {proof.about: proof for proof in _proofs(task.spec, blend, missing, key)} if missing else {}
+    found = tuple(made.get(each) or proofs[each] for each in task.properties)
+    kept = len(task.properties) - len(missing)
+    return Done(
+        scene, tuple(proof for proof in found if proof), kept, built - started, time.monotonic() - built
+    )
+
+
+def _reference(spec: Spec) -> Path:
+    if not has_reference(spec.id):
+        raise CannotBuild(f"there is no reference scene for {spec.id} yet")
+    return build(spec.id)
+
+
+def _proofs(spec: Spec, blend: Path, properties: Sequence[Property], key: str) -> Iterator[Proof]:
+    with Desk(spec, blend, Means(seconds=_SECONDS)) as desk:
+        for each in properties:
+            proof = prove_on(desk, each)
+            if not proof.unable:
+                keep(proof, key)
+            yield proof
+
+
+def prove_on(desk: Desk, about: Property) -> Proof:
+    """Proves one property of the scene on the desk."""
+    started = time.monotonic()
+    scene = desk.spec.id
+    try:
+        rows = tuple(ASKED[about].prove(desk))
+    except (NotScored, BlenderError, OSError) as error:
+        return _unable(scene, about, error)
+    return Proof(scene=scene, about=about, rows=rows, seconds=round(time.monotonic() - started, 2))
+
+
+def _unable(scene: str, about: Property, error: Exception) -> Proof:
+    return Proof(scene=scene, about=about, unable=str(error) or type(error).__name__)
