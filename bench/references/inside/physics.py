@@ -37,11 +37,11 @@ def collider(thing, *, thickness=0.01, inner=0.2, friction=20.0, damping=0.5):
 
 
 def soft(thing, *, goal="", mass=1.0, stiffness=0.7, bending=0.5, stretch=0.0, damping=5.0, collision=None):
-    """A soft body, held by the vertex group ``goal`` where one is named."""
+    """A soft body. What is in the vertex group ``goal``, where one is named, is held fast by a weight of 1."""
     modifier = thing.modifiers.new("Softbody", "SOFT_BODY")
     settings = modifier.settings
     settings.mass = mass
-    settings.use_goal, settings.vertex_group_goal = bool(goal), goal
+    settings.use_goal, settings.vertex_group_goal, settings.goal_default = bool(goal), goal, 1.0
     settings.use_edges = settings.use_stiff_quads = True
     settings.pull = settings.push = stiffness
     settings.bend, settings.plastic, settings.damping = bending, int(100 * stretch), damping

@@ -31,7 +31,7 @@ def build():
         fused("Rubber cactus", 0.027, trunk, crown, *arms, colour=(0.1, 0.42, 0.16), roughness=0.4)
     )
     root = weigh(cactus, "Root", lambda point: point.z < -0.22)
-    soft(cactus, goal=root, stiffness=0.97, bending=0, damping=0).settings.goal_default = 1.0
+    soft(cactus, goal=root, stiffness=0.97, bending=0, damping=0)
     gust = field("Gust of wind", "WIND", 0, (-1, 0, EARTH + 0.3), turn=(0, 1.57, 0))
     keys(gust, "field.strength", {1: 0.0, 10: 0.0, 16: 30.0, 26: 30.0, 32: 0.0})
     camera((0.5, -1.7, 1.35), (0.05, 0, 1.22), lens=36)
