@@ -170,8 +170,8 @@ def domain(thing, kind="LIQUID", *, resolution=40, mesh=True, adaptive=False):
 
 
 def flow(thing, kind="LIQUID", *, behavior="INFLOW", speed=None):
-    """Where a fluid comes from, or (``behavior`` GEOMETRY) is at the start: then it is not rendered, as what is there is
-    the fluid. ``speed``: of what comes out, m/s.
+    """Where a fluid comes from, or (``behavior`` GEOMETRY) is at the start: then it is not rendered, as what is there
+    is the fluid. ``speed``: of what comes out, m/s.
     """
     thing.hide_render = behavior == "GEOMETRY"
     modifier = thing.modifiers.new("Fluid", "FLUID")
@@ -198,6 +198,9 @@ def bake(fluids_in):
     domains = [thing for thing in scene.objects if any(_is_domain(one) for one in thing.modifiers)]
     if scene.rigidbody_world is not None or _cached(scene):
         bpy.ops.ptcache.bake_all(bake=True)
+    for hairs in _moving_hair(scene):  # which Blender leaves out when it bakes all
+        with bpy.context.temp_override(point_cache=hairs.point_cache):
+            bpy.ops.ptcache.bake(bake=True)
     for number, thing in enumerate(domains):
         settings = next(one for one in thing.modifiers if _is_domain(one)).domain_settings
         settings.cache_directory = f"{fluids_in}/{number}"
@@ -207,6 +210,11 @@ def bake(fluids_in):
 
 def _is_domain(modifier):
     return modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN"
+
+
+def _moving_hair(scene):
+    systems = [system for thing in scene.objects for system in thing.particle_systems]
+    return [system for system in systems if system.settings.type == "HAIR" and system.use_hair_dynamics]
 
 
 def _cached(scene):
