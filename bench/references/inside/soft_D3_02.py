@@ -38,7 +38,7 @@ def build():
     effector(frog).subframes = 2
     _water()
     camera((0.75, -1.75, 1.15), (-0.1, 0, 0.3), lens=34)
-    light(elevation=65, sky=(0.7, 0.8, 0.75))
+    light(sun=2, elevation=65, sky=(0.4, 0.48, 0.44))
 
 
 def _ledge():
