@@ -23,7 +23,7 @@ DOME = [
 def build():
     """Builds the scene."""
     begin(72)
-    box("Kitchen worktop", (1.2, 0.8, 0.05), (0, 0, TOP - 0.025), colour=(0.55, 0.5, 0.45))
+    box("Kitchen worktop", (1.2, 0.8, TOP), (0, 0, TOP / 2), colour=(0.55, 0.5, 0.45))
     plate = revolved("Pewter plate", PLATE, (0, 0, TOP), colour=(0.5, 0.5, 0.53), metal=1.0, roughness=0.4)
     collider(plate, thickness=0.004, inner=0.006, damping=0.2)
     dome = [(0, 0), *DOME, (0.025, 0.133), (0, 0.135)]

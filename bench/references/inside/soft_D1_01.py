@@ -4,7 +4,7 @@
 from physics import collider, soft
 from stage import begin, camera, keys, light
 from struts import braced
-from things import box, revolved
+from things import boxes, legs, revolved
 
 PLATE = [(0, 0), (0.12, 0), (0.2, 0.02), (0.2, 0.026), (0.12, 0.012), (0, 0.012)]
 SIDE = [
@@ -22,7 +22,7 @@ SHELL = 0.006
 def build():
     """Builds the scene."""
     begin(72)
-    box("Tea table", (1.2, 0.8, 0.04), (0, 0, 0.7), colour=(0.4, 0.24, 0.12))
+    boxes("Tea table", [*legs(0.55, 0.35, 0.68), ((1.2, 0.8, 0.04), (0, 0, 0.7))], colour=(0.4, 0.24, 0.12))
     plate = revolved("China plate", PLATE, (0, 0, 0.72), colour=(0.9, 0.9, 0.88), roughness=0.2)
     collider(plate, thickness=0.004, inner=0.006, damping=0.2)
     profile = [(0, 0), (0.07, 0), (0.1, 0), *SIDE, (0.025, 0.15), (0, 0.15)]

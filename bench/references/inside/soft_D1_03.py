@@ -23,14 +23,7 @@ LUMP = [
 def build():
     """Builds the scene."""
     begin(84)
-    counter = box(
-        "Steel counter",
-        (1.9, 0.9, 0.2),
-        (0, 0, TOP - 0.1),
-        colour=(0.6, 0.62, 0.65),
-        metal=1.0,
-        roughness=0.35,
-    )
+    counter = box("Steel counter", (1.9, 0.9, TOP), (0, 0, TOP / 2), colour=(0.6, 0.62, 0.65), metal=1.0)
     collider(counter, thickness=0.004, inner=0.05, damping=0.5)
     box("Flour", (0.5, 0.5, 0.002), (-0.4, 0, TOP + 0.001), colour=(0.92, 0.9, 0.86))
     wood = (0.7, 0.5, 0.3)

@@ -15,6 +15,7 @@ def build():
     """Builds the scene."""
     begin(96)
     box("Windowsill", (1.4, 0.36, 0.06), (0, 0, SILL - 0.03), colour=(0.85, 0.83, 0.78))
+    box("Wall", (1.4, 0.26, SILL - 0.06), (0, 0.05, SILL / 2 - 0.03), colour=(0.7, 0.66, 0.6))
     revolved("Terracotta pot", POT, (0, 0, SILL), colour=(0.6, 0.27, 0.14), roughness=0.9)
     trunk = cylinder("Trunk", 0.055, 0.5, (0, 0, EARTH + 0.25))
     crown = ball("Crown", 0.055, (0, 0, EARTH + 0.5))

@@ -7,7 +7,7 @@ They are larger than life: what falls as far as it is tall, when that is a centi
 from physics import collider, soft
 from stage import begin, camera, light
 from struts import braced
-from things import ball, box, fused, revolved
+from things import ball, boxes, fused, legs, revolved
 
 TOP = 0.72
 DISH = [(0, 0), (0.4, 0), (0.62, 0.05), (0.62, 0.075), (0.4, 0.04), (0, 0.04)]
@@ -27,7 +27,11 @@ EARS = [(0.026, (side * 0.055, 0, 0.35)) for side in (-1, 1)]
 def build():
     """Builds the scene."""
     begin(72)
-    box("Garden table", (2.2, 1.6, 0.06), (0, 0, TOP - 0.03), colour=(0.9, 0.9, 0.88))
+    boxes(
+        "Garden table",
+        [*legs(1, 0.7, TOP - 0.06), ((2.2, 1.6, 0.06), (0, 0, TOP - 0.03))],
+        colour=(0.9, 0.9, 0.88),
+    )
     dish = revolved("Cut-glass dish", DISH, (0, 0, TOP), colour=(0.75, 0.85, 0.9), roughness=0.05, clear=0.8)
     collider(dish, thickness=0.01, inner=0.018, damping=0.6)
     for name, x, drop, colour in (
