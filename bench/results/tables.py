@@ -10,7 +10,7 @@ from bench.report import Table
 from bench.results import paper
 from bench.results.figures import OVERALL, ablations, comparisons, figures_of
 from bench.results.scores import METRICS, TITLES
-from bench.spec import CATEGORIES, specs
+from bench.spec import specs
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from bench.results.scores import Metric, Results, SystemResults
 
 NONE = "–"
+_CELLS, _INTERVAL, _BOUND = "cells", "interval", "bound"
+# The rows of Table 1.
 NAMES = {
     "cloth": "Cloth",
     "fluid": "Fluid",
@@ -27,8 +29,15 @@ NAMES = {
     "soft": "Soft body",
     "static": "Static",
     OVERALL: "Overall",
+    _CELLS: "over cells",
+    _INTERVAL: "95 % interval",
+    _BOUND: "if not scored is 0",
 }
-_CELLS: dict[str, int] = {"mpr": 15, "spr": 17, "vlm": 17}
+_NOTE = (
+    "A category's score is the mean of its levels' means; overall is the macro average over cells of category and "
+    "level, with its 95 % interval by the bootstrap over scenes within cells. The last row counts what was not scored "
+    "as 0."
+)
 _SIDE_BY_SIDE = 2  # systems, with all metrics in one table as the paper has it
 
 
@@ -53,34 +62,25 @@ def table_1(results: Results, *, with_paper: bool = False) -> Iterator[Table]:
     if with_paper:
         columns |= {f"{name} ({paper.SOURCE})": _published(name) for name in paper.TABLE_1}
     if len(columns) <= _SIDE_BY_SIDE:
-        yield _table_1(METRICS, columns, "Results by category")
-    else:
-        for metric in METRICS:
-            yield _table_1((metric,), columns, f"{TITLES[metric]} by category")
+        yield _table_1(METRICS, columns, "Results by category", _NOTE)
+        return
+    for metric in METRICS:
+        yield _table_1(
+            (metric,), columns, f"{TITLES[metric]} by category", _NOTE if metric == METRICS[-1] else ""
+        )
 
 
 def _table_1(
-    metrics: Sequence[Metric], columns: Mapping[str, Mapping[Metric, dict[str, str]]], title: str
+    metrics: Sequence[Metric], columns: Mapping[str, Mapping[Metric, dict[str, str]]], title: str, note: str
 ) -> Table:
     many = len(metrics) > 1
     header = [f"{TITLES[metric]} {name}" if many else name for metric in metrics for name in columns]
     rows: list[tuple[str, ...]] = []
-    for category in (*CATEGORIES, OVERALL, "interval", "bound"):
-        cells = [
-            column.get(metric, {}).get(category, NONE) for metric in metrics for column in columns.values()
-        ]
+    for row, name in NAMES.items():
+        cells = [column.get(metric, {}).get(row, NONE) for metric in metrics for column in columns.values()]
         if any(cell != NONE for cell in cells):
-            rows.append((_ROWS.get(category, NAMES.get(category, category)), *cells))
-    cells = ", ".join(f"{_CELLS[metric]} of {TITLES[metric]}" for metric in metrics)
-    note = (
-        f"A category's score is the mean of its levels' means; overall is the macro average over cells ({cells}, where "
-        "all are scored), with its 95 % interval by the bootstrap over scenes within cells. "
-        "The last row counts what was not scored as 0."
-    )
+            rows.append((name, *cells))
     return Table(title, ("category", *header), tuple(rows), note)
-
-
-_ROWS = {"interval": "95 % interval", "bound": "if not scored is 0"}
 
 
 def _columns(system: SystemResults) -> dict[Metric, dict[str, str]]:
@@ -88,15 +88,25 @@ def _columns(system: SystemResults) -> dict[Metric, dict[str, str]]:
     for metric, figures in figures_of(system).items():
         overall = figures[OVERALL]
         found[metric] = {category: number(figure.value) for category, figure in figures.items()}
-        found[metric] |= {"interval": span(overall.low, overall.high), "bound": number(overall.bound)}
+        found[metric][_CELLS] = f"{overall.cells} of {cells_of(metric)}"
+        found[metric][_INTERVAL] = span(overall.low, overall.high)
+        found[metric][_BOUND] = number(overall.bound)
     return found
 
 
 def _published(name: str) -> dict[Metric, dict[str, str]]:
     return {
-        metric: {category: number(value) for category, value in rows.items()}
+        metric: {
+            **{category: number(value) for category, value in rows.items()},
+            _CELLS: f"{cells_of(metric)}",
+        }
         for metric, rows in paper.TABLE_1[name].items()
     }
+
+
+def cells_of(metric: Metric) -> int:
+    """How many cells of category and level count for a score."""
+    return len({spec.cell for spec in specs() if metric != "mpr" or spec.category != "static"})
 
 
 # Coverage

@@ -36,7 +36,7 @@ SESSIONS = {
     "fluid_D1_01": "pour",  # cider from a keg into a glass, where the scene has milk from a jug into a bowl
 }
 KEYS = ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN")
-_GRACE_SECONDS = 20.0
+_GRACE_SECONDS = (2.0, 20.0)  # after the first Ctrl-C, which asks for a stop, and the second: for one now
 _OUTCOMES = ("done", "aborted", "failed", "stopped")
 _TOKENS = ("input", "output", "cache_read", "cache_write")
 _LAST_WORDS = 300
@@ -140,10 +140,11 @@ def _called(words: Sequence[str], log: Path) -> int:
     try:
         return process.wait()
     except KeyboardInterrupt:
-        for _ in range(2):  # the first asks for a stop, the second for one now
+        for seconds in _GRACE_SECONDS:
             process.send_signal(signal.SIGINT)
-        with suppress(subprocess.TimeoutExpired):
-            process.wait(_GRACE_SECONDS)
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(seconds)
+                break
         raise
     finally:
         with suppress(ProcessLookupError, PermissionError):

@@ -6,12 +6,11 @@ import json
 import multiprocessing
 import shutil
 import signal
-import time
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
+from processes_below import all_end, below
 from sweeping import CHEAP, SCENES, content, record, scores, written
 
 from agents.blender.run_folder import locked
@@ -26,6 +25,7 @@ from bench.untrusted import Means
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from click.testing import Result
     from sweeping import Command
@@ -175,34 +175,6 @@ def test_a_sweep_that_is_ended_leaves_whole_records_and_no_process_and_goes_on(
     mine = content(tmp_path / "theirs")
     assert mine == {path: digest for path, digest in content(done).items() if path in mine}
     assert len(mine) == 2
-
-
-def below(pid: int) -> set[int]:
-    """A process's children, and theirs."""
-    found: set[int] = set()
-    waiting = [pid]
-    while waiting:
-        number = waiting.pop()
-        own = {int(word) for word in Path(f"/proc/{number}/task/{number}/children").read_text().split()}
-        found |= own
-        waiting += own
-    return found
-
-
-def all_end(processes: set[int]) -> bool:
-    """Whether all of them end, soon."""
-    until = time.monotonic() + 60
-    while any(Path(f"/proc/{number}").exists() and not zombie(number) for number in processes):
-        if time.monotonic() > until:
-            return False
-    return True
-
-
-def zombie(number: int) -> bool:
-    try:
-        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
-    except OSError:
-        return True
 
 
 def test_what_befalls_one_scene_costs_only_that_one(made: Path, tmp_path: Path) -> None:

@@ -1,0 +1,265 @@
+"""The report's command, and its page: every scene with its evidence, in one file, whatever the results hold."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from html.parser import HTMLParser
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from click.testing import CliRunner
+
+from agents.cli import main
+from bench.sweep.records import read_record, write_record
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from click.testing import Result
+    from written_results import Written
+
+EVIL = '<script>alert("x")</script><img src=x onerror=alert(1)>'
+AUDIT: dict[str, Any] = {
+    "scene": "cloth_D1_01",
+    "actors": [
+        {
+            "name": "tablecloth",
+            "role": "cloth",
+            "outcome": "resolved",
+            "by": "name",
+            "evidence": {"objects": [f"Cloth {EVIL}"]},
+            "score": 0.5,
+            "checks": [
+                {
+                    "predicate": "renderable",
+                    "wanted": "must_have",
+                    "outcome": "passed",
+                    "seen": {"object": "Cloth"},
+                },
+                {
+                    "predicate": "cloth_cache_baked",
+                    "wanted": "must_have",
+                    "outcome": "failed",
+                    "seen": {"caches": [{"frames": 12, "frames_expected": 60}], "object": EVIL},
+                },
+            ],
+        }
+    ],
+    "relations": [
+        {
+            "type": "SupportedBy",
+            "a": "tablecloth",
+            "b": "table",
+            "outcome": "does not hold",
+            "moments": [{"when": "end", "unit": "Cloth", "outcome": "does not hold", "seen": {"gap": 0.31}}],
+        }
+    ],
+    "blend": {"unplayed": ""},
+}
+JUDGEMENT: dict[str, Any] = {
+    "scene": "cloth_D1_01",
+    "provider": "anthropic",
+    "model": "a-judge",
+    "answered_by": "a-judge",
+    "prompt_version": "1",
+    "repetition": 0,
+    "dimensions": {
+        "objects_present": [
+            {"id": "objects_present.1", "text": "a tablecloth", "holds": False, "evidence": f"No. {EVIL}"}
+        ],
+        "spatial_relations": [],
+    },
+    "usage": {},
+    "cost": 0.01,
+    "items_by": "a-judge",
+    "items_usage": {},
+    "items_cost": 0.01,
+}
+
+
+class Seen(HTMLParser):
+    """What a browser would make of a page: its elements with their attributes, and its text."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+        self._in_script = False
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        self._in_script = tag in ("script", "style")
+
+    def handle_endtag(self, tag: str) -> None:
+        self._in_script = False
+
+    def handle_data(self, data: str) -> None:
+        if not self._in_script:
+            self.text += data
+
+    def of(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+def reported(results: Written, *words: str) -> Result:
+    return CliRunner().invoke(main, ["bench", "report", str(results.folder), *words])
+
+
+def page_of(results: Written) -> Seen:
+    done = reported(results)
+    assert done.exit_code == 0, done.output
+    return Seen((results.folder / "report.html").read_text("utf-8"))
+
+
+@pytest.fixture
+def full(results: Written) -> Written:
+    results.add(
+        "mine", "cloth_D1_01", 0.5, 0.0, 0.25, audit=AUDIT, judgement=JUDGEMENT, frames=5, prompt=EVIL
+    )
+    results.add("theirs", "cloth_D1_01", why=EVIL)
+    results.add("mine", "static_D1_01", 1.0, 1.0)
+    return results
+
+
+# The page
+
+
+def test_each_scene_has_its_prompt_its_frames_and_what_failed_with_the_values_seen(full: Written) -> None:
+    seen = page_of(full)
+    assert "A red tablecloth drapes over a small round wooden table" in seen.text
+    frames = [image for image in seen.of("img") if image.get("src")]
+    assert [str(image["src"])[:23] for image in frames] == ["data:image/webp;base64,"] * 5
+    assert all(
+        f"at {share} %" in str(frames[place]["alt"]) for place, share in enumerate((0, 25, 50, 75, 100))
+    )
+    assert "frames 12, frames expected 60" in seen.text
+    assert "end: Cloth gap 0.31" in seen.text
+    assert "a tablecloth" in seen.text
+    failing = [item for item in seen.of("li") if item.get("class") == "no"]
+    assert len(failing) == 3
+
+
+def test_what_failed_leads_to_its_definition(full: Written) -> None:
+    seen = page_of(full)
+    links = {link["href"]: link.get("title") for link in seen.of("a")}
+    ids = {one["id"] for one in seen.of("dt") if "id" in one}
+    assert {"is-cloth_cache_baked", "is-SupportedBy"} <= ids
+    assert "bak" in str(links["#is-cloth_cache_baked"])
+
+
+def test_systems_stand_side_by_side_and_why_one_was_not_scored_is_told(full: Written) -> None:
+    seen = page_of(full)
+    cards = [one for one in seen.of("section") if one.get("class") == "card"]
+    assert len(cards) == 4
+    assert f"MPR: not scored: {EVIL}" in seen.text
+    assert "not asked for this scene" in seen.text
+
+
+def test_nothing_of_what_results_hold_is_taken_for_html(full: Written) -> None:
+    seen = page_of(full)
+    assert EVIL in seen.text
+    assert len(seen.of("script")) == 1
+    assert not any(name.startswith("on") for _, attributes in seen.elements for name in attributes)
+
+
+def test_the_page_needs_no_network_and_runs_no_script_but_its_own(full: Written) -> None:
+    seen = page_of(full)
+    text = (full.folder / "report.html").read_text("utf-8")
+    (policy,) = (str(one["content"]) for one in seen.of("meta") if "Content-Security-Policy" in one.values())
+    script = re.search(r"<script>(.*)</script>", text, re.DOTALL)
+    assert script is not None
+    digest = base64.b64encode(hashlib.sha256(script[1].encode()).digest()).decode()
+    assert policy.startswith("default-src 'none'")
+    assert f"script-src 'sha256-{digest}'" in policy
+    assert not seen.of("link")
+    assert all(str(link["href"]).startswith("#") for link in seen.of("a"))
+
+
+def test_scenes_can_be_told_apart_by_category_level_and_whether_anything_failed(full: Written) -> None:
+    scenes = {one["id"]: one for one in page_of(full).of("article")}
+    assert scenes["cloth_D1_01"]["data-category"] == "cloth"
+    assert scenes["static_D1_01"]["data-level"] == "D1"
+    assert "data-failed" in scenes["cloth_D1_01"]
+
+
+@pytest.mark.parametrize("path", ["../../../secret.png", "/etc/passwd", "frames/../../../../secret.png"])
+def test_no_file_outside_a_scenes_folder_gets_onto_the_page(path: str, full: Written) -> None:
+    folder = full.folder / "mine" / "cloth_D1_01"
+    secret = full.folder.parent / "secret.png"
+    secret.write_bytes((folder / "frames" / "000.png").read_bytes())
+    found = read_record(folder)
+    assert found is not None
+    assert found.framed is not None
+    frame = found.framed.frames[0].model_copy(update={"path": path})
+    framed = found.framed.model_copy(update={"frames": (frame,)})
+    write_record(folder, found.model_copy(update={"framed": framed}))
+    assert not [image for image in page_of(full).of("img") if image.get("src")]
+
+
+@pytest.mark.parametrize("name", ["audit.json", "judgement.json", "frames/000.png"])
+def test_evidence_that_is_damaged_or_gone_is_left_out(name: str, full: Written) -> None:
+    path = full.folder / "mine" / "cloth_D1_01" / name
+    path.write_bytes(b"[[[")
+    assert "A red tablecloth" in page_of(full).text
+    path.unlink()
+    assert "A red tablecloth" in page_of(full).text
+
+
+# The command
+
+
+def test_tables_are_printed_and_written_as_asked(full: Written, tmp_path: Path) -> None:
+    done = reported(full, "--markdown", str(tmp_path / "a.md"), "--json", str(tmp_path / "a.json"), "--html",
+                    str(tmp_path / "a.html"))  # fmt: skip
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "a.md").read_text() == done.stdout
+    assert "## Results by category" in done.stdout
+    numbers = json.loads((tmp_path / "a.json").read_text())
+    assert numbers["systems"]["mine"]["figures"]["mpr"]["overall"]["value"] == 0.5
+    assert numbers["systems"]["theirs"]["scenes"]["cloth_D1_01"]["why_not"]["mpr"] == EVIL
+    assert numbers["bootstrap"] == {"seed": 0, "draws": 10_000, "level": 0.95}
+    assert (tmp_path / "a.html").is_file()
+    assert not (full.folder / "report.html").exists()
+
+
+def test_numbers_can_be_printed_instead(full: Written) -> None:
+    assert json.loads(reported(full, "--json", "-").stdout)["systems"].keys() == {"mine", "theirs"}
+
+
+def test_what_cannot_be_read_is_named_and_the_rest_is_reported(full: Written) -> None:
+    (full.folder / "mine" / "static_D1_01" / "record.json").write_text("{")
+    other = full.folder / "mine" / "cloth_D9_01"
+    other.mkdir()
+    record = (full.folder / "mine" / "cloth_D1_01" / "record.json").read_text()
+    (other / "record.json").write_text(record.replace("cloth_D1_01", "cloth_D9_01"))
+    done = reported(full)
+    assert done.exit_code == 0
+    assert "static_D1_01/record.json is no record" in done.stdout
+    assert "There is no scene 'cloth_D9_01'" in done.stdout
+
+
+def test_two_results_of_one_scene_by_one_name_are_not_mixed(full: Written, tmp_path: Path) -> None:
+    second = type(full)(tmp_path / "second")
+    second.add("mine", "cloth_D1_01", 1.0, 1.0)
+    done = CliRunner().invoke(main, ["bench", "report", str(full.folder), str(second.folder)])
+    assert "mine has another result for cloth_D1_01; it is left out" in done.stdout
+
+
+def test_without_results_or_with_an_unknown_system_it_says_so(full: Written, tmp_path: Path) -> None:
+    done = CliRunner().invoke(main, ["bench", "report", str(tmp_path / "none")])
+    assert (done.exit_code, "'simworlds bench run' makes them" in done.stderr) == (2, True)
+    done = reported(full, "--baseline", "viga")
+    assert (done.exit_code, "there are mine, theirs" in done.stderr) == (2, True)
+
+
+def test_an_estimate_is_told_in_words_and_as_numbers(full: Written) -> None:
+    done = CliRunner().invoke(main, ["bench", "estimate", str(full.folder)])
+    assert done.exit_code == 0
+    assert "measured: 2 of 50 scenes" in done.stdout
+    assert "10 systems on 20 machines, 2 scenes at a time on each" in done.stdout
+    numbers = json.loads(CliRunner().invoke(main, ["bench", "estimate", str(full.folder), "--json"]).stdout)
+    assert numbers["work"]["audited"] == 50
