@@ -47,11 +47,10 @@ class Sabotage:
     @property
     def told(self) -> str:
         """In a few words, for reports."""
-        values = [
-            f"{key}={'+'.join(map(str, value)) if isinstance(value, list) else value}"
-            for key, value in self.options.items()
-        ]
-        return f"{self.change} {' '.join(values)}".strip() + (" of a partner" if self.on == "partner" else "")
+        values = (
+            ", ".join(value) if isinstance(value, list) else str(value) for value in self.options.values()
+        )
+        return f"{' '.join([self.change.replace('_', ' '), *values])}{' of a partner' if self.on == 'partner' else ''}"
 
 
 def _on(change: str, types: str, *follows: Follows, roles: tuple[str, ...] = (), **options: Any) -> Sabotage:

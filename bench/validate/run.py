@@ -96,14 +96,13 @@ def prove(task: Task) -> Done:
     except (CannotBuild, BlenderError, OSError) as error:
         return Done(scene, tuple(_unable(scene, each, error) for each in task.properties), 0, 0.0, 0.0)
     built = time.monotonic()
-    proofs = {} if task.again else {each: kept_proof(scene, each, key) for each in task.properties}
-    missing = tuple(each for each in task.properties if proofs.get(each) is None)
-    made = {proof.about: proof for proof in _proofs(task.spec, blend, missing, key)} if missing else {}
-    found = tuple(made.get(each) or proofs[each] for each in task.properties)
-    kept = len(task.properties) - len(missing)
-    return Done(
-        scene, tuple(proof for proof in found if proof), kept, built - started, time.monotonic() - built
-    )
+    kept = [] if task.again else [kept_proof(scene, each, key) for each in task.properties]
+    found = {proof.about: proof for proof in kept if proof is not None}
+    count = len(found)
+    missing: list[Property] = [each for each in task.properties if each not in found]
+    found |= {proof.about: proof for proof in _proofs(task.spec, blend, missing, key)}
+    proofs = tuple(found[each] for each in task.properties)
+    return Done(scene, proofs, count, built - started, time.monotonic() - built)
 
 
 def _reference(spec: Spec) -> Path:
@@ -113,6 +112,8 @@ def _reference(spec: Spec) -> Path:
 
 
 def _proofs(spec: Spec, blend: Path, properties: Sequence[Property], key: str) -> Iterator[Proof]:
+    if not properties:
+        return
     with Desk(spec, blend, Means(seconds=_SECONDS)) as desk:
         for each in properties:
             proof = prove_on(desk, each)

@@ -21,7 +21,7 @@ def ungroup(cast):
     changed += _out_of_collections(things)
     for actor in cast:
         for unit in actor["units"]:
-            _pass_name_on(unit, actor["name"])
+            _pass_name_on(unit)
     return len(set(changed))
 
 
@@ -70,22 +70,27 @@ def _call(thing, name):
         thing.data.name = name
 
 
-def _pass_name_on(unit, name):
+def _pass_name_on(unit):
     """Where an empty bore the name of a thing: its largest mesh bears it, and the empty is gone."""
     bearer = bpy.data.objects.get(unit[0])
-    if (
-        bearer is None
-        or bearer.type != "EMPTY"
-        or bearer.instance_type != "NONE"
-        or bearer.field.type != "NONE"
-    ):
+    if bearer is None or not _only_groups(bearer):
         return
     parts = [bpy.data.objects[each] for each in unit[1:] if bpy.data.objects[each].type == "MESH"]
-    if not parts or bearer.rigid_body_constraint is not None or bearer.children:
-        return
-    called = bearer.name
-    bpy.data.objects.remove(bearer)
-    max(parts, key=lambda thing: thing.dimensions.length).name = called or name
+    if parts:
+        called = bearer.name
+        bpy.data.objects.remove(bearer)
+        max(parts, key=lambda thing: thing.dimensions.length).name = called
+
+
+def _only_groups(thing):
+    """Whether it is an empty that neither shows, pushes nor ties anything, and has nothing on it any more."""
+    return (
+        thing.type == "EMPTY"
+        and thing.instance_type == "NONE"
+        and (thing.field is None or thing.field.type == "NONE")
+        and thing.rigid_body_constraint is None
+        and not thing.children
+    )
 
 
 def _moving(things):

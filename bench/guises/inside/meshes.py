@@ -8,13 +8,14 @@ def join(cast):
     """Makes one mesh of what is several: of each still thing's parts, and of still things of one kind."""
     changed = 0
     for actor in cast:
-        units = [[bpy.data.objects[name] for name in unit] for unit in actor["units"]]
-        parts = [thing for unit in units for thing in unit if _is_plain(thing)]
-        if not actor["still"] or len(parts) < 2 or len(parts) < sum(len(unit) for unit in units):
+        things = [bpy.data.objects[name] for unit in actor["units"] for name in unit]
+        parts = [thing for thing in things if thing.type == "MESH"]
+        if not actor["still"] or len(parts) < 2 or not _are_plain(things):
             continue
         bpy.ops.object.select_all(action="DESELECT")
         for thing in parts:
-            _own_mesh(thing)
+            if thing.data.users > 1:
+                thing.data = thing.data.copy()
             thing.select_set(True)
         bpy.context.view_layer.objects.active = parts[0]
         bpy.ops.object.join()
@@ -23,14 +24,12 @@ def join(cast):
 
 
 def instance(cast):
-    """Shows still things as instances of collections that lie outside of the scene; gives alike meshes one data."""
+    """Shows still things as instances of collections that lie outside of the scene."""
     changed = 0
     for actor in cast:
-        if not actor["still"]:
-            continue
-        for unit in actor["units"]:
+        for unit in actor["units"] if actor["still"] else ():
             things = [bpy.data.objects[name] for name in unit]
-            if all(_is_plain(thing) for thing in things):
+            if _are_plain(things):
                 _show(things, unit[0])
                 changed += 1
     return changed
@@ -42,26 +41,23 @@ def _show(things, name):
         for each in list(thing.users_collection):
             each.objects.unlink(thing)
         parts.objects.link(thing)
-    things[0].name = f"{name} mesh"
+    things[0].name = f"{name} itself"
     shown = bpy.data.objects.new(name, None)
-    shown.name = name
     shown.instance_type, shown.instance_collection = "COLLECTION", parts
     bpy.context.scene.collection.objects.link(shown)
 
 
-def _is_plain(thing):
-    """Whether it is a mesh that nothing moves and nothing else has to do with."""
-    return (
-        thing.type == "MESH"
+def _are_plain(things):
+    """Whether these are meshes, and empties that group them, which nothing moves and nothing else has to do with."""
+    return all(
+        thing.type in {"MESH", "EMPTY"}
         and not thing.modifiers
-        and thing.rigid_body is None
-        and thing.animation_data is None
-        and thing.parent is None
-        and not thing.children
         and not thing.constraints
+        and thing.rigid_body is None
+        and thing.rigid_body_constraint is None
+        and thing.animation_data is None
+        and thing.instance_type == "NONE"
+        and (thing.parent is None or thing.parent in things)
+        and all(child in things for child in thing.children)
+        for thing in things
     )
-
-
-def _own_mesh(thing):
-    if thing.data.users > 1:
-        thing.data = thing.data.copy()
