@@ -48,7 +48,7 @@ def report(results: tuple[Path, ...], **given: Any) -> None:
         )
     told = tables(found, baseline=given["baseline"], with_paper=given["paper"])
     said = notes(found)
-    text = "\n\n".join((*(f"> {note}" for note in said), *(table(one) for one in told))) + "\n"
+    text = _plain("\n\n".join((*(f"> {note}" for note in said), *(table(one) for one in told))) + "\n")
     place = given["html"] or results[0] / "report.html"
     numbers = json.dumps(_numbers(found, given["baseline"], said), indent=1, ensure_ascii=False) + "\n"
     try:
@@ -106,6 +106,11 @@ def _read(folders: Sequence[Path]) -> Results:
         click.echo(f"Error: there are no results in {where}. 'simworlds bench run' makes them.", err=True)
         sys.exit(2)
     return found
+
+
+def _plain(text: str) -> str:
+    """Without what a terminal would act on: results may be anybody's."""
+    return "".join(char if char.isprintable() or char == "\n" else " " for char in text)
 
 
 def _write_page(place: Path, found: Results, told: Any, said: Sequence[str]) -> None:

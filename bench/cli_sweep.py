@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
 
     from bench.sweep.crew import Crew
-    from bench.sweep.judging import Judging
+    from bench.sweep.judging import Judge
     from bench.sweep.sweep import How, Summary
     from bench.sweep.systems import System
 
@@ -117,7 +117,7 @@ def run(**given: Any) -> None:
         specs = _specs(given["scenes"], system)
         tasks = tasks_of(system, specs, given["out"].expanduser().resolve(), _how(given))
         system.ready()
-        summary = sweep(tasks, _judging(given), _crew(given), make_view(sys.stderr, len(tasks)))
+        summary = sweep(tasks, _judge(given), _crew(given), make_view(sys.stderr, len(tasks)))
     _conclude([summary], given["out"])
 
 
@@ -137,10 +137,11 @@ def rescore(results: Path, **given: Any) -> None:
         systems = tasks_again(results.expanduser().resolve(), _how(given))
         if not systems:
             raise click.UsageError(f"There are no results in {results}.")
+        judge = _judge(given)
         for tasks in systems:
             click.echo(f"{tasks[0].system.info.name}:", err=True)
             view = make_view(sys.stderr, len(tasks))
-            summaries.append(sweep(tasks, _judging(given), _crew(given), view))
+            summaries.append(sweep(tasks, judge, _crew(given), view))
     _conclude(summaries, results)
 
 
@@ -195,12 +196,13 @@ def _pixels(size: str) -> int:
     return int(width) * int(height)
 
 
-def _judging(given: dict[str, Any]) -> Judging:
-    from bench.sweep.judging import Judging  # noqa: PLC0415 - not for --help
+def _judge(given: dict[str, Any]) -> Judge:
+    from bench.sweep.judging import Judging, judge_of  # noqa: PLC0415 - not for --help
     from kb_build.settings import cache_folder, home_folder  # noqa: PLC0415
 
     cache = given["judge_cache"] or cache_folder(home_folder()) / "judge"
-    return Judging(given["judge"], given["judge_model"], given["judge_url"], given["judge_max_cost"], cache)
+    who = (given["judge"], given["judge_model"], given["judge_url"], given["judge_max_cost"], cache)
+    return judge_of(Judging(*who))
 
 
 def _crew(given: dict[str, Any]) -> Crew:
@@ -217,15 +219,17 @@ def _crew(given: dict[str, Any]) -> Crew:
 
 
 def _conclude(summaries: Sequence[Summary], out: Path) -> None:
+    from bench.sweep.view import plain  # noqa: PLC0415 - not for --help
+
     for one in summaries:
         click.echo(f"{_counted(one.asked, 'scene')}: {one.scored} scored, {one.judged} judged")
         for why, count in sorted(one.why_not_scored.items(), key=lambda item: -item[1]):
-            click.echo(f"  {count} not scored: {why}")
+            click.echo(f"  {count} not scored: {plain(why)}")
         for why, count in sorted(one.why_not_judged.items(), key=lambda item: -item[1]):
-            click.echo(f"  {count} not judged: {why}")
+            click.echo(f"  {count} not judged: {plain(why)}")
     faults = [fault for one in summaries for fault in one.faults]
     for scene, why in faults:
-        click.echo(f"  {scene} could not be done: {why}", err=True)
+        click.echo(f"  {scene} could not be done: {plain(why)}", err=True)
     click.echo(f"Tables and page: simworlds bench report {out}")
     sys.exit(1 if faults else 0)
 

@@ -50,12 +50,11 @@ class Card:
 
     @property
     def has_failed(self) -> bool:
-        """Whether anything of it does not hold, or was not scored."""
+        """Whether anything of it does not hold, or was not audited."""
         if self.scene is None or self.evidence is None:
             return False
-        return any(part.failed for part in self.evidence.parts) or any(
-            self.scene.why_not(metric) for metric in METRICS
-        )
+        not_audited = self.scene.why_not("mpr") or self.scene.why_not("spr")
+        return bool(not_audited) or any(part.failed for part in self.evidence.parts)
 
 
 @dataclass(frozen=True, slots=True)

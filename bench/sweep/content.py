@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -31,7 +32,18 @@ def digest_of_file(path: Path) -> str:
 
 def digests(folder: Path, files: Iterable[Path]) -> dict[str, str]:
     """{path below ``folder``: SHA-256} of its ``files``, sorted. Raises OSError."""
-    return {path.relative_to(folder).as_posix(): digest_of_file(path) for path in sorted(files)}
+    found: dict[str, str] = {}
+    for path in sorted(files):
+        stat = path.stat()
+        found[path.relative_to(folder).as_posix()] = _digest(path, stat.st_size, stat.st_mtime_ns)
+    return found
+
+
+@cache
+def _digest(path: Path, size: int, changed: int) -> str:
+    """Of a file that many scenes share, found once by one process."""
+    del size, changed
+    return digest_of_file(path)
 
 
 def files_below(folder: Path) -> list[Path]:

@@ -44,12 +44,34 @@ class Judging:
     cache: Path | None = None
 
 
-def judge_all(tasks: Sequence[Task], judging: Judging, threads: int = 4) -> Iterator[tuple[Task, Record]]:
+@dataclass(frozen=True)
+class Judge:
+    """Who judges a sweep, or several of them under one limit; or ``why`` nobody does."""
+
+    judging: Judging
+    provider: Provider | None
+    why: str = ""
+
+
+def judge_of(judging: Judging) -> Judge:
+    """Finds out whether there is a key, and all packages; asks nothing."""
+    if judging.provider == "none":
+        return Judge(judging, None, "no judge was asked for")
+    try:
+        provider = provider_of(
+            judging.provider, model=judging.model, base_url=judging.base_url, max_cost=judging.max_cost
+        )
+        provider.ready()
+    except (NotJudged, ValueError) as error:
+        return Judge(judging, None, str(error))
+    return Judge(judging, provider)
+
+
+def judge_all(tasks: Sequence[Task], who: Judge, threads: int = 4) -> Iterator[tuple[Task, Record]]:
     """Judges the frames of each task's scene, and writes its record; in the order in which they are done.
 
     What cannot be judged says why. Raises BadRecord, OSError.
     """
-    provider, why = _provider(judging)
     waiting: queue.SimpleQueue[Task] = queue.SimpleQueue()
     done: queue.SimpleQueue[tuple[Task, Record | BaseException]] = queue.SimpleQueue()
     for task in tasks:
@@ -62,7 +84,7 @@ def judge_all(tasks: Sequence[Task], judging: Judging, threads: int = 4) -> Iter
             except queue.Empty:
                 return
             try:
-                done.put((task, judge_scene(task, judging, provider, why)))
+                done.put((task, judge_scene(task, who)))
             except BaseException as error:
                 done.put((task, error))
 
@@ -76,41 +98,26 @@ def judge_all(tasks: Sequence[Task], judging: Judging, threads: int = 4) -> Iter
         yield task, outcome
 
 
-def judge_scene(task: Task, judging: Judging, provider: Provider | None, why: str) -> Record:
-    """Judges one scene's frames, unless that is done. ``why``: there is no provider.
-
-    A judgement of these frames stays until there is a new one.
-    """
+def judge_scene(task: Task, who: Judge) -> Record:
+    """Judges one scene's frames, unless that is done. A judgement of these frames stays until there is a new one."""
     record = read_record(task.folder) or Record(scene=task.spec.id, system=task.system.info)
     paths = [task.path(file) for file in record.framed.frames] if record.framed is not None else []
     frames = digest_of([digest_of_file(path) for path in paths])
     before, began = record.judged, time.monotonic()
-    if provider is None or not paths:
-        judged = Judged(**_stamp("", began), frames=frames, why=why if paths else _no_frames(record))
+    if who.provider is None or not paths:
+        judged = Judged(**_stamp("", began), frames=frames, why=who.why if paths else _no_frames(record))
     else:
-        key = _key(task, judging, provider, frames)
+        key = _key(task, who.judging, who.provider, frames)
         if before is not None and before.key == key and before.why is None:
             return record
-        judged = _judged(task, provider, paths, judging.cache, key).model_copy(update={"frames": frames})
+        judged = _judged(task, who.provider, paths, who.judging.cache, key).model_copy(
+            update={"frames": frames}
+        )
     if judged.why and before is not None and before.frames == frames and (before.why in (None, judged.why)):
         return record
     record = record.model_copy(update={"judged": judged})
     write_record(task.folder, record)
     return record
-
-
-def _provider(judging: Judging) -> tuple[Provider | None, str]:
-    """The provider, or why there is none."""
-    if judging.provider == "none":
-        return None, "no judge was asked for"
-    try:
-        provider = provider_of(
-            judging.provider, model=judging.model, base_url=judging.base_url, max_cost=judging.max_cost
-        )
-        provider.ready()
-    except (NotJudged, ValueError) as error:
-        return None, str(error)
-    return provider, ""
 
 
 def _no_frames(record: Record) -> str:

@@ -67,7 +67,7 @@ def do_scene(task: Task, tell: Tell) -> Record:
         due = step.due(task, record)
         if due is not None:
             began = time.monotonic()
-            result = step.do(task, record, tell)
+            result = step.do(task, record, due, tell)
             part = step.part(**stamp(due, began), **result)
             record = record.model_copy(update={"system": task.system.info, step.field: part})
             write_record(task.folder, record)

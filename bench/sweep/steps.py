@@ -24,11 +24,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Due:
-    """A step is to be done: the key of its inputs, the digest of its code, the Blender that it will use."""
+    """A step is to be done: the key of its inputs, the digest of its code, the Blender that it will use.
+
+    ``content``: digest of the files that a system's result is taken from, "" for one that makes its own.
+    """
 
     key: str
     code: str
     blender: str | None = None
+    content: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +42,7 @@ class Step:
     field: str
     part: type[Part]
     due: Callable[[Task, Record], Due | None]
-    do: Callable[[Task, Record, Tell], dict[str, Any]]
+    do: Callable[[Task, Record, Due, Tell], dict[str, Any]]
 
 
 # What the system makes
@@ -46,24 +50,27 @@ class Step:
 
 def _produce_due(task: Task, record: Record) -> Due | None:
     system = task.system
-    key = digest_of({"system": system.info.model_dump(mode="json"), "on": system.depends_on(task.spec)})
+    depends_on = system.depends_on(task.spec)
+    key = digest_of({"system": system.info.model_dump(mode="json"), "on": depends_on})
     before = record.produced
     if before is not None and before.key == key and before.outcome in FINAL:
         return None
-    return Due(key, code_of("bench.sweep.steps"))
+    return Due(
+        key,
+        code_of("bench.sweep.steps"),
+        content=digest_of(depends_on) if system.source is not None else "",
+    )
 
 
-def _produce(task: Task, record: Record, tell: Tell) -> dict[str, Any]:
-    due = _produce_due(task, record)
-    assert due is not None
+def _produce(task: Task, record: Record, due: Due, tell: Tell) -> dict[str, Any]:
+    del record
     made = task.system.produce(task.spec, task.folder / WORK / due.key[:12], tell)
-    source = task.system.source is not None
     return {
         "outcome": made.outcome,
         "why": made.why,
         "prompt": made.prompt,
         "blend": _file(task, made.blend),
-        "beside": digest_of(task.system.depends_on(task.spec)) if source else "",
+        "beside": due.content,
         "video": _file(task, made.video),
         "models": made.models,
         "cost": made.cost,
@@ -105,7 +112,8 @@ def _audit_due(task: Task, record: Record) -> Due | None:
     return Due(key, code, blender)
 
 
-def _audit(task: Task, record: Record, tell: Tell) -> dict[str, Any]:
+def _audit(task: Task, record: Record, due: Due, tell: Tell) -> dict[str, Any]:
+    del due
     blend = _blend(task, record)
     if blend is None:
         return {"why": _no_file(record), "spec": _spec(task)}
@@ -144,7 +152,8 @@ def _frames_due(task: Task, record: Record) -> Due | None:
     return Due(key, code, blender)
 
 
-def _frames(task: Task, record: Record, tell: Tell) -> dict[str, Any]:
+def _frames(task: Task, record: Record, due: Due, tell: Tell) -> dict[str, Any]:
+    del due
     blend = _blend(task, record)
     if blend is None:
         return {"why": _no_file(record)}

@@ -12,7 +12,7 @@ from agents.blender.run_folder import locked
 from bench.spec import BadSpec, spec_of
 from bench.sweep.crew import Crew, Done
 from bench.sweep.folder import Folder
-from bench.sweep.judging import Judging, judge_all
+from bench.sweep.judging import Judge, judge_all
 from bench.sweep.records import NAME, BadRecord, SystemInfo, read_record
 from bench.sweep.runs import Make, Replay
 from bench.sweep.scene import Task, is_done
@@ -65,7 +65,7 @@ def tasks_of(system: System, specs: Sequence[Spec], out: Path, how: How) -> list
     ]
 
 
-def sweep(tasks: Sequence[Task], judging: Judging, crew: Crew, view: View) -> Summary:
+def sweep(tasks: Sequence[Task], judge: Judge, crew: Crew, view: View) -> Summary:
     """Does the tasks, then judges; all results are on the disk whenever it ends.
 
     Raises Refusal where another sweep works in the folder, BadRecord, OSError.
@@ -84,7 +84,7 @@ def sweep(tasks: Sequence[Task], judging: Judging, crew: Crew, view: View) -> Su
                 if done.record is None:
                     faults.append((done.task.spec.id, done.fault))
         framed = [task for task in tasks if "frames" in task.steps and (task.folder / NAME).is_file()]
-        for task, record in judge_all(framed, judging):
+        for task, record in judge_all(framed, judge):
             if record.judged is not None and record.judged.key:  # somebody was asked
                 view.judged(task, record)
     return _summary(tasks, faults)

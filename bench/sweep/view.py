@@ -141,15 +141,15 @@ def told(done: Done) -> str:
     """A scene that is done, in one line."""
     scene, record = done.task.spec.id, done.record
     if record is None:
-        return f"{scene:<16} could not be done: {_plain(done.fault)}"
+        return f"{scene:<16} could not be done: {plain(done.fault)}"
     audited = record.audited
     if audited is None:
         return f"{scene:<16} {record.produced.outcome if record.produced else 'nothing'}"
     if audited.why is not None:
-        return f"{scene:<16} not scored: {_plain(audited.why)}"
+        return f"{scene:<16} not scored: {plain(audited.why)}"
     frames = len(record.framed.frames) if record.framed is not None else 0
     none = (
-        f", no frames: {_plain(record.framed.why)}" if record.framed is not None and record.framed.why else ""
+        f", no frames: {plain(record.framed.why)}" if record.framed is not None and record.framed.why else ""
     )
     return f"{scene:<16} MPR {share(audited.mpr)}  SPR {share(audited.spr)}  {frames} frames{none}"
 
@@ -159,7 +159,7 @@ def told_judgement(task: Task, record: Record) -> str:
     judged = record.judged
     if judged is None or judged.why is not None:
         return (
-            f"{task.spec.id:<16} not judged: {_plain(judged.why if judged and judged.why else 'nothing was')}"
+            f"{task.spec.id:<16} not judged: {plain(judged.why if judged and judged.why else 'nothing was')}"
         )
     return f"{task.spec.id:<16} VLM {share(judged.score)}"
 
@@ -169,6 +169,6 @@ def share(value: float | None) -> str:
     return "–" if value is None else f"{value:.3f}"
 
 
-def _plain(text: str) -> str:
-    """Words of files and servers, without what a terminal would act on."""
+def plain(text: str) -> str:
+    """Words of files and servers in one line, without what a terminal would act on."""
     return "".join(char if char.isprintable() else " " for char in text)[:300]
