@@ -60,12 +60,10 @@ class Folder:
         return digests(self.source, self.files(spec))
 
     def files(self, spec: Spec) -> list[Path]:
-        """All in its own folder; else all in the common one but what is another scene's by its name."""
-        own = self.source / spec.id
-        if own.is_dir():
-            return files_below(own)
-        if self._blend(spec) is None:
-            return []
+        """All in its own folder; of a file in the common one, all there but what is another scene's by its name."""
+        if not (self.source / f"{spec.id}.blend").is_file():
+            own = self.source / spec.id
+            return files_below(own) if own.is_dir() else []
         others = {path.stem for path in FOLDER.glob("*.yaml")} - {spec.id}
         return [
             path

@@ -1,0 +1,203 @@
+"""Which scenes are meant, which files are a scene's, what a key depends on, what a person sees meanwhile."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING
+
+import pytest
+from rich.console import Console
+
+from bench.spec import BadSpec, spec_of
+from bench.sweep import provenance as origin
+from bench.sweep.chosen import chosen
+from bench.sweep.content import digest_of, write_whole
+from bench.sweep.crew import Done
+from bench.sweep.folder import Folder
+from bench.sweep.records import BadRecord, SystemInfo, read_record
+from bench.sweep.scene import Task
+from bench.sweep.view import Lines, Screen
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SCENE = "cloth_D1_01"
+INFO = SystemInfo(name="theirs", kind="folder")
+
+
+def folder(place: Path, *names: str) -> Folder:
+    for name in names:
+        path = place / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(name)
+    return Folder(INFO, place)
+
+
+# Scenes
+
+
+@pytest.mark.parametrize(
+    ("names", "count", "first"),
+    [
+        (["all"], 50, "cloth_D1_01"),
+        (["dynamic"], 45, "cloth_D1_01"),
+        (["ablation"], 15, "cloth_D1_01"),
+        (["soft"], 9, "soft_D1_01"),
+        (["static_D2"], 2, "static_D2_01"),
+        (["D3"], 15, "cloth_D3_01"),
+        (["rigid_D?_02"], 3, "rigid_D1_02"),
+        (["soft_D1_02,cloth_D1_02", "cloth_D1_02"], 2, "cloth_D1_02"),
+    ],
+)
+def test_scenes_are_named_by_id_category_level_pattern_or_set(
+    names: list[str], count: int, first: str
+) -> None:
+    found = [spec.id for spec in chosen(names)]
+    assert (len(found), found[0]) == (count, first)
+    assert len({*found}) == count
+
+
+def test_a_name_that_means_no_scene_is_an_error() -> None:
+    with pytest.raises(BadSpec, match="'cloth_D1_99' means no scene"):
+        chosen(["cloth_D1_01,cloth_D1_99"])
+
+
+# Files
+
+
+@pytest.mark.parametrize(
+    ("names", "blend", "video"),
+    [
+        (["cloth_D1_01.blend"], "cloth_D1_01.blend", None),
+        (["cloth_D1_01.blend", "cloth_D1_01.mp4"], "cloth_D1_01.blend", "cloth_D1_01.mp4"),
+        (
+            ["cloth_D1_01/any.blend", "cloth_D1_01/video.webm"],
+            "cloth_D1_01/any.blend",
+            "cloth_D1_01/video.webm",
+        ),
+        (["cloth_D1_01/a.blend", "cloth_D1_01/scene.blend"], "cloth_D1_01/scene.blend", None),
+        (["cloth_D1_01/a.blend", "cloth_D1_01/cloth_D1_01.blend"], "cloth_D1_01/cloth_D1_01.blend", None),
+        (["cloth_D1_01.blend", "video.mp4", "cloth_D1_02.mp4", "cloth_D1_01.png"], "cloth_D1_01.blend", None),
+    ],
+)
+def test_a_scenes_file_is_the_one_that_can_only_be_meant(
+    names: list[str], blend: str, video: str | None, tmp_path: Path
+) -> None:
+    made = folder(tmp_path, *names).produce(spec_of(SCENE), tmp_path, lambda _: None)
+    assert made.outcome == "taken"
+    assert made.blend == tmp_path / blend
+    assert made.video == (tmp_path / video if video else None)
+
+
+@pytest.mark.parametrize(
+    ("names", "why"),
+    [
+        ([], "no file"),
+        (["cloth_D1_02.blend"], "no file"),
+        (["cloth_D1_01/a.blend", "cloth_D1_01/b.blend"], "several .blend"),
+    ],
+)
+def test_a_file_that_is_missing_or_not_clear_is_told(names: list[str], why: str, tmp_path: Path) -> None:
+    made = folder(tmp_path, *names).produce(spec_of(SCENE), tmp_path, lambda _: None)
+    assert (made.outcome, made.blend) == ("missing", None)
+    assert made.why.startswith(why)
+
+
+def test_what_lies_in_a_common_folder_is_a_scenes_unless_it_is_anothers(tmp_path: Path) -> None:
+    system = folder(
+        tmp_path,
+        *("cloth_D1_01.blend", "blendcache_cloth_D1_01/a.bphys", "textures/wood.png"),
+        *("cloth_D1_02.blend", "blendcache_cloth_D1_02/b.bphys", "soft_D1_01/scene.blend"),
+    )
+    assert {*system.depends_on(spec_of(SCENE))} == {
+        "cloth_D1_01.blend",
+        "blendcache_cloth_D1_01/a.bphys",
+        "textures/wood.png",
+    }
+    assert {*system.depends_on(spec_of("soft_D1_01"))} == {"soft_D1_01/scene.blend"}
+    assert system.depends_on(spec_of("rigid_D1_01")) == {}
+
+
+def test_several_files_without_a_name_are_not_guessed_at_in_a_key_either(tmp_path: Path) -> None:
+    system = folder(tmp_path, "cloth_D1_01/a.blend", "cloth_D1_01/b.blend")
+    assert len(system.depends_on(spec_of(SCENE))) == 2
+
+
+# Content
+
+
+def test_a_digest_is_of_what_data_says_not_of_its_order() -> None:
+    assert digest_of({"a": 1, "b": [1, 2]}) == digest_of({"b": [1, 2], "a": 1})
+    assert digest_of({"a": [1, 2]}) != digest_of({"a": [2, 1]})
+
+
+def test_a_file_that_cannot_be_written_whole_leaves_the_old_one(tmp_path: Path) -> None:
+    write_whole(tmp_path / "file", b"old")
+    with pytest.raises(TypeError):
+        write_whole(tmp_path / "file", "no bytes")  # type: ignore[arg-type]
+    assert (tmp_path / "file").read_bytes() == b"old"
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_step_stands_on_the_code_that_it_imports_and_on_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench = tmp_path / "bench"
+    for name, text in {
+        "audit.py": "from bench.rules import size\nimport json\n",
+        "rules/size.py": "if True:\n    from bench import names\n",
+        "names.py": "",
+        "other.py": "",
+        "inside/read.py": "",
+    }.items():
+        (bench / name).parent.mkdir(parents=True, exist_ok=True)
+        (bench / name).write_text(text)
+    monkeypatch.setattr(origin, "_BENCH", bench)
+
+    def code() -> str:
+        origin.code_of.cache_clear()
+        return origin.code_of("bench.audit", "inside/*.py")
+
+    before = code()
+    (bench / "other.py").write_text("changed = True")
+    assert code() == before
+    for name in ("audit.py", "rules/size.py", "names.py", "inside/read.py"):
+        text = (bench / name).read_text()
+        (bench / name).write_text(f"{text}changed = True\n")
+        assert code() != before
+        (bench / name).write_text(text)
+    assert code() == before
+    origin.code_of.cache_clear()
+
+
+def test_a_record_of_another_shape_is_named(tmp_path: Path) -> None:
+    assert read_record(tmp_path) is None
+    (tmp_path / "record.json").write_text('{"format": 1, "scene": "cloth_D1_01"}')
+    with pytest.raises(BadRecord, match=r"record\.json is no record: system: Field required"):
+        read_record(tmp_path)
+
+
+# What is seen
+
+
+def test_a_terminal_shows_what_is_being_done_and_nothing_that_would_move_its_cursor(tmp_path: Path) -> None:
+    stream = io.StringIO()
+    task = Task(spec_of(SCENE), Folder(INFO, tmp_path), tmp_path)
+    with Screen(Console(file=stream, force_terminal=True, width=80), 2) as view:
+        view.doing(None, "two nodes")
+        view.doing(task, "opening")
+        view.done(Done(task, None, "crashed over \x1b[2J\x07evil"))
+    said = stream.getvalue()
+    assert "two nodes" in said
+    assert "cloth_D1_01      could not be done: crashed over  [2J evil" in said
+    assert "\x1b[2J" not in said
+    assert "\x07" not in said
+
+
+def test_who_reads_the_log_may_be_gone(tmp_path: Path) -> None:
+    class Gone(io.StringIO):
+        def write(self, text: str) -> int:
+            raise BrokenPipeError
+
+    view = Lines(Gone(), 1)
+    view.done(Done(Task(spec_of(SCENE), Folder(INFO, tmp_path), tmp_path), None, "crashed"))
