@@ -105,6 +105,7 @@ def _twins(proofs: Sequence[Proof]) -> str:
             ", ".join(f"{count} {what}" for what, count in row.values.get("transferred", {}).items()),
             row.values.get("rendered_by", "–"),
             _number(row.values.get("difference"), 5),
+            _number(row.values.get("noise"), 5),
             _number(row.values.get("difference_without_physics"), 5),
             _number(row.values.get("mpr")),
             _number(row.values.get("drop")),
@@ -114,14 +115,15 @@ def _twins(proofs: Sequence[Proof]) -> str:
         for proof, row in _rows(proofs)
     ]
     head = [
-        *("scene", "twin", "transferred", "rendered by", "difference", "without physics"),
+        *("scene", "twin", "transferred", "rendered by", "difference", "noise", "without physics"),
         *("MPR", "falls by", "must", "told apart"),
     ]
     return (
         "Difference: the mean of |red|, |green|, |blue| (0 to 1) between the pictures of scene and twin at start, "
         "middle and end; beside it that of the scene without its physics, which the twin makes up for. Workbench "
         "renders 160 × 90; it shows nothing of a gas that is a volume, so scenes with one are rendered by Cycles (96 × "
-        "54, 16 samples), whose noise is in the figures. Moved: keyed, or played, as a whole; shaped: stored shapes; "
+        "54, 16 samples). Noise: how much the scene differs from itself with another seed; a twin may as much, or "
+        "by one step of 256. Moved: keyed, or played, as a whole; shaped: stored shapes; "
         "reshaped: another surface at each frame, as of liquids.\n\n" + _table(head, rows)
     )
 

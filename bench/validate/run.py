@@ -6,6 +6,7 @@ import os
 import signal
 import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context
 from typing import TYPE_CHECKING
@@ -21,7 +22,7 @@ from bench.validate.proof import Proof
 from bench.validate.properties import ASKED
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Generator, Iterator, Sequence
     from pathlib import Path
 
     from bench.spec import Spec
@@ -68,8 +69,9 @@ def prove_all(tasks: Sequence[Task], jobs: int) -> Iterator[Done]:
     if jobs <= 1:
         yield from map(prove, tasks)
         return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_begin) as pool:
-        waiting = [pool.submit(prove, task) for task in tasks]
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_leave_terminal) as pool:
+        with _deaf():  # and so are the processes that are started now, until they have a scene
+            waiting = [pool.submit(_prove_interruptibly, task) for task in tasks]
         try:
             for future in as_completed(waiting):
                 yield future.result()
@@ -80,10 +82,27 @@ def prove_all(tasks: Sequence[Task], jobs: int) -> Iterator[Done]:
             raise
 
 
-def _begin() -> None:
-    """Leaves a terminal's interrupts to the first process, which passes them on once."""
+@contextmanager
+def _deaf() -> Generator[None]:
+    """Ignores interrupts."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _leave_terminal() -> None:
+    """Leaves a terminal's interrupts to the first process, which passes them on, once."""
     os.setpgid(0, 0)
+
+
+def _prove_interruptibly(task: Task) -> Done:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return prove(task)
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def prove(task: Task) -> Done:

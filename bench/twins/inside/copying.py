@@ -9,11 +9,14 @@ clip with that of the scene without its physics.
 import os
 
 import bpy
+import gases
 import keyed
 import numpy
 import played
+import strands
 from film import Film, points_of
-from mathutils import Matrix, Vector
+from mathutils import Matrix
+from placing import put
 from stripping import strip
 
 _MOST_KEYED = 200  # particles: of more, an object for each would be slow to save and to open
@@ -45,7 +48,9 @@ class _Twin:
     def __init__(self, kind, beside, film, bare):
         self._by_files, self._beside, self._film = kind == "files", beside, film
         shaped = film.shaped(bare)
-        self._gases = {thing.name for thing in bpy.context.scene.objects if _gas_of(thing) is not None}
+        self._gases = {
+            thing.name for thing in bpy.context.scene.objects if gases.settings_of(thing) is not None
+        }
         self._reshaped = {name for name in shaped if film.changes_points(name)} - self._gases
         self._shaped = shaped - self._reshaped - self._gases
         self._moved = film.moved(bare) - self._shaped - self._reshaped - self._gases
@@ -70,7 +75,8 @@ class _Twin:
                 played.export(things[name], self._film.frames, self._file(name, "abc"))
             else:
                 self._pages[name] = self._each_frame(things[name])
-        self._volumes = {name: _volume_of(things[name]) for name in self._gases}
+        self._volumes = {name: gases.volume_of(things[name]) for name in self._gases}
+        self._looks = {key: strands.look_of(things[key[0]], key[1]) for key in self._film.hair[0]}
 
     def _meshed(self):
         """Names of what moves as a whole and is a mesh, which files play as one."""
@@ -104,7 +110,7 @@ class _Twin:
         for name in sorted(self._reshaped):
             self._replace(things[name])
         for name in sorted(self._gases):
-            _swap(things[name], self._volumes[name])
+            gases.put_in_place(things[name], self._volumes[name])
         self._show_particles()
         if self._film.hair[0]:
             self._show_hair()
@@ -136,7 +142,7 @@ class _Twin:
             bpy.data.objects.remove(thing)
             copied.name = name
             return
-        pages = [_put(name, mesh, thing.matrix_world) for mesh in self._pages[name]]
+        pages = [put(name, mesh, thing.matrix_world) for mesh in self._pages[name]]
         bpy.data.objects.remove(thing)
         keyed.show_in_turn(pages, self._film.frames)
 
@@ -156,7 +162,7 @@ class _Twin:
                 self._join(bpy.data.objects[shown], several)
                 continue
             for poses in several:
-                keyed.move(_put(shown, bpy.data.objects[shown].data, Matrix()), frames, poses)
+                keyed.move(put(shown, bpy.data.objects[shown].data, Matrix()), frames, poses)
 
     def _join(self, shown, tracks):
         mesh = self._mesh(shown)
@@ -165,7 +171,7 @@ class _Twin:
             numpy.concatenate([_through(poses[number], points) for poses in tracks])
             for number in range(len(self._film.frames))
         ]
-        thing = _put(f"{shown.name} particles", _repeated(mesh, len(tracks)), Matrix())
+        thing = put(f"{shown.name} particles", _repeated(mesh, len(tracks)), Matrix())
         if self._by_files:
             played.play(thing, self._film.frames, shapes, self._file(thing.name, "pc2"))
         else:
@@ -173,12 +179,12 @@ class _Twin:
 
     def _show_hair(self):
         for key in sorted(self._film.hair[0]):
-            thing = bpy.data.objects[key[0]]
-            pages = [_put(key[1], _strands(key[1], now[key], thing), Matrix()) for now in self._film.hair]
+            look = self._looks[key]
+            pages = [put(key[1], strands.curves(key[1], now[key], look), Matrix()) for now in self._film.hair]
             keyed.show_in_turn(pages, self._film.frames)
 
     def _file(self, name, ending):
-        safe = "".join(letter if letter.isalnum() else "_" for letter in name)
+        safe = "".join(letter if letter.isalnum() else f"_{ord(letter):x}" for letter in name)
         return f"{self._beside}-{safe}.{ending}"
 
 
@@ -197,42 +203,6 @@ def _nowhere(pose):
     return gone
 
 
-def _put(name, data, matrix):
-    thing = bpy.data.objects.new(name, data)
-    bpy.context.scene.collection.objects.link(thing)
-    thing.matrix_world = matrix
-    return thing
-
-
-def _swap(thing, volume):
-    """Puts a volume in the place of a gas's domain."""
-    name, matrix = thing.name, thing.matrix_world @ Matrix.Translation(Vector(thing.bound_box[0]))
-    bpy.data.objects.remove(thing)
-    _put(name, volume, matrix)
-
-
-def _gas_of(thing):
-    """The settings of an object's domain, if that is of a gas."""
-    for modifier in thing.modifiers:
-        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
-            settings = modifier.domain_settings
-            return settings if settings.domain_type == "GAS" else None
-    return None
-
-
-def _volume_of(thing):
-    """A volume that plays the files of a gas's bake, with its material."""
-    settings = _gas_of(thing)
-    volume = bpy.data.volumes.new(thing.name)
-    part = "noise" if settings.use_noise else "data"
-    volume.filepath = f"{settings.cache_directory}/{part}/fluid_{part}_0001.vdb"
-    volume.is_sequence = True
-    volume.frame_start, volume.frame_duration = 1, settings.cache_frame_end
-    for slot in thing.material_slots:
-        volume.materials.append(slot.material)
-    return volume
-
-
 def _repeated(mesh, count):
     """A mesh as often as that, as one."""
     made = bpy.data.meshes.new(mesh.name)
@@ -249,14 +219,4 @@ def _repeated(mesh, count):
     smooth = numpy.empty(len(mesh.polygons), dtype=bool)
     mesh.polygons.foreach_get("use_smooth", smooth)
     made.polygons.foreach_set("use_smooth", numpy.tile(smooth, count))
-    return made
-
-
-def _strands(name, strands, thing):
-    """Hair as curves that stand still, with the material of what it grows on."""
-    made = bpy.data.hair_curves.new(name)
-    made.add_curves([len(strand) for strand in strands])
-    made.position_data.foreach_set("vector", numpy.concatenate(strands).astype(numpy.float32).ravel())
-    for slot in thing.material_slots:
-        made.materials.append(slot.material)
     return made

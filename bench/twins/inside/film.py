@@ -84,12 +84,16 @@ def _hair(scene, graph):
         for system in evaluated.particle_systems:
             settings = system.settings
             if settings.type == "HAIR" and settings.render_type == "PATH":
-                steps = range(2**settings.display_step + 1)
-                count = len(system.particles) + len(system.child_particles)
-                found[thing.name, system.name] = [
-                    numpy.array(
-                        [system.co_hair(object=evaluated, particle_no=number, step=step) for step in steps]
-                    )
-                    for number in range(count)
-                ]
+                found[thing.name, system.name] = _strands(evaluated, system)
     return found
+
+
+def _strands(evaluated, system):
+    settings, parents, children = system.settings, len(system.particles), len(system.child_particles)
+    # Where hair has children, they are shown in its place.
+    first = parents if children and not settings.use_parent_particles else 0
+    steps = range(2**settings.display_step + 1)
+    return [
+        numpy.array([system.co_hair(object=evaluated, particle_no=number, step=step) for step in steps])
+        for number in range(first, parents + children)
+    ]

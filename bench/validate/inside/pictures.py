@@ -8,10 +8,10 @@ _WIDTH, _HEIGHT = 160, 90
 _GAS_WIDTH, _GAS_HEIGHT, _SAMPLES = 96, 54, 16
 
 
-def take(path, gases):
+def take(path, gases, seed):
     """Renders start, middle and end to ``path`` with -0, -1, -2.png.
 
-    By Workbench; where there are ``gases``, of which that shows nothing when they are volumes, by Cycles.
+    By Workbench; where there are ``gases``, of which that shows nothing when they are volumes, by Cycles with ``seed``.
     """
     scene = bpy.context.scene
     render = scene.render
@@ -22,7 +22,7 @@ def take(path, gases):
         render.engine = "CYCLES"
         render.resolution_x, render.resolution_y = _GAS_WIDTH, _GAS_HEIGHT
         cycles = scene.cycles
-        cycles.samples, cycles.seed, cycles.use_denoising = _SAMPLES, 0, False
+        cycles.samples, cycles.seed, cycles.use_denoising = _SAMPLES, seed, False
         cycles.use_adaptive_sampling, cycles.max_bounces = False, 2
         cycles.volume_biased = True  # by far the quicker way at this size
     else:
