@@ -17,6 +17,7 @@ _COMMANDS = {
     "run": ("bench.cli_sweep", "run", "Score a system on the benchmark's scenes."),
     "list": ("bench.cli_specs", "list_scenes", "List the scenes."),
     "show": ("bench.cli_specs", "show", "Show a scene: its prompt and what it is held to."),
+    "validate": ("bench.cli_validate", "validate", "Prove of the benchmark that it sees what it should."),
 }
 
 
