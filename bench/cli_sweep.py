@@ -170,7 +170,10 @@ def _specs(names: Sequence[str], system: System) -> Any:
     from bench.spec import specs  # noqa: PLC0415 - not for --help
     from bench.sweep.chosen import chosen  # noqa: PLC0415
 
-    return chosen(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
+    found = chosen(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
+    if not found:
+        raise click.UsageError("--scenes names no scene.")
+    return found
 
 
 def _how(given: dict[str, Any]) -> How:

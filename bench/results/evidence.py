@@ -247,14 +247,11 @@ def _frames(scene: Scored) -> Iterator[Frame]:
 
 
 def _read(folder: Path, file: File | None) -> bytes | None:
-    """A plain file of the scene's folder."""
+    """A plain file of the scene's folder, wherever links lead."""
     if file is None or file.source:
         return None
-    relative = PurePosixPath(file.path)
-    if relative.is_absolute() or ".." in relative.parts or "\0" in file.path:
-        return None
     try:
-        path = (folder / relative).resolve()
+        path = (folder / file.path).resolve()
         inside = path.is_relative_to(folder.resolve()) and path.is_file()
         return path.read_bytes() if inside and path.stat().st_size <= _LARGEST else None
     except (OSError, RuntimeError):

@@ -7,9 +7,10 @@ the code that made it, which may be another for each. A part without a result sa
 
 from __future__ import annotations
 
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from bench.sweep.content import write_whole
 
@@ -59,12 +60,20 @@ class Provenance(_Part):
 
 
 class File(_Part):
-    """A file of the results, or (``source``) of the folder that the system's files are taken from."""
+    """A file of the results, or (``source``) of the folder that the system's files are taken from; below it."""
 
     path: str
     sha256: str
     bytes: int
     source: bool = False
+
+    @field_validator("path")
+    @classmethod
+    def _below(cls, path: str) -> str:
+        relative = PurePosixPath(path)
+        if not path or relative.is_absolute() or ".." in relative.parts or "\0" in path:
+            raise ValueError(f"{path[:80]!r} leads out of its folder")
+        return path
 
 
 class Step(_Part):

@@ -197,7 +197,16 @@ def test_no_file_outside_a_scenes_folder_gets_onto_the_page(path: str, full: Wri
     frame = found.framed.frames[0].model_copy(update={"path": path})
     framed = found.framed.model_copy(update={"frames": (frame,)})
     write_record(folder, found.model_copy(update={"framed": framed}))
-    assert not [image for image in page_of(full).of("img") if image.get("src")]
+    seen = page_of(full)
+    assert not [image for image in seen.of("img") if image.get("src")]
+    assert "cloth_D1_01/record.json is no record: framed.frames.0.path" in seen.text
+
+
+def test_a_link_out_of_a_scenes_folder_is_not_followed(full: Written) -> None:
+    frame = full.folder / "mine" / "cloth_D1_01" / "frames" / "000.png"
+    frame.rename(full.folder / "secret.png")
+    frame.symlink_to(full.folder / "secret.png")
+    assert len([image for image in page_of(full).of("img") if image.get("src")]) == 4
 
 
 @pytest.mark.parametrize("name", ["audit.json", "judgement.json", "frames/000.png"])

@@ -212,6 +212,7 @@ def test_two_sweeps_do_not_write_to_one_folder(made: Path, tmp_path: Path) -> No
         (["--system", "simworlds"], "set ANTHROPIC_API_KEY"),
         (["--system", "replay", "--no-stages"], "--no-stages means nothing with --system replay"),
         (["--system", "replay", "--scenes", "cloth_D9"], "means no scene"),
+        (["--system", "replay", "--scenes", ","], "names no scene"),
         (["--system", "replay", "--name", "../up"], "is no name"),
         (["--system", "replay", "--frame-size", "big"], "WIDTHxHEIGHT"),
     ],

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 import json
 import shutil
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
 from judge_apis import Anthropic
 from PIL import Image
-from sweeping import record
 
 from agents.cli import main
+from bench.frames.frames import Look
+from bench.sweep.judging import Judging, judge_all, judge_of
+from bench.sweep.records import Judged, read_record, write_record
+from bench.sweep.sweep import How, tasks_again
+from bench.untrusted import Means
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from click.testing import Result
-
-PROMPT_OF = {
+SCENE = "static_D1_01"
+LISTS = {
     "objects": [{"words": "three-seat sofa", "text": "a three-seat sofa"}],
     "relations": [{"words": "against the back wall", "text": "the sofa stands against the back wall"}],
     "actions": [],
@@ -34,104 +37,111 @@ def api(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Anthropic]:
     for name in ("ANTHROPIC_AUTH_TOKEN", "ANTHROPIC_BASE_URL"):
         monkeypatch.delenv(name, raising=False)
     made = Anthropic()
-    made.script.lists = PROMPT_OF
+    made.script.lists = LISTS
     made.script.fails = ("objects_present.1",)
     with made.server:
         yield made
 
 
-@pytest.fixture
-def room(tmp_path: Path) -> Path:
-    """A static scene by two systems: pictures that can be judged, files that cannot be audited."""
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A static scene by two systems, framed and not judged: pictures, and files that cannot be audited."""
+    place = tmp_path_factory.mktemp("room")
     for number, system in enumerate(("one", "two")):
-        folder = tmp_path / system / "static_D1_01"
+        folder = place / system / SCENE
         folder.mkdir(parents=True)
         (folder / "scene.blend").write_bytes(b"none")
         Image.new("RGB", (64, 36), (60 * number, 90, 120)).save(folder / "still.png")
-    return tmp_path
+        words = ["--system", f"folder={place / system}", "--scenes", SCENE, "--out", str(place / "out")]
+        done = CliRunner().invoke(main, ["bench", "run", *words, "--judge", "none"])
+        assert (done.exit_code, "1 not judged: no judge was asked for" in done.stdout) == (0, True)
+    return place / "out"
 
 
-def judged(room: Path, api: Anthropic, system: str = "one", *words: str) -> Result:
-    given = ["--system", f"folder={room / system}", "--scenes", "static_D1_01", "--out", str(room / "out")]
-    return CliRunner().invoke(main, ["bench", "run", *given, "--judge-url", api.server.base_url, *words])
+@pytest.fixture
+def out(swept: Path, tmp_path: Path) -> Path:
+    """A copy of the results."""
+    shutil.copytree(swept, tmp_path / "out")
+    return tmp_path / "out"
 
 
-def verdict(room: Path, system: str = "one") -> dict[str, Any]:
-    return record(room / "out" / system, "static_D1_01")["judged"]
+def judged(out: Path, api: Anthropic, **given: object) -> dict[str, Judged]:
+    """What stands in each system's record after a judge was asked."""
+    who = {"provider": "anthropic", "base_url": api.server.base_url, "cache": out.parent / "kept", **given}
+    judge = judge_of(Judging(**who))  # type: ignore[arg-type]
+    for tasks in tasks_again(out, How(Means(), Look())):
+        assert len(list(judge_all(tasks, judge))) == len(tasks)
+    found = {path.parent.parent.name: read_record(path.parent) for path in out.glob("*/*/record.json")}
+    return {name: one.judged for name, one in found.items() if one is not None and one.judged is not None}
 
 
-def test_frames_are_judged_and_the_judgement_is_kept_with_its_cost(room: Path, api: Anthropic) -> None:
-    done = judged(room, api)
-    assert done.exit_code == 0, done.output
-    assert "1 scene: 0 scored, 1 judged" in done.stdout
-    found = verdict(room)
-    judgement = json.loads((room / "out" / "one" / "static_D1_01" / "judgement.json").read_text())
-    assert (found["why"], found["score"]) == (None, judgement["score"])
-    assert found["scores"]["objects_present"] == 0
-    assert "actions_visible" not in found["scores"]
-    assert found["cost"] > 0
-    assert (found["provider"], found["model"]) == ("anthropic", "claude-opus-5-5")
+def test_the_command_judges_frames_and_keeps_the_judgement_with_its_cost(out: Path, api: Anthropic) -> None:
+    done = CliRunner().invoke(
+        main, ["bench", "rescore", str(out / "one"), "--judge-url", api.server.base_url]
+    )
+    assert (done.exit_code, "1 scene: 0 scored, 1 judged" in done.stdout) == (0, True), done.output
+    record = read_record(out / "one" / SCENE)
+    assert record is not None
+    assert record.judged is not None
+    judgement = json.loads((out / "one" / SCENE / "judgement.json").read_text())
+    assert (record.judged.why, record.judged.score) == (None, judgement["score"])
+    assert record.judged.scores["objects_present"] == 0
+    assert "actions_visible" not in record.judged.scores
+    assert (record.judged.cost or 0) > 0
+    assert (record.judged.provider, record.judged.model) == ("anthropic", "claude-opus-5-5")
 
 
-def test_the_same_frames_are_judged_once(room: Path, api: Anthropic) -> None:
-    judged(room, api)
-    asked = len(api.server.requests)
-    before = verdict(room)
-    judged(room, api)
-    shutil.rmtree(room / "out")
-    judged(room, api)
-    assert len(api.server.requests) == asked
-    assert verdict(room)["scores"] == before["scores"]
+def test_all_systems_are_judged_by_one_list_of_items_and_each_once(out: Path, api: Anthropic) -> None:
+    first = judged(out, api)
+    assert sorted(api.stages()) == ["items", "verdicts", "verdicts"]
+    assert judged(out, api) == first
+    assert len(api.server.requests) == 3
 
 
-def test_all_systems_are_judged_by_one_list_of_items(room: Path, api: Anthropic) -> None:
-    judged(room, api)
-    judged(room, api, "two")
-    assert api.stages() == ["items", "verdicts", "verdicts"]
-
-
-def test_other_frames_are_judged_anew(room: Path, api: Anthropic) -> None:
-    judged(room, api)
-    Image.new("RGB", (64, 36), (9, 9, 9)).save(room / "one" / "static_D1_01" / "still.png")
+def test_other_frames_are_judged_anew(out: Path, api: Anthropic) -> None:
+    before = judged(out, api)["one"].score or 0
+    Image.new("RGB", (64, 36), (9, 9, 9)).save(out / "one" / SCENE / "frames" / "000.png")
     api.script.fails = ()
-    before = verdict(room)
-    judged(room, api)
-    assert verdict(room)["score"] > before["score"]
+    assert (judged(out, api)["one"].score or 0) > before
 
 
-def test_without_a_key_frames_are_there_and_it_says_why_they_are_not_judged(
-    room: Path, api: Anthropic, monkeypatch: pytest.MonkeyPatch
+def test_without_a_key_it_says_why_frames_are_not_judged(
+    out: Path, api: Anthropic, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("ANTHROPIC_API_KEY")
-    done = judged(room, api)
-    assert done.exit_code == 0
-    assert "1 not judged: There is no key for the model" in done.stdout
-    assert verdict(room)["score"] is None
-    assert len(record(room / "out" / "one", "static_D1_01")["framed"]["frames"]) == 1
+    found = judged(out, api)["one"]
+    assert found.score is None
+    assert "set ANTHROPIC_API_KEY" in (found.why or "")
 
 
 def test_a_judgement_stays_when_nobody_can_be_asked_for_another(
-    room: Path, api: Anthropic, monkeypatch: pytest.MonkeyPatch
+    out: Path, api: Anthropic, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    judged(room, api)
-    before = verdict(room)
-    judged(room, api, "one", "--judge", "none")
-    assert verdict(room) == before
+    before = judged(out, api)
+    assert judged(out, api, provider="none") == before
     monkeypatch.delenv("ANTHROPIC_API_KEY")
-    judged(room, api)
-    assert verdict(room) == before
+    assert judged(out, api) == before
 
 
-def test_a_judge_who_refuses_is_told_and_asked_again_by_the_next_sweep(room: Path, api: Anthropic) -> None:
+def test_a_judgement_of_frames_that_are_gone_does_not_stay(out: Path, api: Anthropic) -> None:
+    judged(out, api)
+    record = read_record(out / "one" / SCENE)
+    assert record is not None
+    assert record.framed is not None
+    framed = record.framed.model_copy(update={"frames": (), "why": "it is no picture"})
+    write_record(out / "one" / SCENE, record.model_copy(update={"framed": framed}))
+    found = judged(out, api)["one"]
+    assert (found.score, found.why) == (None, "no frames: it is no picture")
+
+
+def test_a_judge_who_refuses_is_told_and_asked_again_by_the_next_sweep(out: Path, api: Anthropic) -> None:
+    shutil.rmtree(out / "two")
     api.script.instead["verdicts"].append(api.refusal())
-    done = judged(room, api)
-    assert "1 not judged: refused" in done.stdout
-    assert verdict(room)["score"] is None
-    judged(room, api)
-    assert verdict(room)["score"] is not None
+    assert (judged(out, api)["one"].why or "").startswith("refused")
+    assert judged(out, api)["one"].score is not None
 
 
-def test_the_limit_of_cost_holds_for_the_whole_sweep(room: Path, api: Anthropic) -> None:
-    done = judged(room, api, "one", "--judge-max-cost", "0.0001")
-    assert "1 not judged: over budget" in done.stdout
+def test_the_limit_of_cost_holds_for_all_together(out: Path, api: Anthropic) -> None:
+    found = judged(out, api, max_cost=0.0001)
+    assert all((one.why or "").startswith("over budget") for one in found.values())
     assert not api.server.requests

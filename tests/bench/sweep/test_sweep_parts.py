@@ -6,6 +6,7 @@ import io
 from typing import TYPE_CHECKING
 
 import pytest
+from pydantic import ValidationError
 from rich.console import Console
 
 from bench.spec import BadSpec, spec_of
@@ -14,7 +15,7 @@ from bench.sweep.chosen import chosen
 from bench.sweep.content import digest_of, write_whole
 from bench.sweep.crew import Done
 from bench.sweep.folder import Folder
-from bench.sweep.records import BadRecord, SystemInfo, read_record
+from bench.sweep.records import BadRecord, File, SystemInfo, read_record
 from bench.sweep.scene import Task
 from bench.sweep.view import Lines, Screen
 
@@ -175,6 +176,12 @@ def test_a_record_of_another_shape_is_named(tmp_path: Path) -> None:
     (tmp_path / "record.json").write_text('{"format": 1, "scene": "cloth_D1_01"}')
     with pytest.raises(BadRecord, match=r"record\.json is no record: system: Field required"):
         read_record(tmp_path)
+
+
+@pytest.mark.parametrize("path", ["", "/etc/passwd", "../secret", "frames/../../secret", "a\0b"])
+def test_a_record_names_files_below_its_folder_alone(path: str) -> None:
+    with pytest.raises(ValidationError, match="leads out of its folder"):
+        File(path=path, sha256="", bytes=0)
 
 
 # What is seen
