@@ -49,5 +49,5 @@ def _smoke():
     air = vapour(
         box("Dark smoke", (2.5, 1.1, 1.7), (-0.35, 0, 0.85)), colour=(0.05, 0.05, 0.05), density=8, fire=20
     )
-    settings = domain(air, "GAS", resolution=44, adaptive=True)
+    settings = domain(air, "GAS", resolution=44)
     settings.burning_rate, settings.flame_smoke, settings.vorticity = 0.9, 1.2, 0.2
