@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from typing import Any
 
 HERE = Path(__file__).parent / "inside"
+# What scripts may import: each other, what the audit runs in Blender, and what breaks scenes.
+_FOLDERS = (HERE, ENTRY.parent, ENTRY.parents[1] / "sabotage" / "inside")
 
 
 def facts_of(script: str, place: Path) -> dict[str, Scene]:
@@ -36,7 +38,7 @@ def run(script: str, place: Path) -> dict[str, Any]:
     done = subprocess.run(
         [sys.executable, "-P", str(HERE / script), str(place), str(result)],
         env=clean_environment(place / "settings")
-        | {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": os.pathsep.join((str(HERE), str(ENTRY.parent)))},
+        | {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": os.pathsep.join(map(str, _FOLDERS))},
         capture_output=True,
         text=True,
         check=False,

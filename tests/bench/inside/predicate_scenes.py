@@ -4,7 +4,8 @@ import os
 import shutil
 
 import bpy
-from making import FRAMES, PLACE, add, bake, body, cloth_on, empty, finish, free, get, keys, new, read, save
+import changes
+from making import FRAMES, PLACE, add, bake, body, cloth_on, empty, finish, get, keys, new, read, save
 
 
 def weigh(thing, name):
@@ -122,61 +123,13 @@ def blended():
     keys(squashed, "value", [0.0, 1.0], [1, 12])
 
 
-def hide(name):
-    return lambda: setattr(get(name), "hide_render", True)
-
-
-def without(name, kind):
-    """Removes an object's modifier of a type."""
-
-    def change():
-        modifiers = get(name).modifiers
-        modifiers.remove(next(one for one in modifiers if one.type == kind))
-
-    return change
-
-
-def setting(name, kind, path, value):
-    """Sets something of an object's modifier of a type."""
-
-    def change():
-        modifier = next(one for one in get(name).modifiers if one.type == kind)
-        owner, _, attribute = path.rpartition(".")
-        setattr(modifier.path_resolve(owner) if owner else modifier, attribute, value)
-
-    return change
-
-
-def of_body(attribute, value):
-    return lambda: setattr(get("Left").rigid_body, attribute, value)
-
-
-def of_tie(attribute, value):
-    return lambda: setattr(get("Hinge").rigid_body_constraint, attribute, value)
-
-
-def of_particles(attribute, value):
-    return lambda: setattr(get("Flag").particle_systems[0].settings, attribute, value)
-
-
-def out_of_world():
-    bpy.context.view_layer.objects.active = get("Left")
-    bpy.ops.rigidbody.object_remove()
+def broken(change, *names, **options):
+    """A change of objects, as the proofs make it."""
+    return lambda: changes.sabotage(change, list(names), options)
 
 
 def no_world():
     bpy.ops.rigidbody.world_remove()
-
-
-def empty_world():
-    world = bpy.context.scene.rigidbody_world
-    for thing in list(world.collection.objects):
-        world.collection.objects.unlink(thing)
-
-
-def particles_first():
-    bpy.context.view_layer.objects.active = get("Flag")
-    bpy.ops.object.modifier_move_to_index(modifier="Dust", index=0)
 
 
 def lose_files():
@@ -185,10 +138,6 @@ def lose_files():
         place = os.path.join(os.path.dirname(bpy.data.filepath), "water", folder)
         for name in sorted(os.listdir(place))[:5]:
             os.unlink(os.path.join(place, name))
-
-
-def stand_still():
-    get("Paddle").animation_data_clear()
 
 
 def fewer_keys():
@@ -201,53 +150,64 @@ def no_blend():
     get("Slab").data.shape_keys.animation_data_clear()
 
 
+CLOTH, SOFT, DUST = {"types": ["CLOTH"]}, {"types": ["SOFT_BODY"]}, {"types": ["PARTICLE_SYSTEM"]}
+COLLISION, FLUID = {"types": ["COLLISION"]}, {"types": ["FLUID"]}
 # Predicate → the scene in which it holds, and what ends that.
 CASES = {
-    "renderable": (cloth, hide("Sheet")),
-    "solver_enabled": (cloth, setting("Sheet", "CLOTH", "show_render", False)),
-    "cloth_modifier": (cloth, without("Sheet", "CLOTH")),
-    "cloth_cache_baked": (cloth, free),
+    "renderable": (cloth, broken("hide", "Sheet")),
+    "solver_enabled": (cloth, broken("mute", "Sheet", **CLOTH)),
+    "cloth_modifier": (cloth, broken("remove", "Sheet", **CLOTH)),
+    "cloth_cache_baked": (cloth, broken("free", "Sheet", **CLOTH)),
     "cloth_self_collision": (
         cloth,
-        setting("Sheet", "CLOTH", "collision_settings.use_self_collision", False),
+        broken("set_value", "Sheet", **CLOTH, path="collision_settings.use_self_collision", value=False),
     ),
-    "cloth_pin_group": (cloth, lambda: get("Sheet").vertex_groups["Pins"].remove([0, 1])),
-    "cloth_collision_partners": (cloth, without("Table", "COLLISION")),
-    "soft_modifier": (soft, without("Jelly", "SOFT_BODY")),
-    "soft_cache_baked": (soft, free),
-    "soft_collision_partners": (soft, setting("Block", "COLLISION", "show_viewport", False)),
-    "soft_goal_group": (soft, setting("Jelly", "SOFT_BODY", "settings.use_goal", False)),
+    "cloth_pin_group": (cloth, broken("clear_group", "Sheet", **CLOTH, path="settings.vertex_group_mass")),
+    "cloth_collision_partners": (cloth, broken("remove", "Table", **COLLISION)),
+    "soft_modifier": (soft, broken("remove", "Jelly", **SOFT)),
+    "soft_cache_baked": (soft, broken("free", "Jelly", **SOFT)),
+    "soft_collision_partners": (soft, broken("mute", "Block", **COLLISION, where="show_viewport")),
+    "soft_goal_group": (soft, broken("set_value", "Jelly", **SOFT, path="settings.use_goal", value=False)),
     "soft_rigid_partners": (soft, no_world),
-    "rigid_settings": (rigid, out_of_world),
-    "rigid_type": (rigid, of_body("type", "PASSIVE")),
-    "rigid_shape": (rigid, of_body("collision_shape", "MESH")),
-    "rigid_world_populated": (rigid, empty_world),
-    "rigid_cache_baked": (rigid, free),
-    "rigid_constraint": (rigid, of_tie("object2", None)),
-    "rigid_constraint_no_collision": (rigid, of_tie("disable_collisions", False)),
-    "rigid_collision_modifier": (rigid, without("Left", "COLLISION")),
-    "rigid_positive_mass": (rigid, of_body("mass", 0.0)),
-    "particle_system": (particles, without("Flag", "PARTICLE_SYSTEM")),
-    "particle_type": (particles, of_particles("type", "HAIR")),
-    "particle_source": (particles, of_particles("count", 0)),
-    "particle_cache_baked": (particles, free),
-    "particle_collision_partners": (particles, without("Wall", "COLLISION")),
-    "particle_from_deformed": (particles, particles_first),
-    "particle_force_fields": (particles, lambda: setattr(get("Wind").field, "strength", 0.0)),
-    "fluid_modifier": (fluid, without("Water", "FLUID")),
-    "fluid_type": (fluid, setting("Tap", "FLUID", "flow_settings.flow_type", "SMOKE")),
-    "fluid_domain_exists": (fluid, lambda: setattr(get("Tap"), "location", (0, 0, 9))),
-    "fluid_flow_count": (fluid, setting("Tap", "FLUID", "flow_settings.use_inflow", False)),
-    "fluid_dynamic_effector": (fluid, stand_still),
-    "fluid_guiding": (guided, setting("Smoke", "FLUID", "domain_settings.use_guide", False)),
-    "fluid_resolution": (fluid, setting("Water", "FLUID", "domain_settings.resolution_max", 16)),
-    "fluid_mesh": (fluid, setting("Water", "FLUID", "domain_settings.use_mesh", False)),
+    "rigid_settings": (rigid, broken("remove_body", "Left")),
+    "rigid_type": (rigid, broken("turn_type", "Left")),
+    "rigid_shape": (rigid, broken("other_shape", "Left", shapes=[])),
+    "rigid_world_populated": (rigid, broken("expel", "Floor", "Left", "Right")),
+    "rigid_cache_baked": (rigid, broken("free_world")),
+    "rigid_constraint": (rigid, broken("untie", "Left")),
+    "rigid_constraint_no_collision": (rigid, broken("let_collide", "Left")),
+    "rigid_collision_modifier": (rigid, broken("remove", "Left", **COLLISION)),
+    "rigid_positive_mass": (rigid, broken("set_body", "Left", attribute="mass", value=0.0)),
+    "particle_system": (particles, broken("remove", "Flag", **DUST)),
+    "particle_type": (
+        particles,
+        broken("set_value", "Flag", **DUST, path="particle_system.settings.type", value="HAIR"),
+    ),
+    "particle_source": (
+        particles,
+        broken("set_value", "Flag", **DUST, path="particle_system.settings.count", value=0),
+    ),
+    "particle_cache_baked": (particles, broken("free", "Flag", **DUST)),
+    "particle_collision_partners": (particles, broken("remove", "Wall", **COLLISION)),
+    "particle_from_deformed": (particles, broken("put_first", "Flag", **DUST)),
+    "particle_force_fields": (particles, broken("calm", "Wind")),
+    "fluid_modifier": (fluid, broken("remove", "Water", **FLUID)),
+    "fluid_type": (fluid, broken("swap", "Tap", kind="FLOW")),
+    "fluid_domain_exists": (fluid, broken("put_away", "Tap")),
+    "fluid_flow_count": (fluid, broken("close_flows", flows=["Tap"], least=1)),
+    "fluid_dynamic_effector": (fluid, broken("stand_still", "Paddle")),
+    "fluid_guiding": (guided, broken("unguide")),
+    "fluid_resolution": (fluid, broken("coarsen", "Water", least=32)),
+    "fluid_mesh": (
+        fluid,
+        broken("set_value", "Water", **FLUID, path="domain_settings.use_mesh", value=False),
+    ),
     "fluid_cache_baked": (fluid, lose_files),
     "dense_transform_keys": (recorded, fewer_keys),
     "animated_shape_keys": (blended, no_blend),
-    "static_has_cache": (cloth, free),
+    "static_has_cache": (cloth, broken("free", "Sheet", **CLOTH)),
     "static_has_rigid_world": (rigid, no_world),
-    "static_has_solver": (cloth, without("Sheet", "CLOTH")),
+    "static_has_solver": (cloth, broken("remove", "Sheet", **CLOTH)),
 }
 
 
