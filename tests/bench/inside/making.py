@@ -79,11 +79,6 @@ def bake():
         bpy.ops.ptcache.bake_all(bake=True)
 
 
-def free():
-    """Frees all bakes."""
-    bpy.ops.ptcache.free_bake_all()
-
-
 def keys(thing, path, values, frames):
     """Keys on a property of three axes, or one."""
     for value, frame in zip(values, frames, strict=True):
