@@ -58,7 +58,7 @@ def checks_of(audit: Audit) -> dict[Place, Checked]:
 
 
 def aims(audit: Audit, found: Mapping[str, Found]) -> Iterator[Aim]:
-    """The sabotages of every check that passes in a scene; those of one that has none are the empty choice."""
+    """The sabotages of every check that passes in a scene."""
     for place, check in checks_of(audit).items():
         if check.outcome != "passed":
             continue
@@ -78,28 +78,28 @@ def _objects(
     sabotage: Sabotage, check: Checked, own: Found | None, found: Mapping[str, Found]
 ) -> Iterator[tuple[str, ...]]:
     """The objects to change: several choices where there are several partners, each of which counts."""
-    if own is None:
+    if own is None or sabotage.on == "scene":
         yield ()
     elif sabotage.on == "partner":
-        partners = check.params.get("partners") or [name for name in found if name != own.actor.name]
-        choices = [
-            tuple(name for unit in found[name].units for name in sorted(unit.names)) for name in partners
-        ]
-        yield from (
-            choices if check.params.get("partners") else [tuple(name for each in choices for name in each)]
-        )
-    elif sabotage.on == "scene":
-        yield ()
+        named = check.params.get("partners")
+        if named:
+            yield from (_of_actor(found[name]) for name in named)
+        else:
+            others = (one for one in found.values() if one is not own)
+            yield tuple(name for one in others for name in _of_actor(one))
     else:
-        units = own.units[: _enough(check)]
-        yield tuple(one.name for unit in units for one in unit.objects)
+        yield tuple(one.name for unit in own.units[: _enough(check)] for one in unit.objects)
+
+
+def _of_actor(one: Found) -> tuple[str, ...]:
+    return tuple(name for unit in one.units for name in sorted(unit.names))
 
 
 def _enough(check: Checked) -> int:
-    """How many units must be broken for the check to fail: no more, so that each is known to count."""
+    """How many units must be broken for the check to fail, whichever they are: no more, so that each of them counts."""
     if check.wanted == "must_not_have" or "needed" not in check.seen:
         return 1
-    return check.seen["good"] - check.seen["needed"] + 1
+    return check.seen["units"] - check.seen["needed"] + 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -126,8 +127,15 @@ def prove(task: Task) -> Done:
 
 def _reference(spec: Spec) -> Path:
     if not has_reference(spec.id):
-        raise CannotBuild(f"there is no reference scene for {spec.id} yet")
+        raise CannotBuild(f"there is no reference scene for {spec.id}")
+    _tell(f"{spec.id}: building, unless it is there")
     return build(spec.id)
+
+
+def _tell(doing: str) -> None:
+    """Says on a terminal what is being done."""
+    if sys.stderr.isatty():
+        print(f"{doing} …", file=sys.stderr, flush=True)
 
 
 def _proofs(spec: Spec, blend: Path, properties: Sequence[Property], key: str) -> Iterator[Proof]:
@@ -135,6 +143,7 @@ def _proofs(spec: Spec, blend: Path, properties: Sequence[Property], key: str) -
         return
     with Desk(spec, blend, Means(seconds=_SECONDS)) as desk:
         for each in properties:
+            _tell(f"{spec.id}: {each}")
             proof = prove_on(desk, each)
             if not proof.unable:
                 keep(proof, key)

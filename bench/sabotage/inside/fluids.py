@@ -54,8 +54,8 @@ def put_away(things):
 
 
 def ignore(things):
-    """Has effectors take no part."""
-    found = fluids_of("EFFECTOR", things)
+    """Has effectors take no part: these, or all."""
+    found = fluids_of("EFFECTOR", things or None)
     for _, settings in found:
         settings.use_effector = False
     return [thing for thing, _ in found]
