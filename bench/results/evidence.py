@@ -140,7 +140,7 @@ def _notices(scene: Scored, audit: AuditFile | None) -> Iterator[str]:
     yield from dict.fromkeys(
         f"{TITLES[metric]}: not {'judged' if metric == 'vlm' else 'scored'}: {why}"
         for metric in METRICS
-        if (why := scene.why_not(metric))
+        if (why := scene.why_not(metric)) and (metric != "vlm" or _was_asked(scene))
     )
     if record.produced is not None:
         if record.produced.outcome not in ("taken", "done", "missing"):
@@ -154,6 +154,11 @@ def _notices(scene: Scored, audit: AuditFile | None) -> Iterator[str]:
         yield from (f"Frames: {note}" for note in record.framed.notes)
         if record.framed.why:
             yield f"No frames: {record.framed.why}"
+
+
+def _was_asked(scene: Scored) -> bool:
+    """Whether a judge was asked; that nobody was, a table says once for all scenes."""
+    return scene.record.judged is not None and scene.record.judged.key != ""
 
 
 # The audit
