@@ -104,14 +104,15 @@ def limits(tie, **axes):
 def thrown(thing, velocity, spin=(0, 0, 0), *, until=4):
     """A hand moves a rigid body at ``velocity`` (m/s) and ``spin`` (radians a second) until that frame, and lets go.
 
-    Let go before the fourth frame, it may be at rest: Blender makes the bodies at the second, moved or not.
+    It begins at the second frame: where a body was at the first or at the second is where Blender makes it, as it
+    happens. Let go before the fourth, it falls.
     """
-    time, start = (until - 1) / FPS, thing.rotation_euler.copy()
+    time, start = (until - 2) / FPS, thing.rotation_euler.copy()
     turned = Matrix.Rotation(Vector(spin).length * time, 3, Vector(spin) if any(spin) else Vector((0, 0, 1)))
     end = (turned @ start.to_matrix()).to_euler(start.order, start)
     place = thing.location.copy()
-    keys(thing, "location", {1: place, until: place + Vector(velocity) * time}, even=True)
-    keys(thing, "rotation_euler", {1: start, until: end}, even=True)
+    keys(thing, "location", {2: place, until: place + Vector(velocity) * time}, even=True)
+    keys(thing, "rotation_euler", {2: start, until: end}, even=True)
     keys(thing, "rigid_body.kinematic", {1: True, until: False})
 
 
