@@ -37,9 +37,8 @@ def render(shares, pixels, samples, jump=False):
     unbaked = moments.unbaked_of(scene, told)
     first, last = scene.frame_start, scene.frame_end
     wanted = [first + round(share * (last - first)) for share in shares]
-    if unbaked and jump:
-        for each in unbaked:
-            each.switch_off()
+    if jump:
+        _switch_off(scene, unbaked)
     _keep_fluids_here(scene)
     _settle(scene, pixels, samples)
     scene.frame_set(first)
@@ -60,6 +59,17 @@ def render(shares, pixels, samples, jump=False):
         "camera": camera,
         "unbaked": labels[:4],
     }
+
+
+def _switch_off(scene, unbaked):
+    """Keeps physics from being simulated, in the render too."""
+    modifiers = [
+        modifier for thing in scene.objects for modifier in thing.modifiers if modifier.show_viewport
+    ]
+    for each in unbaked:
+        each.switch_off()
+    for modifier in modifiers:
+        modifier.show_render = modifier.show_render and modifier.show_viewport
 
 
 def _keep_fluids_here(scene):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from bench.sweep.content import digest_of
-from bench.sweep.provenance import code_of
+from bench.sweep.provenance import code_of_audit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,7 +20,7 @@ def notes(results: Results) -> list[str]:
 
 def _of_audits(results: Results) -> Iterator[str]:
     """Audits of other code than this, or of specs as they were."""
-    code = code_of("bench.audit", "inside/*.py")
+    code = code_of_audit()
     audits = [(scene, scene.record.audited) for scene in _all(results) if scene.record.audited is not None]
     scored = [(scene, audit) for scene, audit in audits if audit.why is None]
     if other := sum(audit.provenance.code != code for _, audit in scored):

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _BENCH = Path(__file__).resolve().parent.parent
+_FRAMES = "frames.py"
 _PACKAGES = ("anthropic", "av", "bpy", "numpy", "openai", "pillow", "pydantic", "ray")
 
 
@@ -26,6 +27,17 @@ def code_of(module: str, *beside: str) -> str:
     """Digest of a module of ``bench`` with all of ``bench`` that it imports, and of files ``beside`` (globs in it)."""
     paths = {*_closure(module), *(path for pattern in beside for path in _BENCH.glob(pattern))}
     return digest_of({path.relative_to(_BENCH).as_posix(): digest_of_file(path) for path in paths})
+
+
+def code_of_audit() -> str:
+    """Of the audit, with what it runs in Blender."""
+    inside = sorted(path.name for path in (_BENCH / "inside").glob("*.py") if path.name != _FRAMES)
+    return code_of("bench.audit", *(f"inside/{name}" for name in inside))
+
+
+def code_of_frames() -> str:
+    """Of what takes frames; what it shares with the audit decides what they show only where physics is not baked."""
+    return code_of("bench.frames.frames", f"inside/{_FRAMES}", "frames/decode.py")
 
 
 def provenance(code: str, blender: str | None = None) -> Provenance:

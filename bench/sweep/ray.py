@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.sweep.content import files_below
+from bench.sweep.content import digest_of, files_below
 from bench.sweep.crew import Done
 from bench.sweep.folder import Folder
 from bench.sweep.parcels import Damaged, Parcel, packed, packed_changes, unpacked
-from bench.sweep.provenance import code_of
+from bench.sweep.provenance import code_of, code_of_audit, code_of_frames
 from bench.sweep.records import NAME, BadRecord, read_record
 from bench.sweep.scene import do_scene
 from bench.sweep.systems import NotReady
@@ -158,4 +158,4 @@ def _silent(_: str) -> None:
 
 def _code() -> str:
     """Digest of the code that scores."""
-    return code_of("bench.sweep.scene", "inside/*.py", "frames/decode.py")
+    return digest_of([code_of("bench.sweep.scene"), code_of_audit(), code_of_frames()])

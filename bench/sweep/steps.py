@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from bench.audit import audit
 from bench.frames.frames import SECONDS, kind_of, take_frames
 from bench.sweep.content import digest_of, digest_of_bytes, digest_of_file, write_whole
-from bench.sweep.provenance import code_of
+from bench.sweep.provenance import code_of, code_of_audit, code_of_frames
 from bench.sweep.records import AUDIT, FINAL, FRAMES, WORK, Audited, File, Framed, Produced
 from bench.untrusted import NotScored
 
@@ -96,7 +96,7 @@ def _file(task: Task, path: Path | None) -> File | None:
 
 def _audit_due(task: Task, record: Record) -> Due | None:
     before, blend = record.audited, _blend(task, record)
-    code = code_of("bench.audit", "inside/*.py")
+    code = code_of_audit()
     if blend is None:
         return (
             None
@@ -133,7 +133,7 @@ def _spec(task: Task) -> str:
 
 def _frames_due(task: Task, record: Record) -> Due | None:
     before, blend, video = record.framed, _blend(task, record), _video(task, record)
-    code = code_of("bench.frames.frames", "inside/frames.py", "frames/decode.py")
+    code = code_of_frames()
     if blend is None:
         return (
             None

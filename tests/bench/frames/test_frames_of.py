@@ -101,6 +101,16 @@ def test_what_is_not_baked_is_simulated_as_in_a_render_of_the_clip_and_that_is_t
 
 
 @pytest.mark.blender
+def test_what_would_take_too_long_to_simulate_is_left_out_and_that_is_told(
+    files: Path, tmp_path: Path
+) -> None:
+    found = taken("endless", files, tmp_path)
+    assert {colour(path) for path in found.paths} == {GREEN}
+    (note,) = found.notes
+    assert note.startswith("frames stand alone, without physics that is not baked (9,000 frames")
+
+
+@pytest.mark.blender
 def test_without_a_camera_one_is_made_that_sees_all_but_the_ground_whole(files: Path, tmp_path: Path) -> None:
     found = taken("no_camera", files, tmp_path, static=True)
     assert found.notes == ("the scene has no camera; one was made that sees all of it",)

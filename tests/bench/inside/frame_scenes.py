@@ -59,6 +59,11 @@ def baked():
     falling(baked=True)
 
 
+def endless():
+    falling(baked=False)
+    bpy.context.scene.frame_end = 9000
+
+
 def no_camera():
     """Three tiles in a row, and ground that is far larger."""
     stage(camera=False)
@@ -84,7 +89,7 @@ def square():
 
 
 def main():
-    for make in (keyed, baked, unbaked, no_camera, strips, square):
+    for make in (keyed, baked, unbaked, endless, no_camera, strips, square):
         make()
         save(make.__name__)
     finish({})
