@@ -4,11 +4,10 @@
 import math
 
 from physics import collider, soft
+from rounds import ring
 from stage import begin, camera, light
 from struts import braced
-from things import box, revolved
-
-RING, TUBE = 0.42, 0.11
+from things import box
 
 
 def build():
@@ -16,10 +15,8 @@ def build():
     begin(96)
     track = box("Hot asphalt", (8, 8, 0.4), (0, 0, -0.2), colour=(0.33, 0.33, 0.34), roughness=0.9)
     collider(track, thickness=0.02, inner=0.1, damping=0.02)
-    turns = [2 * math.pi * side / 10 for side in range(11)]
-    round_ = [(RING + TUBE * math.cos(turn), TUBE * math.sin(turn)) for turn in turns]
-    tube = revolved(
-        "Rubber inner tube", round_, (0, 0, 0.95), sides=40, colour=(0.03, 0.03, 0.035), roughness=0.4
+    tube = ring(
+        "Rubber inner tube", 0.42, 0.11, (0, 0, 0.95), sides=40, colour=(0.03, 0.03, 0.035), roughness=0.4
     )
     tube.rotation_euler = (
         math.radians(84),

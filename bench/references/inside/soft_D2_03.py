@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A hot-water bottle lands on a trampoline, whose mat dips under it and flings it up once more."""
 
-import math
-
 from physics import collider, soft
+from rounds import around, ring
 from stage import begin, camera, light
 from struts import braced
 from things import box, cylinder, fused, joined, revolved, weigh
@@ -37,12 +36,6 @@ def build():
 
 def _ring():
     steel = {"colour": (0.6, 0.62, 0.65), "metal": 1.0, "roughness": 0.3}
-    middle = WIDE + TUBE
-    round_ = [(middle + TUBE * math.cos(turn), TUBE * math.sin(turn)) for turn in _turns(12)]
-    rim = revolved("Rim", [*round_, round_[0]], (0, 0, HIGH), sides=48, **steel)
-    feet = [(middle * math.cos(turn), middle * math.sin(turn), HIGH / 2) for turn in _turns(6)]
-    joined("Steel ring", rim, *(cylinder("Leg", 0.025, HIGH, foot, **steel) for foot in feet))
-
-
-def _turns(count):
-    return [2 * math.pi * number / count for number in range(count)]
+    rim = ring("Rim", WIDE + TUBE, TUBE, (0, 0, HIGH), sides=48, **steel)
+    legs = [cylinder("Leg", 0.025, HIGH, (x, y, HIGH / 2), **steel) for x, y in around(WIDE + TUBE, 6)]
+    joined("Steel ring", rim, *legs)
