@@ -30,7 +30,7 @@ def multiply(path, factor):
     lengths = {_LOCATION, _VELOCITY, _SIZES} | ({_REST} if kind & 0xFFFF == _CLOTH else set())
     written, place = [data[: _HEAD.size]], _HEAD.size
     for bit in range(_KINDS):
-        if mask >> bit & 1:
+        if count and mask >> bit & 1:
             values, place = _read(data, place, count)
             if bit in lengths:
                 values = (numpy.frombuffer(values, "<f4") * numpy.float32(factor)).tobytes()
