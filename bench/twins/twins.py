@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from bench.validate.desk import Desk
 
 KINDS = ("keys", "files")
-# A twin looks the same if its pictures differ from the scene's by no more than one step of 256, or than the scene's own
-# do when they are rendered with another seed: of gases, which are rendered with noise, there is no other measure.
-_STEP = 1 / 255
+# A twin looks the same if its pictures differ from the scene's by no more than a tenth of what the scene without its
+# physics differs. Gases are rendered with noise: there it may be as much as with another seed, but not half of that.
+_SHARE, _MOST = 0.1, 0.5
 _UNLIKE_SOLVERS = ("renderable", "dense_transform_keys", "animated_shape_keys")
 _DIGITS = 6
 
@@ -74,6 +74,11 @@ class _Look:
         return self._desk.difference(self._desk.original, again)
 
     @property
+    def allowed(self) -> float:
+        """How much what looks the same may differ."""
+        return max(_SHARE * self.without_physics, min(self.noise, _MOST * self.without_physics))
+
+    @property
     def told(self) -> dict[str, Any]:
         """For reports."""
         return {
@@ -103,7 +108,7 @@ def _twin(desk: Desk, kind: str, look: _Look) -> Row:
         wrong.append("it is not told from the scene")
     if drop < share - 10**-_DIGITS:
         wrong.append(f"MPR falls by {drop:.3f}, and must by {share:.3f}")
-    if difference > max(_STEP, look.noise):
+    if difference > look.allowed:
         wrong.append(f"it does not look the same: its pictures differ by {difference:.4f}")
     return Row(name=kind, holds=not wrong, why="; ".join(wrong), values=values)
 

@@ -110,7 +110,7 @@ class _Twin:
         for name in sorted(self._reshaped):
             self._replace(things[name])
         for name in sorted(self._gases):
-            gases.put_in_place(things[name], self._volumes[name])
+            gases.put_in_place(things[name], *self._volumes[name])
         self._show_particles()
         if self._film.hair[0]:
             self._show_hair()

@@ -16,7 +16,7 @@ def settings_of(thing):
 
 
 def volume_of(thing):
-    """A volume that plays the files of a gas's bake, with its material."""
+    """(a volume that plays the files of a gas's bake, with its material; how long the side of a cell is)."""
     settings = settings_of(thing)
     volume = bpy.data.volumes.new(thing.name)
     part = "noise" if settings.use_noise else "data"
@@ -25,11 +25,15 @@ def volume_of(thing):
     volume.frame_start, volume.frame_duration = 1, settings.cache_frame_end
     for slot in thing.material_slots:
         volume.materials.append(slot.material)
-    return volume
+    corners = [Vector(corner) for corner in thing.bound_box]
+    divisions = settings.resolution_max * (settings.noise_scale if settings.use_noise else 1)
+    return volume, max(corners[6] - corners[0]) / divisions
 
 
-def put_in_place(thing, volume):
+def put_in_place(thing, volume, cell):
     """Puts a volume in the place of a gas's domain."""
-    name, matrix = thing.name, thing.matrix_world @ Matrix.Translation(Vector(thing.bound_box[0]))
+    # Where a domain has the corner of its first cell, the file has the middle of it.
+    first = Vector(thing.bound_box[0]) + Vector((cell, cell, cell)) / 2
+    name, matrix = thing.name, thing.matrix_world @ Matrix.Translation(first)
     bpy.data.objects.remove(thing)
     put(name, volume, matrix)
