@@ -204,19 +204,20 @@ def _nowhere(pose):
 
 
 def _repeated(mesh, count):
-    """A mesh as often as that, as one."""
+    """A mesh as often as that, as one, shaded as it is."""
     made = bpy.data.meshes.new(mesh.name)
-    points = points_of(mesh)
-    faces = [tuple(face.vertices) for face in mesh.polygons]
-    size = len(points)
+    size = len(mesh.vertices)
+    edges, faces = ([tuple(each.vertices) for each in several] for several in (mesh.edges, mesh.polygons))
+    starts = [size * number for number in range(count)]
     made.from_pydata(
-        numpy.tile(points, (count, 1)).tolist(),
-        [],
-        [tuple(size * number + corner for corner in face) for number in range(count) for face in faces],
+        numpy.tile(points_of(mesh), (count, 1)).tolist(),
+        [(first + start, last + start) for start in starts for first, last in edges],
+        [tuple(start + corner for corner in face) for start in starts for face in faces],
     )
     for material in mesh.materials:
         made.materials.append(material)
-    smooth = numpy.empty(len(mesh.polygons), dtype=bool)
-    mesh.polygons.foreach_get("use_smooth", smooth)
-    made.polygons.foreach_set("use_smooth", numpy.tile(smooth, count))
+    for several, name in (("polygons", "use_smooth"), ("edges", "use_edge_sharp")):
+        found = numpy.empty(len(getattr(mesh, several)), dtype=bool)
+        getattr(mesh, several).foreach_get(name, found)
+        getattr(made, several).foreach_set(name, numpy.tile(found, count))
     return made
