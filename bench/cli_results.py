@@ -77,16 +77,24 @@ def report(results: tuple[Path, ...], **given: Any) -> None:
     show_default=True,
     help="Scenes at a time on each machine.",
 )
+@click.option(
+    "--making",
+    type=click.FloatRange(0),
+    metavar="MINUTES",
+    help="What a system takes for a scene, instead of what was measured.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def estimate(results: tuple[Path, ...], systems: int, machines: int, jobs: int, as_json: bool) -> None:
+def estimate(results: tuple[Path, ...], **given: Any) -> None:
     """Tell how long all scenes take by many systems on many machines, from the times that RESULTS measured."""
     from bench.results.estimate import estimate as run  # noqa: PLC0415 - not for --help
 
-    found = run(_read(results), systems=systems, machines=machines, at_a_time=jobs)
+    making = given["making"] * 60 if given["making"] is not None else None
+    sizes = {"systems": given["systems"], "machines": given["machines"], "at_a_time": given["jobs"]}
+    found = run(_read(results), **sizes, making=making)
     if found is None:
         click.echo("Error: no scene in these results was scored, so no time is known.", err=True)
         sys.exit(2)
-    click.echo(json.dumps(asdict(found), indent=1) if as_json else "\n".join(_estimated(found)))
+    click.echo(json.dumps(asdict(found), indent=1) if given["as_json"] else "\n".join(_estimated(found)))
 
 
 def _read(folders: Sequence[Path]) -> Results:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from bench.spec import specs
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from bench.results.scores import Results, Scored
     from bench.spec import Spec
@@ -38,13 +38,20 @@ class Estimate:
     longest: float
 
 
-def estimate(results: Results, *, systems: int, machines: int, at_a_time: int) -> Estimate | None:
-    """All scenes by so many systems like those measured, ``at_a_time`` on each machine; None without measurements."""
+def estimate(
+    results: Results, *, systems: int, machines: int, at_a_time: int, making: float | None = None
+) -> Estimate | None:
+    """All scenes by so many systems like those measured, ``at_a_time`` on each machine; None without measurements.
+
+    ``making``: seconds that a system takes for a scene, instead of those measured.
+    """
     times = _measured(results)
     if not times:
         return None
     every = specs()
     by_scene = {spec.id: _of(spec, times) for spec in every}
+    if making is not None:
+        by_scene = {name: each | {"produced": making} for name, each in by_scene.items()}
     work = {step: sum(each[step] for each in by_scene.values()) for step in STEPS}
     tasks = [sum(each.values()) for each in by_scene.values()]
     return Estimate(
@@ -69,35 +76,34 @@ def makespan(tasks: Sequence[float], workers: int) -> float:
 
 
 def _measured(results: Results) -> dict[str, dict[str, float]]:
-    """Scene → step → seconds, the mean over systems."""
-    found: dict[str, list[dict[str, float]]] = {}
+    """Scene → step → seconds, the mean over systems; a step that was not done is left out."""
+    found: dict[str, dict[str, list[float]]] = {}
     for system in results.systems:
         for name, scene in system.scenes.items():
-            if scene.record.audited is not None and scene.record.audited.file is not None:
-                found.setdefault(name, []).append(_seconds(scene))
-    return {
-        name: {step: fmean(each[step] for each in several) for step in STEPS}
-        for name, several in found.items()
-    }
+            if scene.record.audited is None or scene.record.audited.file is None:
+                continue
+            for step, seconds in _seconds(scene):
+                found.setdefault(name, {}).setdefault(step, []).append(seconds)
+    return {name: {step: fmean(several) for step, several in steps.items()} for name, steps in found.items()}
 
 
-def _seconds(scene: Scored) -> dict[str, float]:
+def _seconds(scene: Scored) -> Iterator[tuple[str, float]]:
     """What a system took itself is in its minutes: it may have worked in several sittings."""
     record = scene.record
-    parts = {
-        "produced": record.produced,
-        "audited": record.audited,
-        "framed": record.framed,
-        "judged": record.judged,
-    }
-    seconds = {step: part.seconds if part is not None and part.key else 0.0 for step, part in parts.items()}
-    if record.produced is not None and record.produced.minutes is not None:
-        seconds["produced"] = record.produced.minutes * 60
-    return seconds
+    if record.produced is not None:
+        minutes = record.produced.minutes
+        yield "produced", record.produced.seconds if minutes is None else minutes * 60
+    for step, part in (("audited", record.audited), ("framed", record.framed), ("judged", record.judged)):
+        if part is not None and part.why is None:
+            yield step, part.seconds
 
 
 def _of(spec: Spec, times: dict[str, dict[str, float]]) -> dict[str, float]:
-    if spec.id in times:
-        return times[spec.id]
+    """Of each step, what was measured of the scene, or else the mean of its category, or of all; 0 where of none."""
     kin = [each for name, each in times.items() if name.partition("_")[0] == spec.category]
-    return {step: fmean(each[step] for each in kin or times.values()) for step in STEPS}
+    found: dict[str, float] = {}
+    for step in STEPS:
+        nearest = ([times.get(spec.id, {})], kin, times.values())
+        known = ([each[step] for each in several if step in each] for several in nearest)
+        found[step] = fmean(next((seconds for seconds in known if seconds), [0.0]))
+    return found

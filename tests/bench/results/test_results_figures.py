@@ -140,20 +140,27 @@ def test_workers_take_the_next_task_when_they_are_free() -> None:
 
 
 def test_what_was_not_measured_takes_as_long_as_its_category_or_as_all(results: Written) -> None:
-    results.add("mine", "cloth_D1_01", 1.0, 1.0, seconds=(10, 0, 0), minutes=1)
-    results.add("mine", "rigid_D1_01", 1.0, 1.0, seconds=(20, 0, 0), minutes=0)
+    results.add("mine", "cloth_D1_01", 1.0, 1.0, seconds=(10, 5, 0), minutes=1)
+    results.add("mine", "rigid_D1_01", 1.0, 1.0, 1.0, seconds=(20, 5, 3), minutes=0)
     found = estimate(results.read(), systems=2, machines=25, at_a_time=2)
     assert found is not None
-    cloth, rigid, others = 9 * 10, 9 * 20, 32 * 15
+    others = 50 - 9 - 9
     assert found.work == {
-        "produced": 9 * 60 + 32 * 30,
-        "audited": cloth + rigid + others,
-        "framed": 0,
-        "judged": 0,
+        "produced": 9 * 60 + others * 30,
+        "audited": 9 * 10 + 9 * 20 + others * 15,
+        "framed": 50 * 5,
+        "judged": 50 * 3,
     }
-    assert (found.measured, found.scenes, found.longest) == (2, len(specs()), 70)
+    assert (found.measured, found.scenes, found.longest) == (2, len(specs()), 60 + 10 + 5 + 3)
     assert found.together <= 2 * found.longest
-    assert estimate(results.read(), systems=1, machines=1, at_a_time=1).together == found.one  # type: ignore[union-attr]
+
+
+def test_an_estimate_takes_what_making_a_scene_lasts_from_whoever_knows(results: Written) -> None:
+    results.add("mine", "cloth_D1_01", 1.0, 1.0, minutes=1)
+    given = estimate(results.read(), systems=1, machines=1, at_a_time=1, making=100)
+    assert given is not None
+    assert given.work["produced"] == 100 * len(specs())
+    assert given.together == given.one
 
 
 def test_without_a_measurement_there_is_no_estimate(results: Written) -> None:
