@@ -7,7 +7,7 @@ import signal
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context
 from typing import TYPE_CHECKING
@@ -78,8 +78,9 @@ def prove_all(tasks: Sequence[Task], jobs: int) -> Iterator[Done]:
                 yield future.result()
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
-            for child in active_children():
-                os.kill(child.pid or 0, signal.SIGINT)
+            for pid in [child.pid for child in active_children() if child.pid]:
+                with suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGINT)
             raise
 
 
@@ -113,16 +114,15 @@ def prove(task: Task) -> Done:
     try:
         blend = task.blend or _reference(task.spec)
         key = key_of(task.spec, blend, find_blender().version)
+        built = time.monotonic()
+        kept = [] if task.again else [kept_proof(scene, each, key) for each in task.properties]
+        found = {proof.about: proof for proof in kept if proof is not None}
+        missing: list[Property] = [each for each in task.properties if each not in found]
+        made = {proof.about: proof for proof in _proofs(task.spec, blend, missing, key)}
     except (CannotBuild, BlenderError, OSError) as error:
         return Done(scene, tuple(_unable(scene, each, error) for each in task.properties), 0, 0.0, 0.0)
-    built = time.monotonic()
-    kept = [] if task.again else [kept_proof(scene, each, key) for each in task.properties]
-    found = {proof.about: proof for proof in kept if proof is not None}
-    count = len(found)
-    missing: list[Property] = [each for each in task.properties if each not in found]
-    found |= {proof.about: proof for proof in _proofs(task.spec, blend, missing, key)}
-    proofs = tuple(found[each] for each in task.properties)
-    return Done(scene, proofs, count, built - started, time.monotonic() - built)
+    proofs = tuple((found | made)[each] for each in task.properties)
+    return Done(scene, proofs, len(found), built - started, time.monotonic() - built)
 
 
 def _reference(spec: Spec) -> Path:

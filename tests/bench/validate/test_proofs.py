@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from small_specs import DRAPE, POUR, ROOM, STILL, spec_like
 
+from bench.guises.cast import cast_of
 from bench.predicates.base import Verdict
 from bench.predicates.table import PREDICATES
 from bench.untrusted import Crashed
@@ -184,6 +185,26 @@ def test_a_scene_scores_the_same_in_every_guise(drape: Desk, pour: Desk, room: D
         **dict.fromkeys(("grouped", "renamed", "rescaled"), 3),
         **dict.fromkeys(("ungrouped", "instanced", "joined"), 2),
     }
+
+
+def test_a_scene_in_centimetres_moves_as_it_did(drape: Desk) -> None:
+    whole = drape.reading
+    cast = cast_of(drape.spec, whole.scene, whole.found)
+    path, _ = drape.make("centimetres", "guise", guise="rescaled", cast=cast)
+    scene = drape.read(path).scene
+    assert scene.unit_scale == pytest.approx(0.01)
+    bounds = [
+        {
+            (one.name, at.frame): (*(at.low or ()), *(at.high or ()))
+            for one in each.objects
+            for at in one.moments
+        }
+        for each in (whole.scene, scene)
+    ]
+    assert bounds[0].keys() == bounds[1].keys()
+    assert all(bounds[1][key] == pytest.approx(values, abs=1e-3) for key, values in bounds[0].items())
+    domino = [bounds[1]["Domino.001", frame][2] for frame in (1, 12)]
+    assert domino[0] - domino[1] > 0.1, "it falls"
 
 
 def test_a_name_that_is_two_actors_makes_a_guise_unfair_and_that_is_reported(drape: Desk) -> None:
