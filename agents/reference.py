@@ -84,7 +84,11 @@ def cli_reference(command: click.Command, name: str = "simworlds") -> str:
 
 
 def _helps(command: click.Command, name: str, parent: click.Context | None) -> Iterator[tuple[str, str]]:
-    settings: dict[str, Any] = {"terminal_width": _WIDTH, "max_content_width": _WIDTH, **command.context_settings}
+    settings: dict[str, Any] = {
+        "terminal_width": _WIDTH,
+        "max_content_width": _WIDTH,
+        **command.context_settings,
+    }
     context = click.Context(command, info_name=name, parent=parent, **settings)
     yield context.command_path, command.get_help(context)
     if isinstance(command, click.Group):
