@@ -82,10 +82,13 @@ class Desk:
         shop.ask("save", doing="saving", path=str(path))
         return path, told
 
-    def pictures(self, path: Path, *, gases: bool, seed: int = 0) -> None:
-        """Renders start, middle and end of a variant, beside it: its name with -0, -1, -2.png."""
+    def pictures(self, path: Path, *, cycles: bool, seed: int = 0) -> None:
+        """Renders start, middle and end of a variant, beside it: its name with -0, -1, -2.png.
+
+        By Workbench, or by Cycles with ``seed``.
+        """
         shop = self._workshop.opened(path)
-        shop.ask("take", doing="rendering", path=str(path.with_suffix("")), gases=gases, seed=seed)
+        shop.ask("take", doing="rendering", path=str(path.with_suffix("")), cycles=cycles, seed=seed)
 
     def difference(self, first: Path, second: Path) -> float:
         """The mean absolute difference of two variants' pictures: red, green and blue from 0 to 1."""

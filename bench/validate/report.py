@@ -121,11 +121,11 @@ def _twins(proofs: Sequence[Proof]) -> str:
     return (
         "Difference: the mean of |red|, |green|, |blue| (0 to 1) between the pictures of scene and twin at start, "
         "middle and end. Without physics: that of the scene from which nothing but its physics was taken; a twin "
-        "may differ by a tenth of it. Workbench renders 160 × 90; it shows nothing of a gas that is a volume, so "
-        "scenes with one are rendered by Cycles (96 × 54, 16 samples). Noise: how much such a scene differs from "
-        "itself with another seed; its twin may as much, but not by half of what is without physics. Moved: keyed, "
-        "or played, as a whole; shaped: stored shapes; reshaped: another surface at each frame, as of liquids.\n\n"
-        + _table(head, rows)
+        "may differ by a tenth of it. Workbench renders 160 × 90; it shows nothing of a gas that is a volume, nor of "
+        "water behind glass: such scenes are rendered by Cycles (96 × 54, 16 samples). Noise: how much one of these "
+        "differs from itself with another seed; its twin may as much, but not by half of what is without physics. "
+        "Moved: keyed, or played, as a whole; shaped: stored shapes; reshaped: another surface at each frame, as of "
+        "liquids.\n\n" + _table(head, rows)
     )
 
 

@@ -22,7 +22,6 @@ def rescale(cast):
     del cast
     scene = bpy.context.scene
     paths = _paths_of_bodies(scene)
-    # Led bodies move what hangs on them; nothing else needs to be looked at before it is larger.
     _multiply_caches(scene)
     for thing in scene.objects:
         _enlarge(thing)

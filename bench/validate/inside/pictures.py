@@ -5,26 +5,26 @@ import bpy
 import numpy
 
 _WIDTH, _HEIGHT = 160, 90
-_GAS_WIDTH, _GAS_HEIGHT, _SAMPLES = 96, 54, 16
+_CYCLES_WIDTH, _CYCLES_HEIGHT, _SAMPLES, _BOUNCES = 96, 54, 16, 8
 
 
-def take(path, gases, seed):
+def take(path, cycles, seed):
     """Renders start, middle and end to ``path`` with -0, -1, -2.png.
 
-    By Workbench; where there are ``gases``, of which that shows nothing when they are volumes, by Cycles with ``seed``.
+    By Workbench, or by Cycles with ``seed``, smaller: Workbench shows nothing of volumes, and nothing behind glass.
     """
     scene = bpy.context.scene
     render = scene.render
     render.resolution_percentage, render.use_motion_blur = 100, False
     render.use_compositing = render.use_sequencer = False
     render.image_settings.file_format, render.image_settings.color_mode = "PNG", "RGB"
-    if gases:
+    if cycles:
         render.engine = "CYCLES"
-        render.resolution_x, render.resolution_y = _GAS_WIDTH, _GAS_HEIGHT
-        cycles = scene.cycles
-        cycles.samples, cycles.seed, cycles.use_denoising = _SAMPLES, seed, False
-        cycles.use_adaptive_sampling, cycles.max_bounces = False, 2
-        cycles.volume_biased = True  # by far the quicker way at this size
+        render.resolution_x, render.resolution_y = _CYCLES_WIDTH, _CYCLES_HEIGHT
+        settings = scene.cycles
+        settings.samples, settings.seed, settings.use_denoising = _SAMPLES, seed, False
+        settings.use_adaptive_sampling, settings.max_bounces = False, _BOUNCES
+        settings.volume_biased = True  # by far the quicker way at this size
     else:
         render.engine = "BLENDER_WORKBENCH"
         render.resolution_x, render.resolution_y = _WIDTH, _HEIGHT
