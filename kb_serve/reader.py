@@ -198,6 +198,16 @@ class Reader:
             for word, parts in told
         }
 
+    def units(self, numbers: Collection[int]) -> dict[int, tuple[str, str, str, str, str]]:
+        """Number → (ref, kind, title, anchor, page) of what is retrieved; page: the one that explains a class or
+        operator, as a link's target.
+        """
+        marks = ",".join("?" * len(numbers))
+        sql = f"""SELECT number, ref, kind, title, anchor, CASE WHEN kind IN ('class', 'operator')
+                THEN ifnull((SELECT target FROM links WHERE source = ref AND links.kind = 'manual'), '') ELSE '' END
+            FROM docs WHERE level = 0 AND number IN ({marks})"""
+        return {row[0]: row[1:] for row in self.rows(sql, *numbers)}
+
     def links_from(self, source: str, kind: str) -> list[str]:
         """Targets of a symbol's or page's links of one kind."""
         return [

@@ -24,6 +24,7 @@ from rapidfuzz.distance import OSA
 
 from kb_build.analysis import STOP_WORDS, stem, words
 from kb_serve.inverted import InvertedIndex
+from kb_serve.scoring import Concept, scored
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -67,15 +68,6 @@ class Found:
     anchor: str
     score: float
     coverage: float
-
-
-@dataclass(frozen=True, slots=True)
-class Concept:
-    """One word of the query: corpus stems with weights, and how much the word tells (idf)."""
-
-    word: str
-    stems: tuple[tuple[str, float], ...]
-    idf: float
 
 
 class Searcher:
@@ -134,82 +126,54 @@ class Searcher:
             idf = max((self.index.idf(term) for term in stems), default=UNKNOWN_IDF)
         return Concept(word, tuple(stems.items()), idf)
 
-    # Scores
-
-    def _score(self, level: int, concepts: Sequence[Concept]) -> tuple[Scores, Scores]:
-        """(scores, coverages) of every document of a level."""
-        count = self.index.levels[level].count
-        scores, covered = np.zeros(count, np.float32), np.zeros(count, np.float32)
-        total = sum(concept.idf for concept in concepts) or 1.0
-        for concept in concepts:
-            lists = [
-                (term, weight, found)
-                for term, weight in concept.stems
-                if (found := self.index.postings(level, term)) is not None
-            ]
-            if len(lists) == 1:  # nothing to choose the best of
-                term, weight, found = lists[0]
-                scores[found.numbers] += (
-                    np.float32(weight * self._tells(concept, term, weight)) * found.saturated
-                )
-                covered[found.numbers] += np.float32(concept.idf * weight)
-                continue
-            best, spoken = np.zeros(count, np.float32), np.zeros(count, np.float32)
-            for term, weight, found in lists:
-                told = np.float32(weight * self._tells(concept, term, weight)) * found.saturated
-                best[found.numbers] = np.maximum(best[found.numbers], told)
-                spoken[found.numbers] = np.maximum(spoken[found.numbers], weight)
-            scores += best
-            covered += concept.idf * spoken
-        covered /= total
-        return np.asarray(scores * covered**COVERAGE, np.float32), covered
-
-    def _tells(self, concept: Concept, term: str, weight: float) -> float:
-        """How much a stem tells: the query's own word by itself, another no more than the word it stands for."""
-        return concept.idf if weight == 1.0 else min(concept.idf, self.index.idf(term))
-
     def search(self, text: str, limit: int = 50, *, failed: bool = False) -> list[Found]:
         """The best documents for a text, best first, each id once. ``failed`` where it is an error's message."""
         concepts = self.concepts(text)
         if not self.index.levels[0].count or not any(concept.stems for concept in concepts):
             return []
-        units, _ = self.index.levels
-        own, covered = self._score(0, concepts)
-        topical, _ = self._score(1, concepts)
-        around = np.where(units.topics >= 0, topical[units.topics], ALONE * own)
-        scores = np.where(own > 0, own + TOPIC_WEIGHT * around, 0) * units.weights
+        units, topics = self.index.levels
+        numbers, own, coverage = self._told(0, concepts)
+        if not len(numbers):
+            return []
+        spoken_of, told, _ = self._told(1, concepts)
+        topical = np.zeros(topics.count + 1, np.float32)  # the last: for the units that have no topic, -1
+        topical[spoken_of] = told
+        topic = units.topics[numbers]
+        around = np.where(topic >= 0, topical[topic], ALONE * own)
+        scores = np.asarray((own + TOPIC_WEIGHT * around) * units.weights[numbers], np.float32)
         if not CODE_WORDS.isdisjoint(words(text)):
-            scores = np.where(units.code, (1 + CODE_WEIGHT) * scores, scores)
+            scores *= np.where(units.code[numbers], 1 + CODE_WEIGHT, 1)
         elif failed:
-            scores = np.where(units.code, (1 + FAILED_WEIGHT) * scores, scores)
-        scores *= 1 + CHAPTER_WEIGHT * self._chapter_votes(scores)
-        order = _top(scores, _CANDIDATES)
-        return self._varied(order, scores, covered, limit)
+            scores *= np.where(units.code[numbers], 1 + FAILED_WEIGHT, 1)
+        scores *= 1 + CHAPTER_WEIGHT * _votes(units.chapters[numbers], scores)
+        best = _top(scores, _CANDIDATES)
+        best = best[scores[best] > 0]
+        return self._varied(numbers[best], scores[best], coverage[best], limit)
 
-    def _chapter_votes(self, scores: Scores) -> Scores:
-        """How much each document's chapter is favoured by the best documents, 0…1."""
-        chapters = self.index.levels[0].chapters
-        best = _top(scores, _FEEDBACK)
-        strength = (scores[best] / max(float(scores[best[0]]), 1e-9)) ** _FEEDBACK_POWER
-        votes = np.bincount(chapters[best], strength, int(chapters.max()) + 1).astype(np.float32)
-        return (votes / max(float(votes.max()), 1e-9))[chapters]
+    def _told(self, level: int, concepts: Sequence[Concept]) -> tuple[NDArray[np.intp], Scores, Scores]:
+        """(numbers, scores, coverages) of a level's documents that speak of the query."""
+        found = scored(self.index, level, concepts)
+        scores = np.asarray(found.scores * found.coverage**COVERAGE, np.float32)
+        return found.numbers, scores, found.coverage
 
-    def _varied(self, order: NDArray[np.intp], scores: Scores, covered: Scores, limit: int) -> list[Found]:
-        """The order with every topic's first document before any topic's second; likewise for members of one name.
+    def _varied(self, numbers: NDArray[np.intp], scores: Scores, coverage: Scores, limit: int) -> list[Found]:
+        """The ranked units with every topic's first before any topic's second; likewise for members of one name.
 
         A class or operator and the page that explains it say the same: the second of them waits until the first
         few different things have been named.
         """
-        units, _ = self.index.levels
+        topics = self.index.levels[0].topics[numbers].tolist()
         first: list[Found] = []
         waiting: list[Found] = []
         later: list[Found] = []
         seen: set[str | int] = set()
-        for number, ref, kind, title, anchor, page in self._documents(order[scores[order] > 0].tolist()):
+        ranked = zip(
+            topics, scores.tolist(), coverage.tolist(), self._documents(numbers.tolist()), strict=True
+        )
+        for topic, score, share, (ref, kind, title, anchor, page) in ranked:
             if ref in seen:
                 continue
-            topic = int(units.topics[number])
-            found = Found(ref, kind, title, anchor, float(scores[number]), float(covered[number]))
+            found = Found(ref, kind, title, anchor, score, share)
             name = f".{ref.rpartition('.')[2]}" if kind in _MEMBERS else ref
             explained = page.partition("#")[0] if kind in _EXPLAINED_WHOLE else ref
             if topic in seen or name in seen:
@@ -226,22 +190,26 @@ class Searcher:
         few = waiting if len(first) < _DIFFERENT else []
         return [*first, *few, *later][:limit]
 
-    def _documents(self, numbers: Sequence[int]) -> Iterator[tuple[int, str, str, str, str, str]]:
-        """(number, ref, kind, title, anchor, manual page) of units, in the order given, read as far as wanted."""
+    def _documents(self, numbers: Sequence[int]) -> Iterator[tuple[str, str, str, str, str]]:
+        """(ref, kind, title, anchor, manual page) of units, in the order given, read as far as wanted."""
         for start in range(0, len(numbers), _READ_AHEAD):
             wanted = numbers[start : start + _READ_AHEAD]
-            marks = ",".join("?" * len(wanted))
-            sql = f"""SELECT number, ref, kind, title, anchor,
-                ifnull((SELECT target FROM links WHERE source = ref AND links.kind = 'manual'), '')
-                FROM docs WHERE level = 0 AND number IN ({marks})"""  # noqa: S608
-            rows = {row[0]: row for row in self._reader.rows(sql, *wanted)}
-            if len(rows) < len(wanted):
+            units = self._reader.units(wanted)
+            if len(units) < len(wanted):
                 raise self._reader.damaged("documents of its index are gone")
-            yield from (rows[number] for number in wanted)
+            yield from (units[number] for number in wanted)
+
+
+def _votes(chapters: NDArray[np.int32], scores: Scores) -> Scores:
+    """How much each document's chapter is favoured by the best documents, 0…1."""
+    best = _top(scores, _FEEDBACK)
+    strength = (scores[best] / max(float(scores[best[0]]), 1e-9)) ** _FEEDBACK_POWER
+    votes = np.bincount(chapters[best], strength, int(chapters.max()) + 1).astype(np.float32)
+    return (votes / max(float(votes.max()), 1e-9))[chapters]
 
 
 def _top(scores: Scores, count: int) -> NDArray[np.intp]:
-    """The numbers of the ``count`` highest scores, highest first."""
+    """The places of the ``count`` highest scores, highest first, equal ones in their order."""
     count = min(count, len(scores))
-    best = np.argpartition(-scores, count - 1)[:count]
+    best = np.sort(np.argpartition(-scores, count - 1)[:count])
     return best[np.argsort(-scores[best], kind="stable")]
