@@ -180,10 +180,9 @@ class Expressions:
     def _api_words(self, chains: list[Chain], found: Identified) -> None:
         """Words among prose that are names and no English (``fcurves``, ``depsgraph``): likely what it is about."""
         prose = {stem(word) for chain in chains for word in words(chain.root)}
-        for chain in chains:
-            name = chain.root
-            if chain.is_code or len(name) < _SHORTEST_NAME or not name.islower() or self._is_english(name):
-                continue
+        names = [chain.root for chain in chains if not chain.is_code]
+        names = [name for name in names if len(name) >= _SHORTEST_NAME and name.islower()]
+        for name in self._no_english(names):
             rows = [
                 entry
                 for entry in self._reader.by_name(name)
@@ -193,9 +192,11 @@ class Expressions:
             for rank, entry in enumerate(ranked[:_FEW]):
                 found.add(entry.path, 0.79 - 0.03 * rank, "name")
 
-    def _is_english(self, word: str) -> bool:
-        forms = (word, word.removesuffix("s"))
-        return word in STOP_WORDS or bool(self._reader.near(forms))
+    def _no_english(self, names: list[str]) -> list[str]:
+        """Those of some lower-case words that no dictionary has, in either number."""
+        names = [name for name in names if name not in STOP_WORDS]
+        known = self._reader.near({form for name in names for form in (name, name.removesuffix("s"))})
+        return [name for name in names if name not in known and name.removesuffix("s") not in known]
 
     def _affinity(self, entry: Entry, prose: set[str]) -> float:
         """How many of the words around a name belong to its owner, and how usual the owner is."""

@@ -50,9 +50,8 @@ FAILED_WEIGHT = 0.3  # the same for an error's message, which a setting may be t
 UNKNOWN_IDF = 6.0
 _MAX_WORDS = 40
 _CANDIDATES = 400
-_READ_AHEAD = 32
+_READ_AHEAD = 16
 _MEMBERS = frozenset({"property", "function", "socket"})
-_EXPLAINED_WHOLE = frozenset({"class", "operator"})  # by the page that Blender's table links them to
 _DIFFERENT = 5
 _FEEDBACK = 100
 _FEEDBACK_POWER = 3  # the weaker half of the feedback documents hardly votes
@@ -147,7 +146,7 @@ class Searcher:
             scores *= np.where(units.code[numbers], 1 + FAILED_WEIGHT, 1)
         scores *= 1 + CHAPTER_WEIGHT * _votes(units.chapters[numbers], scores)
         best = _top(scores, _CANDIDATES)
-        best = best[scores[best] > 0]
+        best = _spread(best[scores[best] > 0], topic)
         return self._varied(numbers[best], scores[best], coverage[best], limit)
 
     def _told(self, level: int, concepts: Sequence[Concept]) -> tuple[NDArray[np.intp], Scores, Scores]:
@@ -157,26 +156,23 @@ class Searcher:
         return found.numbers, scores, found.coverage
 
     def _varied(self, numbers: NDArray[np.intp], scores: Scores, coverage: Scores, limit: int) -> list[Found]:
-        """The ranked units with every topic's first before any topic's second; likewise for members of one name.
+        """Of the ranked units each ref once, and the first member of a name before other members of that name.
 
         A class or operator and the page that explains it say the same: the second of them waits until the first
         few different things have been named.
         """
-        topics = self.index.levels[0].topics[numbers].tolist()
         first: list[Found] = []
         waiting: list[Found] = []
         later: list[Found] = []
-        seen: set[str | int] = set()
-        ranked = zip(
-            topics, scores.tolist(), coverage.tolist(), self._documents(numbers.tolist()), strict=True
-        )
-        for topic, score, share, (ref, kind, title, anchor, page) in ranked:
+        seen: set[str] = set()
+        told = zip(scores.tolist(), coverage.tolist(), self._documents(numbers.tolist()), strict=True)
+        for score, share, (ref, kind, title, anchor, page) in told:
             if ref in seen:
                 continue
             found = Found(ref, kind, title, anchor, score, share)
             name = f".{ref.rpartition('.')[2]}" if kind in _MEMBERS else ref
-            explained = page.partition("#")[0] if kind in _EXPLAINED_WHOLE else ref
-            if topic in seen or name in seen:
+            explained = page.partition("#")[0] or ref
+            if name in seen:
                 later.append(found)
             elif f"/{explained}" in seen and len(first) < _DIFFERENT:
                 waiting.append(found)
@@ -184,7 +180,7 @@ class Searcher:
                 first.append(found)
                 if len(first) == _DIFFERENT:
                     first += waiting
-            seen.update((ref, name, f"/{explained}", *((topic,) if topic >= 0 else ())))
+            seen.update((ref, name, f"/{explained}"))
             if len(first) >= limit:
                 return first[:limit]
         few = waiting if len(first) < _DIFFERENT else []
@@ -198,6 +194,14 @@ class Searcher:
             if len(units) < len(wanted):
                 raise self._reader.damaged("documents of its index are gone")
             yield from (units[number] for number in wanted)
+
+
+def _spread(places: NDArray[np.intp], topics: NDArray[np.int32]) -> NDArray[np.intp]:
+    """Every topic's first, and all that have no topic, before any topic's second."""
+    named = topics[places]
+    first = named < 0
+    first[np.unique(named, return_index=True)[1]] = True
+    return np.concatenate((places[first], places[~first]))
 
 
 def _votes(chapters: NDArray[np.int32], scores: Scores) -> Scores:
