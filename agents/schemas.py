@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any, cast
 
-from pydantic.json_schema import GenerateJsonSchema
+from kb_serve.schemas import Untitled, schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -19,24 +19,10 @@ _SIGNS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiv
 _NAMES = {"integer": "int", "number": "number", "string": "string", "boolean": "bool", "null": "null"}
 
 
-class _Untitled(GenerateJsonSchema):
-    """Schemas without titles that only repeat the names of fields."""
-
-    def field_title_should_be_set(self, schema: Any) -> bool:
-        """Never."""
-        del schema
-        return False
-
-
-def schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    """The JSON Schema of a model, what it refers to written out in place: every client and model understands it."""
-    schema = model.model_json_schema(schema_generator=_Untitled)
-    parts = schema.pop("$defs", {})
-    return cast("dict[str, Any]", _written_out(schema, parts))
-
-
 def lean_schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    """The same without what only keeps nonsense out, each longer description once: for what is checked anyway."""
+    """A model's JSON Schema for what is checked anyway: without what only keeps nonsense out, each longer description
+    once.
+    """
     return cast("dict[str, Any]", _lean(schema_of(model), set()))
 
 
@@ -71,17 +57,6 @@ def _is_obvious(key: str, value: Any) -> bool:
     return (key == "default" and value is None) or (key in _SIGNS and abs(value) >= _OBVIOUS)
 
 
-def _written_out(schema: Any, parts: Mapping[str, Any]) -> Any:
-    if isinstance(schema, list):
-        return [_written_out(one, parts) for one in cast("list[Any]", schema)]
-    if not isinstance(schema, dict):
-        return schema
-    given = cast("dict[str, Any]", schema)
-    named = parts[_name(given["$ref"])] if "$ref" in given else {}
-    own = {key: value for key, value in given.items() if key != "$ref"}
-    return {key: _written_out(value, parts) for key, value in {**named, **own}.items()}
-
-
 def _name(reference: str) -> str:
     return reference.rpartition("/")[2]
 
@@ -112,7 +87,7 @@ class _Writer:
 
     def add(self, model: type[BaseModel]) -> None:
         """Writes a model, and behind it those that it uses."""
-        schema = model.model_json_schema(schema_generator=_Untitled)
+        schema = model.model_json_schema(schema_generator=Untitled)
         parts = schema.pop("$defs", {})
         waiting = [(model.__name__, schema)]
         while waiting:

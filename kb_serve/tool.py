@@ -9,6 +9,7 @@ from mcp_types import Tool, ToolAnnotations
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kb_serve.errors import BadQuery
+from kb_serve.schemas import schema_of
 
 NAME = "blender_docs"
 
@@ -84,8 +85,8 @@ def tool() -> Tool:
         name=NAME,
         title="Blender documentation",
         description=DESCRIPTION,
-        input_schema=Ask.model_json_schema(),
-        output_schema=Reply.model_json_schema(),
+        input_schema=schema_of(Ask),
+        output_schema=schema_of(Reply),
         annotations=ToolAnnotations(
             title="Blender documentation",
             read_only_hint=True,

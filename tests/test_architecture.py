@@ -74,7 +74,10 @@ RULES = (
             "agents.cli:kb_serve",
             "agents.reference:kb_serve",
             "agents.blender.launch:kb_build",
-            # How any MCP server is carried over stdio and HTTP, and who is let in: nothing of the base.
+            # How any MCP server is carried over stdio and HTTP, who is let in, and how it tells its tools' arguments:
+            # nothing of the base.
+            "agents.schemas:kb_serve.schemas",
+            "agents.blender.server:kb_serve.schemas",
             "agents.blender.cli:kb_serve.http",
             "agents.blender.cli:kb_serve.stdio",
         ),

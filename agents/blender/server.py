@@ -22,7 +22,7 @@ from agents.blender.catalogue import BY_NAME, TOOLS
 from agents.blender.docs_client import DocsGone
 from agents.blender.errors import BlenderError, Lost, ToolBroke
 from agents.blender.tools.base import Call
-from agents.schemas import schema_of
+from kb_serve.schemas import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Awaitable, Callable, Iterable

@@ -20,10 +20,10 @@ from pydantic import BaseModel, ConfigDict, Field
 from agents.models.base import Ask, Picture, Text, Tool, user
 from agents.models.canonical import form_of
 from agents.models.structured import fits
-from agents.schemas import schema_of
 from bench.judge.asking import asked
 from bench.judge.store import Store, key_of
 from bench.judge.usage import Spent
+from kb_serve.schemas import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

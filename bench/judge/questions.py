@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from agents.models.base import Ask, Picture, Text, Tool, user
 from agents.models.canonical import form_of
-from agents.schemas import schema_of
+from kb_serve.schemas import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -12,7 +12,8 @@ from small_plan import small_plan
 
 from agents.blender.catalogue import TOOLS
 from agents.plan.scene import ScenePlan
-from agents.schemas import lean_schema_of, schema_of, shape_of
+from agents.schemas import lean_schema_of, shape_of
+from kb_serve.schemas import schema_of
 
 
 class Wheel(BaseModel):

@@ -74,7 +74,7 @@ async def test_the_output_schema_is_the_answer_and_the_version_it_holds_for() ->
     schema = tool().output_schema
     assert schema is not None
     assert set(schema["properties"]) == {field.name for field in fields(Answer)} | {"blender"}
-    assert set(schema["$defs"]["Found"]["properties"]) == {field.name for field in fields(Hit)}
+    assert set(schema["properties"]["hits"]["items"]["properties"]) == {field.name for field in fields(Hit)}
     assert set(schema["required"]) == set(schema["properties"])
 
 
