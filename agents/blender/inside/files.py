@@ -64,7 +64,7 @@ def write_file(arguments, report):
     elsewhere = os.path.dirname(bpy.data.filepath or path) not in {arguments["folder"], os.path.dirname(path)}
     started = time.perf_counter()
     try:
-        with _unheard():
+        with _unheard(), _no_preview():
             bpy.ops.wm.save_as_mainfile(
                 filepath=path, copy=True, check_existing=False, relative_remap=elsewhere
             )
@@ -86,6 +86,18 @@ def _unheard():
     finally:
         for handlers, before in zip(lists, kept):  # noqa: B905 - not in Python 3.9
             handlers[:] = before
+
+
+@contextlib.contextmanager
+def _no_preview():
+    """Draws no small picture of the scene: nobody browses checkpoints, and and drawing it costs as much as writing."""
+    settings = bpy.context.preferences.filepaths
+    before = settings.file_preview_type
+    settings.file_preview_type = "NONE"
+    try:
+        yield
+    finally:
+        settings.file_preview_type = before
 
 
 def reason(error):
