@@ -48,9 +48,14 @@ def words(text: str) -> list[str]:
     return found
 
 
+def telling_words(text: str) -> list[str]:
+    """A text's words, stop words left out, in order and with repetitions."""
+    return [word for word in words(text) if word not in STOP_WORDS]
+
+
 def terms(text: str) -> list[str]:
-    """The stems of a text's words, stop words left out, in order and with repetitions."""
-    return [stem(word) for word in words(text) if word not in STOP_WORDS]
+    """The stems of a text's telling words."""
+    return [stem(word) for word in telling_words(text)]
 
 
 def key(text: str) -> str:

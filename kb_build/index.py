@@ -12,19 +12,22 @@ idf are applied when a query is answered.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kb_build.analysis import STOP_WORDS, key, stem, terms, words
+from kb_build.analysis import key, stem, telling_words
 from kb_build.lines import definitions_in
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
 
     from kb_build.records import Link, Page, Symbol
+
+# A text → its telling words. Texts come several times, in units, topics and the vocabulary: a cache pays.
+Cut = Callable[[str], Sequence[str]]
 
 TYPES = "bpy.types."
 FIELDS = ("name", "heading", "context", "body", "related", "uses")
@@ -232,15 +235,14 @@ def make_units(
     return [*page_docs(pages, summaries, explains, asked), *symbol_docs(symbols, said, explained_on, uses)]
 
 
-def make_postings(docs: Sequence[Doc], b: float) -> Postings:
+def make_postings(docs: Sequence[Doc], b: float, cut: Cut = telling_words) -> Postings:
     """The inverted index of one level; documents are numbered from 0."""
-    analysed = cache(terms)  # topics repeat the texts of their units
     counts: list[dict[str, Counter[str]]] = []
     lengths: dict[str, list[int]] = {name: [] for name in FIELDS}
     for doc in docs:
         row: dict[str, Counter[str]] = {}
         for name in FIELDS:
-            found = [term for text in getattr(doc, name) if text for term in analysed(text)]
+            found = [stem(word) for text in getattr(doc, name) if text for word in cut(text)]
             lengths[name].append(len(found))
             if found:
                 row[name] = Counter(found)
@@ -271,14 +273,13 @@ def is_code(doc: Doc) -> bool:
     return doc.kind in {"function", "data", "module", "guide"}
 
 
-def vocabulary(units: Iterable[Doc]) -> Iterator[tuple[str, str]]:
+def vocabulary(units: Iterable[Doc], cut: Cut = telling_words) -> Iterator[tuple[str, str]]:
     """(stem, most used spelling) for every word of the corpus."""
     spellings: dict[str, Counter[str]] = defaultdict(Counter)
     for unit in units:
         for name in FIELDS:
             for text in getattr(unit, name):
-                for word in words(text):
-                    if word not in STOP_WORDS:
-                        spellings[stem(word)][word] += 1
+                for word in cut(text):
+                    spellings[stem(word)][word] += 1
     for stemmed, counter in spellings.items():
         yield stemmed, counter.most_common(1)[0][0]

@@ -7,8 +7,8 @@ these. A leaf module: it imports nothing of the project.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import asdict, dataclass, fields
-from typing import Any, Literal
+from dataclasses import asdict, dataclass, fields, is_dataclass
+from typing import Any, Literal, cast
 
 Scalar = str | int | float | bool | None
 Default = Scalar | list[Any]
@@ -171,8 +171,18 @@ class Link:
 
 def to_json(record: Symbol | Page) -> dict[str, Any]:
     """A record as a JSON-ready dictionary, without the fields that hold their default value."""
-    defaults = {field.name: field.default for field in fields(record)}
-    return {key: value for key, value in asdict(record).items() if value != defaults.get(key, ...)}
+    return {
+        field.name: _plain(value)
+        for field in fields(record)
+        if (value := getattr(record, field.name)) != field.default
+    }
+
+
+def _plain(value: Any) -> Any:
+    """A field's value, the records in it taken apart."""
+    if isinstance(value, tuple):
+        return [_plain(part) for part in cast("tuple[Any, ...]", value)]
+    return asdict(value) if is_dataclass(value) and not isinstance(value, type) else value
 
 
 def _enum_items(rows: list[dict[str, Any]]) -> tuple[EnumItem, ...]:

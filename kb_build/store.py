@@ -5,17 +5,19 @@ from __future__ import annotations
 import os
 import sqlite3
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 import sqlite_utils
 
-from kb_build.analysis import key, short_path, topic_key
+from kb_build.analysis import key, short_path, telling_words, topic_key
 from kb_build.errors import StoreError
 from kb_build.former import Former
 from kb_build.index import (
     TOPIC_B,
     UNIT_B,
+    Cut,
     Doc,
     is_code,
     make_postings,
@@ -166,7 +168,7 @@ def _write_pages(
 
 
 def _write_level(
-    connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int]
+    connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int], cut: Cut
 ) -> set[str]:
     """One level of the retrieval index; returns its stems."""
     rows = ((level, number, doc.ref, doc.kind, doc.title, doc.anchor) for number, doc in enumerate(docs))
@@ -180,7 +182,7 @@ def _write_level(
     )
     row = (level, len(docs), *(array.tobytes() for array in arrays))
     connection.execute("INSERT INTO levels VALUES (?,?,?,?,?,?)", row)
-    postings = make_postings(docs, TOPIC_B if level else UNIT_B)
+    postings = make_postings(docs, TOPIC_B if level else UNIT_B, cut)
     _insert(connection, "postings", ((level, *row) for row in postings.packed()), 4)
     return set(postings.numbers)
 
@@ -188,9 +190,10 @@ def _write_level(
 def _write_index(connection: sqlite3.Connection, units: Sequence[Doc]) -> None:
     topics = [*topic_docs(units)]
     numbers = {doc.ref: number for number, doc in enumerate(topics)}
-    stems = _write_level(connection, 0, units, numbers)
-    _write_level(connection, 1, topics, numbers)
-    _insert(connection, "vocabulary", vocabulary(units), 2)
+    cut = cache(telling_words)
+    stems = _write_level(connection, 0, units, numbers, cut)
+    _write_level(connection, 1, topics, numbers, cut)
+    _insert(connection, "vocabulary", vocabulary(units, cut), 2)
     _insert(connection, "near", near_stems(load_near_words(), stems), 2)
 
 
