@@ -1,8 +1,8 @@
 """The inverted index of a base, as numpy arrays: its two levels of documents, and the postings of stems.
 
-A level's documents are numbered from 0: units (level 0) and the topics around them (level 1). Lists that queries touch
-are kept, the least used forgotten first; those that a query needs are read together, since a look-up costs more than
-what it finds.
+Documents are numbered through: first the units (level 0), then the topics around them (level 1). Lists that queries
+touch are kept, the least used forgotten first; those that a query needs are read together, since a look-up costs more
+than what it finds.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ import math
 from collections import OrderedDict
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import groupby
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,14 +42,18 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Postings:
-    """The documents of a level that have a stem, and for each how much it says of it: BM25's saturated frequency."""
+    """The documents that have a stem, and for each how much it says of it: BM25's saturated frequency.
+
+    ``units``: how many of them are units; ``idf``: how much the stem tells, 0 if no unit has it.
+    """
 
     numbers: NDArray[np.uint32]
     saturated: Scores
+    units: int
+    idf: float
 
 
-_Lists = tuple[Postings | None, Postings | None]
-_NONE: _Lists = (None, None)
+_NOWHERE = Postings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0.0)
 
 
 class InvertedIndex:
@@ -55,7 +61,7 @@ class InvertedIndex:
 
     def __init__(self, reader: Reader) -> None:
         self._reader = reader
-        self._kept: OrderedDict[str, _Lists] = OrderedDict()
+        self._kept: OrderedDict[str, Postings] = OrderedDict()
 
     @cached_property
     def levels(self) -> tuple[Level, Level]:
@@ -70,35 +76,23 @@ class InvertedIndex:
         wanted = [stem for stem in dict.fromkeys(stems) if stem not in self._kept]
         if not wanted:
             return
-        found: dict[str, list[Postings | None]] = {stem: [None, None] for stem in wanted}
         marks = ",".join("?" * len(wanted))
-        sql = f"SELECT level, stem, df, data FROM postings WHERE level IN (0, 1) AND stem IN ({marks})"  # noqa: S608
-        rows = self._reader.rows(sql, *wanted)
-        for level in (0, 1):
-            mine = [(stem, count, data) for at, stem, count, data in rows if at == level]
-            for (stem, *_), postings in zip(mine, self._postings(level, mine), strict=True):
-                found[stem][level] = postings
-        for stem, (units, topics) in found.items():
-            self._kept[stem] = (units, topics) if units or topics else _NONE
+        sql = f"SELECT stem, level, df, data FROM postings WHERE level IN (0, 1) AND stem IN ({marks})"  # noqa: S608
+        self._kept.update(dict.fromkeys(wanted, _NOWHERE))
+        self._kept.update(self._postings(sorted(self._reader.rows(sql, *wanted))))
         while len(self._kept) > max(_KEPT, len(wanted)):
             self._kept.popitem(last=False)
 
-    def postings(self, level: int, stem: str) -> Postings | None:
-        """Where a stem stands; None where it does nowhere."""
+    def postings(self, stem: str) -> Postings:
+        """Where a stem stands; nowhere, if it is unknown."""
         if stem not in self._kept:
             self.load((stem,))
         self._kept.move_to_end(stem)
-        return self._kept[stem][level]
-
-    def frequency(self, stem: str) -> int:
-        """How many units have a stem."""
-        found = self.postings(0, stem)
-        return 0 if found is None else len(found.numbers)
+        return self._kept[stem]
 
     def idf(self, stem: str) -> float:
         """How much a stem tells: ln(1 + (N - df + ½) / (df + ½)) over the units; 0 for an unknown one."""
-        df = self.frequency(stem)
-        return math.log(1 + (self.levels[0].count - df + 0.5) / (df + 0.5)) if df else 0.0
+        return self.postings(stem).idf
 
     def _read_level(self, level: int) -> Level:
         sql = "SELECT count, topics, chapters, weights, code FROM levels WHERE level = ?"
@@ -119,23 +113,32 @@ class InvertedIndex:
             raise self._reader.damaged(f"level {level} of its index")
         return read
 
-    def _postings(self, level: int, rows: Sequence[tuple[str, int, bytes]]) -> Iterator[Postings]:
-        """Of (stem, df, data): checked and weighed all at once, which costs less than the rows one by one."""
+    def _postings(self, rows: Sequence[tuple[str, int, int, bytes]]) -> Iterator[tuple[str, Postings]]:
+        """Of (stem, level, df, data), by stem and level: checked and weighed all at once, which costs less."""
         if not rows:
             return
+        counts = [level.count for level in self.levels]
+        lengths = [count for _, _, count, _ in rows]
         try:
-            numbers = [np.frombuffer(data, np.uint32, count) for _, count, data in rows]
-            weights = [np.frombuffer(data, np.float16, count, offset=4 * count) for _, count, data in rows]
+            numbers = np.concatenate([np.frombuffer(data, np.uint32, count) for *_, count, data in rows])
+            weights = [np.frombuffer(data, np.float16, count, offset=4 * count) for *_, count, data in rows]
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
         weight = np.concatenate(weights).astype(np.float32)
-        if not (_within(np.concatenate(numbers), 0, self.levels[level].count) and np.isfinite(weight).all()):
-            raise self._reader.damaged(f"the postings of {', '.join(repr(stem) for stem, *_ in rows)}")
+        limits = np.repeat(np.asarray([counts[level] for _, level, *_ in rows], np.uint32), lengths)
+        if not ((numbers < limits).all() and np.isfinite(weight).all()):
+            raise self._reader.damaged(f"the postings of {', '.join(sorted({stem for stem, *_ in rows}))}")
+        numbers += np.repeat(np.asarray([level and counts[0] for _, level, *_ in rows], np.uint32), lengths)
         saturated = np.asarray(weight * (K1 + 1) / (weight + K1), np.float32)
         end = 0
-        for listed in numbers:
-            start, end = end, end + len(listed)
-            yield Postings(listed, saturated[start:end].copy())  # not to keep all of them for one
+        for stem, lists in groupby(rows, key=itemgetter(0)):
+            start, units = end, 0
+            for _, level, count, _ in lists:
+                end += count
+                units += 0 if level else count
+            idf = math.log(1 + (counts[0] - units + 0.5) / (units + 0.5)) if units else 0.0
+            # Copies, not to keep the lists of all for one.
+            yield stem, Postings(numbers[start:end].copy(), saturated[start:end].copy(), units, idf)
 
 
 def _within(numbers: NDArray[Any], low: int, high: int) -> bool:

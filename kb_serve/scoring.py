@@ -6,6 +6,7 @@ Only the documents that have any of the query's stems are looked at: a few thous
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,8 +30,8 @@ class Concept:
 
 @dataclass(frozen=True, slots=True)
 class Scored:
-    """The documents of a level that speak of a query, by number, rising; of each its score, and its coverage: the
-    share of the query, by rarity, that it speaks of.
+    """The documents that speak of a query, by number, rising; of each its score, and its coverage: the share of the
+    query, by rarity, that it speaks of.
     """
 
     numbers: NDArray[np.intp]
@@ -38,37 +39,31 @@ class Scored:
     coverage: Scores
 
 
-def scored(index: InvertedIndex, level: int, concepts: Sequence[Concept]) -> Scored:
-    """The documents of a level that have any of the stems."""
+def scored(index: InvertedIndex, concepts: Sequence[Concept]) -> Scored:
+    """The documents of both levels that have any of the stems."""
     lists = [
-        (weight, place, np.float32(weight * _tells(index, concept, term, weight)), found)
+        (weight, place, min(concept.idf, found.idf) if weight < 1 else concept.idf, found)
         for place, concept in enumerate(concepts)
         for term, weight in concept.stems
-        if (found := index.postings(level, term)) is not None
+        if len((found := index.postings(term)).numbers)
     ]
     if not lists:
         nothing = np.zeros(0, np.float32)
         return Scored(np.zeros(0, np.intp), nothing, nothing)
-    lists.sort(key=lambda row: row[0])  # of several weights for one place, the last that is written stays
+    lists.sort(key=itemgetter(0))  # of several weights for one cell, the last that is written stays
     lengths = [len(found.numbers) for *_, found in lists]
     listed = np.concatenate([found.numbers for *_, found in lists])
-    numbers, columns = _distinct(listed, index.levels[level].count)
+    numbers, columns = _distinct(listed, sum(level.count for level in index.levels))
     # One row a concept, one column a document.
     cells = columns + np.repeat([place * len(numbers) for _, place, _, _ in lists], lengths)
     shape = len(concepts), len(numbers)
     told, spoken = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
-    np.maximum.at(
-        told.reshape(-1), cells, np.concatenate([tells * found.saturated for _, _, tells, found in lists])
-    )
+    tells = [np.float32(weight * tells) * found.saturated for weight, _, tells, found in lists]
+    np.maximum.at(told.reshape(-1), cells, np.concatenate(tells))
     spoken.reshape(-1)[cells] = np.repeat(np.asarray([weight for weight, *_ in lists], np.float32), lengths)
     rarity = np.asarray([concept.idf for concept in concepts], np.float32)
     coverage = rarity @ spoken / np.float32(sum(concept.idf for concept in concepts) or 1.0)
     return Scored(numbers, told.sum(axis=0), coverage)
-
-
-def _tells(index: InvertedIndex, concept: Concept, term: str, weight: float) -> float:
-    """How much a stem tells: the query's own word by itself, another no more than the word it stands for."""
-    return concept.idf if weight == 1.0 else min(concept.idf, index.idf(term))
 
 
 def _distinct(numbers: NDArray[np.uint32], count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -95,7 +95,7 @@ class Searcher:
         matches = process.extract(word, self._spellings, scorer=OSA.distance, score_cutoff=allowed, limit=5)
         same_start = [match for match in matches if match[0][0] == word[0]]
         ranked = sorted(
-            same_start or matches, key=lambda match: (match[1], -self.index.frequency(stem(match[0])))
+            same_start or matches, key=lambda match: (match[1], -self.index.postings(stem(match[0])).units)
         )
         return ranked[0][0] if ranked else ""
 
@@ -131,12 +131,14 @@ class Searcher:
         if not self.index.levels[0].count or not any(concept.stems for concept in concepts):
             return []
         units, topics = self.index.levels
-        numbers, own, coverage = self._told(0, concepts)
-        if not len(numbers):
+        found = scored(self.index, concepts)
+        told = np.asarray(found.scores * found.coverage**COVERAGE, np.float32)
+        split = int(np.searchsorted(found.numbers, units.count))
+        numbers, own, coverage = found.numbers[:split], told[:split], found.coverage[:split]
+        if not split:
             return []
-        spoken_of, told, _ = self._told(1, concepts)
         topical = np.zeros(topics.count + 1, np.float32)  # the last: for the units that have no topic, -1
-        topical[spoken_of] = told
+        topical[found.numbers[split:] - units.count] = told[split:]
         topic = units.topics[numbers]
         around = np.where(topic >= 0, topical[topic], ALONE * own)
         scores = np.asarray((own + TOPIC_WEIGHT * around) * units.weights[numbers], np.float32)
@@ -148,12 +150,6 @@ class Searcher:
         best = _top(scores, _CANDIDATES)
         best = _spread(best[scores[best] > 0], topic)
         return self._varied(numbers[best], scores[best], coverage[best], limit)
-
-    def _told(self, level: int, concepts: Sequence[Concept]) -> tuple[NDArray[np.intp], Scores, Scores]:
-        """(numbers, scores, coverages) of a level's documents that speak of the query."""
-        found = scored(self.index, level, concepts)
-        scores = np.asarray(found.scores * found.coverage**COVERAGE, np.float32)
-        return found.numbers, scores, found.coverage
 
     def _varied(self, numbers: NDArray[np.intp], scores: Scores, coverage: Scores, limit: int) -> list[Found]:
         """Of the ranked units each ref once, and the first member of a name before other members of that name.
