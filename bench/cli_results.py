@@ -36,9 +36,9 @@ def report(results: tuple[Path, ...], **given: Any) -> None:
     The paper's Table 1 with 95 % intervals, coverage, systems compared by paired tests, ablations, cost. On the page:
     frames, scores, what failed with the values seen, and what the judge said.
     """
-    from bench.report import table  # noqa: PLC0415 - not for --help
     from bench.results.notes import notes  # noqa: PLC0415
     from bench.results.tables import tables  # noqa: PLC0415
+    from bench.tables import table  # noqa: PLC0415 - not for --help
 
     found = _read(results)
     if given["baseline"] is not None and found.system(given["baseline"]) is None:

@@ -237,7 +237,7 @@ def test_a_breach_is_seen(tmp_path: Path, path: str, code: str, breach: str) -> 
         ("kb_serve/search.py", "from kb_build.records import Symbol\nfrom kb_build import schema"),
         ("agents/cli.py", "from kb_build.cli import kb\nfrom kb_serve.cli import docs"),
         ("kb_build/inside/a.py", "import bpy, json, wire\nfrom mathutils import Vector"),
-        ("bench/report.py", "import agents.plan"),
+        ("bench/measurements/report.py", "import agents.plan"),
     ],
 )
 def test_what_is_allowed_is_let_through(tmp_path: Path, path: str, code: str) -> None:

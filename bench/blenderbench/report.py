@@ -11,7 +11,7 @@ from bench.blenderbench.layout import LEVELS
 from bench.blenderbench.published import OVERALL, PUBLISHED
 from bench.blenderbench.results import Score, read, read_run, records
 from bench.blenderbench.score import METRICS
-from bench.report import Table, table
+from bench.tables import Table, table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

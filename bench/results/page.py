@@ -27,10 +27,10 @@ from bench.spec import CATEGORIES, specs
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from bench.report import Table
     from bench.results.scores import Metric, Results, Scored, SystemResults
     from bench.spec import Spec
     from bench.sweep.records import Provenance
+    from bench.tables import Table
 
 _FOLDER = Path(__file__).parent / "templates"
 _LEVELS = ("D1", "D2", "D3")

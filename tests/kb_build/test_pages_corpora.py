@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from kb_build.records import Page
 
 pytestmark = pytest.mark.corpora
-EVERY = 6  # of the 2,000 HTML pages, so that the test takes seconds; `python -m bench.page_forms` takes all
+# Of the 2,000 HTML pages, so that the test takes seconds; `python -m bench.measurements.page_forms` takes all.
+EVERY = 6
 
 
 def unpack(archive: Path, to: Path, *, every: int = 1) -> Path:

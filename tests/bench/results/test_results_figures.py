@@ -14,9 +14,9 @@ from bench.spec import specs
 if TYPE_CHECKING:
     from written_results import Written
 
-    from bench.report import Table
     from bench.results.figures import Figure
     from bench.results.scores import Metric
+    from bench.tables import Table
 
 
 def figure(results: Written, metric: Metric, category: str = OVERALL) -> Figure:

@@ -1,4 +1,4 @@
-"""The report: tables that line up, and verdicts that are true."""
+"""The report: verdicts that are true, and every figure in its place."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from bench.__main__ import main
-from bench.report import Figure, Part, Table, markdown, table, targets_table, write
-from bench.targets import TARGETS, Target, shown
+from bench.measurements.main import main
+from bench.measurements.report import Figure, Part, markdown, targets_table, write
+from bench.measurements.targets import TARGETS, Target, shown
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,16 +41,6 @@ def test_figures_stand_in_the_order_of_the_targets_and_are_counted() -> None:
     found = targets_table([Figure("size", 61.0), Figure("members", 1.0), Figure("hit1", 0.8)])
     assert [row[0] for row in found.rows] == [TARGETS[key].what for key in ("hit1", "members", "size")]
     assert found.note.startswith("1 of 2 targets reached")
-
-
-def test_the_lines_of_a_table_are_equally_long_and_numbers_stand_right() -> None:
-    lines = table(
-        Table("T", ("name", "n"), (("a|b", "1.5"), ("longer name", "12,000"), ("c", "–")))
-    ).splitlines()[2:]
-    assert len({len(line) for line in lines}) == 1
-    assert lines[1].endswith(":|")
-    assert lines[2].startswith("| a\\|b ")
-    assert lines[2].endswith(" 1.5 |")
 
 
 def test_a_part_that_was_skipped_is_named_with_its_reason() -> None:

@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unittest import mock
 
-from bench.report import Figure, Part, Table
+from bench.measurements.report import Figure, Part
 from bench.setting import corpora, percentile, say
+from bench.tables import Table
 from kb_build.pipeline import BuildOptions, build
 from kb_serve import search
 from kb_serve.budget import tokens
@@ -197,7 +198,7 @@ def compared(base: Path, home: Path, *, quick: bool) -> Iterator[tuple[str, Call
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simworlds-bench-")))
         yield "… without what people ask for", _ours(_base_without_uses(base, home, folder), stack)
-    from bench.baselines import CANDIDATES, Baselines, read_units  # noqa: PLC0415 - takes seconds and memory
+    from bench.measurements.baselines import CANDIDATES, Baselines, read_units  # noqa: PLC0415 - takes seconds and memory
 
     say("making the flat indexes of the same documents")
     with closing(Baselines(read_units(base))) as flat:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from bench.retrieval import KINDS, BadQueries, read_queries, unknown_labels
+from bench.measurements.retrieval import KINDS, BadQueries, read_queries, unknown_labels
 from bench.setting import BLENDER, QUERIES
 from kb_build.base_file import read_meta
 from kb_build.errors import StoreError

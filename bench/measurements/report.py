@@ -7,15 +7,15 @@ import os
 import platform
 import sqlite3
 import subprocess
-import unicodedata
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bench.measurements.targets import TARGETS, shown
 from bench.setting import REPO, brief
-from bench.targets import TARGETS, shown
+from bench.tables import Table, table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -33,16 +33,6 @@ class Figure:
 
     key: str
     value: float
-    note: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """A table of texts; columns whose cells are all numbers stand right."""
-
-    title: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
     note: str = ""
 
 
@@ -106,53 +96,10 @@ def targets_table(figures: Iterable[Figure]) -> Table:
     reached = sum(row[3] == _REACHED[True] for row in rows)
     note = (
         f"{reached} of {counted} targets reached. Peers as measured elsewhere, on 240 queries of which the dev set "
-        "is a third (see bench/targets.py); their machine had 2 cores."
+        "is a third (see bench/measurements/targets.py); their machine had 2 cores."
     )
     header = ("what", "here", "target", "", "peers", "how")
     return Table("Targets", header, tuple(rows), note)
-
-
-def table(one: Table) -> str:
-    """A Markdown table whose source is aligned too."""
-    columns = list(zip(one.header, *one.rows, strict=True))
-    widths = [max(3, *(_width(cell) for cell in column)) for column in columns]
-    right = [all(_is_number(cell) for cell in column[1:]) and len(column) > 1 for column in columns]
-    lines = [_line(one.header, widths, right)]
-    lines.append(
-        "|"
-        + "|".join(f"{'-' * (w + 1)}{':' if r else '-'}" for w, r in zip(widths, right, strict=True))
-        + "|"
-    )
-    lines += [_line(row, widths, right) for row in one.rows]
-    text = f"## {one.title}\n\n" + "\n".join(lines)
-    return f"{text}\n\n{one.note}" if one.note else text
-
-
-def _line(cells: Sequence[str], widths: Sequence[int], right: Sequence[bool]) -> str:
-    padded: list[str] = []
-    for cell, width, to_right in zip(cells, widths, right, strict=True):
-        space = " " * (width - _width(cell))
-        padded.append(space + _escaped(cell) if to_right else _escaped(cell) + space)
-    return f"| {' | '.join(padded)} |"
-
-
-def _escaped(cell: str) -> str:
-    return cell.replace("|", "\\|").replace("\n", " ")
-
-
-def _width(cell: str) -> int:
-    """How many columns of a terminal a cell takes."""
-    wide = sum(unicodedata.east_asian_width(char) in "WF" for char in cell)
-    return len(_escaped(cell)) + wide
-
-
-def _is_number(cell: str) -> bool:
-    head = cell.split(" ", maxsplit=1)[0].replace(",", "").replace("−", "-")
-    try:
-        float(head)
-    except ValueError:
-        return cell in {"", "–"}
-    return True
 
 
 def _facts(facts: Mapping[str, str]) -> str:

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from bench.measurements.report import Figure, Part, in_steps
 from bench.references.build import build, has_reference
-from bench.report import Figure, Part, Table, in_steps
 from bench.setting import environment, percentile, say, simworlds
 from bench.spec import specs
+from bench.tables import Table
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from bench.retrieval import Outcome, Query, is_hit, share
+from bench.measurements.retrieval import Outcome, Query, is_hit, share
 from bench.setting import percentile
 
 

@@ -19,12 +19,13 @@ from mcp import StdioServerParameters
 from mcp.client import Client
 from mcp.client.stdio import stdio_client
 
-from bench import load
-from bench.echo import TOOL as ECHO
-from bench.memory import children, resident_mb
-from bench.report import Figure, Part, Table, in_steps
-from bench.retrieval import read_queries
+from bench.measurements import load
+from bench.measurements.echo import TOOL as ECHO
+from bench.measurements.memory import children, resident_mb
+from bench.measurements.report import Figure, Part, in_steps
+from bench.measurements.retrieval import read_queries
 from bench.setting import BLENDER, REPO, environment, percentile, say, simworlds
+from bench.tables import Table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,7 +63,7 @@ def _over_stdio(setting: Setting) -> Part:
     say("server: calls over stdio")
     ours = anyio.run(_stdio, _serve(), TOOL, queries, setting)
     say("server: an echo tool, side by side")
-    echo = anyio.run(_stdio, [sys.executable, "-m", "bench.echo"], ECHO, queries, setting)
+    echo = anyio.run(_stdio, [sys.executable, "-m", "bench.measurements.echo"], ECHO, queries, setting)
     data = {"simworlds": asdict(ours), "echo": asdict(echo), "resident_mb": ours.memory}
     figures = (
         Figure("mcp_p50", percentile(ours.calls, 0.5), f"echo here {percentile(echo.calls, 0.5):.1f} ms"),

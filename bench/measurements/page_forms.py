@@ -1,4 +1,4 @@
-"""Do both forms of one manual give the same pages? ``python -m bench.page_forms RST_DIR HTML_DIR``."""
+"""Do both forms of one manual give the same pages? ``python -m bench.measurements.page_forms RST_DIR HTML_DIR``."""
 
 from __future__ import annotations
 

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.report import Figure, Part, Table
+from bench.measurements.report import Figure, Part
 from bench.setting import BLENDER, REPO, corpora, environment, say, simworlds
+from bench.tables import Table
 from kb_build.errors import KBBuildError
 from kb_build.pages.html import read_html
 from kb_build.settings import base_path

@@ -1,6 +1,6 @@
 """Makes ``corpora/words/near.txt``: English words and the documentation's words that mean nearly the same.
 
-    python -m bench.near_words --model FOLDER --words WORDS.txt --base KB.sqlite --output near.txt
+    python -m bench.measurements.near_words --model FOLDER --words WORDS.txt --base KB.sqlite --output near.txt
 
 ``FOLDER`` holds the sentence model all-MiniLM-L6-v2 (Apache-2.0) and the package sentence-transformers is
 installed: both are needed to make the table, not to use it. ``WORDS`` are general English words, one a line,
@@ -97,8 +97,8 @@ def main() -> int:
     table = {word: found for word, found in near.items() if word in general}
     lines = [
         "# English words and the words of Blender's documentation that mean nearly the same, with the cosine in",
-        "# hundredths; a word alone is known, and near to none. Made by bench/near_words.py from all-MiniLM-L6-v2",
-        "# (Apache-2.0).",
+        "# hundredths; a word alone is known, and near to none. Made by bench/measurements/near_words.py from",
+        "# all-MiniLM-L6-v2 (Apache-2.0).",
     ]
     for word, found in sorted(table.items()):
         lines.append(" ".join([word, *(f"{other} {round(100 * similarity)}" for other, similarity in found)]))

@@ -19,9 +19,9 @@ from httpx2 import AsyncClient
 from mcp.client import Client
 from mcp.client.streamable_http import streamable_http_client
 
-from bench.memory import resident_mb
-from bench.report import Table
+from bench.measurements.memory import resident_mb
 from bench.setting import REPO, brief, environment, percentile, say
+from bench.tables import Table
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:

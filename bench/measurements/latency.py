@@ -9,9 +9,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from bench.report import Figure, Part, Table
-from bench.retrieval import NAMED, Query, read_queries
+from bench.measurements.report import Figure, Part
+from bench.measurements.retrieval import NAMED, Query, read_queries
 from bench.setting import percentile, say
+from bench.tables import Table
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:

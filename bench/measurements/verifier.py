@@ -20,9 +20,10 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
-from bench import verifier_scenes
-from bench.report import Figure, Part, Table, in_steps
+from bench.measurements import verifier_scenes
+from bench.measurements.report import Figure, Part, in_steps
 from bench.setting import REPO, environment, percentile, say, simworlds
+from bench.tables import Table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

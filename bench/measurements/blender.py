@@ -24,9 +24,10 @@ from agents.blender.catalogue import BY_NAME
 from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
-from bench.echo import TOOL as ECHO
-from bench.report import Figure, Part, Table, in_steps
+from bench.measurements.echo import TOOL as ECHO
+from bench.measurements.report import Figure, Part, in_steps
 from bench.setting import REPO, environment, percentile, say, simworlds
+from bench.tables import Table
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Sequence
@@ -133,7 +134,9 @@ async def _call(client: Client, tool: str, **arguments: Any) -> float:
 async def _over_mcp(setting: Setting) -> Part:
     starts, calls = await _timed(setting, [*simworlds(), "mcp"], EXECUTE, **_ONE)
     say("blender: an echo tool, side by side")
-    echo_starts, echoes = await _timed(setting, [sys.executable, "-m", "bench.echo"], ECHO, query="1+1")
+    echo_starts, echoes = await _timed(
+        setting, [sys.executable, "-m", "bench.measurements.echo"], ECHO, query="1+1"
+    )
     figures = (
         Figure("mcp_start", percentile(starts, 0.5), f"echo here {percentile(echo_starts, 0.5):.2f} s"),
         Figure("execute_p50", percentile(calls, 0.5), f"echo here {percentile(echoes, 0.5):.1f} ms"),

@@ -1,0 +1,15 @@
+"""Tables that line up."""
+
+from __future__ import annotations
+
+from bench.tables import Table, table
+
+
+def test_the_lines_of_a_table_are_equally_long_and_numbers_stand_right() -> None:
+    lines = table(
+        Table("T", ("name", "n"), (("a|b", "1.5"), ("longer name", "12,000"), ("c", "–")))
+    ).splitlines()[2:]
+    assert len({len(line) for line in lines}) == 1
+    assert lines[1].endswith(":|")
+    assert lines[2].startswith("| a\\|b ")
+    assert lines[2].endswith(" 1.5 |")
