@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from functools import cache, lru_cache
 from typing import Any
@@ -56,6 +57,11 @@ def telling_words(text: str) -> list[str]:
 def terms(text: str) -> list[str]:
     """The stems of a text's telling words."""
     return [stem(word) for word in telling_words(text)]
+
+
+def idf(documents: int, having: int) -> float:
+    """How much a stem tells that ``having`` of the ``documents`` have: ln(1 + (N - df + ½) / (df + ½)); 0 if none."""
+    return math.log(1 + (documents - having + 0.5) / (having + 0.5)) if having else 0.0
 
 
 def key(text: str) -> str:

@@ -2,11 +2,12 @@
 
 Two levels are indexed alike. A *unit* is a section of a page or one symbol; a *topic* is a whole page or a whole
 class with everything it holds. A unit is ranked by its own text and its topic's: a short description alone says
-too little, a long page too much.
+too little, a long page too much. What people ask for (:mod:`kb_build.uses`) is a field of both; its phrases are indexed
+one by one, too: who asks just so is after just that.
 
-Each level is an inverted index of BM25F term frequencies: the weighted sum over fields of tf / (1 - b + b · length
-/ average length) (Robertson & Zaragoza 2009, "The Probabilistic Relevance Framework", section 3.6). Saturation and
-idf are applied when a query is answered.
+Units and topics each have an inverted index of BM25F term frequencies: the weighted sum over fields of
+tf / (1 - b + b · length / average length) (Robertson & Zaragoza 2009, "The Probabilistic Relevance Framework", section
+3.6). Saturation and idf are applied when a query is answered.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kb_build.analysis import key, stem, telling_words
+from kb_build.analysis import idf, key, stem, telling_words
 from kb_build.lines import definitions_in
 
 if TYPE_CHECKING:
@@ -259,6 +260,29 @@ def make_postings(docs: Sequence[Doc], b: float, cut: Cut = telling_words) -> Po
             postings.numbers[term].append(number)
             postings.weights[term].append(weight)
     return postings
+
+
+def make_phrases(
+    uses: Mapping[str, str], targets: Mapping[str, int], units: int, told: Postings, cut: Cut = telling_words
+) -> tuple[list[int], Postings]:
+    """What people ask for, phrase by phrase: the document that each asks for, and the phrases' inverted index.
+
+    ``targets``: the document of each symbol and page that may be asked for. ``units`` documents have the postings
+    ``told``. A phrase's weight is such that the idf of what a query shares with it, weighed, is a share of 1.
+    """
+    asked: list[int] = []
+    postings = Postings()
+    for ref, row in uses.items():
+        for phrase in row.split(";") if ref in targets else ():
+            stems = dict.fromkeys(stem(word) for word in cut(phrase))
+            whole = sum(idf(units, len(told.numbers.get(term, ()))) for term in stems)
+            if not whole:
+                continue
+            for term in stems:
+                postings.numbers[term].append(len(asked))
+                postings.weights[term].append(1 / whole)
+            asked.append(targets[ref])
+    return asked, postings
 
 
 def weight_of(doc: Doc) -> float:

@@ -1,7 +1,7 @@
 """English words that mean nearly the same, for queries that do not use Blender's terms.
 
-The table is general: it knows nothing of Blender, and no query. ``bench/near_words.py`` makes it from an openly
-licensed sentence model; here it is only read, and cut down to the words that the corpus has.
+The table is general: it knows nothing of Blender, and no query. ``bench/measurements/near_words.py`` makes it from an
+openly licensed sentence model; here it is only read, and cut down to the words that the corpus has.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import asdict, dataclass, fields, is_dataclass
-from typing import Any, Literal, cast
+from typing import Any, Literal, cast, get_args
 
 Scalar = str | int | float | bool | None
 Default = Scalar | list[Any]
@@ -17,6 +17,7 @@ SymbolKind = Literal[
     "module", "class", "property", "function", "operator", "socket", "data", "context", "enum"
 ]
 PageSource = Literal["manual", "guide", "template"]
+PAGE_SOURCES: tuple[PageSource, ...] = get_args(PageSource)
 LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
 
 

@@ -21,6 +21,9 @@ APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's own place for telling whose file
 # How a key came about, in the order in which an answer prefers them.
 FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
+# The levels of the inverted index.
+UNITS, TOPICS, PHRASES = range(3)
+
 DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 
@@ -95,7 +98,12 @@ CREATE TABLE levels (
     weights BLOB NOT NULL, code BLOB NOT NULL
 );
 
--- The inverted index: df document numbers as uint32, then df weighted term frequencies as float16.
+-- What people ask for, a phrase each, numbered from 0 (level 2 of the postings): for each the document that it asks for
+-- (int32), units and topics numbered through. One row.
+CREATE TABLE phrases (targets BLOB NOT NULL);
+
+-- The inverted index: df document numbers as uint32, then df weighted term frequencies as float16; of phrases, see
+-- kb_build.index.make_phrases.
 CREATE TABLE postings (
     level INTEGER NOT NULL, stem TEXT NOT NULL, df INTEGER NOT NULL, data BLOB NOT NULL, UNIQUE (level, stem)
 );

@@ -19,7 +19,9 @@ from kb_build.index import (
     UNIT_B,
     Cut,
     Doc,
+    Postings,
     is_code,
+    make_phrases,
     make_postings,
     make_units,
     topic_docs,
@@ -28,7 +30,7 @@ from kb_build.index import (
 )
 from kb_build.lines import member_line
 from kb_build.near_words import load_near_words, near_stems
-from kb_build.records import Link, Page, Symbol, to_json
+from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
     DDL,
@@ -38,7 +40,10 @@ from kb_build.schema import (
     FORM_SHORT,
     FORM_TOPIC,
     INDEXES,
+    PHRASES,
     SCHEMA_VERSION,
+    TOPICS,
+    UNITS,
     pack,
 )
 from kb_build.staging import staged_file
@@ -169,8 +174,8 @@ def _write_pages(
 
 def _write_level(
     connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int], cut: Cut
-) -> set[str]:
-    """One level of the retrieval index; returns its stems."""
+) -> Postings:
+    """One level of the retrieval index; returns its postings."""
     rows = ((level, number, doc.ref, doc.kind, doc.title, doc.anchor) for number, doc in enumerate(docs))
     _insert(connection, "docs", rows, 6)
     chapters: dict[str, int] = {}
@@ -182,19 +187,27 @@ def _write_level(
     )
     row = (level, len(docs), *(array.tobytes() for array in arrays))
     connection.execute("INSERT INTO levels VALUES (?,?,?,?,?,?)", row)
-    postings = make_postings(docs, TOPIC_B if level else UNIT_B, cut)
+    postings = make_postings(docs, UNIT_B if level == UNITS else TOPIC_B, cut)
     _insert(connection, "postings", ((level, *row) for row in postings.packed()), 4)
-    return set(postings.numbers)
+    return postings
 
 
-def _write_index(connection: sqlite3.Connection, units: Sequence[Doc]) -> None:
+def _write_index(connection: sqlite3.Connection, units: Sequence[Doc], uses: Mapping[str, str]) -> None:
     topics = [*topic_docs(units)]
     numbers = {doc.ref: number for number, doc in enumerate(topics)}
     cut = cache(telling_words)
-    stems = _write_level(connection, 0, units, numbers, cut)
-    _write_level(connection, 1, topics, numbers, cut)
+    told = _write_level(connection, UNITS, units, numbers, cut)
+    _write_level(connection, TOPICS, topics, numbers, cut)
+    # A symbol is one unit; a page is asked for with all its sections.
+    targets = {
+        doc.ref: len(units) + numbers[doc.ref] if doc.kind in PAGE_SOURCES else number
+        for number, doc in enumerate(units)
+    }
+    asked, postings = make_phrases(uses, targets, len(units), told, cut)
+    connection.execute("INSERT INTO phrases VALUES (?)", (np.array(asked, np.int32).tobytes(),))
+    _insert(connection, "postings", ((PHRASES, *row) for row in postings.packed()), 4)
     _insert(connection, "vocabulary", vocabulary(units, cut), 2)
-    _insert(connection, "near", near_stems(load_near_words(), stems), 2)
+    _insert(connection, "near", near_stems(load_near_words(), set(told.numbers)), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:
@@ -223,11 +236,12 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA application_id={APPLICATION_ID};"
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
-        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, load_uses())
+        uses = load_uses()
+        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, uses)
         with connection:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
-            _write_index(connection, units)
+            _write_index(connection, units, uses)
             _write_former(connection, contents.former())
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(

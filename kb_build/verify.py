@@ -14,7 +14,7 @@ from kb_build.analysis import key
 from kb_build.base_file import open_base, read_meta
 from kb_build.records import page_from_json, symbol_from_json
 from kb_build.reference import WANTED, Resolution, read_reference, resolve
-from kb_build.schema import FORM_PATH, unpack
+from kb_build.schema import FORM_PATH, PHRASES, unpack
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -258,8 +258,16 @@ def _index(base: _Base) -> Check:
         sizes[level] += 1
         if ref not in base.bases and ref not in base.slugs:
             faults.append(f"the index names {ref}, which is not in the base")
+    documents = sum(sizes.values())
+    asked = [
+        target
+        for (data,) in base.rows("SELECT targets FROM phrases")
+        for target in memoryview(data).cast("i")
+    ]
+    sizes[PHRASES] = len(asked)
+    faults += [f"a phrase asks for document {target}" for target in asked if not 0 <= target < documents]
     faults += _postings(base.rows("SELECT level, stem, df, data FROM postings"), sizes)
-    if not sizes:
+    if not documents:
         faults.append("the index is empty")
     return Check("index", sum(sizes.values()), tuple(faults))
 

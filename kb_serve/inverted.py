@@ -1,13 +1,12 @@
-"""The inverted index of a base, as numpy arrays: its two levels of documents, and the postings of stems.
+"""The inverted index of a base, as numpy arrays: its documents, what they are asked for by, the postings of stems.
 
-Documents are numbered through: first the units (level 0), then the topics around them (level 1). Lists that queries
-touch are kept, the least used forgotten first; those that a query needs are read together, since a look-up costs more
-than what it finds.
+All is numbered through: first the units, then the topics around them, then the phrases that ask for either. Lists that
+queries touch are kept, the least used forgotten first; those that a query needs are read together, since a look-up
+costs more than what it finds.
 """
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +16,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from kb_build.analysis import idf
+from kb_build.schema import PHRASES, TOPICS, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -42,7 +44,8 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Postings:
-    """The documents that have a stem, and for each how much it says of it: BM25's saturated frequency.
+    """The documents and phrases that have a stem, and for each how much it says of it: of documents, BM25's saturated
+    frequency; of phrases, the share that a unit of idf is of all that the phrase tells.
 
     ``units``: how many of them are units; ``idf``: how much the stem tells, 0 if no unit has it.
     """
@@ -66,10 +69,28 @@ class InvertedIndex:
     @cached_property
     def levels(self) -> tuple[Level, Level]:
         """Units and topics. Raises BaseUnreadable."""
-        units, topics = self._read_level(0), self._read_level(1)
+        units, topics = self._read_level(UNITS), self._read_level(TOPICS)
         if not _within(units.topics, -1, topics.count):
             raise self._reader.damaged("its index points at topics that it has not")
         return units, topics
+
+    @cached_property
+    def asked(self) -> NDArray[np.int32]:
+        """For each phrase the number of the document that it asks for. Raises BaseUnreadable."""
+        try:
+            ((targets,),) = self._reader.rows("SELECT targets FROM phrases")
+            asked = np.frombuffer(targets, np.int32)
+        except (ValueError, TypeError) as error:
+            raise self._reader.damaged(error) from error
+        if not _within(asked, 0, sum(level.count for level in self.levels)):
+            raise self._reader.damaged("its phrases ask for what it has not")
+        return asked
+
+    @cached_property
+    def ends(self) -> tuple[int, int, int]:
+        """The numbers at which units, topics and phrases end."""
+        units, topics = (level.count for level in self.levels)
+        return units, units + topics, units + topics + len(self.asked)
 
     def load(self, stems: Iterable[str]) -> None:
         """Reads the postings of stems that are not known yet, all at once."""
@@ -77,7 +98,8 @@ class InvertedIndex:
         if not wanted:
             return
         marks = ",".join("?" * len(wanted))
-        sql = f"SELECT stem, level, df, data FROM postings WHERE level IN (0, 1) AND stem IN ({marks})"  # noqa: S608
+        levels = f"{UNITS}, {TOPICS}, {PHRASES}"
+        sql = f"SELECT stem, level, df, data FROM postings WHERE level IN ({levels}) AND stem IN ({marks})"  # noqa: S608
         self._kept.update(dict.fromkeys(wanted, _NOWHERE))
         self._kept.update(self._postings(sorted(self._reader.rows(sql, *wanted))))
         while len(self._kept) > max(_KEPT, len(wanted)):
@@ -91,7 +113,7 @@ class InvertedIndex:
         return self._kept[stem]
 
     def idf(self, stem: str) -> float:
-        """How much a stem tells: ln(1 + (N - df + ½) / (df + ½)) over the units; 0 for an unknown one."""
+        """How much a stem tells, by the units that have it; 0 for an unknown one."""
         return self.postings(stem).idf
 
     def _read_level(self, level: int) -> Level:
@@ -117,7 +139,7 @@ class InvertedIndex:
         """Of (stem, level, df, data), by stem and level: checked and weighed all at once, which costs less."""
         if not rows:
             return
-        counts = [level.count for level in self.levels]
+        starts, ends = (0, *self.ends[:2]), self.ends
         lengths = [count for _, _, count, _ in rows]
         try:
             numbers = np.concatenate([np.frombuffer(data, np.uint32, count) for *_, count, data in rows])
@@ -125,20 +147,20 @@ class InvertedIndex:
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
         weight = np.concatenate(weights).astype(np.float32)
-        limits = np.repeat(np.asarray([counts[level] for _, level, *_ in rows], np.uint32), lengths)
+        numbers += np.repeat(np.asarray([starts[level] for _, level, *_ in rows], np.uint32), lengths)
+        limits = np.repeat(np.asarray([ends[level] for _, level, *_ in rows], np.uint32), lengths)
         if not ((numbers < limits).all() and np.isfinite(weight).all()):
             raise self._reader.damaged(f"the postings of {', '.join(sorted({stem for stem, *_ in rows}))}")
-        numbers += np.repeat(np.asarray([level and counts[0] for _, level, *_ in rows], np.uint32), lengths)
-        saturated = np.asarray(weight * (K1 + 1) / (weight + K1), np.float32)
+        saturated = np.where(numbers < ends[TOPICS], weight * (K1 + 1) / (weight + K1), weight)
         end = 0
         for stem, lists in groupby(rows, key=itemgetter(0)):
             start, units = end, 0
             for _, level, count, _ in lists:
                 end += count
-                units += 0 if level else count
-            idf = math.log(1 + (counts[0] - units + 0.5) / (units + 0.5)) if units else 0.0
+                units += count if level == UNITS else 0
             # Copies, not to keep the lists of all for one.
-            yield stem, Postings(numbers[start:end].copy(), saturated[start:end].copy(), units, idf)
+            told = numbers[start:end].copy(), saturated[start:end].astype(np.float32)
+            yield stem, Postings(*told, units, idf(ends[UNITS], units))
 
 
 def _within(numbers: NDArray[Any], low: int, high: int) -> bool:

@@ -30,8 +30,8 @@ class Concept:
 
 @dataclass(frozen=True, slots=True)
 class Scored:
-    """The documents that speak of a query, by number, rising; of each its score, and its coverage: the share of the
-    query, by rarity, that it speaks of.
+    """The documents and phrases that speak of a query, by number, rising; of each its score (of a phrase: the share of
+    it, by rarity, that the query speaks of), and its coverage: the share of the query that it speaks of.
     """
 
     numbers: NDArray[np.intp]
@@ -40,7 +40,7 @@ class Scored:
 
 
 def scored(index: InvertedIndex, concepts: Sequence[Concept]) -> Scored:
-    """The documents of both levels that have any of the stems."""
+    """The documents and phrases that have any of the stems."""
     lists = [
         (weight, place, min(concept.idf, found.idf) if weight < 1 else concept.idf, found)
         for place, concept in enumerate(concepts)
@@ -53,7 +53,7 @@ def scored(index: InvertedIndex, concepts: Sequence[Concept]) -> Scored:
     lists.sort(key=itemgetter(0))  # of several weights for one cell, the last that is written stays
     lengths = [len(found.numbers) for *_, found in lists]
     listed = np.concatenate([found.numbers for *_, found in lists])
-    numbers, columns = _distinct(listed, sum(level.count for level in index.levels))
+    numbers, columns = _distinct(listed, index.ends[-1])
     # One row a concept, one column a document.
     cells = columns + np.repeat([place * len(numbers) for _, place, _, _ in lists], lengths)
     shape = len(concepts), len(numbers)
@@ -66,11 +66,11 @@ def scored(index: InvertedIndex, concepts: Sequence[Concept]) -> Scored:
     return Scored(numbers, told.sum(axis=0), coverage)
 
 
-def _distinct(numbers: NDArray[np.uint32], count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _distinct(numbers: NDArray[np.uint32], count: int) -> tuple[NDArray[np.intp], NDArray[np.int32]]:
     """The distinct ones of numbers below ``count``, rising, and for each number its place among them."""
     listed = np.zeros(count, np.bool_)
     listed[numbers] = True
     distinct = np.flatnonzero(listed)
-    places = np.empty(count, np.intp)
-    places[distinct] = np.arange(len(distinct))
+    places = np.empty(count, np.int32)
+    places[distinct] = np.arange(len(distinct), dtype=np.int32)
     return distinct, places[numbers]

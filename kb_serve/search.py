@@ -1,10 +1,11 @@
 """Ranks what the base holds for a query in plain words.
 
-BM25F over two levels (a unit and the topic around it), with five additions, each measured in ``make bench``:
+BM25F over two levels (a unit and the topic around it), with six additions, each measured in ``make bench``:
 
 - *Concepts*: a word stands for itself and, less, for the corpus' words that mean nearly the same; the best of them
   counts, once.
 - *Coverage*: a document's score is scaled by how much of the query, by rarity, it speaks of at all.
+- *Phrases*: a document gains by how nearly the query is one of the phrases that it is asked for by.
 - *Chapters*: what the best documents mostly come from is probably what the query is about (pseudo-relevance
   feedback); the rest of that chapter gains by it.
 - *Code*: a query that speaks of functions or scripts is rather about functions, modules and guides.
@@ -40,6 +41,9 @@ COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 CHAPTER_WEIGHT = 0.2
+ASKED_WEIGHT = (
+    0.6  # what a query gains that is, in other order or number, just what something is asked for by
+)
 # Who says one of these asks what to call, not where to click.
 CODE_WORDS = frozenset(
     """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
@@ -133,12 +137,13 @@ class Searcher:
         units, topics = self.index.levels
         found = scored(self.index, concepts)
         told = np.asarray(found.scores * found.coverage**COVERAGE, np.float32)
-        split = int(np.searchsorted(found.numbers, units.count))
-        numbers, own, coverage = found.numbers[:split], told[:split], found.coverage[:split]
-        if not split:
+        ends = np.searchsorted(found.numbers, self.index.ends[:2]).tolist()
+        if not ends[0]:
             return []
+        of_units, of_topics, of_phrases = slice(ends[0]), slice(*ends), slice(ends[1], None)
+        numbers, own, coverage = found.numbers[of_units], told[of_units], found.coverage[of_units]
         topical = np.zeros(topics.count + 1, np.float32)  # the last: for the units that have no topic, -1
-        topical[found.numbers[split:] - units.count] = told[split:]
+        topical[found.numbers[of_topics] - units.count] = told[of_topics]
         topic = units.topics[numbers]
         around = np.where(topic >= 0, topical[topic], ALONE * own)
         scores = np.asarray((own + TOPIC_WEIGHT * around) * units.weights[numbers], np.float32)
@@ -146,10 +151,21 @@ class Searcher:
             scores *= np.where(units.code[numbers], 1 + CODE_WEIGHT, 1)
         elif failed:
             scores *= np.where(units.code[numbers], 1 + FAILED_WEIGHT, 1)
+        phrased = np.sqrt(np.minimum(found.scores[of_phrases], 1) * found.coverage[of_phrases])
+        scores *= 1 + ASKED_WEIGHT * self._asked(numbers, topic, found.numbers[of_phrases], phrased)
         scores *= 1 + CHAPTER_WEIGHT * _votes(units.chapters[numbers], scores)
         best = _top(scores, _CANDIDATES)
         best = _spread(best[scores[best] > 0], topic)
         return self._varied(numbers[best], scores[best], coverage[best], limit)
+
+    def _asked(
+        self, numbers: NDArray[np.intp], topic: NDArray[np.int32], phrases: NDArray[np.intp], alike: Scores
+    ) -> Scores:
+        """How nearly the query is, word by word, what units are asked for, 0…1."""
+        units, documents, _ = self.index.ends
+        best = np.zeros(documents, np.float32)
+        np.maximum.at(best, self.index.asked[phrases - documents], alike)
+        return np.maximum(best[numbers], np.where(topic >= 0, best[units + topic], 0))
 
     def _varied(self, numbers: NDArray[np.intp], scores: Scores, coverage: Scores, limit: int) -> list[Found]:
         """Of the ranked units each ref once, and the first member of a name before other members of that name.

@@ -187,6 +187,7 @@ def compared(base: Path, home: Path, *, quick: bool) -> Iterator[tuple[str, Call
     for name, constant in (
         ("… without coverage", "COVERAGE"),
         ("… without the topic around a unit", "TOPIC_WEIGHT"),
+        ("… without phrases as a whole", "ASKED_WEIGHT"),
         ("… without the chapters' votes", "CHAPTER_WEIGHT"),
         ("… without near words", "NEAR_WEIGHT"),
         ("… without looking for code", "CODE_WEIGHT"),

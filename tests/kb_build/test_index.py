@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kb_build.analysis import STOP_WORDS, stem, terms
+from kb_build.analysis import STOP_WORDS, idf, stem, terms
 from kb_build.index import (
     FIELD_WEIGHTS,
     Doc,
     chapter_of,
     definitions,
+    make_phrases,
     make_postings,
     make_units,
     topic_docs,
@@ -155,6 +156,19 @@ def test_packed_postings_are_numbers_then_weights() -> None:
 def test_nothing_gives_no_postings() -> None:
     assert list(make_postings([], 0.35).packed()) == []
     assert list(make_postings([Doc("a", "class", "A", body=("the of",))], 0.35).packed()) == []
+
+
+def test_what_a_query_shares_with_a_phrase_is_weighed_to_a_share_of_it() -> None:
+    docs = [Doc(name, "property", name, uses=(text,)) for name, text in (("a", "flag wind"), ("b", "wind"))]
+    told = make_postings(docs, 0.5)
+    uses = {"a": "flag in the wind; of the", "gone": "flag", "page": "the wind"}
+    asked, postings = make_phrases(uses, {"a": 0, "page": 2}, len(docs), told)
+    rarity = {term: idf(len(docs), len(told.numbers[term])) for term in ("flag", "wind")}
+    assert asked == [0, 2]  # neither what says nothing nor what asks for nothing
+    assert postings.numbers == {"flag": [0], "wind": [0, 1]}
+    shares = [rarity["flag"] * postings.weights["flag"][0], rarity["wind"] * postings.weights["wind"][0]]
+    assert sum(shares) == pytest.approx(1)
+    assert rarity["wind"] * postings.weights["wind"][1] == pytest.approx(1)
 
 
 def test_the_vocabulary_keeps_the_most_used_spelling_of_a_stem() -> None:

@@ -78,6 +78,7 @@ def test_pages_that_blender_names_and_the_manual_lacks_are_listed_without_being_
         ("UPDATE pages SET parent = 'nowhere' WHERE slug = 'physics/index'", "pages", "nowhere"),
         ("INSERT INTO links VALUES ('bpy.types.Mesh', 'bpy.types.Nobody', 'pointer')", "links", "Nobody"),
         ("UPDATE docs SET ref = 'nothing' WHERE level = 0 AND number = 7", "index", "nothing"),
+        ("UPDATE phrases SET targets = x'ffffff7f'", "index", "asks for document 2147483647"),
         ("UPDATE postings SET df = df + 1 WHERE stem = 'mesh'", "index", "'mesh' are cut off"),
         ("DELETE FROM docs WHERE level = 0 AND number > 100", "index", "out of order or of nothing"),
         ("DROP TABLE docs", "index", "no such table: docs"),

@@ -214,7 +214,7 @@ def test_a_base_with_damaged_pages_is_said_to_be_damaged(copy: Path) -> None:
 
 
 def test_a_base_that_lacks_a_table_is_said_to_be_damaged(copy: Path) -> None:
-    for table in ("symbols", "names", "docs", "postings", "pages"):
+    for table in ("symbols", "names", "docs", "phrases", "postings", "pages"):
         with closing(sqlite3.connect(copy)) as file:
             file.execute(f"ALTER TABLE {table} RENAME TO gone")
             file.commit()

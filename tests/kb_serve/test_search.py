@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, of_data
 
-from kb_build.analysis import STOP_WORDS, stem, terms
+from kb_build.analysis import STOP_WORDS, stem, telling_words, terms
+from kb_build.uses import load_uses
+from kb_serve import search
 from kb_serve.search import Searcher
 
 if TYPE_CHECKING:
@@ -39,6 +41,38 @@ def test_a_description_finds_its_own_symbol(reader: Reader, searcher: Searcher) 
         found += bool({path, *twins} & {row.ref for row in searcher.search(symbol.description, 5)})
     assert asked > 50
     assert found >= 0.85 * asked
+
+
+def test_what_something_is_asked_for_by_finds_it_in_any_order(reader: Reader, searcher: Searcher) -> None:
+    chance, found, asked = random.Random(SEED), 0, 0
+    uses = [
+        (path, row)
+        for path, row in load_uses().items()
+        if path.startswith("bpy.types.") and reader.entry(path)
+    ]
+    for path, row in chance.sample(uses, 300):
+        said = telling_words(chance.choice(row.split(";")))
+        if len(said) < 3:
+            continue
+        asked += 1
+        chance.shuffle(said)
+        found += path in [row.ref for row in searcher.search(" ".join(said), 5)]
+    assert asked > 100
+    assert found >= 0.85 * asked
+
+
+def test_a_query_that_is_a_phrase_gains_by_it(searcher: Searcher, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = "bpy.types.ClothSettings.use_pressure"
+    query = load_uses()[path].partition(";")[0]
+
+    def lead() -> float:
+        """The score of what is asked for, by the best of the others."""
+        scores = {row.ref: row.score for row in searcher.search(query, 20)}
+        return scores.pop(path) / max(scores.values())
+
+    whole = lead()
+    monkeypatch.setattr(search, "ASKED_WEIGHT", 0.0)
+    assert whole > lead()
 
 
 @pytest.mark.parametrize(
