@@ -6,6 +6,7 @@ Only the documents that have any of the query's stems are looked at: a few thous
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -39,38 +40,58 @@ class Scored:
     coverage: Scores
 
 
-def scored(index: InvertedIndex, concepts: Sequence[Concept]) -> Scored:
-    """The documents and phrases that have any of the stems."""
-    lists = [
-        (weight, place, min(concept.idf, found.idf) if weight < 1 else concept.idf, found)
-        for place, concept in enumerate(concepts)
-        for term, weight in concept.stems
-        if len((found := index.postings(term)).numbers)
-    ]
-    if not lists:
-        nothing = np.zeros(0, np.float32)
-        return Scored(np.zeros(0, np.intp), nothing, nothing)
-    lists.sort(key=itemgetter(0))  # of several weights for one cell, the last that is written stays
-    lengths = [len(found.numbers) for *_, found in lists]
-    listed = np.concatenate([found.numbers for *_, found in lists])
-    numbers, columns = _distinct(listed, index.ends[-1])
-    # One row a concept, one column a document.
-    cells = columns + np.repeat([place * len(numbers) for _, place, _, _ in lists], lengths)
-    shape = len(concepts), len(numbers)
-    told, spoken = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
-    tells = [np.float32(weight * tells) * found.saturated for weight, _, tells, found in lists]
-    np.maximum.at(told.reshape(-1), cells, np.concatenate(tells))
-    spoken.reshape(-1)[cells] = np.repeat(np.asarray([weight for weight, *_ in lists], np.float32), lengths)
-    rarity = np.asarray([concept.idf for concept in concepts], np.float32)
-    coverage = rarity @ spoken / np.float32(sum(concept.idf for concept in concepts) or 1.0)
-    return Scored(numbers, told.sum(axis=0), coverage)
+class Scorer:
+    """Scores by one index. Not to be shared between threads: it has scratch space, which costs more than what is done
+    in it where every query has to have its own.
+    """
 
+    def __init__(self, index: InvertedIndex) -> None:
+        self._index = index
+        self._listed = np.zeros(index.ends[-1], np.bool_)
+        self._places = np.empty(index.ends[-1], np.intp)
 
-def _distinct(numbers: NDArray[np.uint32], count: int) -> tuple[NDArray[np.intp], NDArray[np.int32]]:
-    """The distinct ones of numbers below ``count``, rising, and for each number its place among them."""
-    listed = np.zeros(count, np.bool_)
-    listed[numbers] = True
-    distinct = np.flatnonzero(listed)
-    places = np.empty(count, np.int32)
-    places[distinct] = np.arange(len(distinct), dtype=np.int32)
-    return distinct, places[numbers]
+    def score(self, concepts: Sequence[Concept]) -> Scored:
+        """The documents and phrases that have any of the stems."""
+        lists = [
+            (place, weight, min(concept.idf, found.idf) if weight < 1 else concept.idf, found)
+            for place, concept in enumerate(concepts)
+            for term, weight in concept.stems
+            if len((found := self._index.postings(term)).numbers)
+        ]
+        if not lists:
+            nothing = np.zeros(0, np.float32)
+            return Scored(np.zeros(0, np.intp), nothing, nothing)
+        lists.sort(
+            key=itemgetter(0, 1)
+        )  # of several weights for one document, the last that is written stays
+        numbers, columns = self._distinct(np.concatenate([found.numbers for *_, found in lists]))
+        scores, coverage = np.zeros(len(numbers), np.float32), np.zeros(len(numbers), np.float32)
+        end = 0
+        for place, alike in groupby(lists, key=itemgetter(0)):
+            stems = [*alike]
+            lengths = [len(found.numbers) for *_, found in stems]
+            start, end = end, end + sum(lengths)
+            where = columns[start:end]
+            told = np.concatenate(
+                [np.float32(weight * tells) * found.saturated for _, weight, tells, found in stems]
+            )
+            spoken = np.repeat(np.asarray([weight for _, weight, *_ in stems], np.float32), lengths)
+            if len(stems) > 1:  # each document's best
+                best, most = np.zeros(len(numbers), np.float32), np.zeros(len(numbers), np.float32)
+                np.maximum.at(best, where, told)
+                most[where] = spoken
+                scores += best
+                coverage += np.float32(concepts[place].idf) * most
+            else:
+                scores[where] += told
+                coverage[where] += np.float32(concepts[place].idf) * spoken
+        coverage /= np.float32(sum(concept.idf for concept in concepts) or 1.0)
+        return Scored(numbers, scores, coverage)
+
+    def _distinct(self, numbers: NDArray[np.uint32]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """The distinct ones of numbers, rising, and for each number its place among them."""
+        self._listed[numbers] = True
+        distinct = np.flatnonzero(self._listed)
+        self._listed[distinct] = False
+        self._places[distinct] = np.arange(len(distinct))
+        return distinct, self._places[numbers]

@@ -25,7 +25,7 @@ from rapidfuzz.distance import OSA
 
 from kb_build.analysis import STOP_WORDS, stem, words
 from kb_serve.inverted import InvertedIndex
-from kb_serve.scoring import Concept, scored
+from kb_serve.scoring import Concept, Scorer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -79,6 +79,10 @@ class Searcher:
     def __init__(self, reader: Reader) -> None:
         self._reader = reader
         self.index = InvertedIndex(reader)
+
+    @cached_property
+    def _scorer(self) -> Scorer:
+        return Scorer(self.index)
 
     # The query
 
@@ -135,7 +139,7 @@ class Searcher:
         if not self.index.levels[0].count or not any(concept.stems for concept in concepts):
             return []
         units, topics = self.index.levels
-        found = scored(self.index, concepts)
+        found = self._scorer.score(concepts)
         told = np.asarray(found.scores * found.coverage**COVERAGE, np.float32)
         ends = np.searchsorted(found.numbers, self.index.ends[:2]).tolist()
         if not ends[0]:
