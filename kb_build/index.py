@@ -64,17 +64,23 @@ class Doc:
 
 @dataclass(slots=True)
 class Postings:
-    """stem → (document numbers, weighted term frequencies), ascending by number."""
+    """stem → (numbers of a level's documents, weighted term frequencies), ascending by number."""
 
     numbers: dict[str, list[int]] = field(default_factory=lambda: defaultdict(list))
     weights: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
 
-    def packed(self) -> Iterator[tuple[str, int, bytes]]:
-        """(stem, document frequency, numbers as uint32 then weights as float16)."""
-        for term, numbers in self.numbers.items():
-            ids = np.asarray(numbers, np.uint32).tobytes()
-            weights = np.asarray(self.weights[term], np.float16).tobytes()
-            yield term, len(numbers), ids + weights
+
+def packed(*levels: tuple[int, Postings]) -> Iterator[tuple[str, int, bytes]]:
+    """(stem, how many units have it, numbers as uint32 then weights as float16) of levels numbered through.
+
+    Each level comes with the number that its first document gets; the units' comes first.
+    """
+    for term in dict.fromkeys(term for _, postings in levels for term in postings.numbers):
+        having = [(start, postings) for start, postings in levels if term in postings.numbers]
+        ids = [np.asarray(postings.numbers[term], np.uint32) + np.uint32(start) for start, postings in having]
+        weights = [np.asarray(postings.weights[term], np.float16) for _, postings in having]
+        units = len(levels[0][1].numbers.get(term, ()))
+        yield term, units, np.concatenate(ids).tobytes() + np.concatenate(weights).tobytes()
 
 
 def _indexed(symbol: Symbol, owner: Symbol | None) -> bool:

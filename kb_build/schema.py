@@ -21,8 +21,8 @@ APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's own place for telling whose file
 # How a key came about, in the order in which an answer prefers them.
 FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
-# The levels of the inverted index.
-UNITS, TOPICS, PHRASES = range(3)
+# The levels of the documents.
+UNITS, TOPICS = range(2)
 
 DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -98,15 +98,12 @@ CREATE TABLE levels (
     weights BLOB NOT NULL, code BLOB NOT NULL
 );
 
--- What people ask for, a phrase each, numbered from 0 (level 2 of the postings): for each the document that it asks for
--- (int32), units and topics numbered through. One row.
+-- What people ask for, a phrase each: the document that it asks for (int32). One row.
 CREATE TABLE phrases (targets BLOB NOT NULL);
 
--- The inverted index: df document numbers as uint32, then df weighted term frequencies as float16; of phrases, see
--- kb_build.index.make_phrases.
-CREATE TABLE postings (
-    level INTEGER NOT NULL, stem TEXT NOT NULL, df INTEGER NOT NULL, data BLOB NOT NULL, UNIQUE (level, stem)
-);
+-- The inverted index. Units, topics and phrases are numbered through: for each stem how many units have it, the numbers
+-- of all that do as uint32, and for each its weight as float16 (see kb_build.index).
+CREATE TABLE postings (stem TEXT NOT NULL UNIQUE, units INTEGER NOT NULL, data BLOB NOT NULL);
 
 -- The corpus' words: stem and most used spelling.
 CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWID;

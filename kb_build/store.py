@@ -24,6 +24,7 @@ from kb_build.index import (
     make_phrases,
     make_postings,
     make_units,
+    packed,
     topic_docs,
     vocabulary,
     weight_of,
@@ -40,7 +41,6 @@ from kb_build.schema import (
     FORM_SHORT,
     FORM_TOPIC,
     INDEXES,
-    PHRASES,
     SCHEMA_VERSION,
     TOPICS,
     UNITS,
@@ -187,9 +187,7 @@ def _write_level(
     )
     row = (level, len(docs), *(array.tobytes() for array in arrays))
     connection.execute("INSERT INTO levels VALUES (?,?,?,?,?,?)", row)
-    postings = make_postings(docs, UNIT_B if level == UNITS else TOPIC_B, cut)
-    _insert(connection, "postings", ((level, *row) for row in postings.packed()), 4)
-    return postings
+    return make_postings(docs, UNIT_B if level == UNITS else TOPIC_B, cut)
 
 
 def _write_index(connection: sqlite3.Connection, units: Sequence[Doc], uses: Mapping[str, str]) -> None:
@@ -197,15 +195,16 @@ def _write_index(connection: sqlite3.Connection, units: Sequence[Doc], uses: Map
     numbers = {doc.ref: number for number, doc in enumerate(topics)}
     cut = cache(telling_words)
     told = _write_level(connection, UNITS, units, numbers, cut)
-    _write_level(connection, TOPICS, topics, numbers, cut)
+    around = _write_level(connection, TOPICS, topics, numbers, cut)
     # A symbol is one unit; a page is asked for with all its sections.
     targets = {
         doc.ref: len(units) + numbers[doc.ref] if doc.kind in PAGE_SOURCES else number
         for number, doc in enumerate(units)
     }
-    asked, postings = make_phrases(uses, targets, len(units), told, cut)
+    asked, phrases = make_phrases(uses, targets, len(units), told, cut)
     connection.execute("INSERT INTO phrases VALUES (?)", (np.array(asked, np.int32).tobytes(),))
-    _insert(connection, "postings", ((PHRASES, *row) for row in postings.packed()), 4)
+    levels = (0, told), (len(units), around), (len(units) + len(topics), phrases)
+    _insert(connection, "postings", packed(*levels), 3)
     _insert(connection, "vocabulary", vocabulary(units, cut), 2)
     _insert(connection, "near", near_stems(load_near_words(), set(told.numbers)), 2)
 

@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 import sqlite3
 import zlib
+from bisect import bisect_left
 from collections import Counter, defaultdict
 from contextlib import closing
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from kb_build.analysis import key
 from kb_build.base_file import open_base, read_meta
 from kb_build.records import page_from_json, symbol_from_json
 from kb_build.reference import WANTED, Resolution, read_reference, resolve
-from kb_build.schema import FORM_PATH, PHRASES, unpack
+from kb_build.schema import FORM_PATH, UNITS, unpack
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -264,27 +266,27 @@ def _index(base: _Base) -> Check:
         for (data,) in base.rows("SELECT targets FROM phrases")
         for target in memoryview(data).cast("i")
     ]
-    sizes[PHRASES] = len(asked)
     faults += [f"a phrase asks for document {target}" for target in asked if not 0 <= target < documents]
-    faults += _postings(base.rows("SELECT level, stem, df, data FROM postings"), sizes)
+    faults += _postings(
+        base.rows("SELECT stem, units, data FROM postings"), sizes[UNITS], documents + len(asked)
+    )
     if not documents:
         faults.append("the index is empty")
     return Check("index", sum(sizes.values()), tuple(faults))
 
 
-def _postings(rows: Iterable[tuple[int, str, int, bytes]], sizes: Counter[int]) -> Iterator[str]:
-    """Of each term: document numbers as uint32, ascending, then as many weights as float16."""
-    for level, stem, df, data in rows:
-        if len(data) != df * 6:
+def _postings(rows: Iterable[tuple[str, int, bytes]], units: int, end: int) -> Iterator[str]:
+    """Of each stem: numbers below ``end`` as uint32, ascending, then as many weights as float16; those of units."""
+    for stem, having, data in rows:
+        count, cut = divmod(len(data), 6)
+        if cut:
             yield f"the postings of {stem!r} are cut off"
             continue
-        numbers = memoryview(data)[: df * 4].cast("I")
-        last = -1
-        for number in numbers:
-            if not last < number < sizes[level]:
-                yield f"the postings of {stem!r} name unit {number} out of order or of nothing"
-                break
-            last = number
+        numbers = memoryview(data)[: count * 4].cast("I").tolist()
+        if any(one >= other for one, other in pairwise(numbers)) or (numbers and numbers[-1] >= end):
+            yield f"the postings of {stem!r} name documents out of order or of nothing"
+        elif bisect_left(numbers, units) != having:
+            yield f"the postings of {stem!r} are not of {having} units"
 
 
 _CHECKS: tuple[tuple[str, Callable[[_Base], Check]], ...] = (

@@ -10,15 +10,13 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kb_build.analysis import idf
-from kb_build.schema import PHRASES, TOPICS, UNITS
+from kb_build.schema import TOPICS, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -28,6 +26,7 @@ if TYPE_CHECKING:
 Scores = NDArray[np.float32]
 
 K1 = 2.2
+_BYTES = 6  # a posting's
 _KEPT = 600  # stems; a query has a dozen, with their near ones
 
 
@@ -98,10 +97,9 @@ class InvertedIndex:
         if not wanted:
             return
         marks = ",".join("?" * len(wanted))
-        levels = f"{UNITS}, {TOPICS}, {PHRASES}"
-        sql = f"SELECT stem, level, df, data FROM postings WHERE level IN ({levels}) AND stem IN ({marks})"  # noqa: S608
+        sql = f"SELECT stem, units, data FROM postings WHERE stem IN ({marks})"  # noqa: S608
         self._kept.update(dict.fromkeys(wanted, _NOWHERE))
-        self._kept.update(self._postings(sorted(self._reader.rows(sql, *wanted))))
+        self._kept.update(self._postings(self._reader.rows(sql, *wanted)))
         while len(self._kept) > max(_KEPT, len(wanted)):
             self._kept.popitem(last=False)
 
@@ -135,32 +133,31 @@ class InvertedIndex:
             raise self._reader.damaged(f"level {level} of its index")
         return read
 
-    def _postings(self, rows: Sequence[tuple[str, int, int, bytes]]) -> Iterator[tuple[str, Postings]]:
-        """Of (stem, level, df, data), by stem and level: checked and weighed all at once, which costs less."""
+    def _postings(self, rows: Sequence[tuple[str, int, bytes]]) -> Iterator[tuple[str, Postings]]:
+        """Of (stem, units, data): checked and weighed all at once, which costs less than one by one."""
         if not rows:
             return
-        starts, ends = (0, *self.ends[:2]), self.ends
-        lengths = [count for _, _, count, _ in rows]
+        lengths = [len(data) // _BYTES for *_, data in rows]
         try:
-            numbers = np.concatenate([np.frombuffer(data, np.uint32, count) for *_, count, data in rows])
-            weights = [np.frombuffer(data, np.float16, count, offset=4 * count) for *_, count, data in rows]
+            numbers = [
+                np.frombuffer(data, np.uint32, count) for (*_, data), count in zip(rows, lengths, strict=True)
+            ]
+            weights = [
+                np.frombuffer(data, np.float16, offset=array.nbytes)
+                for (*_, data), array in zip(rows, numbers, strict=True)
+            ]
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
-        weight = np.concatenate(weights).astype(np.float32)
-        numbers += np.repeat(np.asarray([starts[level] for _, level, *_ in rows], np.uint32), lengths)
-        limits = np.repeat(np.asarray([ends[level] for _, level, *_ in rows], np.uint32), lengths)
-        if not ((numbers < limits).all() and np.isfinite(weight).all()):
-            raise self._reader.damaged(f"the postings of {', '.join(sorted({stem for stem, *_ in rows}))}")
-        saturated = np.where(numbers < ends[TOPICS], weight * (K1 + 1) / (weight + K1), weight)
-        end = 0
-        for stem, lists in groupby(rows, key=itemgetter(0)):
-            start, units = end, 0
-            for _, level, count, _ in lists:
-                end += count
-                units += count if level == UNITS else 0
-            # Copies, not to keep the lists of all for one.
-            told = numbers[start:end].copy(), saturated[start:end].astype(np.float32)
-            yield stem, Postings(*told, units, idf(ends[UNITS], units))
+        listed, weight = np.concatenate(numbers), np.concatenate(weights).astype(np.float32)
+        units, documents, end = self.ends
+        if not (len(listed) == len(weight) and _within(listed, 0, end) and np.isfinite(weight).all()):
+            raise self._reader.damaged(f"the postings of {', '.join(stem for stem, *_ in rows)}")
+        saturated = np.where(listed < documents, weight * (K1 + 1) / (weight + K1), weight).astype(np.float32)
+        last = 0
+        for (stem, having, _), array in zip(rows, numbers, strict=True):
+            first, last = last, last + len(array)
+            # Copies, not to keep the lists of all for one, nor what was read for a part of it.
+            yield stem, Postings(array.copy(), saturated[first:last].copy(), having, idf(units, having))
 
 
 def _within(numbers: NDArray[Any], low: int, high: int) -> bool:

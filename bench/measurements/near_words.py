@@ -49,7 +49,7 @@ def reduce(vectors: Vectors, dimensions: int) -> Vectors:
 
 def documentation_words(base: Path) -> set[str]:
     """The most used spelling of every stem in a knowledge base that is no name made up for one place."""
-    sql = "SELECT word FROM vocabulary JOIN postings USING (stem) WHERE level = 0 AND df >= ?"
+    sql = "SELECT word FROM vocabulary JOIN postings USING (stem) WHERE units >= ?"
     with sqlite3.connect(f"file:{base}?mode=ro", uri=True) as connection:
         rows = connection.execute(sql, (LEAST_UNITS,))
         return {word for (word,) in rows if word.isalpha() and word.isascii() and len(word) > LEAST_LETTERS}

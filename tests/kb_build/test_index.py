@@ -16,6 +16,7 @@ from kb_build.index import (
     make_phrases,
     make_postings,
     make_units,
+    packed,
     topic_docs,
     vocabulary,
 )
@@ -143,19 +144,21 @@ def test_weights_are_those_of_bm25f_worked_out_by_hand() -> None:
     assert postings.weights["wind"] == pytest.approx([body / long, body / short])
 
 
-def test_packed_postings_are_numbers_then_weights() -> None:
+def test_packed_postings_are_numbers_then_weights_of_levels_numbered_through() -> None:
     docs = [Doc(str(n), "property", "", body=("wind " * (n + 1),)) for n in range(5)]
-    (term, count, data) = next(make_postings(docs, 0.35).packed())
-    numbers = np.frombuffer(data, np.uint32, count)
-    weights = np.frombuffer(data, np.float16, count, offset=4 * count)
-    assert (term, count, len(data)) == ("wind", 5, 6 * 5)
-    assert numbers.tolist() == [0, 1, 2, 3, 4]
-    assert weights.tolist() == sorted(weights.tolist())
+    levels = [make_postings(part, 0.35) for part in (docs, docs[:2])]
+    ((term, units, data),) = packed((0, levels[0]), (5, levels[1]))
+    numbers = np.frombuffer(data, np.uint32, 7)
+    weights = np.frombuffer(data, np.float16, offset=4 * 7).tolist()
+    assert (term, units, len(data)) == ("wind", 5, 6 * 7)
+    assert numbers.tolist() == [0, 1, 2, 3, 4, 5, 6]
+    assert weights[:5] == sorted(weights[:5])
+    assert weights[5:] == sorted(weights[5:])
 
 
 def test_nothing_gives_no_postings() -> None:
-    assert list(make_postings([], 0.35).packed()) == []
-    assert list(make_postings([Doc("a", "class", "A", body=("the of",))], 0.35).packed()) == []
+    for docs in ([], [Doc("a", "class", "A", body=("the of",))]):
+        assert list(packed((0, make_postings(docs, 0.35)))) == []
 
 
 def test_what_a_query_shares_with_a_phrase_is_weighed_to_a_share_of_it() -> None:
