@@ -80,7 +80,7 @@ class Reader:
         self._connection = open_file(path)
         # A symbol's or page's row, or None; the members of a class or module by name; the classes right below one.
         # An entry takes nearly a kilobyte, and a class has fifty members.
-        self.entry = lru_cache(maxsize=4_000)(self._entry)
+        self.entry = lru_cache(maxsize=2_000)(self._entry)
         self.members = lru_cache(maxsize=64)(self._members)
         self.subclasses = lru_cache(maxsize=64)(self._subclasses)
         self.page_entry = lru_cache(maxsize=500)(self._page_entry)

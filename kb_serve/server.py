@@ -58,6 +58,7 @@ def make_server(service: Service) -> Server[None]:
         async def prepare() -> None:
             try:
                 await anyio.to_thread.run_sync(service.warm)
+                gc.collect()
                 gc.freeze()  # what is loaded by now stays: collections need not look at it between answers
             finally:
                 ready.set()
