@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
+from kb_build.records import PAGE_SOURCES
 from kb_serve.budget import Block, clip, paginate, tokens
 from kb_serve.errors import BadQuery
 from kb_serve.rank import Ranked, Ranker, Ranking
@@ -100,7 +101,7 @@ class Answerer:
             return _Draft("none", (), notes, (Block(text),))
         if ranking.named:
             blocks = tuple(self._whole(hits[0], ranking.ranked[0])) + self._others(hits[1:])
-            return _Draft("page" if self._is_page(hits[0].id) else "schema", hits, notes, blocks)
+            return _Draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
         blocks = (*self._excerpt(ranking, hits[0]), *self._others(hits[1:]))
         return _Draft("candidates", hits, notes, blocks)
 
@@ -108,31 +109,25 @@ class Answerer:
         """What the caller should know of the documentation behind the answer."""
         meta = self._reader.meta
         minor = meta.get("minor", "")
-        pages = [page for hit in hits if (page := self._reader.page_entry(hit.id))]
+        pages = [page for hit in hits if _is_page(hit) and (page := self._reader.page_entry(hit.id))]
         for version in sorted({page.version for page in pages} - {minor, ""}):
             yield f"These pages are of the documentation for Blender {version}, not {minor}."
         missing = [row["role"] for row in json.loads(meta.get("missing", "[]"))]
         if missing and not ranking.named:
             yield f"This base lacks the {' and the '.join(missing)}; `simworlds kb info` says why."
 
-    def _is_page(self, identifier: str) -> bool:
-        return self._reader.page_entry(identifier) is not None
-
     def _hit(self, row: Ranked) -> Hit:
-        page = self._reader.page_entry(row.id)
+        entry = None if "/" in row.id else self._reader.entry(row.id)
+        page = None if entry else self._reader.page_entry(row.id)
+        entry = entry or (None if page else self._reader.entry(row.id))
+        score = round(row.score, 3)
         if page:
-            url = page.url + (f"#{row.anchor}" if row.anchor else "")
-            return Hit(row.id, page.source, page.title, round(row.score, 3), url)
-        entry = self._reader.entry(row.id)
+            return Hit(
+                row.id, page.source, page.title, score, page.url + (f"#{row.anchor}" if row.anchor else "")
+            )
         if entry is None:
-            return Hit(row.id, "unknown", row.id, round(row.score, 3))
-        return Hit(
-            row.id,
-            entry.kind,
-            entry.label or entry.name,
-            round(row.score, 3),
-            self._renderer.manual_page(row.id),
-        )
+            return Hit(row.id, "unknown", row.id, score)
+        return Hit(row.id, entry.kind, entry.label or entry.name, score, self._renderer.manual_page(row.id))
 
     # What is said
 
@@ -155,7 +150,7 @@ class Answerer:
         return (Block("**Also**\n" + "\n".join(lines), "further candidates"),)
 
     def _line(self, hit: Hit) -> str:
-        entry = self._reader.entry(hit.id)
+        entry = None if _is_page(hit) else self._reader.entry(hit.id)
         if entry is not None:
             owner = f"{entry.owner}." if entry.kind != "socket" else ""
             told = (
@@ -174,6 +169,10 @@ class Answerer:
         ids = dict.fromkeys((topic, *overview.members, *(row.id for row in ranking.ranked)))
         hits = tuple(self._hit(Ranked(i, 1.0 - 0.02 * n, "topic")) for n, i in enumerate(list(ids)[:limit]))
         return _Draft("page", hits, tuple(self._source_notes(ranking, hits)), overview.blocks)
+
+
+def _is_page(hit: Hit) -> bool:
+    return hit.kind in PAGE_SOURCES
 
 
 def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> Answer:

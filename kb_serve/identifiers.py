@@ -66,6 +66,8 @@ class Identifier:
 
     def _check_calls(self, query: str, found: Identified) -> None:
         """What is wrong with the arguments of the calls that were recognised."""
+        if "(" not in query:
+            return
         chains = [chain for chain in find_chains(query) if chain.steps and chain.steps[-1].kind == "call"]
         for chain in chains:
             paths = [

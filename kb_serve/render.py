@@ -179,7 +179,7 @@ class Renderer:
         return f"{owner}.{symbol.signature}" if owner else symbol.signature
 
     def _place(self, symbol: Symbol) -> Iterator[str]:
-        """How the symbol is reached, and its manual page."""
+        """How the symbol is reached, the version that brought it, and its manual page."""
         cls = symbol if symbol.kind == "class" else self.reader.symbol(symbol.owner)
         reached = cls.reached if cls else ""
         if reached and symbol.kind in {"class", "property", "socket", "function"}:
@@ -191,6 +191,8 @@ class Renderer:
             yield f"provided by: {', '.join(origin)}"
         if symbol.trees:
             yield "node of: " + ", ".join(symbol.trees)
+        if version := self.reader.since(symbol.path):
+            yield f"since Blender {version}"
         if page := self.manual_page(symbol.path):
             yield f"manual: {page}"
 

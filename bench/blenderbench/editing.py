@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -17,12 +14,10 @@ from bench.blenderbench.errors import NotDone, NotReady
 from bench.blenderbench.making import Made, begun
 from bench.blenderbench.results import round_file
 from bench.blenderbench.scenes import Look, render
-from bench.setting import simworlds
-from bench.sweep.ending import ending_with_this
+from bench.sweep.command import called, last_words
 from bench.sweep.runs import KEYS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from agents.pipeline.history import History
@@ -37,8 +32,6 @@ BUDGET = (
 )
 _ENDED = ("done", "aborted")
 _LOG = "edit.log"
-_GRACE_SECONDS = 20.0
-_LAST_WORDS = 600
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +68,7 @@ class SimWorlds:
             self._run(task, place)
         history = _history(place)
         if history is None:
-            raise NotDone(f"the edit did not begin: {_last_words(place)}")
+            raise NotDone(f"the edit did not begin: {last_words(place.root / _LOG)}")
         file, notes = _result(history, place)
         tell("rendering the result")
         rendered = render(file, place.root / round_file(1), task.size, self.look)
@@ -94,31 +87,7 @@ class SimWorlds:
             look = ["--reference", str(given), "--samples", str(self.look.samples)]
             words = ["edit", "--run", str(place.edit), *look, *self.options, *self.limits, "--quiet"]
             words += ["--", str(place.start), task.instruction]
-        _call(words, place.root / _LOG)
-
-
-def _call(words: Sequence[str], log: Path) -> None:
-    """Runs ``simworlds``, which ends with this process, and with it all that it started."""
-    with log.open("ab") as said:
-        process = subprocess.Popen(
-            ending_with_this([*simworlds(), *words]),
-            stdin=subprocess.DEVNULL,
-            stdout=said,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
-    try:
-        process.wait()
-    except KeyboardInterrupt:
-        for _ in range(2):  # the first asks for a stop at a safe point, the second for one now
-            process.send_signal(signal.SIGINT)
-        with suppress(subprocess.TimeoutExpired):
-            process.wait(_GRACE_SECONDS)
-        raise
-    finally:
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
+        called(words, place.root / _LOG)
 
 
 def _history(place: Place) -> History | None:
@@ -129,18 +98,11 @@ def _history(place: Place) -> History | None:
         return None
 
 
-def _last_words(place: Place) -> str:
-    with suppress(OSError):
-        said = (place.root / _LOG).read_bytes()[-4 * _LAST_WORDS :].decode(errors="replace")
-        return " ".join(said.split())[-_LAST_WORDS:]
-    return "it said nothing"
-
-
 def _result(history: History, place: Place) -> tuple[Path, tuple[str, ...]]:
     """The scene that counts, and what is to be said of it. Raises NotDone where there is none."""
     ending = history.ending
     if ending is None:
-        raise NotDone(f"the edit was broken off: {_last_words(place)}")
+        raise NotDone(f"the edit was broken off: {last_words(place.root / _LOG)}")
     file = place.edit / ending.file if ending.file else None
     if ending.outcome == "done" and file is not None and file.is_file():
         return file, ()

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import signal
-import subprocess
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
@@ -19,8 +17,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from agents.pipeline.errors import NoRun
 from agents.pipeline.journal import NAME, read_rows
-from bench.setting import simworlds
-from bench.sweep.ending import ending_with_this
+from bench.sweep.command import called, last_words
 from bench.sweep.records import FINAL, Outcome, SystemInfo
 from bench.sweep.systems import Made, NotReady
 
@@ -36,10 +33,8 @@ SESSIONS = {
     "fluid_D1_01": "pour",  # cider from a keg into a glass, where the scene has milk from a jug into a bowl
 }
 KEYS = ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN")
-_GRACE_SECONDS = (2.0, 20.0)  # after the first Ctrl-C, which asks for a stop, and the second: for one now
 _OUTCOMES = ("done", "aborted", "failed", "stopped")
 _TOKENS = ("input", "output", "cache_read", "cache_write")
-_LAST_WORDS = 300
 
 
 @dataclass(frozen=True)
@@ -71,10 +66,10 @@ class _Runs:
         begin = [words[0], *self.options, *self.limits, "--quiet", "--run", str(place), "--", *words[1:]]
         if before is None:
             shutil.rmtree(place, ignore_errors=True)  # one that was killed before it began
-        code = _called(begin if before is None else ["resume", *self.limits, "--quiet", str(place)], log)
+        code = called(begin if before is None else ["resume", *self.limits, "--quiet", str(place)], log)
         after = _read(place, prompt)
         if after is None or (after.outcome not in FINAL and not after.why):
-            return Made("failed", prompt, f"simworlds {words[0]} ended with {code}: {_last_words(log)}")
+            return Made("failed", prompt, f"simworlds {words[0]} ended with {code}: {last_words(log)}")
         return after
 
 
@@ -125,38 +120,6 @@ class Replay(_Runs):
         if name is None:
             return Made("missing", spec.prompt, "no session belongs to it")
         return self.run(place, spec.prompt, ["demo", name], tell)
-
-
-def _called(words: Sequence[str], log: Path) -> int:
-    """The exit code of a ``simworlds`` that ends with this process, and with it all that it started."""
-    with log.open("ab") as said:
-        process = subprocess.Popen(
-            ending_with_this([*simworlds(), *words]),
-            stdin=subprocess.DEVNULL,
-            stdout=said,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
-    try:
-        return process.wait()
-    except KeyboardInterrupt:
-        for seconds in _GRACE_SECONDS:
-            process.send_signal(signal.SIGINT)
-            with suppress(subprocess.TimeoutExpired):
-                process.wait(seconds)
-                break
-        raise
-    finally:
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-
-
-def _last_words(log: Path) -> str:
-    with suppress(OSError):
-        said = " ".join(log.read_bytes()[-4000:].decode(errors="replace").split())
-        return said[-_LAST_WORDS:]
-    return ""
 
 
 # What a journal tells

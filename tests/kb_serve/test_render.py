@@ -139,6 +139,14 @@ def test_deprecation_is_said_with_versions(renderer: Renderer) -> None:
     assert "**Deprecated**: Use b." in shown(renderer, symbol)
 
 
+def test_what_later_versions_brought_says_which(renderer: Renderer, reader: Reader) -> None:
+    ((path, version),) = reader.rows("SELECT path, version FROM since WHERE path LIKE 'bpy.types.%' LIMIT 1")
+    for named, expected in ((path, True), ("bpy.types.Object.location", False)):
+        symbol = reader.symbol(named)
+        assert symbol is not None
+        assert (f"since Blender {version}" in shown(renderer, symbol)) is expected
+
+
 def test_arguments_tell_type_default_range_unit_and_choices(renderer: Renderer) -> None:
     items = tuple(EnumItem(f"I{n}", f"Item {n}", f"Meaning {n}") for n in range(50))
     symbol = Symbol(
