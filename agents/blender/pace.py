@@ -57,9 +57,10 @@ class Pace:
         if len(self._trials) == 1:
             self._fixed, self._each = 0.0, seconds / samples
             return
+        # The first picture may have waited for shaders, textures or the machine: the later one is to be believed. If
+        # more samples took no longer, nothing is known of one but that they cannot have taken more than all of it.
         few, short = self._trials[0]
-        self._each = max(0.0, (seconds - short) / (samples - few))
-        # The first picture may have waited for shaders and textures: the later one is to be believed.
+        self._each = (seconds - short) / (samples - few) if seconds > short else seconds / samples
         self._fixed = max(0.0, seconds - self._each * samples)
 
     def took(self, samples: int | None, seconds: float) -> None:

@@ -475,6 +475,14 @@ def test_with_enough_time_nothing_is_lowered() -> None:
     assert paced(Clock(0.5, 0.01), 200, 128, 20) == [128] * 20
 
 
+def test_a_first_frame_that_waited_does_not_make_samples_free() -> None:
+    pace = Pace(10, 60_000, Clock(0, 0))
+    pace.tried(LEAST, 3.0)
+    pace.tried(16, 0.8)
+    pace.settle(2)
+    assert LEAST <= (pace.samples or 0) <= 100
+
+
 def test_samples_are_lowered_alike_for_all_frames() -> None:
     clock = Clock(0.5, 0.05)
     made = paced(clock, 60, 256, 20)
