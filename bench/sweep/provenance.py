@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 _BENCH = Path(__file__).resolve().parent.parent
 _FRAMES = "frames.py"
-_PACKAGES = ("anthropic", "av", "bpy", "numpy", "openai", "pillow", "pydantic", "ray")
+_PACKAGES = (
+    *("anthropic", "av", "bpy", "huggingface-hub", "numpy"),
+    *("openai", "pillow", "pydantic", "ray", "safetensors"),
+)
 
 
 @cache
