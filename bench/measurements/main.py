@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import gc
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -65,9 +66,11 @@ def measure(name: str, setting: Setting) -> report.Part:
     """One part, by name; what a part needs is loaded when it is measured."""
     from importlib import import_module  # noqa: PLC0415 - a part that is left out costs nothing
 
-    # What earlier parts left behind is not looked through while this one is measured: no client has such a heap.
+    # What earlier parts left behind neither is looked through nor still goes to disk while this one is measured.
     gc.collect()
     gc.freeze()
+    if hasattr(os, "sync"):
+        os.sync()
     part = import_module(f"bench.measurements.{name}").measure(setting)
     assert isinstance(part, report.Part)
     return part
