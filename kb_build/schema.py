@@ -23,6 +23,7 @@ FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
 # The levels of the documents.
 UNITS, TOPICS = range(2)
+POSTING_BYTES = 6  # a number as uint32, a weight as float16
 
 DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;

@@ -16,7 +16,7 @@ from kb_build.analysis import key
 from kb_build.base_file import open_base, read_meta
 from kb_build.records import page_from_json, symbol_from_json
 from kb_build.reference import WANTED, Resolution, read_reference, resolve
-from kb_build.schema import FORM_PATH, UNITS, unpack
+from kb_build.schema import FORM_PATH, POSTING_BYTES, UNITS, unpack
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -278,7 +278,7 @@ def _index(base: _Base) -> Check:
 def _postings(rows: Iterable[tuple[str, int, bytes]], units: int, end: int) -> Iterator[str]:
     """Of each stem: numbers below ``end`` as uint32, ascending, then as many weights as float16; those of units."""
     for stem, having, data in rows:
-        count, cut = divmod(len(data), 6)
+        count, cut = divmod(len(data), POSTING_BYTES)
         if cut:
             yield f"the postings of {stem!r} are cut off"
             continue

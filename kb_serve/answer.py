@@ -117,14 +117,12 @@ class Answerer:
             yield f"This base lacks the {' and the '.join(missing)}; `simworlds kb info` says why."
 
     def _hit(self, row: Ranked) -> Hit:
-        entry = None if "/" in row.id else self._reader.entry(row.id)
-        page = None if entry else self._reader.page_entry(row.id)
-        entry = entry or (None if page else self._reader.entry(row.id))
         score = round(row.score, 3)
+        page = self._reader.page_entry(row.id)
         if page:
-            return Hit(
-                row.id, page.source, page.title, score, page.url + (f"#{row.anchor}" if row.anchor else "")
-            )
+            url = page.url + (f"#{row.anchor}" if row.anchor else "")
+            return Hit(row.id, page.source, page.title, score, url)
+        entry = self._reader.entry(row.id)
         if entry is None:
             return Hit(row.id, "unknown", row.id, score)
         return Hit(row.id, entry.kind, entry.label or entry.name, score, self._renderer.manual_page(row.id))

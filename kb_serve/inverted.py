@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kb_build.analysis import idf
-from kb_build.schema import TOPICS, UNITS
+from kb_build.schema import POSTING_BYTES, TOPICS, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 Scores = NDArray[np.float32]
 
 K1 = 2.2
-_BYTES = 6  # a posting's
 _KEPT = 600  # stems; a query has a dozen, with their near ones
 
 
@@ -96,10 +95,9 @@ class InvertedIndex:
         wanted = [stem for stem in dict.fromkeys(stems) if stem not in self._kept]
         if not wanted:
             return
-        marks = ",".join("?" * len(wanted))
-        sql = f"SELECT stem, units, data FROM postings WHERE stem IN ({marks})"  # noqa: S608
         self._kept.update(dict.fromkeys(wanted, _NOWHERE))
-        self._kept.update(self._postings(self._reader.rows(sql, *wanted)))
+        rows = self._reader.rows_of("SELECT stem, units, data FROM postings WHERE stem", wanted)
+        self._kept.update(self._postings(rows))
         while len(self._kept) > max(_KEPT, len(wanted)):
             self._kept.popitem(last=False)
 
@@ -137,7 +135,7 @@ class InvertedIndex:
         """Of (stem, units, data): checked and weighed all at once, which costs less than one by one."""
         if not rows:
             return
-        lengths = [len(data) // _BYTES for *_, data in rows]
+        lengths = [len(data) // POSTING_BYTES for *_, data in rows]
         try:
             numbers = [
                 np.frombuffer(data, np.uint32, count) for (*_, data), count in zip(rows, lengths, strict=True)

@@ -98,6 +98,10 @@ class Reader:
         except sqlite3.DatabaseError as error:
             raise self.damaged(error) from error
 
+    def rows_of(self, sql: str, keys: Collection[object]) -> list[Any]:
+        """The rows of any of the keys, in no order; ``sql`` ends with the column that has them."""
+        return self.rows(f"{sql} IN ({','.join('?' * len(keys))})", *keys)
+
     def damaged(self, why: object) -> BaseUnreadable:
         """The error to raise where the file turns out not to hold what it should."""
         return BaseUnreadable(f"{self.path}: damaged ({why}). {_REBUILD}")
@@ -190,8 +194,7 @@ class Reader:
 
         What is no English word, a name or a misspelling, is left out.
         """
-        marks = ",".join("?" * len(words))
-        rows = self.rows(f"SELECT word, stems FROM near WHERE word IN ({marks})", *words)
+        rows = self.rows_of("SELECT word, stems FROM near WHERE word", words)
         told = ((word, stems.split()) for word, stems in rows)
         return {
             word: [(parts[i], int(parts[i + 1]) / 100) for i in range(0, len(parts), 2)]
@@ -202,11 +205,10 @@ class Reader:
         """Number → (ref, kind, title, anchor, page) of what is retrieved; page: the one that explains a class or
         operator, as a link's target.
         """
-        marks = ",".join("?" * len(numbers))
-        sql = f"""SELECT number, ref, kind, title, anchor, CASE WHEN kind IN ('class', 'operator')
+        sql = """SELECT number, ref, kind, title, anchor, CASE WHEN kind IN ('class', 'operator')
                 THEN ifnull((SELECT target FROM links WHERE source = ref AND links.kind = 'manual'), '') ELSE '' END
-            FROM docs WHERE level = 0 AND number IN ({marks})"""
-        return {row[0]: row[1:] for row in self.rows(sql, *numbers)}
+            FROM docs WHERE level = 0 AND number"""
+        return {row[0]: row[1:] for row in self.rows_of(sql, numbers)}
 
     def links_from(self, source: str, kind: str) -> list[str]:
         """Targets of a symbol's or page's links of one kind."""

@@ -61,9 +61,8 @@ class Scorer:
         if not lists:
             nothing = np.zeros(0, np.float32)
             return Scored(np.zeros(0, np.intp), nothing, nothing)
-        lists.sort(
-            key=itemgetter(0, 1)
-        )  # of several weights for one document, the last that is written stays
+        # By weight: of several for one document, the last that is written stays.
+        lists.sort(key=itemgetter(0, 1))
         numbers, columns = self._distinct(np.concatenate([found.numbers for *_, found in lists]))
         scores, coverage = np.zeros(len(numbers), np.float32), np.zeros(len(numbers), np.float32)
         end = 0

@@ -41,9 +41,7 @@ COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 CHAPTER_WEIGHT = 0.2
-ASKED_WEIGHT = (
-    0.6  # what a query gains that is, in other order or number, just what something is asked for by
-)
+ASKED_WEIGHT = 0.6  # what a document gains that is asked for just so, in whatever order and number of words
 # Who says one of these asks what to call, not where to click.
 CODE_WORDS = frozenset(
     """addon api bpy callback code function headless loop method module numpy programmatically python script scripts

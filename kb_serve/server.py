@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import json
 import logging
 from contextlib import asynccontextmanager
@@ -58,8 +57,6 @@ def make_server(service: Service) -> Server[None]:
         async def prepare() -> None:
             try:
                 await anyio.to_thread.run_sync(service.warm)
-                gc.collect()
-                gc.freeze()  # what is loaded by now stays: collections need not look at it between answers
             finally:
                 ready.set()
             await anyio.to_thread.run_sync(service.upkeep.run, abandon_on_cancel=True)

@@ -90,7 +90,7 @@ def _unheard():
 
 @contextlib.contextmanager
 def _no_preview():
-    """Draws no small picture of the scene: nobody browses checkpoints, and and drawing it costs as much as writing."""
+    """Draws no small picture of the scene: nobody browses checkpoints, and drawing it costs as much as writing."""
     settings = bpy.context.preferences.filepaths
     before = settings.file_preview_type
     settings.file_preview_type = "NONE"
