@@ -44,7 +44,7 @@ serve: $(STAMP) ## Serve blender_docs over MCP on stdio [SERVE_ARGS=]
 	@.venv/bin/simworlds serve $(SERVE_ARGS)
 
 bench: $(STAMP) ## Measure retrieval, latency and builds, beside the peers [BENCH_ARGS=]
-	@$(PY) -m bench $(BENCH_ARGS)
+	@$(PY) -m measurements $(BENCH_ARGS)
 
 bench-validate: $(STAMP) ## Prove what the benchmark must prove about itself, over all scenes [VALIDATE_ARGS=]
 	@.venv/bin/simworlds bench validate --jobs 2 $(VALIDATE_ARGS)
@@ -55,15 +55,15 @@ lint: $(STAMP) ## Check style, format and types
 	@.venv/bin/pyright
 
 docs: $(STAMP) ## Write the generated references
-	@$(PY) -m agents.reference
-	@$(PY) -m bench.reference
+	@$(PY) -m docs.generate.references
+	@$(PY) -m docs.generate.benchmark_pages
 
 rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 	@$(PY) tests/agents/protocol/rule_pictures.py $(RULES)
 
 docs-check: $(STAMP) ## Check that the generated references are up to date
-	@$(PY) -m agents.reference --check
-	@$(PY) -m bench.reference --check
+	@$(PY) -m docs.generate.references --check
+	@$(PY) -m docs.generate.benchmark_pages --check
 
 lock: $(UV) ## Pin the newest dependencies in requirements.lock
 	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 --upgrade \
@@ -81,7 +81,7 @@ $(STAMP): requirements.lock pyproject.toml | $(UV)
 	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
 	@$(UV_ENV) "$(UV)" pip sync --quiet --compile-bytecode --python $(PY) --require-hashes requirements.lock
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
-	@$(PY) -m compileall -q kb_build kb_serve agents bench
+	@$(PY) -m compileall -q simworlds kb_build kb_serve agents bench measurements
 	@touch $(STAMP)
 
 # The lock pins uv too, since the project depends on it: that very version is fetched, its hashes checked.

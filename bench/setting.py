@@ -40,7 +40,7 @@ def simworlds() -> list[str]:
     installed = Path(sys.executable).with_name("simworlds")
     if installed.is_file():
         return [str(installed)]
-    return [sys.executable, "-c", "from agents.cli import main; main(prog_name='simworlds')"]
+    return [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
 
 
 def environment(home: Path) -> dict[str, str]:

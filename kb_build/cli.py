@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 import click
 
 from kb_build.errors import KBBuildError
-from kb_build.settings import base_path, built_bases, corpora_folder, home_folder, summaries_path
+from simworlds.settings import base_path, built_bases, corpora_folder, home_folder, summaries_path
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
     from kb_build.pipeline import BuildReport
-    from kb_build.progress import Progress
+    from simworlds.progress import Progress
 
 _ROLES = ("manual", "guides")
 _INTERRUPTED = 130
@@ -87,7 +87,7 @@ def build(version: str | None, **given: Any) -> None:
     done when nothing has changed.
     """
     from kb_build import pipeline  # noqa: PLC0415 - other commands do without
-    from kb_build.progress import shown_progress  # noqa: PLC0415
+    from simworlds.progress import shown_progress  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
     options = pipeline.BuildOptions(
@@ -116,7 +116,7 @@ def _terminated(_number: int, _frame: object) -> NoReturn:
 
 
 def _tell(report: BuildReport) -> None:
-    from kb_build.report import build_lines, warning_lines  # noqa: PLC0415 - only here
+    from kb_build.base_report import build_lines, warning_lines  # noqa: PLC0415 - only here
 
     click.echo("\n".join(build_lines(report)))
     sys.stdout.flush()
@@ -133,7 +133,7 @@ def info(version: str | None, as_json: bool) -> None:
 
     VERSION is 5.1, or a base's path; without it, all bases are listed.
     """
-    from kb_build.report import base_facts, base_lines, bases_lines  # noqa: PLC0415 - only here
+    from kb_build.base_report import base_facts, base_lines, bases_lines  # noqa: PLC0415 - only here
 
     home = home_folder()
     if version is None:
@@ -190,8 +190,8 @@ def diff_command(old: str, new: str, **given: Any) -> None:
     Tells what NEW has added, removed and changed since OLD. Each is a version, or the path of a Blender
     executable. A bpy package that is not at hand is installed, 350 MB.
     """
-    from kb_build.diff import diff, format_diff  # noqa: PLC0415 - only here
-    from kb_build.progress import shown_progress  # noqa: PLC0415
+    from kb_build.versions.diff import diff, format_diff  # noqa: PLC0415 - only here
+    from simworlds.progress import shown_progress  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
     with shown_progress() as progress:
@@ -204,9 +204,9 @@ def diff_command(old: str, new: str, **given: Any) -> None:
 
 def _ask(name: str, progress: Progress) -> Extract:
     """The API of a Blender that is named by its version or by its executable."""
-    from kb_build.extract import read_extract  # noqa: PLC0415 - only here
-    from kb_build.extraction import extract_api  # noqa: PLC0415
-    from kb_build.runtime import find_runtime  # noqa: PLC0415
+    from kb_build.blender.extract_reader import read_extract  # noqa: PLC0415 - only here
+    from kb_build.blender.extractor import extract_api  # noqa: PLC0415
+    from simworlds.sandbox.runtime import find_runtime  # noqa: PLC0415
 
     home, executable = home_folder(), Path(name)
     if executable.is_file():
@@ -227,11 +227,11 @@ def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path
 
     Asks VERSIONS (default: all that a bpy package is known of); each is installed on first use, 350 MB.
     """
-    from kb_build.history import HISTORY_FILE  # noqa: PLC0415 - only here
-    from kb_build.history_build import build_history  # noqa: PLC0415
-    from kb_build.progress import shown_progress  # noqa: PLC0415
-    from kb_build.report import history_lines  # noqa: PLC0415
-    from kb_build.versions import releases  # noqa: PLC0415
+    from kb_build.base_report import history_lines  # noqa: PLC0415
+    from kb_build.versions.history import HISTORY_FILE  # noqa: PLC0415 - only here
+    from kb_build.versions.history_builder import build_history  # noqa: PLC0415
+    from simworlds.progress import shown_progress  # noqa: PLC0415
+    from simworlds.releases import releases  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
     asked = versions or tuple(release.minor for release in releases())

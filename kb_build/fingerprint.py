@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from kb_build.digests import Digests
-    from kb_build.runtime import Runtime
-    from kb_build.sources import Missing, Source
+    from kb_build.pages.sources import Missing, Source
+    from simworlds.sandbox.runtime import Runtime
 
 _PACKAGE = Path(__file__).resolve().parent
 _DATA = _PACKAGE.parent / "corpora"
@@ -27,10 +27,15 @@ _WRITERS = ("sqlite-utils", "snowballstemmer", "pystemmer")
 # What is asked of a base or shown of a build leaves the base as it is.
 _ONLOOKERS = frozenset(
     {
-        "bars.py", "base_file.py", "cli.py", "diff.py", "history_build.py", "progress.py", "reference.py",
-        "report.py", "verify.py",
+        "base_file.py",
+        "base_report.py",
+        "cli.py",
+        "diff.py",
+        "history_builder.py",
+        "reference_list.py",
+        "verify.py",
     }
-)  # fmt: skip
+)
 
 
 def _digest(parts: Iterable[str | bytes]) -> str:
@@ -69,13 +74,13 @@ def own_version() -> str:
 @cache
 def extractor_digest() -> str:
     """What is run inside Blender."""
-    return _code((_PACKAGE / "inside").glob("*.py"))
+    return _code((_PACKAGE / "blender" / "inside").glob("*.py"))
 
 
 @cache
 def reader_digest() -> str:
     """What turns sources into pages."""
-    files = [*(_PACKAGE / "pages").rglob("*.py"), _PACKAGE / "records.py"]
+    files = [*(_PACKAGE / "pages" / "readers").rglob("*.py"), _PACKAGE / "records.py"]
     return _digest([_code(files), _versions(_READERS)])
 
 

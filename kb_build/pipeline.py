@@ -16,33 +16,33 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from kb_build.base_file import read_meta
+from kb_build.blender.extractor import extract_api
 from kb_build.digests import Digests
 from kb_build.errors import ExtractError, SourceError, StoreError
-from kb_build.extraction import extract_api
 from kb_build.fingerprint import base_fingerprint, own_version, runtime_digest
-from kb_build.forked import beside
-from kb_build.progress import silent
-from kb_build.runtime import find_runtime
-from kb_build.settings import base_path, cache_folder, summaries_path
-from kb_build.sources import Origin, find_sources
-from kb_build.staging import remove_unfinished_files
-from kb_build.versions import ROLES, minor_of
+from kb_build.pages.sources import Origin, find_sources
+from simworlds.files import remove_unfinished_files
+from simworlds.forked import beside
+from simworlds.progress import silent
+from simworlds.releases import ROLES, minor_of
+from simworlds.sandbox.runtime import find_runtime
+from simworlds.settings import base_path, cache_folder, summaries_path
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping, Sequence
 
-    from kb_build.extract import Extract
-    from kb_build.former import Former
-    from kb_build.page_reader import PageReader
-    from kb_build.progress import Progress
+    from kb_build.blender.extract_reader import Extract
+    from kb_build.pages.reading import PageReader
+    from kb_build.pages.sources import Missing, Source
     from kb_build.records import Page
-    from kb_build.runtime import Runtime
-    from kb_build.sources import Missing, Source
     from kb_build.store import Contents
     from kb_build.summaries import SummaryReport, SummaryRun
+    from kb_build.versions.removed_symbols import Former
+    from simworlds.progress import Progress
+    from simworlds.sandbox.runtime import Runtime
 
 SummaryMethod = Literal["extractive", "claude", "none"]
-_LOADED_AHEAD = ("kb_build.extract", "kb_build.summaries")
+_LOADED_AHEAD = ("kb_build.blender.extract_reader", "kb_build.summaries")
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +206,7 @@ def _present(path: Path, fingerprint: str) -> dict[str, str] | None:
 
 
 def _page_reader(work: _Build) -> PageReader:
-    from kb_build.page_reader import PageReader  # noqa: PLC0415 - not needed when nothing changed
+    from kb_build.pages.reading import PageReader  # noqa: PLC0415 - not needed when nothing changed
 
     return PageReader(work.sources, cache_folder(work.home), jobs=work.options.jobs, progress=work.progress)
 
@@ -215,7 +215,7 @@ def _load_ahead() -> None:
     """Loads what comes after Blender's answer while Blender works on it, and fills the cache of stems."""
     for name in _LOADED_AHEAD:
         import_module(name)
-    from kb_build.near_words import load_near_words, near_stems  # noqa: PLC0415 - off the main thread
+    from kb_build.index.synonyms import load_near_words, near_stems  # noqa: PLC0415 - off the main thread
 
     deque(near_stems(load_near_words(), frozenset()), maxlen=0)
 
@@ -223,7 +223,7 @@ def _load_ahead() -> None:
 def _extract(work: _Build) -> Extract:
     runtime = work.runtime
     file = extract_api(runtime, home=work.home, again=work.options.force, progress=work.progress)
-    from kb_build.extract import read_extract  # noqa: PLC0415 - loaded ahead
+    from kb_build.blender.extract_reader import read_extract  # noqa: PLC0415 - loaded ahead
 
     work.progress("Reading Blender's answer", 0, None)
     try:
@@ -280,7 +280,7 @@ def _summaries(work: _Build, pages: Sequence[Page]) -> SummaryRun | None:
 
 
 def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun | None) -> dict[str, str]:
-    from kb_build.facts import counts, source_facts, summary_facts  # noqa: PLC0415 - not when nothing changed
+    from kb_build.base_facts import counts, source_facts, summary_facts  # noqa: PLC0415 - not when nothing changed
 
     structured = {
         "sources": [source_facts(source, pages) for source in work.sources],
@@ -318,8 +318,8 @@ def _write(
 
 
 def _former(extract: Extract) -> Former:
-    from kb_build.former import former_symbols  # noqa: PLC0415 - not when nothing changed
-    from kb_build.history import History, history_paths  # noqa: PLC0415
+    from kb_build.versions.history import History, history_paths  # noqa: PLC0415
+    from kb_build.versions.removed_symbols import former_symbols  # noqa: PLC0415 - not when nothing changed
 
     history = History.load().including(extract.version, history_paths(extract))
     return former_symbols(extract.symbols, history, minor_of(extract.version))

@@ -85,7 +85,7 @@ CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL) WITHOUT ROWID;
 -- Page → symbols whose manual link leads there: classes and operators only.
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;
 
--- What is retrieved (kb_build.index): units (level 0) and topics (level 1), numbered from 0 within their level.
+-- What is retrieved (index.documents): units (level 0) and topics (level 1), numbered from 0 within their level.
 -- ``ref`` is the id a document counts for.
 CREATE TABLE docs (
     level INTEGER NOT NULL, number INTEGER NOT NULL, ref TEXT NOT NULL, kind TEXT NOT NULL,
@@ -103,7 +103,7 @@ CREATE TABLE levels (
 CREATE TABLE phrases (targets BLOB NOT NULL);
 
 -- The inverted index. Units, topics and phrases are numbered through: for each stem how many units have it, the numbers
--- of all that do as uint32, and for each its weight as float16 (see kb_build.index).
+-- of all that do as uint32, and for each its weight as float16 (see kb_build.index.documents).
 CREATE TABLE postings (stem TEXT NOT NULL UNIQUE, units INTEGER NOT NULL, data BLOB NOT NULL);
 
 -- The corpus' words: stem and most used spelling.

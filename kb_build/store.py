@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sqlite_utils
 
-from kb_build.analysis import key, short_path, telling_words, topic_key
 from kb_build.errors import StoreError
-from kb_build.former import Former
-from kb_build.index import (
+from kb_build.index.analysis import key, short_path, telling_words, topic_key
+from kb_build.index.documents import (
     TOPIC_B,
     UNIT_B,
     Cut,
@@ -29,8 +28,8 @@ from kb_build.index import (
     vocabulary,
     weight_of,
 )
-from kb_build.lines import member_line
-from kb_build.near_words import load_near_words, near_stems
+from kb_build.index.query_expansions import load_uses
+from kb_build.index.synonyms import load_near_words, near_stems
 from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
@@ -46,8 +45,9 @@ from kb_build.schema import (
     UNITS,
     pack,
 )
-from kb_build.staging import staged_file
-from kb_build.uses import load_uses
+from kb_build.symbol_lines import member_line
+from kb_build.versions.removed_symbols import Former
+from simworlds.files import staged_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

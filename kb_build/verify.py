@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from kb_build.analysis import key
 from kb_build.base_file import open_base, read_meta
+from kb_build.index.analysis import key
 from kb_build.records import page_from_json, symbol_from_json
-from kb_build.reference import WANTED, Resolution, read_reference, resolve
+from kb_build.reference_list import WANTED, Resolution, read_reference, resolve
 from kb_build.schema import FORM_PATH, POSTING_BYTES, UNITS, unpack
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from functools import cached_property
 from threading import RLock
 from typing import TYPE_CHECKING
 
-from kb_build.settings import built_bases
 from kb_serve.errors import BaseUnreadable
 from kb_serve.in_use import blender_in_use, minor
 from kb_serve.locate import find_base
+from simworlds.settings import built_bases
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kb_build.settings import home_folder
 from kb_serve.errors import KBServeError
+from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
-    from kb_serve.answer import Answer
+    from kb_serve.answer.answer import Answer
     from kb_serve.bases import Bases
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.service import Service
@@ -143,12 +143,12 @@ def serve(  # noqa: PLR0913 - one for each option
         from kb_serve.server import make_app, make_server  # noqa: PLC0415 - loads the MCP package
 
         if over_http:
-            from kb_serve.http import Address, run_http  # noqa: PLC0415 - not for stdio
+            from simworlds.mcp_transport.http import Address, run_http  # noqa: PLC0415 - not for stdio
 
             _loaded()
             run_http(partial(make_app, service), Address(host, port, token or "", allow_host), "blender_docs")
         else:
-            from kb_serve.stdio import run_stdio  # noqa: PLC0415 - not for HTTP
+            from simworlds.mcp_transport.stdio import run_stdio  # noqa: PLC0415 - not for HTTP
 
             _loaded()
             run_stdio(make_server(service), service.upkeep.stop)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from threading import Lock
 from typing import TYPE_CHECKING, Self
 
-from kb_serve.answer import LIMIT, MAX_TOKENS, Answer, Answerer
+from kb_serve.answer.answer import LIMIT, MAX_TOKENS, Answer, Answerer
 from kb_serve.locate import find_base
 from kb_serve.reader import Reader
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.settings import base_path, built_bases, home_folder
 from kb_serve.errors import BaseMissing
+from simworlds.settings import base_path, built_bases, home_folder
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -140,7 +140,7 @@ def build_base(given: argparse.Namespace, summaries: str) -> None:
     Nothing is spent on summaries: claude's are used where they were paid for already.
     """
     from kb_build import pipeline  # noqa: PLC0415 - the one place
-    from kb_build.settings import corpora_folder  # noqa: PLC0415
+    from simworlds.settings import corpora_folder  # noqa: PLC0415
 
     options = pipeline.BuildOptions(
         blender_exe=given.blender_exe,

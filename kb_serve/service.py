@@ -10,7 +10,7 @@ from kb_serve.errors import BadQuery, BaseMissing, KBServeError
 
 if TYPE_CHECKING:
     from kb_build.records import Page, Symbol
-    from kb_serve.answer import Answer
+    from kb_serve.answer.answer import Answer
     from kb_serve.bases import Bases
     from kb_serve.rebuild import Upkeep
 
@@ -48,8 +48,8 @@ class Service:
         version = base.meta.get("blender", "")
         if not note:
             return base.query(query, limit=limit, max_tokens=max_tokens, part=part), version
-        from kb_serve.answer import LEAST_TOKENS  # noqa: PLC0415 - loaded with the base
-        from kb_serve.budget import tokens  # noqa: PLC0415
+        from kb_serve.answer.answer import LEAST_TOKENS  # noqa: PLC0415 - loaded with the base
+        from kb_serve.answer.budget import tokens  # noqa: PLC0415
 
         lead = f"> {note}\n\n"
         room = max_tokens - tokens(lead) - 1

@@ -12,7 +12,7 @@ import pytest
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import Reader
 
@@ -35,7 +35,7 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
     Its home folder is ``base.parent.parent``. Never write to it.
     """
     from kb_build.pipeline import BuildOptions, build
-    from kb_build.runtime import installed_bpy
+    from simworlds.sandbox.runtime import installed_bpy
 
     if installed_bpy() is None:
         pytest.skip("there is no Blender in this environment")
@@ -47,7 +47,7 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def extract(base: Path) -> Extract:
     """What this environment's Blender said of its API when ``base`` was built."""
-    from kb_build.extract import read_extract
+    from kb_build.blender.extract_reader import read_extract
 
     return read_extract(next((base.parent.parent / "extracts").glob("*.jsonl")))
 

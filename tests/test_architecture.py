@@ -50,7 +50,7 @@ class Rule:
 RULES = (
     Rule("kb_build.records", PACKAGES),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
-    Rule("kb_build.analysis", PACKAGES),
+    Rule("kb_build.index.analysis", PACKAGES),
     Rule("kb_build", ("kb_serve", "agents", "bench")),
     Rule(
         "kb_serve",
@@ -59,9 +59,9 @@ RULES = (
         (
             "kb_build.records",
             "kb_build.schema",
-            "kb_build.analysis",
-            "kb_build.lines",
-            "kb_build.settings",
+            "kb_build.index.analysis",
+            "kb_build.symbol_lines",
+            "simworlds.settings",
             "kb_build.pipeline",
         ),
     ),
@@ -70,20 +70,20 @@ RULES = (
         ("kb_build", "kb_serve", "bench"),
         # The command mounts theirs, the references describe them; which Blender to start is known in one place.
         (
-            "agents.cli:kb_build",
-            "agents.cli:kb_serve",
-            "agents.reference:kb_serve",
-            "agents.blender.launch:kb_build",
+            "simworlds.cli:kb_build",
+            "simworlds.cli:kb_serve",
+            "docs.generate.references:kb_serve",
+            "simworlds.sandbox.launch:kb_build",
             # How any MCP server is carried over stdio and HTTP, who is let in, and how it tells its tools' arguments:
             # nothing of the base.
-            "agents.schemas:kb_serve.schemas",
-            "agents.blender.server:kb_serve.schemas",
-            "agents.blender.cli:kb_serve.http",
-            "agents.blender.cli:kb_serve.stdio",
+            "simworlds.schema_notation:simworlds.mcp_transport.schemas",
+            "agents.blender.server:simworlds.mcp_transport.schemas",
+            "agents.commands.mcp:simworlds.mcp_transport.http",
+            "agents.commands.mcp:simworlds.mcp_transport.stdio",
         ),
     ),
-    Rule("agents.plan", ("agents.models", "agents.blender", "agents.roles", "agents.pipeline")),
-    Rule("agents.protocol", ("agents.models", "agents.blender", "agents.roles", "agents.pipeline")),
+    Rule("agents.plan", ("simworlds.llm", "agents.blender", "agents.roles", "agents.loop")),
+    Rule("agents.protocol", ("simworlds.llm", "agents.blender", "agents.roles", "agents.loop")),
     Rule("bench", ("agents.protocol",)),
 )
 
@@ -204,11 +204,19 @@ def test_the_server_reaches_the_build_through_one_function_at_most() -> None:
         ("kb_build/records.py", "import kb_build.errors", "kb_build.records imports kb_build.errors"),
         ("kb_build/store.py", "from kb_serve.reader import read", "kb_build.store imports kb_serve.reader"),
         ("kb_build/store.py", "def f():\n    import bpy", "kb_build.store imports bpy"),
-        ("kb_serve/search.py", "from kb_build.store import write", "kb_serve.search imports kb_build.store"),
-        ("kb_serve/search.py", "from kb_build import store", "kb_serve.search imports kb_build.store"),
+        (
+            "kb_serve/rank/search.py",
+            "from kb_build.store import write",
+            "kb_serve.rank.search imports kb_build.store",
+        ),
+        (
+            "kb_serve/rank/search.py",
+            "from kb_build import store",
+            "kb_serve.rank.search imports kb_build.store",
+        ),
         ("kb_serve/deep/a.py", "from ..x import y\nimport agents", "kb_serve.deep.a imports agents"),
         ("agents/loop.py", "from kb_serve import knowledge_base", "agents.loop imports kb_serve"),
-        ("agents/plan/scene.py", "from ..models import claude", "agents.plan.scene imports agents.models"),
+        ("agents/plan/scene.py", "from ..models import claude", "agents.plan.scene imports simworlds.llm"),
         (
             "agents/protocol/a.py",
             "import agents.blender.wire",
@@ -219,8 +227,12 @@ def test_the_server_reaches_the_build_through_one_function_at_most() -> None:
             "from .planner import plan",
             "agents.roles.coder imports agents.roles.planner",
         ),
-        ("bench/audit.py", "import agents.protocol.facts", "bench.audit imports agents.protocol.facts"),
-        ("agents/cli.py", "import bench", "agents.cli imports bench"),
+        (
+            "bench/audit/audit.py",
+            "import agents.protocol.facts",
+            "bench.audit.audit imports agents.protocol.facts",
+        ),
+        ("simworlds/cli.py", "import bench", "simworlds.cli imports bench"),
         ("kb_build/inside/a.py", "import numpy", "kb_build.inside.a imports numpy"),
         ("agents/blender/inside/a.py", "import kb_build", "agents.blender.inside.a imports kb_build"),
     ],
@@ -234,10 +246,10 @@ def test_a_breach_is_seen(tmp_path: Path, path: str, code: str, breach: str) -> 
 @pytest.mark.parametrize(
     ("path", "code"),
     [
-        ("kb_serve/search.py", "from kb_build.records import Symbol\nfrom kb_build import schema"),
-        ("agents/cli.py", "from kb_build.cli import kb\nfrom kb_serve.cli import docs"),
+        ("kb_serve/rank/search.py", "from kb_build.records import Symbol\nfrom kb_build import schema"),
+        ("simworlds/cli.py", "from kb_build.cli import kb\nfrom kb_serve.cli import docs"),
         ("kb_build/inside/a.py", "import bpy, json, wire\nfrom mathutils import Vector"),
-        ("bench/measurements/report.py", "import agents.plan"),
+        ("measurements/report.py", "import agents.plan"),
     ],
 )
 def test_what_is_allowed_is_let_through(tmp_path: Path, path: str, code: str) -> None:

@@ -119,11 +119,15 @@ def test_the_wheel_holds_the_packages_the_table_of_sources_and_the_prompts(tmp_p
         names = set(archive.namelist())
         entry_points = next(name for name in names if name.endswith("entry_points.txt"))
         commands = archive.read(entry_points).decode()
-    assert {"corpora/sources.toml", "kb_build/sources.py", "kb_build/inside/extract.py"} <= names
+    assert {
+        "corpora/sources.toml",
+        "kb_build/pages/sources.py",
+        "kb_build/blender/inside/extract_api.py",
+    } <= names
     texts = {path.relative_to(REPO).as_posix() for path in (REPO / "agents").rglob("prompts/**/*.md")}
     assert "agents/roles/prompts/stages/modeling.md" in texts
     assert texts <= names
     scenes = {path.relative_to(REPO).as_posix() for path in (REPO / "bench" / "scenes").glob("*.yaml")}
-    assert scenes | {"bench/cli.py", "bench/inside/entry.py"} <= names
+    assert scenes | {"bench/commands/bench.py", "bench/audit/inside/serve.py"} <= names
     assert not [name for name in names if name.startswith("tests/")]
-    assert "simworlds = agents.cli:main" in commands
+    assert "simworlds = simworlds.cli:main" in commands

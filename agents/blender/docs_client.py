@@ -27,7 +27,7 @@ NAME = "blender_docs"
 HINT_SECONDS = 2.0
 _ANSWER_SECONDS = 60.0
 _SOURCE = Path(__file__).resolve().parent.parent.parent
-_COMMAND = "from agents.cli import main; main(prog_name='simworlds')"
+_COMMAND = "from simworlds.cli import main; main(prog_name='simworlds')"
 
 _LOG = logging.getLogger(__name__)
 _T = TypeVar("_T")

@@ -1,95 +1,20 @@
-"""What a Blender is started with: its command, confined, its environment, its folders."""
+"""The Blender of a run: the worker that runs in it, and the folders that it gets."""
 
 from __future__ import annotations
 
-import sys
-from contextlib import suppress
-from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.blender.bounds import Bounds, remove_named, sweep
-from agents.blender.errors import CannotStart
-from agents.blender.run_folder import PRIVATE
-from agents.blender.sandbox import Sandbox, best_sandbox
-from kb_build.errors import KBBuildError
-from kb_build.runtime import Runtime, clean_environment, find_runtime
-from kb_build.settings import home_folder
+from simworlds.sandbox.confinement import Sandbox, best_sandbox
+from simworlds.sandbox.launch import PRIVATE, Launch, find_blender
+from simworlds.sandbox.program import SHARED, Program
+from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from simworlds.sandbox.runtime import Runtime
 
-INSIDE = Path(__file__).parent / "inside"
-WORKER = INSIDE / "worker.py"
-HALF_WRITTEN = ".blend@"  # how Blender calls a file until it is whole
-
-
-@dataclass(frozen=True)
-class Launch:
-    """``runtime`` is started in ``workspace``, the only place besides ``private`` that it may write to.
-
-    ``private`` is for temporary files; it is emptied at each start, and gone after ``clean``. ``read`` are further
-    folders that it may read (assets). ``script`` runs in it, and gets the number of a descriptor.
-    """
-
-    runtime: Runtime
-    workspace: Path
-    private: Path
-    sandbox: Sandbox
-    read: tuple[Path, ...] = field(default=())
-    script: Path = WORKER
-
-    def command(self, channel: int) -> list[str]:
-        """The words to start; ``channel`` is the descriptor of the script's socket."""
-        words = self.runtime.command(self.script, [str(channel)])
-        readable = [self.script.parent, *_folders_of(self.runtime), *self.read]
-        return self.sandbox.command(words, read=readable, write=[self.workspace, self.private])
-
-    @cached_property
-    def environment(self) -> dict[str, str]:
-        """No secret of the user's, no setting of the user's Blender; temporary files in ``private``."""
-        private = str(self.private)
-        names = ("HOME", "TMPDIR", "TEMP", "TMP", "XDG_CACHE_HOME", "XDG_RUNTIME_DIR")
-        own = dict.fromkeys(names, private)
-        return clean_environment(self.private) | own | {"PYTHONDONTWRITEBYTECODE": "1"}
-
-    @property
-    def folders(self) -> tuple[Path, Path]:
-        """The folders that it may write to."""
-        return self.workspace, self.private
-
-    @cached_property
-    def bounds(self) -> Bounds:
-        """The watch over what is written there; what lies there when it is first asked for is no fault."""
-        return Bounds(self.folders, self.sandbox.limits)
-
-    def prepare(self) -> None:
-        """Makes the private folder, empty: nothing that an earlier Blender left there is read by the next one.
-
-        Halves of files that an earlier one was killed over are removed from the workspace. Raises CannotStart.
-        """
-        try:
-            self.private.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise CannotStart(f"{self.private} cannot be made: {error.strerror or error}") from error
-        sweep(self.private)
-        remove_named(self.workspace, HALF_WRITTEN)
-
-    def clean(self) -> None:
-        """Removes the private folder, and halves of files."""
-        sweep(self.private)
-        with suppress(OSError):
-            self.private.rmdir()
-        remove_named(self.workspace, HALF_WRITTEN)
-
-
-def find_blender(version: str | None = None, blender_exe: Path | None = None) -> Runtime:
-    """The Blender to work in; one that is not there yet is made, which takes minutes. Raises CannotStart."""
-    try:
-        return find_runtime(version, home=home_folder(), blender_exe=blender_exe)
-    except KBBuildError as error:
-        raise CannotStart(f"No Blender to work in: {error}") from error
+# In Blender the package has a name of its own: executed code may bring modules named ``agents`` or ``blender``.
+WORKER = Program("simworlds_worker.worker", {**SHARED, "simworlds_worker": Path(__file__).parent / "inside"})
 
 
 def runs_folder() -> Path:
@@ -106,22 +31,13 @@ def make_launch(
     read: tuple[Path, ...] = (),
 ) -> Launch:
     """Finds the Blender (an executable, this environment's bpy, or one made for ``version``). Raises CannotStart."""
-    runtime = find_blender(version, blender_exe)
+    return launch_in(workspace, find_blender(version, blender_exe), sandbox=sandbox, read=read)
+
+
+def launch_in(
+    workspace: Path, runtime: Runtime, *, sandbox: Sandbox | None = None, read: tuple[Path, ...] = ()
+) -> Launch:
+    """A worker of a Blender that was found; the workspace is made."""
     workspace.mkdir(parents=True, exist_ok=True)
     workspace = workspace.resolve()
-    return Launch(runtime, workspace, workspace.with_name(PRIVATE), sandbox or best_sandbox(), read)
-
-
-def _folders_of(runtime: Runtime) -> Iterator[Path]:
-    """Where the interpreter and its libraries lie."""
-    real = runtime.executable.resolve()
-    if runtime.kind == "executable":
-        # A release lies in a folder of its own; Debian's in folders of the system, which can be read anyway.
-        if not real.is_relative_to("/usr"):
-            yield real.parent
-        return
-    # Of a virtual environment, and of the Python that it was made from.
-    yield runtime.executable.parent.parent
-    yield real.parent.parent
-    if runtime.kind == "environment":
-        yield Path(sys.base_prefix)
+    return Launch(runtime, workspace, workspace.with_name(PRIVATE), sandbox or best_sandbox(), WORKER, read)

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import mcp_types as types
 
-from agents.plan.base import STAGES
+from agents.plan.part import STAGES
 from agents.plan.scene import ScenePlan
-from agents.protocol.asked import plan_from
-from agents.protocol.folding import folded, told_ids
+from agents.protocol.report.folding import folded, told_ids
 from agents.protocol.rules.catalogue import RULES
-from agents.protocol.stages import begins, rules_of
-from agents.schemas import lean_schema_of
+from agents.protocol.rules_by_stage import begins, rules_of
+from agents.protocol.verify_request import plan_from
+from simworlds.schema_notation import lean_schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -13,15 +13,15 @@ from datetime import datetime
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, BinaryIO
 
-from agents.blender.bounds import sweep
-from agents.blender.errors import Refusal
+from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.launch import PRIVATE
+from simworlds.sandbox.usage import sweep
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
 _NAME = re.compile(r"[\w .()+-]{1,100}")
 SCENE_FILE = "scene.blend"  # in the workspace: the run's own file, as Blender has it open
-PRIVATE = "private"  # beside the workspace, while Blender runs: its temporary files
 _RESERVED = {
     "workspace": "Blender's own",
     "checkpoints": "the checkpoints' own",

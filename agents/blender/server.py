@@ -18,11 +18,11 @@ from mcp_types.version import HANDSHAKE_PROTOCOL_VERSIONS, MODERN_PROTOCOL_VERSI
 from starlette.datastructures import Headers
 
 from agents.blender import docs_client
-from agents.blender.catalogue import BY_NAME, TOOLS
 from agents.blender.docs_client import DocsGone
-from agents.blender.errors import BlenderError, Lost, ToolBroke
+from agents.blender.tool_catalogue import BY_NAME, TOOLS
 from agents.blender.tools.base import Call
-from kb_serve.schemas import schema_of
+from simworlds.mcp_transport.schemas import schema_of
+from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Awaitable, Callable, Iterable
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from mcp.server.transport_security import TransportSecuritySettings
     from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+    from agents.blender.blender_sessions import Studios
     from agents.blender.docs_client import DocsClient
-    from agents.blender.sessions import Studios
     from agents.blender.team import Team
     from agents.blender.tools.base import Result, Tool
 

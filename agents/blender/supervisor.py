@@ -7,9 +7,10 @@ import threading
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.bounds import remove_since
 from agents.blender.checkpoints import WRITTEN, Checkpoint, Checkpoints
-from agents.blender.errors import (
+from agents.blender.run_folder import SCENE_FILE, RunFolder, locked
+from simworlds.sandbox.blender_process import BlenderProcess
+from simworlds.sandbox.errors import (
     BlenderError,
     CannotStart,
     Died,
@@ -20,14 +21,13 @@ from agents.blender.errors import (
     Refusal,
     ToolBroke,
 )
-from agents.blender.process import BlenderProcess
-from agents.blender.run_folder import SCENE_FILE, RunFolder, locked
+from simworlds.sandbox.usage import remove_since
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from agents.blender.launch import Launch
-    from agents.blender.process import Progress, Reply
+    from simworlds.sandbox.blender_process import Progress, Reply
+    from simworlds.sandbox.launch import Launch
 
 OPEN_SECONDS = 120.0
 WRITE_SECONDS = 300.0
@@ -324,7 +324,7 @@ class Supervisor:
             for folder in self.launch.folders:
                 remove_since(folder, since)
             undone = " The files that it wrote were removed."
-        return type(error)(f"{error}.{undone} {self._restarted()}", error.printed)
+        return type(error)(f"{error}.{undone} {self._restarted()}", error.printed, error.ending)
 
     def _restarted(self) -> str:
         """Starts Blender again; tells in words where it stands."""

@@ -12,13 +12,13 @@ import mcp_types as types
 from mcp.shared.exceptions import MCPError
 
 from agents.blender import plan_check
-from agents.plan.base import STAGES
+from agents.plan.part import STAGES
 from agents.roles.prompts import protocol_text, role_text, shapes_text, stage_text, team_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from agents.plan.base import Stage
+    from agents.plan.part import Stage
 
 _LONGEST = 20_000  # characters of an argument
 _STAGES = ", ".join(STAGES)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.errors import Refusal, ToolBroke
 from agents.protocol.engine import verify
 from agents.protocol.facts import Facts
+from simworlds.sandbox.errors import Refusal, ToolBroke
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from agents.plan import graph
-from agents.plan.base import ALWAYS, owner_of
 from agents.plan.faults import Fault
+from agents.plan.part import ALWAYS, owner_of
 from agents.plan.relations import Distributed, EmbeddedIn, Inside, SupportedBy
 from agents.plan.scene import PlannedObject, ScenePlan
-from agents.plan.wording import faults_from, near
+from agents.plan.validation_messages import faults_from, near
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

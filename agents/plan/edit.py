@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from agents.plan.base import STAGES, Frame, Part, Stage
+from agents.plan.part import STAGES, Frame, Part, Stage
 from agents.plan.scene import DeformationKind, MotionMechanism, Render
 
 if TYPE_CHECKING:

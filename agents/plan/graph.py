@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from agents.plan.base import owner_of
 from agents.plan.faults import Fault
+from agents.plan.part import owner_of
 from agents.plan.relations import (
     Aperture,
     Direction,

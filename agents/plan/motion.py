@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from agents.plan.base import Frame, Metres, Name, Part, Vector
+from agents.plan.part import Frame, Metres, Name, Part, Vector
 
 MotionKind = Literal[
     "hold", "translate", "rotate", "fall", "slide", "roll", "topple", "swing", "bounce", "deform", "flow", "emit",

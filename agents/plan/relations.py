@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from agents.plan.base import Length, Node, Part, Vector
+from agents.plan.part import Length, Node, Part, Vector
 
 Reference = Annotated[
     Literal["world", "reference", "camera"],

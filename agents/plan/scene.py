@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from agents.plan.base import STAGES, Frame, Length, Name, Node, Part, Share, Stage, Vector
 from agents.plan.motion import MotionPlan
+from agents.plan.part import STAGES, Frame, Length, Name, Node, Part, Share, Stage, Vector
 from agents.plan.relations import Relation
 
 PhysicsRole = Literal[

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from agents.plan.base import Name, Part, Stage
+from agents.plan.part import Name, Part, Stage
 
 
 class Asset(Part):

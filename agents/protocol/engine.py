@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from agents.protocol.findings import Finding, Report
-from agents.protocol.measures import Unmeasured, measure
+from agents.protocol.measures.measure import Unmeasured, measure
 from agents.protocol.rule import Idle, Subject
 from agents.protocol.structure import Structure
 from agents.protocol.tolerances import TOLERANCES
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from agents.plan.scene import ScenePlan
     from agents.protocol.facts import Facts
     from agents.protocol.findings import Severity
-    from agents.protocol.measures import Measures, Request
+    from agents.protocol.measures.measure import Measures, Request
     from agents.protocol.rule import Rule
 
     Ask = Callable[[list[dict[str, Any]]], list[dict[str, Any]]]
 
 
 def verify(facts: Facts, ask: Ask, rules: Sequence[Rule], plan: ScenePlan | None = None) -> Report:
-    """Judges a scene by ``rules``. ``ask`` measures (see :func:`agents.protocol.measures.measure`).
+    """Judges a scene by ``rules``. ``ask`` measures (see :func:`agents.protocol.measures.measure.measure`).
 
     A rule that raises, and one that could not measure, is a finding of its own. Raises what ``ask`` raises.
     """

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, get_args
 from agents.plan import relations
 from agents.plan.scene import MECHANISMS
 from agents.protocol import vocabulary
-from agents.protocol.folding import told_value
+from agents.protocol.report.folding import told_value
 from agents.protocol.rules.catalogue import RULES
-from agents.protocol.stages import rules_of
+from agents.protocol.rules_by_stage import rules_of
 from agents.protocol.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from agents.plan.base import Stage
+    from agents.plan.part import Stage
     from agents.protocol.rule import Rule
 
 # What carries a tag: collections of either or of one role, objects of Blender's, the scene.

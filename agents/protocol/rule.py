@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from agents.plan.scene import ScenePlan
     from agents.protocol.facts import Facts
     from agents.protocol.findings import Severity
-    from agents.protocol.measures import Measures, Request
+    from agents.protocol.measures.measure import Measures, Request
     from agents.protocol.structure import Structure
     from agents.protocol.tolerances import Tolerances
 

@@ -6,18 +6,18 @@ import json
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
-from agents.models import tokens
-from agents.models.base import Ask, Text, ToolResult, user
-from agents.models.context import Limits, fit
-from agents.models.errors import CutShort, Misfit, Refused
-from agents.models.structured import ask_for, complaint, read
+from simworlds.llm import tokens
+from simworlds.llm.context import Limits, fit
+from simworlds.llm.errors import CutShort, Misfit, Refused
+from simworlds.llm.messages import Ask, Text, ToolResult, user
+from simworlds.llm.structured import ask_for, complaint, read
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from agents.models.base import Block, Message, Model, Tool, ToolUse, Turn
-    from agents.models.structured import Reader
-    from agents.plan.base import Stage
+    from agents.plan.part import Stage
+    from simworlds.llm.messages import Block, Message, Model, Tool, ToolUse, Turn
+    from simworlds.llm.structured import Reader
 
 T = TypeVar("T")
 

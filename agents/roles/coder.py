@@ -10,7 +10,7 @@ from agents.roles.prompts import system_prompt
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.plan.base import Stage
+    from agents.plan.part import Stage
     from agents.plan.tactical import TacticalPlan
     from agents.roles.base import Desk
 

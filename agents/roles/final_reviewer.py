@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.models.structured import fits
 from agents.plan.tactical import FinalReview
 from agents.roles.base import Conversation
 from agents.roles.prompts import system_prompt
+from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.models.base import Block
     from agents.roles.base import Desk
+    from simworlds.llm.messages import Block
 
 NAME = "final_reviewer"
 _LOOK = """\

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from agents.models.structured import fits
 from agents.plan.check import read_plan
 from agents.plan.edit import EditPlan, unknown_targets
 from agents.plan.tactical import Decision, TacticalPlan
 from agents.roles.base import Conversation, as_json
 from agents.roles.prompts import system_prompt
+from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
     from collections.abc import Sequence, Set
 
-    from agents.models.base import Picture
-    from agents.plan.base import Stage
+    from agents.plan.part import Stage
     from agents.plan.scene import ScenePlan
     from agents.roles.base import Desk
+    from simworlds.llm.messages import Picture
 
 NAME = "planner"
 _STRATEGIC = "Write the scene plan for this request, as one JSON object:\n\n{prompt}"

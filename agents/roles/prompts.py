@@ -12,12 +12,12 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from agents.plan.base import STAGES, Stage
 from agents.plan.edit import EditPlan
+from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
 from agents.protocol.guide import guide, told_rules
-from agents.schemas import shape_of
+from simworlds.schema_notation import shape_of
 
 if TYPE_CHECKING:
     from pydantic import BaseModel

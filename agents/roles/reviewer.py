@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from agents.models.structured import fits
 from agents.plan.tactical import Review
 from agents.roles.base import Conversation, as_json
 from agents.roles.prompts import system_prompt
+from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.models.base import Block
-    from agents.plan.base import Stage
+    from agents.plan.part import Stage
     from agents.plan.tactical import TacticalPlan
     from agents.roles.base import Desk
+    from simworlds.llm.messages import Block
 
 NAME = "reviewer"
 _LOOK = """\

@@ -6,24 +6,24 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from agents.pipeline.errors import RunError
-from agents.pipeline.journal import NAME as JOURNAL
-from agents.pipeline.retelling import read_history
-from agents.pipeline.stage import MAX_REPLANS_PER_STAGE, MAX_RETRIES_PER_STAGE
+from agents.loop.errors import RunError
+from agents.loop.journal import NAME as JOURNAL
+from agents.loop.reducer import read_history
+from agents.loop.stage import MAX_REPLANS_PER_STAGE, MAX_RETRIES_PER_STAGE
 from bench.blenderbench.errors import NotDone, NotReady
 from bench.blenderbench.making import Made, begun
 from bench.blenderbench.results import round_file
-from bench.blenderbench.scenes import Look, render
+from bench.blenderbench.task_scenes import Look, render
 from bench.sweep.command import called, last_words
-from bench.sweep.runs import KEYS
+from bench.sweep.systems.simworlds_runs import KEYS
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.pipeline.history import History
-    from bench.blenderbench.layout import Task
+    from agents.loop.run_state import History
     from bench.blenderbench.making import Tell
     from bench.blenderbench.results import Place
+    from bench.blenderbench.task_set import Task
 
 Reference = Literal["goal", "visprompt"]
 BUDGET = (

@@ -11,13 +11,13 @@ from bench.blenderbench.errors import BadPicture, NotDone
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import read, write
-from bench.blenderbench.scenes import Look, Rendered, make_start, render
+from bench.blenderbench.task_scenes import Look, Rendered, make_start, render
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from bench.blenderbench.layout import Task
     from bench.blenderbench.results import Place
+    from bench.blenderbench.task_set import Task
 
     Tell = Callable[[str], object]
 

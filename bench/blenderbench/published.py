@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bench.blenderbench.layout import LEVELS
+from bench.blenderbench.task_set import LEVELS
 
 OVERALL = "overall"
 PUBLISHED: dict[str, dict[str, tuple[float, float, float]]] = {

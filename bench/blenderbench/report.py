@@ -7,11 +7,11 @@ from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 from bench.blenderbench.errors import BadResults
-from bench.blenderbench.layout import LEVELS
 from bench.blenderbench.published import OVERALL, PUBLISHED
 from bench.blenderbench.results import Score, read, read_run, records
 from bench.blenderbench.score import METRICS
-from bench.tables import Table, table
+from bench.blenderbench.task_set import LEVELS
+from bench.markdown_tables import Table, table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from bench.blenderbench.errors import BadResults
-from bench.blenderbench.layout import LEVELS, in_order
 from bench.blenderbench.photometric import Convention
-from bench.blenderbench.scenes import Rendered
+from bench.blenderbench.task_scenes import Rendered
+from bench.blenderbench.task_set import LEVELS, in_order
 from bench.blenderbench.vlm import Judged
-from bench.sweep.content import write_whole
+from bench.sweep.content_hash import write_whole
 from bench.sweep.records import Provenance
 
 if TYPE_CHECKING:

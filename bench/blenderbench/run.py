@@ -8,21 +8,21 @@ from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
-from agents.blender.errors import Refusal
 from agents.blender.run_folder import locked
 from bench.blenderbench.errors import BadResults, NotDone
 from bench.blenderbench.making import Made
 from bench.blenderbench.results import Record, Run, Setup, place_of, read, read_run, write
-from bench.sweep.content import digests
+from bench.sweep.content_hash import digests
 from bench.sweep.provenance import code_of, provenance
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from bench.blenderbench.layout import Task, TaskSet
     from bench.blenderbench.making import System
     from bench.blenderbench.results import Place
+    from bench.blenderbench.task_set import Task, TaskSet
     from bench.sweep.records import Provenance
 
 

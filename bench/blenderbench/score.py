@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from bench.blenderbench.clip import clip_distance
 from bench.blenderbench.errors import BadPicture, BadResults
+from bench.blenderbench.n_clip import clip_distance
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import RoundScore, Score, read_run, records, write

@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 from bench.blenderbench.editing import SimWorlds
 from bench.blenderbench.errors import BadPicture, BadResults, NoTasks, NotDone
-from bench.blenderbench.layout import in_order
 from bench.blenderbench.making import Made, begun
 from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import round_file
+from bench.blenderbench.task_set import in_order
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from bench.blenderbench.editing import Reference
-    from bench.blenderbench.layout import Task
     from bench.blenderbench.making import System, Tell
     from bench.blenderbench.results import Place
-    from bench.blenderbench.scenes import Look
+    from bench.blenderbench.task_scenes import Look
+    from bench.blenderbench.task_set import Task
 
 MOST_ROUNDS = 100
 _FOLDER = "folder="

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field
 
-from agents.models.base import Ask, Picture, Text, Tool, user
-from agents.models.canonical import form_of
-from agents.models.structured import fits
-from bench.judge.asking import asked
-from bench.judge.store import Store, key_of
+from bench.judge.answer_cache import Store, key_of
+from bench.judge.ask import asked
 from bench.judge.usage import Spent
-from kb_serve.schemas import schema_of
+from simworlds.llm.canonical import form_of
+from simworlds.llm.messages import Ask, Picture, Text, Tool, user
+from simworlds.llm.structured import fits
+from simworlds.mcp_transport.schemas import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.blenderbench.clip import SHAPES, Tower
 from bench.blenderbench.errors import NoWeights
+from bench.blenderbench.n_clip import SHAPES, Tower
 
 if TYPE_CHECKING:
     from collections.abc import Callable

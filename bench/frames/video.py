@@ -1,8 +1,8 @@
 """Pictures out of a video, or of a picture file, that nobody trusts.
 
-Decoders are large programs that read what strangers write. They run in a process of their own (``decode.py``), confined
-as Blender is: no network, no second process, nothing to read but the file, nothing to write but one folder, limits of
-memory and time.
+Decoders are large programs that read what strangers write. They run in a process of their own (``decode_video.py``),
+confined as Blender is: no network, no second process, nothing to read but the file, nothing to write but one folder,
+limits of memory and time.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.blender.nursery import started_for_good
-from agents.blender.sandbox import GIB, Limits, best_sandbox, own_python
-from bench.untrusted import NotScored
-from kb_build.runtime import clean_environment
+from bench.audit.untrusted_blend import NotScored
+from simworlds.sandbox.confinement import GIB, Limits, best_sandbox, own_python
+from simworlds.sandbox.runtime import clean_environment
+from simworlds.spawner import started_for_good
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 PICTURES = (".png", ".jpg", ".jpeg", ".webp")
 VIDEOS = (".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif")
 SECONDS = 120.0
-_SCRIPT = Path(__file__).with_name("decode.py")
+_SCRIPT = Path(__file__).with_name("decode_video.py")
 _LIMITS = Limits(memory=2 * GIB, file_size=GIB // 4)
 _LARGEST = 256 << 20  # bytes of a picture
 

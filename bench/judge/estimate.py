@@ -1,6 +1,6 @@
 """What a judgement would ask, how many tokens that is by estimate, and what it can cost; asks nobody.
 
-Tokens are estimated as everywhere in this project, rather too many (``agents.models.tokens``). Nobody knows beforehand
+Tokens are estimated as everywhere in this project, rather too many (``simworlds.llm.tokens``). Nobody knows beforehand
 how long an answer is: the cost that is told is that of the question alone, and the most with the longest answer.
 """
 
@@ -13,22 +13,22 @@ from typing import TYPE_CHECKING
 from PIL import Image
 from pydantic import BaseModel, ConfigDict
 
-from agents.models import tokens
-from agents.models.base import Picture, Text, Usage
+from bench.judge.answer_cache import Store
 from bench.judge.dimensions import CHECKLISTS
 from bench.judge.items import kept_items
 from bench.judge.judge import checked, verdicts_key
 from bench.judge.pictures import read_frames
 from bench.judge.questions import enumeration, judging
-from bench.judge.store import Store
 from bench.judge.verdicts import Given
+from simworlds.llm import tokens
+from simworlds.llm.messages import Picture, Text, Usage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from agents.models.base import Ask
-    from agents.models.prices import Prices
+    from simworlds.llm.messages import Ask
+    from simworlds.llm.prices import Prices
 
 ASSUMED_ITEMS = 20
 """Of a prompt whose items nobody has listed yet, beside the fixed ones."""

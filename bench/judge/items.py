@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict
 
-from agents.models.structured import fits
-from bench.judge.asking import asked
+from bench.judge.answer_cache import key_of
+from bench.judge.ask import asked
 from bench.judge.dimensions import CHECKLISTS, Dimension, dimensions
 from bench.judge.questions import Enumeration, Named, enumeration, prompt_version
-from bench.judge.store import key_of
 from bench.judge.usage import Spent
-from kb_build.analysis import terms
+from kb_build.index.analysis import terms
+from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from typing import Any
 
+    from bench.judge.answer_cache import Store
     from bench.judge.providers import Provider
-    from bench.judge.store import Store
 
 MOST = 40
 """Items of one list; the longest prompt names half as many things."""

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.models.request import clean
-from bench.judge.asking import asked
+from bench.judge.answer_cache import Store, key_of
+from bench.judge.ask import asked
 from bench.judge.dimensions import dimensions
 from bench.judge.errors import NotJudged
 from bench.judge.items import Items, items_of, one_line
 from bench.judge.pictures import Shown, read_frames
 from bench.judge.questions import judging, prompt_version
-from bench.judge.store import Store, key_of
 from bench.judge.verdicts import Given, Item, Judgement, reader_of
+from simworlds.llm.request import clean
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

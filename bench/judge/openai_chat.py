@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, cast
 import httpx2
 from pydantic import BaseModel, NonNegativeInt, ValidationError
 
-from agents.models.base import Picture, Text, Turn, Usage, whole
-from agents.models.errors import Rejected, TooLong, Unreachable
-from agents.models.request import clean
 from bench.judge.errors import NotJudged
 from bench.judge.providers import MISSING
+from simworlds.llm.errors import Rejected, TooLong, Unreachable
+from simworlds.llm.messages import Picture, Text, Turn, Usage, whole
+from simworlds.llm.request import clean
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from openai.types.chat import ChatCompletionMessageParam
     from openai.types.shared_params import ResponseFormatJSONSchema
 
-    from agents.models.base import Ask, Block, Message
-    from agents.models.prices import Prices
+    from simworlds.llm.messages import Ask, Block, Message
+    from simworlds.llm.prices import Prices
 
 RETRIES = 7
 _SECONDS = 600.0
@@ -69,7 +69,7 @@ class _Completion(BaseModel):
 
 
 class Chat:
-    """A Model (``agents.models.base``) for Asks of texts and pictures."""
+    """A Model (``simworlds.llm.messages``) for Asks of texts and pictures."""
 
     def __init__(self, base_url: str | None, prices: Prices, *, retries: int = RETRIES) -> None:
         """Raises Rejected without a key, NotJudged without the package."""

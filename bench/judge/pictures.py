@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 from PIL import Image
 
-from agents.models.base import Picture
-from agents.pipeline.errors import Unusable
-from agents.pipeline.inputs import picture
+from agents.loop.edit.inputs import picture
+from agents.loop.errors import Unusable
 from bench.judge.errors import NotJudged
+from simworlds.llm.messages import Picture
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

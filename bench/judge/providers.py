@@ -8,18 +8,18 @@ from dataclasses import replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from agents.models.base import Text
-from agents.models.errors import Rejected
-from agents.models.prices import Prices
-from agents.models.spending import Metered, Spending
 from bench.judge.errors import NotJudged
+from simworlds.llm.errors import Rejected
+from simworlds.llm.messages import Text
+from simworlds.llm.prices import Prices
+from simworlds.llm.spending import Metered, Spending
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from agents.models.base import Ask, Model, Turn
-    from agents.models.prices import Price
-    from agents.models.retries import Retry
+    from simworlds.llm.messages import Ask, Model, Turn
+    from simworlds.llm.prices import Price
+    from simworlds.llm.retries import Retry
 
 # One strong model with eyes of each: the newest of the line that builds the scenes, and the paper's own judge.
 DEFAULTS = {"anthropic": "claude-opus-5-5", "openai": "gpt-5.5"}
@@ -27,7 +27,7 @@ MISSING = "The openai package is not installed. Install it with: pip install 'si
 
 
 class Provider:
-    """A Model (``agents.models.base``) for structured answers: what it gives to the one tool of an Ask is its text."""
+    """A Model for structured answers: what it gives to the one tool of an Ask is its text."""
 
     def __init__(
         self,
@@ -84,7 +84,7 @@ def provider_of(  # noqa: PLR0913
     spending = Spending(max_cost, prices)
 
     def anthropic() -> Model:
-        from agents.models.claude import Claude, Settings  # noqa: PLC0415 - loads the package
+        from simworlds.llm.claude import Claude, Settings  # noqa: PLC0415 - loads the package
 
         return Claude(Settings(base_url=base_url, prices=prices), tell)
 

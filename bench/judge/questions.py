@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from agents.models.base import Ask, Picture, Text, Tool, user
-from agents.models.canonical import form_of
-from kb_serve.schemas import schema_of
+from simworlds.llm.canonical import form_of
+from simworlds.llm.messages import Ask, Picture, Text, Tool, user
+from simworlds.mcp_transport.schemas import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from agents.models.base import Block
+    from simworlds.llm.messages import Block
 
 FOLDER = Path(__file__).with_name("prompts")
 ITEMS, VERDICTS = "items", "verdicts"

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, NonNegativeFloat, computed_field
 
-from agents.models.structured import Reader, fits
 from bench.judge.questions import Verdict, Verdicts
 from bench.judge.usage import Spent, Usage
+from simworlds.llm.structured import Reader, fits
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence

@@ -1,4 +1,4 @@
-"""What a report reads of an audit.json: as ``bench.audit`` writes it, in any version of it; other fields are left."""
+"""What a report reads of an audit.json: as the audit writes it, in any version of it; other fields are left."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class _Part(BaseModel):
 
 
 class Check(_Part):
-    """See ``bench.audit.Checked``."""
+    """See ``bench.audit.audit.Checked``."""
 
     predicate: str
     wanted: Literal["must_have", "must_not_have"]
@@ -22,7 +22,7 @@ class Check(_Part):
 
 
 class Actor(_Part):
-    """See ``bench.audit.ActorAudit``."""
+    """See ``bench.audit.audit.ActorAudit``."""
 
     name: str
     role: str
@@ -34,7 +34,7 @@ class Actor(_Part):
 
 
 class Moment(_Part):
-    """See ``bench.spr.At``."""
+    """See ``bench.audit.spr.At``."""
 
     when: str
     unit: str
@@ -43,7 +43,7 @@ class Moment(_Part):
 
 
 class Relation(_Part):
-    """See ``bench.spr.Related``."""
+    """See ``bench.audit.spr.Related``."""
 
     type: str
     a: str
@@ -54,7 +54,7 @@ class Relation(_Part):
 
 
 class AuditFile(_Part):
-    """See ``bench.audit.Audit``."""
+    """See ``bench.audit.audit.Audit``."""
 
     actors: tuple[Actor, ...] = ()
     relations: tuple[Relation, ...] = ()

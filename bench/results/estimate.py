@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from statistics import fmean
 from typing import TYPE_CHECKING
 
-from bench.spec import specs
+from bench.scenes.spec import specs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from bench.results.scores import Results, Scored
-    from bench.spec import Spec
+    from bench.scenes.spec import Spec
 
 STEPS = ("produced", "audited", "framed", "judged")
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from bench.results import statistics
 from bench.results.scores import METRICS
-from bench.spec import CATEGORIES
+from bench.scenes.spec import CATEGORIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

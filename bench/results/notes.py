@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from bench.sweep.content import digest_of
+from bench.sweep.content_hash import digest_of
 from bench.sweep.provenance import code_of_audit
 
 if TYPE_CHECKING:

@@ -17,20 +17,20 @@ from typing import TYPE_CHECKING
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from bench.predicates.table import PREDICATES
-from bench.relations import KINDS
+from bench.audit.predicates.catalogue import PREDICATES
+from bench.audit.relations import KINDS
 from bench.results.evidence import Evidence, evidence_of
 from bench.results.scores import METRICS, TITLES
 from bench.results.tables import NAMES, models, number
-from bench.spec import CATEGORIES, specs
+from bench.scenes.spec import CATEGORIES, specs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from bench.markdown_tables import Table
     from bench.results.scores import Metric, Results, Scored, SystemResults
-    from bench.spec import Spec
+    from bench.scenes.spec import Spec
     from bench.sweep.records import Provenance
-    from bench.tables import Table
 
 _FOLDER = Path(__file__).parent / "templates"
 _LEVELS = ("D1", "D2", "D3")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from bench.spec import BadSpec, spec_of
+from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep.records import BadRecord, Record, SystemInfo, read_record
 from bench.sweep.sweep import scene_folders
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from bench.spec import Spec
+    from bench.scenes.spec import Spec
 
 Metric: TypeAlias = Literal["mpr", "spr", "vlm"]
 METRICS: tuple[Metric, ...] = ("mpr", "spr", "vlm")

@@ -6,11 +6,11 @@ from collections import Counter
 from statistics import fmean, median
 from typing import TYPE_CHECKING
 
+from bench.markdown_tables import Table
 from bench.results import paper
 from bench.results.figures import OVERALL, ablations, comparisons, figures_of
 from bench.results.scores import METRICS, TITLES
-from bench.spec import specs
-from bench.tables import Table
+from bench.scenes.spec import specs
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -9,7 +9,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from bench.setting import simworlds
-from bench.sweep.ending import ending_with_this
+from simworlds.end_with_parent import ending_with_this
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

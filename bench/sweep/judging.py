@@ -16,10 +16,10 @@ from bench.judge.errors import NotJudged
 from bench.judge.judge import judge
 from bench.judge.providers import Provider, provider_of
 from bench.judge.questions import prompt_version
-from bench.sweep.content import digest_of, digest_of_bytes, digest_of_file, write_whole
+from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file, write_whole
 from bench.sweep.provenance import code_of
 from bench.sweep.records import JUDGEMENT, File, Judged, Record, read_record, write_record
-from bench.sweep.scene import stamp
+from bench.sweep.scene_task import stamp
 from bench.sweep.steps import Due
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from bench.judge.verdicts import Judgement
-    from bench.sweep.scene import Task
+    from bench.sweep.scene_task import Task
 
 
 @dataclass(frozen=True)

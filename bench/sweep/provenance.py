@@ -11,14 +11,14 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.sweep.content import digest_of, digest_of_file
+from bench.sweep.content_hash import digest_of, digest_of_file
 from bench.sweep.records import Provenance
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _BENCH = Path(__file__).resolve().parent.parent
-_FRAMES = "frames.py"
+_INSIDE, _FRAMES = "audit/inside", "frames.py"
 _PACKAGES = (
     *("anthropic", "av", "bpy", "huggingface-hub", "numpy"),
     *("openai", "pillow", "pydantic", "ray", "safetensors"),
@@ -34,13 +34,13 @@ def code_of(module: str, *beside: str) -> str:
 
 def code_of_audit() -> str:
     """Of the audit, with what it runs in Blender."""
-    inside = sorted(path.name for path in (_BENCH / "inside").glob("*.py") if path.name != _FRAMES)
-    return code_of("bench.audit", *(f"inside/{name}" for name in inside))
+    inside = sorted(path.name for path in (_BENCH / _INSIDE).glob("*.py") if path.name != _FRAMES)
+    return code_of("bench.audit.audit", *(f"{_INSIDE}/{name}" for name in inside))
 
 
 def code_of_frames() -> str:
     """Of what takes frames; what it shares with the audit decides what they show only where physics is not baked."""
-    return code_of("bench.frames.frames", f"inside/{_FRAMES}", "frames/decode.py")
+    return code_of("bench.frames.clip_frames", f"{_INSIDE}/{_FRAMES}", "frames/decode_video.py")
 
 
 def provenance(code: str, blender: str | None = None) -> Provenance:

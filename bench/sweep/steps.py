@@ -5,21 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from bench.audit import audit
-from bench.frames.frames import SECONDS, kind_of, take_frames
-from bench.sweep.content import digest_of, digest_of_bytes, digest_of_file, write_whole
+from bench.audit.audit import audit
+from bench.audit.untrusted_blend import NotScored
+from bench.frames.clip_frames import SECONDS, kind_of, take_frames
+from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file, write_whole
 from bench.sweep.provenance import code_of, code_of_audit, code_of_frames
 from bench.sweep.records import AUDIT, FINAL, FRAMES, WORK, Audited, File, Framed, Produced
-from bench.untrusted import NotScored
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from bench.frames.frames import Taken
+    from bench.frames.clip_frames import Taken
     from bench.sweep.records import Record
     from bench.sweep.records import Step as Part
-    from bench.sweep.scene import Task, Tell
+    from bench.sweep.scene_task import Task, Tell
 
 
 @dataclass(frozen=True, slots=True)

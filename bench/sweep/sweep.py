@@ -9,24 +9,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from agents.blender.run_folder import locked
-from bench.spec import BadSpec, spec_of
-from bench.sweep.crew import Crew, Done
-from bench.sweep.folder import Folder
+from bench.scenes.spec import BadSpec, spec_of
+from bench.sweep.executor import Crew, Done
 from bench.sweep.judging import Judge, judge_all
 from bench.sweep.records import NAME, BadRecord, SystemInfo, read_record
-from bench.sweep.runs import Make, Replay
-from bench.sweep.scene import Task, is_done
+from bench.sweep.scene_task import Task, is_done
 from bench.sweep.steps import STEPS
-from bench.sweep.systems import NotReady
+from bench.sweep.systems.folder import Folder
+from bench.sweep.systems.simworlds_runs import Make, Replay
+from bench.sweep.systems.system import NotReady
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from bench.frames.frames import Look
-    from bench.spec import Spec
-    from bench.sweep.systems import System
-    from bench.sweep.view import View
-    from bench.untrusted import Means
+    from bench.audit.untrusted_blend import Means
+    from bench.frames.clip_frames import Look
+    from bench.scenes.spec import Spec
+    from bench.sweep.sweep_view import View
+    from bench.sweep.systems.system import System
 
 
 @dataclass(frozen=True)

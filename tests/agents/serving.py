@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 REPO = Path(__file__).resolve().parent.parent.parent
-COMMAND = [sys.executable, "-c", "from agents.cli import main; main(prog_name='simworlds')", "mcp"]
+COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')", "mcp"]
 
 
 def environment(home: Path, **more: str) -> dict[str, str]:

@@ -13,7 +13,7 @@ from agents.blender.tools.base import Call, Result, Session, Tool, parse, perfor
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.blender.sandbox import Sandbox
+    from simworlds.sandbox.confinement import Sandbox
 
 
 def no_docs(query: str, *, max_tokens: int = 400) -> str:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from agents.blender.errors import Interrupted, Refusal, TookTooLong
 from agents.blender.tools.bake import TOOL
 from agents.blender.tools.base import Call
+from simworlds.sandbox.errors import Interrupted, Refusal, TookTooLong
 
 if TYPE_CHECKING:
     from studio import Studio

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from PIL import Image
 
-from agents.blender.errors import Refusal
-from agents.blender.looks import LARGEST_SHOWN, faults, shown
-from agents.blender.pace import LEAST, Pace
+from agents.blender.render.image_checks import LARGEST_SHOWN, faults, shown
+from agents.blender.render.render_budget import LEAST, Pace
 from agents.blender.tools.base import Call, Result
 from agents.blender.tools.render import TOOL
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -12,9 +12,9 @@ from studio import Studio
 
 from agents.blender import checkpoints
 from agents.blender.checkpoints import KEPT, Checkpoint
-from agents.blender.errors import Died, Refusal
-from agents.blender.sandbox import Limits, best_sandbox
 from agents.blender.tools.execute import TOOL
+from simworlds.sandbox.confinement import Limits, best_sandbox
+from simworlds.sandbox.errors import Died, Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from agents.blender import confine
-from agents.blender.confine import ARCHITECTURES, NUMBERS, filter_program
+from simworlds.sandbox import confine
+from simworlds.sandbox.confine import ARCHITECTURES, NUMBERS, filter_program
 
 MACHINES = sorted(ARCHITECTURES)
 OWN = 4321

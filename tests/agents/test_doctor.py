@@ -15,15 +15,15 @@ import pytest
 from studio import Studio
 from test_escapes import works
 
-from agents.blender import checks, confine
-from agents.blender.launch import Runtime
-from agents.blender.sandbox import Sandbox, best_sandbox, bubblewrap_fault
-from kb_build.runtime import installed_bpy
+from agents.commands import doctor_checks
+from simworlds.sandbox import confine
+from simworlds.sandbox.confinement import Sandbox, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.runtime import Runtime, installed_bpy
 
 pytestmark = pytest.mark.blender
 
 DEBIANS = Path("/usr/bin/blender")
-COMMAND = "from agents.cli import main; main(prog_name='simworlds')"
+COMMAND = "from simworlds.cli import main; main(prog_name='simworlds')"
 
 
 def run(*words: str, home: Path, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -155,7 +155,7 @@ def test_all_missing_libraries_are_listed_not_just_the_first(tmp_path: Path) -> 
     for name in ("one", "two"):
         (tmp_path / f"lib{name}.so.7").unlink()
     runtime = Runtime(tmp_path / "blender", "executable", "5.1.9")
-    assert checks.missing_libraries(runtime, "libother.so.1: cannot open shared object file") == [
+    assert doctor_checks.missing_libraries(runtime, "libother.so.1: cannot open shared object file") == [
         "libone.so.7",
         "libtwo.so.7",
     ]
@@ -163,7 +163,7 @@ def test_all_missing_libraries_are_listed_not_just_the_first(tmp_path: Path) -> 
 
 def test_the_packages_are_those_that_the_readme_installs() -> None:
     listed = (Path(__file__).parents[2] / ".ci" / "debian-packages").read_text().split()
-    assert set(listed) <= set(checks.PACKAGES.values())
+    assert set(listed) <= set(doctor_checks.PACKAGES.values())
 
 
 def test_a_sandbox_that_does_not_hold_what_it_says_is_found_out(tmp_path: Path) -> None:
@@ -172,7 +172,7 @@ def test_a_sandbox_that_does_not_hold_what_it_says_is_found_out(tmp_path: Path) 
     open_one, told = best_sandbox("none"), best_sandbox("landlock")
     studio = Studio(tmp_path / "run", sandbox=Sandbox("none", told.holds, told.lacks, open_one.limits))
     try:
-        found = checks._confined(studio.blender, told, None)
+        found = doctor_checks._confined(studio.blender, told, None)
     finally:
         studio.blender.close()
     assert found.state == "bad"
@@ -183,10 +183,10 @@ def test_a_sandbox_that_does_not_hold_what_it_says_is_found_out(tmp_path: Path) 
 
 def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SIMWORLDS_HOME", str(base.parent.parent))
-    found = checks._knowledge(installed_bpy())
+    found = doctor_checks._knowledge(installed_bpy())
     assert found.state == "good"
     assert found.place == str(base)
-    other = checks._knowledge("3.4.1")
+    other = doctor_checks._knowledge("3.4.1")
     assert other.state == "poor"
     assert other.advice == "simworlds kb build 3.4"
     assert other.text == f"no base of Blender 3.4; there is one of {found.data['wanted']}"
@@ -207,7 +207,7 @@ def test_an_installed_blender_is_looked_at(tmp_path: Path) -> None:
 def test_checks_that_are_given_up_end_blender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
-    each = checks.checks(checks.Choice())
+    each = doctor_checks.checks(doctor_checks.Choice())
     for _, check in each:
         if check().name == "Start":
             break

@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from studio import Studio
 
-from agents.blender import confine
-from agents.blender.errors import Died, LeftBehind, OutOfBounds, Refusal, Untrustworthy
-from agents.blender.sandbox import Limits, best_sandbox, bubblewrap_fault
 from agents.blender.tools.execute import TOOL
+from simworlds.sandbox import confine
+from simworlds.sandbox.confinement import Limits, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.errors import Died, LeftBehind, OutOfBounds, Refusal, Untrustworthy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from agents.blender.sandbox import Kind
+    from simworlds.sandbox.confinement import Kind
 
 pytestmark = [
     pytest.mark.blender,

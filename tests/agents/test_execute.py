@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from agents.blender.errors import Died, Refusal
 from agents.blender.tools.base import Call, Session, parse
 from agents.blender.tools.execute import TOOL
+from simworlds.sandbox.errors import Died, Refusal
 
 if TYPE_CHECKING:
     from studio import Studio

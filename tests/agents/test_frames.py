@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from agents.blender.inside import frames
-from agents.blender.inside.frames import LARGEST_BODY, SUPERVISOR, WORKER, Decoder, Encoder, ForgedFrame
+from simworlds.sandbox.inside import channel
+from simworlds.sandbox.inside.channel import LARGEST_BODY, SUPERVISOR, WORKER, Decoder, Encoder, ForgedFrame
 
 KEY = bytes(range(32))
 
@@ -114,7 +114,7 @@ def test_the_format_is_the_one_that_is_written_down() -> None:
 
 def test_a_message_too_large_is_told_of_and_spoils_nothing() -> None:
     encode, decoder = pair()
-    with pytest.raises(frames.TooLarge, match="at most"):
+    with pytest.raises(channel.TooLarge, match="at most"):
         encode({"text": "x" * (LARGEST_BODY + 1)})
     assert decoder.feed(encode({"value": 1})) == [{"value": 1}]
 

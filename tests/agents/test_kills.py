@@ -16,8 +16,8 @@ import pytest
 from processes import becomes, of_run
 from studio import Studio
 
-from agents.blender.errors import BlenderError, Lost
 from agents.blender.tools.execute import TOOL
+from simworlds.sandbox.errors import BlenderError, Lost
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from agents.blender.fluids import FluidCheck, check_fluids
+from agents.blender.fluid_support import FluidCheck, check_fluids
 from agents.blender.launch import make_launch
-from agents.blender.process import BlenderProcess
+from simworlds.sandbox.blender_process import BlenderProcess
 
 if TYPE_CHECKING:
     from pathlib import Path

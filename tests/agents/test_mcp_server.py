@@ -22,11 +22,11 @@ from PIL import Image
 from serving import COMMAND, REPO, ByHand, below, blenders, environment, have_ended, over_stdio
 
 from agents.blender import server as served
-from agents.blender.catalogue import TOOLS
+from agents.blender.blender_sessions import Setup, Studios
 from agents.blender.docs_client import DocsClient
-from agents.blender.sandbox import best_sandbox
-from agents.blender.sessions import Setup, Studios
+from agents.blender.tool_catalogue import TOOLS
 from agents.blender.tools import execute
+from simworlds.sandbox.confinement import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

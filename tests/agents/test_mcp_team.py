@@ -12,12 +12,12 @@ from serving import over_stdio
 from small_plan import small_plan
 
 from agents.blender import server as served
+from agents.blender.blender_sessions import Setup, Studios
 from agents.blender.docs_client import DocsClient
-from agents.blender.sandbox import best_sandbox
-from agents.blender.sessions import Setup, Studios
 from agents.blender.team import PROMPTS
-from agents.plan.base import STAGES
+from agents.plan.part import STAGES
 from agents.roles.prompts import protocol_text, role_text, stage_text, team_text
+from simworlds.sandbox.confinement import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from agents.blender.errors import Refusal, ToolBroke
 from agents.blender.tools.base import Call
 from agents.blender.tools.motion_sheet import TOOL
+from simworlds.sandbox.errors import Refusal, ToolBroke
 
 if TYPE_CHECKING:
     from studio import Studio

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from preview_views import Views, build
 
-from agents.blender.errors import Refusal
 from agents.blender.tools import previews
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from studio import Studio

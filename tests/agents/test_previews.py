@@ -8,10 +8,10 @@ import pytest
 from PIL import Image
 from preview_views import SIZE, Views, build, is_coloured
 
-from agents.blender import sheets
-from agents.blender.errors import Refusal
+from agents.blender.sheets import contact_sheet
 from agents.blender.tools import previews
 from agents.blender.tools.base import Call
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from studio import Studio
@@ -27,7 +27,7 @@ def test_a_preview_is_a_picture_and_the_same_as_a_file(studio: Studio) -> None:
     assert picture.path.is_relative_to(studio.blender.folder.root / "previews")
     assert found.data["file"] == str(picture.path.relative_to(studio.blender.folder.root))
     with Image.open(picture.path) as image:
-        assert image.width == 2 * (previews.PANEL + 2) + sheets.GAP + 2 * sheets.MARGIN
+        assert image.width == 2 * (previews.PANEL + 2) + contact_sheet.GAP + 2 * contact_sheet.MARGIN
         assert image.height > image.width
     assert "1 m × 2 m × 3 m" in found.text
     assert not list(studio.blender.folder.workspace.glob(".preview*"))

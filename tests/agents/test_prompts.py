@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Any, get_args
 import pytest
 
 from agents.blender import docs_client, plan_check
-from agents.blender.catalogue import TOOLS
-from agents.models.tokens import of_text
+from agents.blender.tool_catalogue import TOOLS
 from agents.plan import relations
-from agents.plan.base import STAGES, Stage
 from agents.plan.edit import EditPlan
+from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
 from agents.protocol import vocabulary
 from agents.protocol.guide import told_tolerance
 from agents.protocol.rules.catalogue import RULES, chosen
-from agents.protocol.stages import rules_of
+from agents.protocol.rules_by_stage import rules_of
 from agents.protocol.tolerances import TOLERANCES
 from agents.roles import prompts
 from agents.roles.prompts import FOLDER, ROLES, Role, protocol_text, system_prompt, team_text
+from simworlds.llm.tokens import of_text
 
 if TYPE_CHECKING:
     from pydantic import BaseModel

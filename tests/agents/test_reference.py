@@ -10,11 +10,11 @@ from os.path import normpath
 from pathlib import Path
 
 from agents.blender import plan_check
-from agents.blender.catalogue import TOOLS
 from agents.blender.team import PROMPTS
+from agents.blender.tool_catalogue import TOOLS
 from agents.protocol.rules.catalogue import RULES
 from agents.protocol.tolerances import TOLERANCES
-from agents.reference import outdated, references, write
+from docs.generate.references import outdated, references, write
 from kb_serve.tool import DESCRIPTION, tool
 
 REPO = Path(__file__).resolve().parents[2]
@@ -22,7 +22,7 @@ REPO = Path(__file__).resolve().parents[2]
 
 def run(*options: str) -> subprocess.CompletedProcess[str]:
     """The command, in a process of its own: click keeps of a command what the first who used it said of its help."""
-    command = [sys.executable, "-m", "agents.reference", *options]
+    command = [sys.executable, "-m", "docs.generate.references", *options]
     return subprocess.run(command, cwd=REPO, capture_output=True, text=True, check=False)
 
 

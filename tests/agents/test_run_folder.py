@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from agents.blender import bounds
-from agents.blender.errors import Refusal
 from agents.blender.run_folder import RunFolder, locked, new_run
-from agents.blender.sandbox import Limits
+from simworlds.sandbox import usage
+from simworlds.sandbox.confinement import Limits
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -252,13 +252,13 @@ def test_everything_is_swept_however_deep_or_closed(tmp_path: Path, outside: Pat
     (room / "closed").mkdir()
     (room / "closed" / "file").write_text("x")
     (room / "closed").chmod(0)
-    bounds.sweep(room)
+    usage.sweep(room)
     assert list(room.iterdir()) == []
     assert outside.read_text() == "secret"
 
 
 def test_sweeping_what_is_not_there_is_no_error(tmp_path: Path) -> None:
-    bounds.sweep(tmp_path / "none")
+    usage.sweep(tmp_path / "none")
 
 
 def test_what_is_measured_is_what_lies_on_disk_and_no_link(tmp_path: Path, outside: Path) -> None:
@@ -266,29 +266,29 @@ def test_what_is_measured_is_what_lies_on_disk_and_no_link(tmp_path: Path, outsi
     (room / "deep").mkdir(parents=True)
     (room / "deep" / "file").write_bytes(os.urandom(100_000))
     (room / "link").symlink_to(outside.parent)
-    found = bounds.measure(room)
+    found = usage.measure(room)
     assert found.files == 3
     assert 100_000 <= found.bytes <= 130_000
-    assert bounds.measure(room, at_most=1).files == 2
+    assert usage.measure(room, at_most=1).files == 2
 
 
 def test_folders_without_end_are_told_of(tmp_path: Path) -> None:
-    deep = tmp_path.joinpath(*["d"] * (bounds.DEEPEST + 1))
+    deep = tmp_path.joinpath(*["d"] * (usage.DEEPEST + 1))
     deep.mkdir(parents=True)
-    found = bounds.measure(tmp_path)
-    assert found.deepest == found.files == bounds.DEEPEST
+    found = usage.measure(tmp_path)
+    assert found.deepest == found.files == usage.DEEPEST
 
 
 def test_what_came_since_a_moment_goes_and_what_was_there_stays(tmp_path: Path) -> None:
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "kept").write_text("kept")
-    moment = bounds.now(tmp_path)
-    while bounds.now(tmp_path) <= moment:
+    moment = usage.now(tmp_path)
+    while usage.now(tmp_path) <= moment:
         pass
     (tmp_path / "new" / "deep").mkdir(parents=True)
     (tmp_path / "new" / "deep" / "file").write_text("new")
     (tmp_path / "old" / "new").write_text("new")
-    bounds.remove_since(tmp_path, moment)
+    usage.remove_since(tmp_path, moment)
     assert [path.relative_to(tmp_path).as_posix() for path in sorted(tmp_path.rglob("*"))] == [
         "old",
         "old/kept",
@@ -301,14 +301,14 @@ def test_what_came_since_a_moment_goes_and_what_was_there_stays(tmp_path: Path) 
 @pytest.fixture
 def two(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
     """Folders to watch; looking at them is quick, however slow this machine is at present."""
-    monkeypatch.setattr(bounds, "_QUICK_SECONDS", 1e6)
+    monkeypatch.setattr(usage, "_QUICK_SECONDS", 1e6)
     (tmp_path / "workspace").mkdir()
     (tmp_path / "private").mkdir()
     return tmp_path / "workspace", tmp_path / "private"
 
 
 def test_what_is_written_to_both_folders_counts_together(two: tuple[Path, Path]) -> None:
-    watch = bounds.Bounds(two, Limits(disk=150_000, files=0))
+    watch = usage.Bounds(two, Limits(disk=150_000, files=0))
     for number, folder in enumerate(two):
         assert watch.fault(over=True) is None
         for name in range(20):  # many files are no fault, where their number has no limit
@@ -319,14 +319,14 @@ def test_what_is_written_to_both_folders_counts_together(two: tuple[Path, Path])
 def test_what_was_there_before_is_no_fault_but_more_is(two: tuple[Path, Path]) -> None:
     for number in range(30):
         (two[0] / f"old{number}").write_text("x")
-    watch = bounds.Bounds(two, Limits(files=10))
+    watch = usage.Bounds(two, Limits(files=10))
     assert watch.fault(over=True) is None
     (two[0] / "new").write_text("x")
     assert watch.fault(over=True) == "brought the run to more than 30 files"
 
 
 def test_between_two_looks_there_is_a_pause_unless_the_call_is_over(two: tuple[Path, Path]) -> None:
-    watch = bounds.Bounds(two, Limits(files=1))
+    watch = usage.Bounds(two, Limits(files=1))
     assert watch.fault() is None
     for number in range(5):
         (two[0] / str(number)).write_text("x")
@@ -335,7 +335,7 @@ def test_between_two_looks_there_is_a_pause_unless_the_call_is_over(two: tuple[P
 
 
 def test_the_moment_that_was_fine_is_after_what_was_written_before_it(two: tuple[Path, Path]) -> None:
-    watch = bounds.Bounds(two, Limits(files=3))
+    watch = usage.Bounds(two, Limits(files=3))
     (two[0] / "kept").write_text("x")
     assert watch.fault(over=True) is None
     since = watch.fine
@@ -344,5 +344,5 @@ def test_the_moment_that_was_fine_is_after_what_was_written_before_it(two: tuple
     assert watch.fault(over=True) is not None
     assert watch.fine == since
     for folder in two:
-        bounds.remove_since(folder, since)
+        usage.remove_since(folder, since)
     assert (two[0] / "kept").exists()

@@ -15,15 +15,15 @@ import pytest
 from studio import Studio, no_docs
 
 from agents.blender.checkpoints import KEPT
-from agents.blender.errors import Refusal
 from agents.blender.launch import make_launch
-from agents.blender.process import BlenderProcess
 from agents.blender.run_folder import RunFolder
-from agents.blender.sandbox import best_sandbox, default_limits
-from agents.blender.saved import take_all
+from agents.blender.saved_files import take_all
 from agents.blender.supervisor import Supervisor
 from agents.blender.tools.base import Session
 from agents.blender.tools.files import LOAD, SAVE
+from simworlds.sandbox.blender_process import BlenderProcess
+from simworlds.sandbox.confinement import best_sandbox, default_limits
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from agents.blender.errors import Refusal
 from agents.blender.tools.base import Result, parse
 from agents.blender.tools.scene_fit import tokens
 from agents.blender.tools.scene_state import TOOL, SceneState, readout
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from studio import Studio

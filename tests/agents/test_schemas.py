@@ -10,10 +10,10 @@ from jsonschema import Draft202012Validator
 from pydantic import BaseModel, Field
 from small_plan import small_plan
 
-from agents.blender.catalogue import TOOLS
+from agents.blender.tool_catalogue import TOOLS
 from agents.plan.scene import ScenePlan
-from agents.schemas import lean_schema_of, shape_of
-from kb_serve.schemas import schema_of
+from simworlds.mcp_transport.schemas import schema_of
+from simworlds.schema_notation import lean_schema_of, shape_of
 
 
 class Wheel(BaseModel):

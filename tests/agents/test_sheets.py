@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 from PIL import Image, ImageChops
 
-from agents.blender import sheets
-from agents.blender.errors import Refusal
-from agents.blender.lettering import broken, round_length, shortened, text_width, told_length
+from agents.blender.sheets import contact_sheet
+from agents.blender.sheets.text_layout import broken, round_length, shortened, text_width, told_length
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 GREY = (200, 200, 200)
 
 
-def plain(width: int = 100, height: int = 80, colour: sheets.Colour = GREY) -> Image.Image:
+def plain(width: int = 100, height: int = 80, colour: contact_sheet.Colour = GREY) -> Image.Image:
     return Image.new("RGB", (width, height), colour)
 
 
@@ -28,38 +28,42 @@ def changed_box(before: Image.Image, after: Image.Image) -> tuple[int, int, int,
     return box
 
 
-def columns_of(picture: Image.Image, y: int, colour: sheets.Colour) -> list[int]:
+def columns_of(picture: Image.Image, y: int, colour: contact_sheet.Colour) -> list[int]:
     return [x for x in range(picture.width) if picture.getpixel((x, y)) == colour]
 
 
 def test_a_grid_keeps_every_picture_whole_and_apart() -> None:
-    colours: Sequence[sheets.Colour] = [(255, 0, 0), (0, 255, 0), (0, 0, 255)]
-    block = sheets.grid([sheets.Panel(plain(60, 40, colour), "a") for colour in colours], columns=2)
+    colours: Sequence[contact_sheet.Colour] = [(255, 0, 0), (0, 255, 0), (0, 0, 255)]
+    block = contact_sheet.grid(
+        [contact_sheet.Panel(plain(60, 40, colour), "a") for colour in colours], columns=2
+    )
     found = dict(map(reversed, block.getcolors(1 << 20) or []))  # type: ignore[arg-type]
     assert [found[colour] for colour in colours] == [60 * 40] * 3
 
 
 def test_columns_are_as_wide_as_their_widest_picture() -> None:
     panels = [
-        sheets.Panel(plain(60)),
-        sheets.Panel(plain(30)),
-        sheets.Panel(plain(100)),
-        sheets.Panel(plain(30)),
+        contact_sheet.Panel(plain(60)),
+        contact_sheet.Panel(plain(30)),
+        contact_sheet.Panel(plain(100)),
+        contact_sheet.Panel(plain(30)),
     ]
-    assert sheets.grid(panels, columns=2).width == 102 + sheets.GAP + 32
+    assert contact_sheet.grid(panels, columns=2).width == 102 + contact_sheet.GAP + 32
 
 
 def test_captions_are_written_above_and_never_beyond_their_panel() -> None:
     name = "a caption that is far too long for its panel " * 5
-    with_words = sheets.grid([sheets.Panel(plain(), name, "and a note beside it")], columns=1)
-    without = sheets.grid([sheets.Panel(plain())], columns=1)
+    with_words = contact_sheet.grid([contact_sheet.Panel(plain(), name, "and a note beside it")], columns=1)
+    without = contact_sheet.grid([contact_sheet.Panel(plain())], columns=1)
     assert with_words.width == without.width
     assert with_words.height > without.height
 
 
 def test_a_sheet_grows_with_its_notes() -> None:
-    low = sheets.sheet("Title", [plain(300)])
-    high = sheets.sheet("Title", [plain(300)], subtitle="frame 1", remarks=["seen"], notes=["a " * 200])
+    low = contact_sheet.sheet("Title", [plain(300)])
+    high = contact_sheet.sheet(
+        "Title", [plain(300)], subtitle="frame 1", remarks=["seen"], notes=["a " * 200]
+    )
     assert high.height > low.height + 60
     assert high.width == low.width
 
@@ -68,8 +72,8 @@ def test_a_sheet_grows_with_its_notes() -> None:
 def test_a_scale_bar_is_as_long_as_it_says(metres: float) -> None:
     picture = plain(400, 300)
     scale = metres / 400
-    length = sheets.draw_scale_bar(picture, scale)
-    inked = columns_of(picture, picture.height - 14, sheets.INK)
+    length = contact_sheet.draw_scale_bar(picture, scale)
+    inked = columns_of(picture, picture.height - 14, contact_sheet.INK)
     pixels = max(inked[at] for at in range(len(inked)) if inked[at] - inked[0] == at) - inked[0]
     assert pixels == pytest.approx(length / scale, abs=1)
     assert 0.1 < length / metres <= 0.3
@@ -77,8 +81,8 @@ def test_a_scale_bar_is_as_long_as_it_says(metres: float) -> None:
 
 def test_an_axis_points_where_it_should() -> None:
     before, right, up = plain(), plain(), plain()
-    sheets.draw_axes(right, [("X", 1, 0, 0)])
-    sheets.draw_axes(up, [("X", 0, 1, 0)])
+    contact_sheet.draw_axes(right, [("X", 1, 0, 0)])
+    contact_sheet.draw_axes(up, [("X", 0, 1, 0)])
     wide, high = changed_box(before, right), changed_box(before, up)
     assert wide[2] - wide[0] > 2 * (wide[3] - wide[1])
     assert high[3] - high[1] > 1.5 * (high[2] - high[0])
@@ -86,32 +90,32 @@ def test_an_axis_points_where_it_should() -> None:
 
 def test_a_level_is_drawn_where_it_is_and_not_outside() -> None:
     picture = plain()
-    sheets.draw_level(picture, 50, "z = 0")
-    assert len(columns_of(picture, 50, sheets.INK)) > 30
+    contact_sheet.draw_level(picture, 50, "z = 0")
+    assert len(columns_of(picture, 50, contact_sheet.INK)) > 30
     untouched = plain()
-    sheets.draw_level(untouched, 90, "z = 0")
-    sheets.draw_level(untouched, -5, "z = 0")
+    contact_sheet.draw_level(untouched, 90, "z = 0")
+    contact_sheet.draw_level(untouched, -5, "z = 0")
     assert ImageChops.difference(untouched, plain()).getbbox() is None
 
 
 def test_labels_do_not_cover_each_other() -> None:
     picture = plain(200, 200)
-    left = sheets.draw_labels(picture, [(f"Thing {at}", 100, 100) for at in range(9)])
+    left = contact_sheet.draw_labels(picture, [(f"Thing {at}", 100, 100) for at in range(9)])
     assert len(left) == 4
-    assert sheets.draw_labels(plain(200, 200), [("A", 20, 20), ("B", 150, 150), ("C", 900, 100)]) == []
+    assert contact_sheet.draw_labels(plain(200, 200), [("A", 20, 20), ("B", 150, 150), ("C", 900, 100)]) == []
 
 
 def test_a_picture_is_read_over_a_colour() -> None:
     file = io.BytesIO()
     Image.new("RGBA", (4, 4), (255, 0, 0, 0)).save(file, "PNG")
     file.seek(0)
-    assert sheets.read_png(file, (1, 2, 3)).getpixel((0, 0)) == (1, 2, 3)
+    assert contact_sheet.read_png(file, (1, 2, 3)).getpixel((0, 0)) == (1, 2, 3)
 
 
 @pytest.mark.parametrize("data", [b"", b"no picture", b"\x89PNG\r\n\x1a\n" + b"\0" * 100])
 def test_what_is_no_picture_is_refused(data: bytes) -> None:
     with pytest.raises(Refusal, match="cannot be read"):
-        sheets.read_png(io.BytesIO(data))
+        contact_sheet.read_png(io.BytesIO(data))
 
 
 def test_a_picture_that_is_too_large_is_refused() -> None:
@@ -119,7 +123,7 @@ def test_a_picture_that_is_too_large_is_refused() -> None:
     Image.new("1", (9000, 2)).save(file, "PNG")
     file.seek(0)
     with pytest.raises(Refusal, match="9000 × 2"):
-        sheets.read_png(file)
+        contact_sheet.read_png(file)
 
 
 @pytest.mark.parametrize(
@@ -154,11 +158,11 @@ def test_lines_are_broken_at_words() -> None:
 
 @pytest.mark.parametrize("name", ["椅子", "Стул", "Stühl × é", "a\nb\tc\x00d", "🪑", ""])
 def test_any_name_can_be_written(name: str) -> None:
-    assert sheets.sheet(name, [plain(200)], notes=[name]).width == 200 + 2 * sheets.MARGIN
+    assert contact_sheet.sheet(name, [plain(200)], notes=[name]).width == 200 + 2 * contact_sheet.MARGIN
 
 
 @pytest.mark.blender
 def test_letters_of_other_scripts_are_drawn_and_not_boxes() -> None:
     assert text_width("椅子", 20) == pytest.approx(40, abs=4)
-    one, two = (sheets.paragraph(text, 60, sheets.TITLE) for text in ("椅", "子"))
+    one, two = (contact_sheet.paragraph(text, 60, contact_sheet.TITLE) for text in ("椅", "子"))
     assert ImageChops.difference(one, two).getbbox() is not None

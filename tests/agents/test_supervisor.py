@@ -17,15 +17,6 @@ import pytest
 from processes import becomes, of_run
 from studio import Studio
 
-from agents.blender.errors import (
-    CannotStart,
-    Died,
-    Interrupted,
-    LeftBehind,
-    Lost,
-    Refusal,
-    TookTooLong,
-)
 from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
@@ -33,6 +24,7 @@ from agents.blender.tools.base import Call
 from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
+from simworlds.sandbox.errors import CannotStart, Died, Interrupted, LeftBehind, Lost, Refusal, TookTooLong
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -407,7 +399,7 @@ import sys
 sys.path[:0] = [{str(Path(__file__).parent)!r}]
 from pathlib import Path
 from studio import Studio
-from agents.blender.sandbox import best_sandbox
+from simworlds.sandbox.confinement import best_sandbox
 studio = Studio(Path({str(tmp_path / "run")!r}), sandbox=best_sandbox({kind!r}))
 print("ready", flush=True)
 studio.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, timeout=600)
@@ -433,8 +425,8 @@ import sys
 sys.path[:0] = [{tests!r}]
 from pathlib import Path
 from studio import Studio
-from agents.blender.sandbox import best_sandbox
-from agents.blender.errors import OutOfBounds
+from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.errors import OutOfBounds
 from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import pytest
 
-from agents.blender.errors import Refusal
 from agents.blender.tools.tag import TOOL
 from agents.protocol import vocabulary
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable

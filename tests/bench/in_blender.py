@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -12,16 +11,13 @@ from typing import TYPE_CHECKING
 import pytest
 from pydantic import TypeAdapter
 
-from bench.facts import Scene
-from bench.untrusted import ENTRY
-from kb_build.runtime import clean_environment, installed_bpy
+from bench.audit.facts import Scene
+from simworlds.sandbox.runtime import clean_environment, installed_bpy
 
 if TYPE_CHECKING:
     from typing import Any
 
 HERE = Path(__file__).parent / "inside"
-# What scripts may import: each other, what the audit runs in Blender, and what breaks scenes.
-_FOLDERS = (HERE, ENTRY.parent, ENTRY.parents[1] / "sabotage" / "inside")
 
 
 def facts_of(script: str, place: Path) -> dict[str, Scene]:
@@ -37,8 +33,7 @@ def run(script: str, place: Path) -> dict[str, Any]:
     result = place / "result.json"
     done = subprocess.run(
         [sys.executable, "-P", str(HERE / script), str(place), str(result)],
-        env=clean_environment(place / "settings")
-        | {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": os.pathsep.join(map(str, _FOLDERS))},
+        env=clean_environment(place / "settings") | {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(HERE)},
         capture_output=True,
         text=True,
         check=False,

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from in_blender import facts_of
 
-from bench.actors import find_actors
-from bench.audit import Audit, audited, check_predicates
-from bench.names import match, words_of
-from bench.spec import BadSpec, Spec
+from bench.audit.actors import find_actors
+from bench.audit.audit import Audit, audited, check_predicates
+from bench.audit.names import match, words_of
+from bench.scenes.spec import BadSpec, Spec
 
 if TYPE_CHECKING:
-    from bench.facts import Scene
+    from bench.audit.facts import Scene
 
 CLOTH = ["renderable", "solver_enabled", "cloth_modifier", "cloth_cache_baked"]
 RIGID = [

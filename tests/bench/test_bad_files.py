@@ -10,17 +10,18 @@ import pytest
 from click.testing import CliRunner
 from in_blender import HERE, run
 
-from agents.cli import main
-from bench import untrusted
-from bench.audit import Audit, audit, opened
-from bench.spec import read_spec
-from bench.untrusted import GIB, Means, NotScored, Untrusted
+from bench.audit import untrusted_blend
+from bench.audit.audit import Audit, audit, opened
+from bench.audit.untrusted_blend import GIB, Means, NotScored, Untrusted
+from bench.scenes.spec import read_spec
+from simworlds.cli import main
+from simworlds.sandbox.program import Program
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from bench.facts import Object, Scene
-    from bench.spec import Spec
+    from bench.audit.facts import Object, Scene
+    from bench.scenes.spec import Spec
 
 pytestmark = pytest.mark.blender
 
@@ -193,27 +194,29 @@ def test_more_objects_than_can_be_looked_at_are_not_scored(files: Path) -> None:
 
 def test_a_file_that_needs_too_much_memory_is_not_scored(files: Path, spec: Spec) -> None:
     found = audited("heavy", files, spec, Means(memory=GIB // 2))
-    assert found.not_scored == "Blender ran out of memory (0.5 GiB) while reading it"
+    said = "Blender ended while reading it: it ran out of memory, of which it may have 0.5 GB"
+    assert (found.not_scored or "").startswith(said)
 
 
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("crash", "crashed (SIGSEGV) while opening it"),
+        ("crash", "ended while opening it: it crashed (SIGSEGV)"),
         ("hang", "still opening it when its 3 s were over"),
-        ("garbage", "no JSON"),
-        ("other", "what it was not asked"),
-        ("long", "too long"),
+        ("garbage", "not valid"),
+        ("other", "not valid"),
+        ("long", "not valid"),
         ("senseless", "makes no sense"),
         ("playing", "it was asked without playing"),
-        ("ends", "ended (exit code 3) while opening it"),
+        ("ends", "ended while opening it: it was ended from inside, with exit code 3"),
     ],
 )
 def test_a_blender_that_misbehaves_over_a_file_ends_the_matter(
     name: str, said: str, files: Path, spec: Spec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shutil.copy(files / "good.blend", tmp_path / f"{name}.blend")
-    monkeypatch.setattr(untrusted, "ENTRY", HERE / "bad_entry.py")
+    packages = {**untrusted_blend.AUDITOR.packages, "bad": HERE}
+    monkeypatch.setattr(untrusted_blend, "AUDITOR", Program("bad.bad_entry", packages))
     assert said in (audit(tmp_path / f"{name}.blend", spec, Means(seconds=3)).not_scored or "")
 
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import pytest
 from in_blender import facts_of
 
-from bench.predicates.base import Stage, Unit
-from bench.predicates.table import PREDICATES
+from bench.audit.predicates.catalogue import PREDICATES
+from bench.audit.predicates.predicate import Stage, Unit
 
 if TYPE_CHECKING:
-    from bench.facts import Scene
+    from bench.audit.facts import Scene
 
 pytestmark = pytest.mark.blender
 

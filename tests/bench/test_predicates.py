@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from in_blender import facts_of
 
-from bench.predicates.base import GROUPS, Predicate, Stage, Unit, Verdict, judged
-from bench.predicates.table import PREDICATES, by_name
+from bench.audit.predicates.catalogue import PREDICATES, by_name
+from bench.audit.predicates.predicate import GROUPS, Predicate, Stage, Unit, Verdict, judged
 
 if TYPE_CHECKING:
-    from bench.facts import Scene
-    from bench.predicates.base import Params
+    from bench.audit.facts import Scene
+    from bench.audit.predicates.predicate import Params
 
 CATALOGUE = """
 universal: renderable solver_enabled
@@ -235,7 +235,7 @@ def test_two_predicates_of_one_name_are_refused() -> None:
 
 
 def test_the_reference_lists_every_definition_and_is_up_to_date() -> None:
-    from bench.reference import NAME, reference
+    from docs.generate.benchmark_pages import NAME, reference
 
     text = reference()
     assert all(f"### `{name}`" in text for name in PREDICATES)

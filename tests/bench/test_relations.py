@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 from in_blender import run
 
-from bench.actors import find_actors
-from bench.audit import audit, read_scene
-from bench.relations import KINDS
-from bench.spec import RelationType, Spec
-from bench.spr import judge_relations
-from bench.untrusted import Untrusted
+from bench.audit.actors import find_actors
+from bench.audit.audit import audit, read_scene
+from bench.audit.relations import KINDS
+from bench.audit.spr import judge_relations
+from bench.audit.untrusted_blend import Untrusted
+from bench.scenes.spec import RelationType, Spec
 
 Case = tuple[str, str, str, bool]
 SIDES = ("LeftOf", "RightOf", "InFrontOf", "Behind")
@@ -169,8 +169,8 @@ def outcomes(told: dict[str, Any], scene: str, number: int = 0) -> list[str]:
 
 
 def test_the_reference_of_relations_is_up_to_date() -> None:
-    from bench.reference import RELATIONS
-    from bench.reference import relations as reference
+    from docs.generate.benchmark_pages import RELATIONS
+    from docs.generate.benchmark_pages import relations as reference
 
     assert (Path(__file__).parents[2] / "docs" / RELATIONS).read_text(encoding="utf-8") == reference()
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import yaml
 
-from bench.levels import level_of
-from bench.names import match
-from bench.predicates.table import PREDICATES
-from bench.spec import FOLDER, BadSpec, Spec, read_spec, spec_of, specs
-from bench.validation import PUBLISHED, faults, faults_together
+from bench.audit.names import match
+from bench.audit.predicates.catalogue import PREDICATES
+from bench.scenes.levels import level_of
+from bench.scenes.spec import FOLDER, BadSpec, Spec, read_spec, spec_of, specs
+from bench.scenes.spec_checks import PUBLISHED, faults, faults_together
 
 if TYPE_CHECKING:
     from collections.abc import Callable

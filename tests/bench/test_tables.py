@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bench.tables import Table, table
+from bench.markdown_tables import Table, table
 
 
 def test_the_lines_of_a_table_are_equally_long_and_numbers_stand_right() -> None:

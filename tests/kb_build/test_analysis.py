@@ -7,7 +7,7 @@ import string
 
 import pytest
 
-from kb_build.analysis import STOP_WORDS, key, stem, terms, words
+from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,8 @@ from pathlib import Path, PurePosixPath
 
 import pytest
 
-from kb_build.archives import Limits, safe_path, unpack
 from kb_build.errors import SourceError
+from kb_build.pages.archives import Limits, safe_path, unpack
 
 FILES = {
     "manual/index.rst": b"Title\n=====\n",
@@ -289,7 +289,7 @@ def test_what_a_killed_process_left_is_cleared_away(tmp_path: Path) -> None:
     archive = make_tar(tmp_path / "a")
     script = f"""
         import os, pathlib, signal
-        from kb_build.archives import unpack
+        from kb_build.pages.archives import unpack
         kill = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
         unpack(pathlib.Path({str(archive)!r}), pathlib.Path({str(tmp_path / "out")!r}), progress=kill)
     """
@@ -304,7 +304,7 @@ def test_a_full_disk_is_named_and_leaves_nothing_behind(tmp_path: Path) -> None:
     archive = make_zip(tmp_path / "a.zip", {"index.rst": os.urandom(1 << 20)})
     script = f"""
         import pathlib, resource
-        from kb_build.archives import unpack
+        from kb_build.pages.archives import unpack
         from kb_build.errors import SourceError
         resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536))
         try:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from built_base import Built
 
 REPO = Path(__file__).resolve().parent.parent.parent
-COMMAND = [sys.executable, "-c", "from agents.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main()"]
 
 
 def environment(home: Path, corpora: Path | None = None) -> dict[str, str]:
@@ -233,7 +233,7 @@ def test_summaries_of_a_colleague_are_taken_over(tmp_path: Path) -> None:
 
 def test_the_commands_are_listed_without_being_loaded(tmp_path: Path) -> None:
     code = (
-        "import sys\nfrom agents.cli import main\n"
+        "import sys\nfrom simworlds.cli import main\n"
         "try:\n    main(['--help'])\nexcept SystemExit as end:\n    assert not end.code\n"
         "loaded = [name for name in sys.modules if name.startswith(('kb_build', 'kb_serve', 'sphinx', 'mcp'))]\n"
         "assert loaded == [], loaded\n"

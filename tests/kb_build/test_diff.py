@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
-from kb_build.diff import Change, diff, format_diff
-from kb_build.extract import Extract
+from kb_build.blender.extract_reader import Extract
 from kb_build.records import EnumItem, Parameter, Symbol
+from kb_build.versions.diff import Change, diff, format_diff
 
 
 def extract(version: str, *symbols: Symbol) -> Extract:

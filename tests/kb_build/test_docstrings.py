@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.docstrings import call_parameters, parse_docstring
+from kb_build.blender.docstrings import call_parameters, parse_docstring
 from kb_build.records import Parameter
 
 if TYPE_CHECKING:

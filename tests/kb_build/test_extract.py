@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.blender.extract_reader import call_text, manual_links, python_value, read_extract
 from kb_build.errors import ExtractError
-from kb_build.extract import call_text, manual_links, python_value, read_extract
 from kb_build.records import Parameter, Symbol
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
 
 HEADER = {"record": "blender", "version": "5.1.2", "build": "abc", "addons": ["cycles"]}
 STRUCT = {"record": "symbol", "path": "bpy.types.bpy_struct", "kind": "class", "owner": "bpy.types"}

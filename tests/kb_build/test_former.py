@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.analysis import key
-from kb_build.former import former_symbols
-from kb_build.history import History
+from kb_build.index.analysis import key
 from kb_build.records import Symbol
+from kb_build.versions.history import History
+from kb_build.versions.removed_symbols import former_symbols
 
 if TYPE_CHECKING:
-    from kb_build.extract import Extract
-    from kb_build.former import Former
+    from kb_build.blender.extract_reader import Extract
+    from kb_build.versions.removed_symbols import Former
 
 
 @pytest.fixture(scope="module")

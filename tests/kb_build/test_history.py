@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import StoreError
-from kb_build.history import History, join_path, parse_history, split_path
+from kb_build.versions.history import History, join_path, parse_history, split_path
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import KBBuildError, StoreError
-from kb_build.history import History
-from kb_build.history_build import build_history
-from kb_build.runtime import installed_bpy
-from kb_build.versions import minor_of
+from kb_build.versions.history import History
+from kb_build.versions.history_builder import build_history
+from simworlds.releases import minor_of
+from simworlds.sandbox.runtime import installed_bpy
 
 if TYPE_CHECKING:
     from pathlib import Path

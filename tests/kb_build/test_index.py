@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kb_build.analysis import STOP_WORDS, idf, stem, terms
-from kb_build.index import (
+from kb_build.index.analysis import STOP_WORDS, idf, stem, terms
+from kb_build.index.documents import (
     FIELD_WEIGHTS,
     Doc,
     chapter_of,
@@ -23,7 +23,7 @@ from kb_build.index import (
 from kb_build.records import EnumItem, Link, Page, Parameter, Section, Symbol
 
 if TYPE_CHECKING:
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
 
 OWNER = Symbol("bpy.types.Cloth", "class", "bpy.types", label="Fabric", group="data", description="A cloth.")
 QUALITY = Symbol(

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.extraction import extract_api
-from kb_build.runtime import find_runtime
+from kb_build.blender.extractor import extract_api
+from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
     from kb_build.records import Symbol
 
 pytestmark = pytest.mark.blender

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.lines import first_sentence, literal, member_line, type_text
 from kb_build.records import EnumItem, Symbol
+from kb_build.symbol_lines import first_sentence, literal, member_line, type_text
 
 if TYPE_CHECKING:
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
 
 OWNER = "bpy.types.A"
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kb_build.analysis import stem
-from kb_build.near_words import load_near_words, near_stems
+from kb_build.index.analysis import stem
+from kb_build.index.synonyms import load_near_words, near_stems
 
 
 def rows(table: dict[str, tuple[tuple[str, int], ...]], stems: set[str]) -> dict[str, str]:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.pages.compare import Comparison, compare
-from kb_build.pages.html import read_html
-from kb_build.pages.rst import read_rst
+from kb_build.pages.readers.compare import Comparison, compare
+from kb_build.pages.readers.html import read_html
+from kb_build.pages.readers.rst import read_rst
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kb_build.records import Page
 
 pytestmark = pytest.mark.corpora
-# Of the 2,000 HTML pages, so that the test takes seconds; `python -m bench.measurements.page_forms` takes all.
+# Of the 2,000 HTML pages, so that the test takes seconds; `python -m measurements.page_forms` takes all.
 EVERY = 6
 
 

@@ -11,9 +11,9 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import docutils_namespace, patch_docutils
 
 from kb_build.errors import SourceError
-from kb_build.pages.compare import compare
-from kb_build.pages.html import read_html
-from kb_build.pages.rst import read_rst
+from kb_build.pages.readers.compare import compare
+from kb_build.pages.readers.html import read_html
+from kb_build.pages.readers.rst import read_rst
 
 if TYPE_CHECKING:
     from kb_build.records import Page
@@ -33,7 +33,7 @@ def build(sources: Path, out: Path, root: str) -> Path:
             doctreedir=out / "trees",
             buildername="html",
             confoverrides={
-                "extensions": ["kb_build.pages.blender_markup"],
+                "extensions": ["kb_build.pages.readers.blender_markup"],
                 "html_theme": "theme",
                 "html_theme_path": [str(MINI)],
                 "html_copy_source": False,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import SourceError
-from kb_build.pages.rst import read_rst
+from kb_build.pages.readers.rst import read_rst
 
 if TYPE_CHECKING:
     from kb_build.records import Page

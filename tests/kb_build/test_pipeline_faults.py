@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from built_base import Built
 
 REPO = Path(__file__).resolve().parent.parent.parent
-COMMAND = [sys.executable, "-c", "from agents.cli import main; main()", "kb", "build", "--offline"]
+COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main()", "kb", "build", "--offline"]
 
 pytestmark = [
     pytest.mark.blender,

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.reach import reached_expressions
+from kb_build.blender.access_paths import reached_expressions
 from kb_build.records import Symbol
 
 if TYPE_CHECKING:
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
 
 TYPES = "bpy.types."
 

@@ -22,7 +22,7 @@ from kb_build.records import (
 )
 
 if TYPE_CHECKING:
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
 
 FULL = Symbol(
     path='bpy.types.A.inputs["B.c"]', kind="socket", owner="bpy.types.A", label="B", description="d", type="float",

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.extract import read_extract
-from kb_build.history import History
-from kb_build.replacements import KEPT, Replacements, find_replacements
-from kb_build.versions import minor_of
+from kb_build.blender.extract_reader import read_extract
+from kb_build.versions.history import History
+from kb_build.versions.replacements import KEPT, Replacements, find_replacements
+from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

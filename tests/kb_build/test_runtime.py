@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from kb_build.errors import ExtractError, KBBuildError, RuntimeMissing
-from kb_build.runtime import Runtime, executable_version, find_runtime, installed_bpy, run_inside
-from kb_build.versions import release, releases
+from simworlds.releases import release, releases
+from simworlds.sandbox.runtime import Runtime, executable_version, find_runtime, installed_bpy, run_script
 
 REPO = Path(__file__).resolve().parents[2]
 HERE = Runtime(Path(sys.executable), "environment", "0.0.0")
@@ -72,7 +72,7 @@ def test_this_environment_is_used_when_its_bpy_fits(tmp_path: Path, bpy_version:
 def test_a_script_runs_with_this_environments_bpy(tmp_path: Path, bpy_version: str) -> None:
     runtime = find_runtime(bpy_version, home=tmp_path)
     output, log = tmp_path / "out.json", tmp_path / "logs" / "run.log"
-    run_inside(runtime, script(tmp_path, REPORT), [str(output), "two words"], timeout=120, log=log)
+    run_script(runtime, script(tmp_path, REPORT), [str(output), "two words"], timeout=120, log=log)
     report = json.loads(output.read_text())
     assert report["version"].startswith(bpy_version)
     assert report["rest"] == ["two words"]
@@ -89,7 +89,7 @@ def test_a_named_executable_is_used_and_decides_the_version(tmp_path: Path, blen
 def test_a_script_runs_in_a_named_executable(tmp_path: Path, blender: Path) -> None:
     runtime = find_runtime(None, home=tmp_path, blender_exe=blender)
     output = tmp_path / "out.json"
-    run_inside(
+    run_script(
         runtime, script(tmp_path, REPORT), [str(output), "--flag"], timeout=120, log=tmp_path / "run.log"
     )
     report = json.loads(output.read_text())
@@ -100,7 +100,7 @@ def test_a_script_runs_in_a_named_executable(tmp_path: Path, blender: Path) -> N
 def test_a_script_that_fails_in_a_named_executable_is_an_error(tmp_path: Path, blender: Path) -> None:
     runtime = find_runtime(None, home=tmp_path, blender_exe=blender)
     with pytest.raises(ExtractError, match="no such luck"):
-        run_inside(
+        run_script(
             runtime,
             script(tmp_path, "raise ValueError('no such luck')"),
             [],
@@ -162,7 +162,7 @@ def test_a_wheel_that_cannot_be_installed_is_named_with_uvs_words(tmp_path: Path
     code = f"""
         import pathlib
         from kb_build.errors import RuntimeMissing
-        from kb_build.runtime import find_runtime
+        from simworlds.sandbox.runtime import find_runtime
         try:
             find_runtime("4.2.999", home=pathlib.Path({str(tmp_path)!r}))
         except RuntimeMissing as error:
@@ -186,10 +186,10 @@ def test_a_wheel_that_cannot_be_installed_is_named_with_uvs_words(tmp_path: Path
 def test_secrets_and_python_settings_stay_outside(tmp_path: Path) -> None:
     code = f"""
         import pathlib, sys
-        from kb_build.runtime import Runtime, run_inside
+        from simworlds.sandbox.runtime import Runtime, run_inside
         runtime = Runtime(pathlib.Path(sys.executable), "environment", "0.0.0")
         folder = pathlib.Path({str(tmp_path)!r})
-        run_inside(runtime, folder / "a script.py", [], timeout=60, log=folder / "run.log")
+        run_script(runtime, folder / "a script.py", [], timeout=60, log=folder / "run.log")
     """
     script(tmp_path, "import json, os; print(json.dumps(dict(os.environ)))")
     outside = {
@@ -213,7 +213,7 @@ def test_a_failing_script_is_an_error_with_the_end_of_its_output(tmp_path: Path)
     log = tmp_path / "run.log"
     text = "print('first of many'); print('x\\n' * 5000); raise SystemExit('the last word')"
     with pytest.raises(ExtractError, match=r"(?s)exit code 1.*the last word") as caught:
-        run_inside(HERE, script(tmp_path, text), [], timeout=60, log=log)
+        run_script(HERE, script(tmp_path, text), [], timeout=60, log=log)
     assert str(log) in str(caught.value)
     assert "first of many" not in str(caught.value)
     assert "first of many" in log.read_text()
@@ -223,19 +223,19 @@ def test_a_failing_script_is_an_error_with_the_end_of_its_output(tmp_path: Path)
 def test_a_crash_is_named_by_its_signal(tmp_path: Path) -> None:
     text = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
     with pytest.raises(ExtractError, match="SIGSEGV"):
-        run_inside(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
+        run_script(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
 
 
 def test_a_missing_system_library_is_explained(tmp_path: Path) -> None:
     text = "raise ImportError('libXi.so.6: cannot open shared object file: No such file or directory')"
     with pytest.raises(ExtractError, match=r"libXi\.so\.6 is missing.*README"):
-        run_inside(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
+        run_script(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
 
 
 def test_output_that_is_no_text_does_no_harm(tmp_path: Path) -> None:
     text = "import os, sys; os.write(1, bytes(range(256))); sys.exit(5)"
     with pytest.raises(ExtractError, match="exit code 5"):
-        run_inside(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
+        run_script(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
 
 
 FAMILY = """
@@ -268,7 +268,7 @@ def wait_for(condition, seconds: float = 30.0) -> bool:
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes through /proc")
 def test_a_script_that_hangs_is_stopped_with_its_children(tmp_path: Path) -> None:
     with pytest.raises(ExtractError, match="stopped after 3 s"):
-        run_inside(HERE, script(tmp_path, FAMILY), [str(tmp_path)], timeout=3, log=tmp_path / "run.log")
+        run_script(HERE, script(tmp_path, FAMILY), [str(tmp_path)], timeout=3, log=tmp_path / "run.log")
     pids = [int(pid) for pid in (tmp_path / "pids").read_text().split()]
     assert len(pids) == 2
     assert wait_for(lambda: not any(is_alive(pid) for pid in pids))
@@ -279,10 +279,10 @@ def test_an_interrupt_stops_the_script_and_its_children(tmp_path: Path) -> None:
     script(tmp_path, FAMILY)
     code = f"""
         import pathlib, sys
-        from kb_build.runtime import Runtime, run_inside
+        from simworlds.sandbox.runtime import Runtime, run_inside
         runtime = Runtime(pathlib.Path(sys.executable), "environment", "0.0.0")
         folder = pathlib.Path({str(tmp_path)!r})
-        run_inside(runtime, folder / "a script.py", [str(folder)], timeout=600, log=folder / "run.log")
+        run_script(runtime, folder / "a script.py", [str(folder)], timeout=600, log=folder / "run.log")
     """
     caller = subprocess.Popen(
         [sys.executable, "-c", textwrap.dedent(code)],

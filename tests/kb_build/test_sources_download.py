@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.download import Patience, download
 from kb_build.errors import SourceError
-from kb_build.sources import Missing, Source, find_sources
+from kb_build.pages.download import Patience, download
+from kb_build.pages.sources import Missing, Source, find_sources
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import KBBuildError, SourceError
-from kb_build.sources import Missing, Origin, Source, find_sources
-from kb_build.versions import releases, source_names
+from kb_build.pages.sources import Missing, Origin, Source, find_sources
+from simworlds.releases import releases, source_names
 
 if TYPE_CHECKING:
     from pathlib import Path

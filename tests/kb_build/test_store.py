@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.analysis import key, short_path
 from kb_build.errors import StoreError
-from kb_build.former import Former
+from kb_build.index.analysis import key, short_path
 from kb_build.records import Deprecation, EnumItem, Link, Page, Parameter, Section, Symbol
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, pack, unpack
 from kb_build.store import Contents, write_base
+from kb_build.versions.removed_symbols import Former
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import Reader
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from kb_build.extract import Extract
+    from kb_build.blender.extract_reader import Extract
 
 CLOTH = Symbol(
     "bpy.types.ClothSettings", "class", "bpy.types", label="Cloth Settings", group="data", reached="x"

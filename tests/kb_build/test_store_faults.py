@@ -22,7 +22,7 @@ QUERY = "ClothSettings.quality"
 WRITER = """
 import sys, pathlib
 from kb_build.errors import StoreError
-from kb_build.extract import read_extract
+from kb_build.blender.extract_reader import read_extract
 from kb_build.store import Contents, write_base
 extract = read_extract(pathlib.Path(sys.argv[1]))
 print("ready", flush=True)

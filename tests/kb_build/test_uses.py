@@ -6,9 +6,9 @@ import json
 import re
 from pathlib import Path
 
-from kb_build.index import make_units
+from kb_build.index.documents import make_units
+from kb_build.index.query_expansions import load_uses
 from kb_build.records import Link, Page, Section, Symbol
-from kb_build.uses import load_uses
 
 QUERIES = Path(__file__).resolve().parents[2] / "corpora" / "queries"
 

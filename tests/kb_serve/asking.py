@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_serve.answer import Answer
+    from kb_serve.answer.answer import Answer
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import Entry, Reader
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 REPO = Path(__file__).resolve().parent.parent.parent
-COMMAND = [sys.executable, "-c", "from agents.cli import main; main(prog_name='simworlds')"]
+COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
 
 
 def environment(home: Path, **more: str) -> dict[str, str]:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, classes, of_data, paths
 
-from kb_serve.answer import LEAST_TOKENS, MAX_LIMIT
-from kb_serve.budget import tokens
+from kb_serve.answer.answer import LEAST_TOKENS, MAX_LIMIT
+from kb_serve.answer.budget import tokens
 from kb_serve.errors import BadQuery
 
 if TYPE_CHECKING:
-    from kb_serve.answer import Answer
+    from kb_serve.answer.answer import Answer
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import Reader
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.budget import tokens
+from kb_serve.answer.budget import tokens
 from kb_serve.errors import BadQuery
 
 if TYPE_CHECKING:

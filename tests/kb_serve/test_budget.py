@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from kb_serve.budget import Block, clip, paginate, tokens
+from kb_serve.answer.budget import Block, clip, paginate, tokens
 
 WORDS = (
     "the",

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from kb_serve.chains import MAX_QUERY, Step, find_chains
+from kb_serve.recognise.chains import MAX_QUERY, Step, find_chains
 
 
 def steps(text: str) -> list[tuple[str, str]]:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, classes, misspelt, of_data, owner_and_name
 
-from kb_serve.chains import find_chains
-from kb_serve.corrections import LIKELY, Corrector, Drifts, nearest, similarity
-from kb_serve.walk import Walker
+from kb_serve.recognise.chains import find_chains
+from kb_serve.recognise.corrections import LIKELY, Corrector, Drifts, nearest, similarity
+from kb_serve.recognise.resolver import Walker
 
 if TYPE_CHECKING:
     from kb_serve.reader import Reader

@@ -21,8 +21,8 @@ from mcp import Client
 from mcp.client.streamable_http import streamable_http_client
 from running import COMMAND, REPO, HttpServer, environment
 
-from kb_serve.http import Address, CannotServe, check, is_loopback
 from kb_serve.knowledge_base import KnowledgeBase
+from simworlds.mcp_transport.http import Address, CannotServe, check, is_loopback
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

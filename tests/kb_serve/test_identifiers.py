@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, TYPES, camel, classes, misspelt, of_data, owner_and_name, paths, spaced, wrong
 
-from kb_build.analysis import key
+from kb_build.index.analysis import key
 from kb_build.schema import FORM_SHORT
 
 if TYPE_CHECKING:

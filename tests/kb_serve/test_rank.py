@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import paths
 
-from kb_serve.rank import SURE, Ranker
+from kb_serve.rank.ranking import SURE, Ranker
 
 if TYPE_CHECKING:
     from kb_serve.reader import Reader

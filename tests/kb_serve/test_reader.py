@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, TYPES, classes, of_data, paths
 
-from kb_build.analysis import key
+from kb_build.index.analysis import key
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION
 from kb_serve.errors import BaseMissing, BaseUnreadable
 from kb_serve.knowledge_base import KnowledgeBase

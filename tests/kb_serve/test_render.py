@@ -8,7 +8,7 @@ import pytest
 from asking import classes, of_data, paths
 
 from kb_build.records import Deprecation, EnumItem, Parameter, Section, Symbol
-from kb_serve.render import Renderer, definition_of, facts
+from kb_serve.answer.render import Renderer, definition_of, facts
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, of_data
 
-from kb_build.analysis import STOP_WORDS, stem, telling_words, terms
-from kb_build.uses import load_uses
-from kb_serve import search
-from kb_serve.search import Searcher
+from kb_build.index.analysis import STOP_WORDS, stem, telling_words, terms
+from kb_build.index.query_expansions import load_uses
+from kb_serve.rank import search
+from kb_serve.rank.search import Searcher
 
 if TYPE_CHECKING:
     from kb_serve.reader import Reader

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 from running import COMMAND, REPO, Wire, environment
 
-from kb_serve.budget import tokens
+from kb_serve.answer.budget import tokens
 from kb_serve.errors import BaseMissing
 from kb_serve.in_use import blender_in_use, minor
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from kb_serve.answer import Answer
+    from kb_serve.answer.answer import Answer
     from kb_serve.service import Service
 
     MakeBase = Callable[..., Path]

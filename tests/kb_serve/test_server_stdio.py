@@ -91,7 +91,7 @@ def flood():
         print("noise from Python")
         time.sleep(0.001)
 threading.Thread(target=flood, daemon=True).start()
-from agents.cli import main
+from simworlds.cli import main
 main(["serve"])
 """
 

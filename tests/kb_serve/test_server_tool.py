@@ -12,8 +12,8 @@ import pytest
 from mcp import Client
 from mcp.shared.exceptions import MCPError
 
-from kb_serve.answer import Answer, Hit
-from kb_serve.budget import tokens
+from kb_serve.answer.answer import Answer, Hit
+from kb_serve.answer.budget import tokens
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.server import make_server
 from kb_serve.service import Service

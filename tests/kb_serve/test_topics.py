@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.topics import Topics
+from kb_serve.rank.topics import Topics
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, TYPES, classes, first_id, wrong
 
-from kb_serve.chains import find_chains
-from kb_serve.walk import Walker, variable_fit
+from kb_serve.recognise.chains import find_chains
+from kb_serve.recognise.resolver import Walker, variable_fit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,9 +7,10 @@ import sys
 import traceback
 
 import bpy
-import steadiness
-from changes import Watch
-from suspects import names_there, suspect
+
+from . import interpreter_state
+from .api_suspects import names_there, suspect
+from .changes import Watch
 
 FILE = "<blender_execute>"
 _LONGEST_VALUE = 4000
@@ -32,7 +33,7 @@ def execute(arguments, report):
     # Code may have bent what tells the outcome, or set a tracer on it or an alarm, which raise and are gone then.
     for _ in range(3):
         try:
-            steadiness.current.put_names_back()
+            interpreter_state.current.put_names_back()
             break
         except Exception:
             continue

@@ -9,9 +9,11 @@ import math
 
 import bpy
 from mathutils import Matrix, Vector
-from refusal import Refused
-from state_extents import Extents, evaluated_graph
-from tag import CONTACT, OBJECT, ROLE, ROOT, SYSTEM, WITH_SURFACE, tag
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from .state.world_extents import Extents, evaluated_graph
+from .tag import CONTACT, OBJECT, ROLE, ROOT, SYSTEM, WITH_SURFACE, tag
 
 _EMPTY_SHARE = 0.25  # of the object's diagonal: how large its root is drawn
 

@@ -6,7 +6,8 @@ import functools
 import re
 
 import bpy
-from refusal import Refused
+
+from simworlds.sandbox.inside.refusal import Refused
 
 ROLE, ROOT, CONTACT = "protocol_role", "is_object_root", "contact_with"
 ONLY_ON_OBJECTS = ("deformation_kind", "motion_kind", "allows_disconnected")

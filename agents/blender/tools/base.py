@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from agents.blender.errors import Refusal
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from agents.blender.process import Progress
     from agents.blender.supervisor import Supervisor
+    from simworlds.sandbox.blender_process import Progress
 
 
 class Arguments(BaseModel):

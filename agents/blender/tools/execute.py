@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from agents.blender.errors import Untrustworthy
 from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+from simworlds.sandbox.errors import Untrustworthy
 
 if TYPE_CHECKING:
     from agents.blender.checkpoints import Checkpoint
-    from agents.blender.process import Reply
+    from simworlds.sandbox.blender_process import Reply
 
 LONGEST_CODE = 400_000
 _LONGEST_PRINT = 8_000

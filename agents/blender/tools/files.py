@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from agents.blender.checkpoints import KEPT
-from agents.blender.errors import Refusal, ToolBroke
-from agents.blender.saved import (
+from agents.blender.saved_files import (
     WRITTEN,
     Cache,
     External,
@@ -28,6 +27,7 @@ from agents.blender.saved import (
     take_all,
 )
 from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+from simworlds.sandbox.errors import Refusal, ToolBroke
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from agents.blender.bounds import sweep
-from agents.blender.errors import ToolBroke
-from agents.blender.motion_drawing import WIDTH, draw_sheets
-from agents.blender.motion_reply import ActorMotion, Frame, Motion, Stretch
-from agents.blender.sheets import GAP
+from agents.blender.sheets.contact_sheet import GAP
+from agents.blender.sheets.motion_reply import ActorMotion, Frame, Motion, Stretch
+from agents.blender.sheets.motion_sheet_image import WIDTH, draw_sheets
 from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
+from simworlds.sandbox.errors import ToolBroke
+from simworlds.sandbox.usage import sweep
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 from pydantic import Field
 
-from agents.blender import sheets
-from agents.blender.lettering import told_length
+from agents.blender.sheets import contact_sheet
+from agents.blender.sheets.text_layout import told_length
 from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from agents.blender.run_folder import RunFolder
 
 PANEL = 384  # pixels a side
-_BACKGROUND: sheets.Colour = (198, 202, 208)
+_BACKGROUND: contact_sheet.Colour = (198, 202, 208)
 _LAST_FRAME = 1_048_574
 
 
@@ -114,7 +114,7 @@ def _preview(session: Session, kind: str, name: str | None, asked: View, call: C
     data: dict[str, Any] = reply.value
     size = [high - low for low, high in zip(data["low"], data["high"], strict=True)]
     panels = [_panel(folder, view, size) for view in data["views"]]
-    png = sheets.to_png(_sheet(kind, data, panels))
+    png = contact_sheet.to_png(_sheet(kind, data, panels))
     path = _place(folder, kind, data)
     _write(path, png)
     for view in data["views"]:
@@ -126,20 +126,20 @@ def _preview(session: Session, kind: str, name: str | None, asked: View, call: C
 # The sheet
 
 
-def _panel(folder: RunFolder, view: dict[str, Any], size: list[float]) -> sheets.Panel:
+def _panel(folder: RunFolder, view: dict[str, Any], size: list[float]) -> contact_sheet.Panel:
     """The panel of a view, from the picture that Blender left in the workspace, which is removed."""
     with folder.open_made(view["file"]) as file:
-        picture = sheets.read_png(file, _BACKGROUND)
+        picture = contact_sheet.read_png(file, _BACKGROUND)
     with contextlib.suppress(OSError):
         (folder.workspace / view["file"]).unlink()
     picture = picture.resize(tuple(view["size"]), Image.Resampling.LANCZOS)
     if view["ground"] is not None:
-        sheets.draw_level(picture, view["ground"], "z = 0")
+        contact_sheet.draw_level(picture, view["ground"], "z = 0")
     if view["metres_per_pixel"]:
-        sheets.draw_scale_bar(picture, view["metres_per_pixel"])
-    sheets.draw_labels(picture, view["labels"])
-    sheets.draw_axes(picture, view["axes"])
-    return sheets.Panel(picture, view["name"], view.get("lens") or _across(view["name"], size))
+        contact_sheet.draw_scale_bar(picture, view["metres_per_pixel"])
+    contact_sheet.draw_labels(picture, view["labels"])
+    contact_sheet.draw_axes(picture, view["axes"])
+    return contact_sheet.Panel(picture, view["name"], view.get("lens") or _across(view["name"], size))
 
 
 def _across(view: str, size: list[float]) -> str:
@@ -148,11 +148,11 @@ def _across(view: str, size: list[float]) -> str:
     return " · ".join(f"{letter} {told_length(size['XYZ'.index(letter)])}" for letter in shown)
 
 
-def _sheet(kind: str, data: dict[str, Any], panels: list[sheets.Panel]) -> Image.Image:
-    blocks = [sheets.grid(panels[:4], 2)]
+def _sheet(kind: str, data: dict[str, Any], panels: list[contact_sheet.Panel]) -> Image.Image:
+    blocks = [contact_sheet.grid(panels[:4], 2)]
     if len(panels) > 4:
-        blocks = [sheets.grid(panels[:3], 3), sheets.grid(panels[3:], 2)]
-    return sheets.sheet(
+        blocks = [contact_sheet.grid(panels[:3], 3), contact_sheet.grid(panels[3:], 2)]
+    return contact_sheet.sheet(
         f"{kind.capitalize()}: {data['title']}",
         blocks,
         subtitle=f"frame {data['frame']} · {_size_of(data)} · {_counted(data['objects'], 'object')}",

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from agents.blender.errors import BlenderError, Refusal
-from agents.blender.looks import faults, shown
-from agents.blender.pace import Pace
-from agents.blender.reel import Reel
-from agents.blender.shoot import Shoot
-from agents.blender.takes import Single, Taken, take
+from agents.blender.render.frame_cache import Reel
+from agents.blender.render.frame_renderer import Shoot
+from agents.blender.render.image_checks import faults, shown
+from agents.blender.render.render_budget import Pace
+from agents.blender.render.render_loop import Single, Taken, take
 from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
+from simworlds.sandbox.errors import BlenderError, Refusal
 
 if TYPE_CHECKING:
     from pathlib import Path

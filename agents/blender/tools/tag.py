@@ -6,10 +6,10 @@ from typing import Any
 
 from pydantic import ConfigDict, Field
 
-from agents.blender.errors import Refusal
 from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
 from agents.protocol import vocabulary
 from agents.protocol.vocabulary import DeformationKind, MotionKind, Role, meaning_of
+from simworlds.sandbox.errors import Refusal
 
 _SECONDS = 60.0
 _MOST = 1000

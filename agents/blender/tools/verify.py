@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
-from agents.blender.errors import Refusal
-from agents.blender.findings_image import draw_findings
+from agents.blender.sheets.findings_sheet import draw_findings
 from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
 from agents.blender.verification import verify_scene
-from agents.protocol.asked import plan_from, rules_named
-from agents.protocol.report import Checked, as_json, as_text
+from agents.protocol.report.report import Checked, as_json, as_text
+from agents.protocol.verify_request import plan_from, rules_named
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.plan.relations import Distributed, SymmetricAbout
-from agents.protocol.measures import Boxes, Measures, Poses, Request, Unmeasured
-from agents.protocol.moments import anchor, angle, placed
-from agents.protocol.patterns import fit_grid, fit_ring, fit_row, mirrored
-from agents.protocol.relating import Miss, asked, judged
+from agents.protocol.judging.patterns import fit_grid, fit_ring, fit_row, mirrored
+from agents.protocol.judging.relation_judge import Miss, asked, judged
+from agents.protocol.judging.sample_frames import anchor, angle, placed
+from agents.protocol.measures.measure import Boxes, Measures, Poses, Request, Unmeasured
 from agents.protocol.rule import Rule, Subject
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from agents.protocol.facts import Vector
     from agents.protocol.findings import Finding
-    from agents.protocol.moments import Array
-    from agents.protocol.patterns import Ring
+    from agents.protocol.judging.patterns import Ring
+    from agents.protocol.judging.sample_frames import Array
 
 _SHOWN = 12  # gaps in a sentence
 

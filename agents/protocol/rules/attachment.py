@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from agents.plan.relations import Aperture, FixedAttachment
-from agents.protocol.measures import Gap, Measures, Poses, Request, Unmeasured
-from agents.protocol.measures_contact import Depth, Opening
-from agents.protocol.moments import anchor, moments, moves, placed
-from agents.protocol.moving import across, told_move
-from agents.protocol.pairs import smallest_diagonal
-from agents.protocol.relating import Miss, asked, judged, smallest, surfaces
+from agents.protocol.judging.contact_pairs import smallest_diagonal
+from agents.protocol.judging.move_advice import across, told_move
+from agents.protocol.judging.relation_judge import Miss, asked, judged, smallest, surfaces
+from agents.protocol.judging.sample_frames import anchor, moments, moves, placed
+from agents.protocol.measures.contact import Depth, Opening
+from agents.protocol.measures.measure import Gap, Measures, Poses, Request, Unmeasured
 from agents.protocol.rule import Rule, Subject
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from agents.protocol.facts import Box, ObjectFacts
     from agents.protocol.findings import Finding
-    from agents.protocol.moments import Array
+    from agents.protocol.judging.sample_frames import Array
 
 # What carries an object, or a mesh, along with its target.
 _CARRYING = frozenset({"CHILD_OF", "COPY_LOCATION", "COPY_TRANSFORMS", "ARMATURE", "PIVOT", "FOLLOW_PATH"})

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from agents.plan.base import owner_of
+from agents.plan.part import owner_of
 from agents.plan.relations import CoMoves
-from agents.protocol.measures import Measures, Unmeasured
-from agents.protocol.measures_motion import Together
-from agents.protocol.pairs import diagonal_around
-from agents.protocol.phases import RESTING, body_of
-from agents.protocol.relating import planned
+from agents.protocol.judging.contact_pairs import diagonal_around
+from agents.protocol.judging.phases import RESTING, body_of
+from agents.protocol.judging.relation_judge import planned
+from agents.protocol.measures.measure import Measures, Unmeasured
+from agents.protocol.measures.motion import Together
 from agents.protocol.rule import Idle, Rule, Subject
 
 if TYPE_CHECKING:

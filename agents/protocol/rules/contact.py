@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from agents.protocol.measures import Gap, GapMeasure, Measures, Names, Unmeasured
-from agents.protocol.moments import moments
-from agents.protocol.moving import across, told_join
-from agents.protocol.pairs import Contact, declared, smallest_diagonal
+from agents.protocol.judging.contact_pairs import Contact, declared, smallest_diagonal
+from agents.protocol.judging.move_advice import across, told_join
+from agents.protocol.judging.sample_frames import moments
+from agents.protocol.measures.measure import Gap, GapMeasure, Measures, Names, Unmeasured
 from agents.protocol.rule import Idle, Rule, Subject
 
 if TYPE_CHECKING:

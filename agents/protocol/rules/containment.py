@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from agents.plan.relations import EmbeddedIn, Inside
-from agents.protocol.measures_contact import Embedding, Enclosure
-from agents.protocol.relating import Miss, asked, judged, smallest, surfaces
+from agents.protocol.judging.relation_judge import Miss, asked, judged, smallest, surfaces
+from agents.protocol.measures.contact import Embedding, Enclosure
 from agents.protocol.rule import Rule, Subject
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from agents.protocol.findings import Finding
-    from agents.protocol.measures import Measures, Request
+    from agents.protocol.measures.measure import Measures, Request
 
 
 def _request(subject: Subject, relation: Inside | EmbeddedIn, frame: int | None) -> Enclosure | Embedding:

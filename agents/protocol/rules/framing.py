@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.protocol.measures import Measures, Unmeasured
-from agents.protocol.measures_motion import View
-from agents.protocol.phases import body_of
+from agents.protocol.judging.phases import body_of
+from agents.protocol.measures.measure import Measures, Unmeasured
+from agents.protocol.measures.motion import View
 from agents.protocol.rule import Idle, Rule, Subject
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from agents.protocol.findings import Finding
-    from agents.protocol.measures_motion import ViewMeasure
+    from agents.protocol.measures.motion import ViewMeasure
 
 
 def _subjects(subject: Subject) -> tuple[str, ...]:

@@ -6,8 +6,8 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from agents.protocol.measures import Measures, Pieces, Unmeasured
-from agents.protocol.pairs import declared, diagonal_around
+from agents.protocol.judging.contact_pairs import declared, diagonal_around
+from agents.protocol.measures.measure import Measures, Pieces, Unmeasured
 from agents.protocol.rule import Idle, Rule, Subject
 
 if TYPE_CHECKING:

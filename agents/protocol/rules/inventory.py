@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from agents.protocol.facts import ObjectFacts
     from agents.protocol.findings import Finding
-    from agents.protocol.measures import Measures
+    from agents.protocol.measures.measure import Measures
 
 
 def _judge(subject: Subject, _measures: Measures) -> Iterator[Finding]:

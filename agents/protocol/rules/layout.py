@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from agents.protocol.findings import Finding
-    from agents.protocol.measures import Measures
+    from agents.protocol.measures.measure import Measures
 
 _NUMBERED = re.compile(r"\.\d{3,}$")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.protocol.mechanisms import (
+from agents.protocol.judging.mechanisms import (
     FEWEST_DENSE,
     SOLVERS,
     at_work,
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from agents.protocol.facts import CacheFacts
     from agents.protocol.findings import Finding
-    from agents.protocol.measures import Measures
+    from agents.protocol.measures.measure import Measures
     from agents.protocol.structure import Thing
 
 

@@ -6,11 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agents.protocol.measures import Measures, Request, Unmeasured
-from agents.protocol.measures_motion import Touches
-from agents.protocol.moments import angle
-from agents.protocol.pairs import smallest_diagonal
-from agents.protocol.phases import (
+from agents.protocol.judging.contact_pairs import smallest_diagonal
+from agents.protocol.judging.phases import (
     RESTING,
     acting,
     meshes_of,
@@ -22,6 +19,9 @@ from agents.protocol.phases import (
     span,
     told,
 )
+from agents.protocol.judging.sample_frames import angle
+from agents.protocol.measures.measure import Measures, Request, Unmeasured
+from agents.protocol.measures.motion import Touches
 from agents.protocol.rule import Idle, Rule, Subject
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     from agents.plan.motion import Phase
     from agents.protocol.findings import Finding
-    from agents.protocol.moments import Array
-    from agents.protocol.phases import Motion
+    from agents.protocol.judging.phases import Motion
+    from agents.protocol.judging.sample_frames import Array
 
 _SWAYING = frozenset({"swing", "bounce"})  # they come back: what counts is how far they got
 

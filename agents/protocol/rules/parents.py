@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from agents.protocol.findings import Finding
-    from agents.protocol.measures import Measures
+    from agents.protocol.measures.measure import Measures
     from agents.protocol.structure import Structure, Thing
 
 

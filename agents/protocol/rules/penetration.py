@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from agents.protocol.measures import Crossing, Crossings, Measures, Unmeasured
-from agents.protocol.moving import told_join
-from agents.protocol.pairs import may_cross
+from agents.protocol.judging.contact_pairs import may_cross
+from agents.protocol.judging.move_advice import told_join
+from agents.protocol.measures.measure import Crossing, Crossings, Measures, Unmeasured
 from agents.protocol.rule import Idle, Rule, Subject
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from agents.protocol.findings import Finding
-    from agents.protocol.measures import Names
+    from agents.protocol.measures.measure import Names
 
 _DECLARE = "or, if they are meant to touch or be fitted into each other, say so (contact_with, the plan)"
 _FAR = 2.0  # times the depth: where a move along an axis is longer, another way out is shorter

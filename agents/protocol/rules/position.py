@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from agents.plan.relations import Direction, Facing, NextTo, OnTopOf, ParallelTo, Upright
-from agents.protocol.measures import Extents, Gap, Unmeasured
-from agents.protocol.measures_position import Beside, Over
-from agents.protocol.moments import anchor, angle, pose, poses
-from agents.protocol.pairs import smallest_diagonal
-from agents.protocol.relating import Miss, asked, judged, surfaces
+from agents.protocol.judging.contact_pairs import smallest_diagonal
+from agents.protocol.judging.relation_judge import Miss, asked, judged, surfaces
+from agents.protocol.judging.sample_frames import anchor, angle, pose, poses
+from agents.protocol.measures.measure import Extents, Gap, Unmeasured
+from agents.protocol.measures.position import Beside, Over
 from agents.protocol.rule import Rule, Subject
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from agents.protocol.facts import Vector
     from agents.protocol.findings import Finding
-    from agents.protocol.measures import Measures, Names, Request
-    from agents.protocol.moments import Array
+    from agents.protocol.judging.sample_frames import Array
+    from agents.protocol.measures.measure import Measures, Names, Request
 
 # Direction → (which axis of the frame, which way). Front is −Y, as in Blender's front view.
 _SIDES = {

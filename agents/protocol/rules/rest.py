@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agents.protocol.measures import Measures, Request, Unmeasured
-from agents.protocol.phases import RESTING, acting, motion_of, paths, rest_speed, resting, told
+from agents.protocol.judging.phases import RESTING, acting, motion_of, paths, rest_speed, resting, told
+from agents.protocol.measures.measure import Measures, Request, Unmeasured
 from agents.protocol.rule import Rule, Subject
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from agents.plan.motion import Phase
     from agents.protocol.findings import Finding
-    from agents.protocol.phases import Motion
+    from agents.protocol.judging.phases import Motion
 
 
 def _still(subject: Subject) -> Iterator[tuple[int, Phase]]:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.protocol.measures import Extents, Measures, Poses, Surface, Unmeasured
-from agents.protocol.moments import anchor, beginning, placed, rotation, turned
+from agents.protocol.judging.sample_frames import anchor, beginning, placed, rotation, turned
+from agents.protocol.measures.measure import Extents, Measures, Poses, Surface, Unmeasured
 from agents.protocol.rule import Idle, Rule, Subject
 
 if TYPE_CHECKING:

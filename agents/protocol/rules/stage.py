@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from agents.protocol.findings import Finding
-    from agents.protocol.measures import Measures
+    from agents.protocol.measures.measure import Measures
 
 DIM = 1e-3  # a world that shines less lights nothing
 

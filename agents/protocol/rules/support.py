@@ -6,12 +6,12 @@ import math
 from typing import TYPE_CHECKING
 
 from agents.plan.relations import Aperture, EmbeddedIn, FixedAttachment, Inside, StableAgainst, SupportedBy
-from agents.protocol.balance import balance
-from agents.protocol.measures import Gap, Measures, Request
-from agents.protocol.measures_contact import Depth, Flush, Support
-from agents.protocol.moving import across, told_move
-from agents.protocol.pairs import smallest_diagonal
-from agents.protocol.relating import Miss, asked, judged, planned, smallest, surfaces
+from agents.protocol.judging.balance import balance
+from agents.protocol.judging.contact_pairs import smallest_diagonal
+from agents.protocol.judging.move_advice import across, told_move
+from agents.protocol.judging.relation_judge import Miss, asked, judged, planned, smallest, surfaces
+from agents.protocol.measures.contact import Depth, Flush, Support
+from agents.protocol.measures.measure import Gap, Measures, Request
 from agents.protocol.rule import Rule, Subject
 
 if TYPE_CHECKING:

@@ -6,7 +6,8 @@ Caches cover the clip. Masses are kilograms, turns radians.
 
 import bpy
 from mathutils import Matrix, Vector
-from stage import FPS, keys, last
+
+from .stage import FPS, keys, last
 
 
 def cloth(thing, *, pins="", mass=0.3, quality=6, self_collision=False, stiffness=15.0, distance=0.012):

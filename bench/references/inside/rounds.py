@@ -3,7 +3,7 @@
 
 import math
 
-from things import revolved
+from .things import revolved
 
 
 def around(radius, count):

@@ -11,7 +11,8 @@ from itertools import pairwise
 import bmesh
 import bpy
 from mathutils import Matrix, Vector
-from stage import paint
+
+from .stage import paint
 
 
 def mesh(name, points, faces, at=(0, 0, 0), **look):

@@ -6,7 +6,7 @@ import struct
 import zlib
 from typing import TYPE_CHECKING, Any
 
-from agents.models.base import Ask, Message, Tool, Turn, user
+from simworlds.llm.messages import Ask, Message, Tool, Turn, user
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from fake_messages_api import FakeMessagesAPI
 
-from agents.models.claude import Claude, Settings
+from simworlds.llm.claude import Claude, Settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from agents.models.retries import Retry
+    from simworlds.llm.retries import Retry
 
 
 class Told:

@@ -11,10 +11,10 @@ import pytest
 from asks import LOOK, MESSAGES, OPUS, ask, png
 from fake_messages_api import Reply, Stall, Status
 
-from agents.models.base import Kept, Message, Picture, Text, Tool, ToolResult, ToolUse, Usage, user
-from agents.models.claude import Claude, Settings
-from agents.models.errors import CutShort, Refused, Rejected, TooLong
-from agents.models.prices import Price, Prices
+from simworlds.llm.claude import Claude, Settings
+from simworlds.llm.errors import CutShort, Refused, Rejected, TooLong
+from simworlds.llm.messages import Kept, Message, Picture, Text, Tool, ToolResult, ToolUse, Usage, user
+from simworlds.llm.prices import Price, Prices
 
 CALL = {
     "type": "tool_use",

@@ -8,10 +8,10 @@ import pytest
 from asks import LOOK, RUN, ask, png
 from fake_messages_api import Reply
 
-from agents.models import tokens
-from agents.models.base import Kept, Message, Picture, Text, ToolResult, ToolUse, user
-from agents.models.context import GONE, Limits, fit
-from agents.models.errors import TooLong
+from simworlds.llm import tokens
+from simworlds.llm.context import GONE, Limits, fit
+from simworlds.llm.errors import TooLong
+from simworlds.llm.messages import Kept, Message, Picture, Text, ToolResult, ToolUse, user
 
 PLAN = "The plan: a table with twelve dominoes."
 SMALL = Limits(budget=8000, pictures=6, down_to=0.6, newest=2, long=400)

@@ -26,11 +26,11 @@ from fake_messages_api import (
     Truncate,
 )
 
-from agents.models.base import Kept, Text, ToolUse, Usage
-from agents.models.claude import Claude, Settings
-from agents.models.errors import ModelError, OverBudget, Rejected, Unreachable
-from agents.models.retries import Patience
-from agents.models.spending import Metered, Spending
+from simworlds.llm.claude import Claude, Settings
+from simworlds.llm.errors import ModelError, OverBudget, Rejected, Unreachable
+from simworlds.llm.messages import Kept, Text, ToolUse, Usage
+from simworlds.llm.retries import Patience
+from simworlds.llm.spending import Metered, Spending
 
 CONTENT = (
     {"type": "thinking", "thinking": "A table first.", "signature": "signed"},

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import pytest
 from asks import ask
 
-from agents.models.base import Message, Text, ToolResult, ToolUse, user, whole
-from agents.models.errors import BadRecord, CutShort, Drifted, Refused
-from agents.models.handwritten import read_turn
-from agents.models.recorded import Recorded
+from simworlds.llm.errors import BadRecord, CutShort, Drifted, Refused
+from simworlds.llm.messages import Message, Text, ToolResult, ToolUse, user, whole
+from simworlds.llm.recorded import Recorded
+from simworlds.llm.transcript import read_turn
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -12,15 +12,15 @@ import pytest
 from asks import Scripted, ask, png
 from fake_messages_api import Reply
 
-from agents.models.base import Kept, Message, Picture, Text, ToolResult, ToolUse, Turn, Usage, user
-from agents.models.canonical import alike, form_of, normal
-from agents.models.errors import BadRecord, CutShort, Drifted, Refused, Stopped
-from agents.models.recorded import Recorded, Recording
+from simworlds.llm.canonical import alike, form_of, normal
+from simworlds.llm.errors import BadRecord, CutShort, Drifted, Refused, Stopped
+from simworlds.llm.messages import Kept, Message, Picture, Text, ToolResult, ToolUse, Turn, Usage, user
+from simworlds.llm.recorded import Recorded, Recording
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.models.base import Ask
+    from simworlds.llm.messages import Ask
 
 
 def says(text: str, **changes: Any) -> Turn:

@@ -8,11 +8,11 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from asks import OPUS, Scripted, ask
 
-from agents.models import tokens
-from agents.models.base import Text, Turn, Usage
-from agents.models.errors import CutShort, OverBudget, Refused, Unreachable
-from agents.models.prices import PRICES, Price, Prices, read_price
-from agents.models.spending import Metered, Spending
+from simworlds.llm import tokens
+from simworlds.llm.errors import CutShort, OverBudget, Refused, Unreachable
+from simworlds.llm.messages import Text, Turn, Usage
+from simworlds.llm.prices import PRICES, Price, Prices, read_price
+from simworlds.llm.spending import Metered, Spending
 
 
 def turn(dollars: float | None = 0.10, live: bool = True, **usage: int) -> Turn:

@@ -9,9 +9,9 @@ import pytest
 from asks import Scripted, ask
 from pydantic import BaseModel, ConfigDict, Field
 
-from agents.models.base import Text, ToolResult, ToolUse, Turn, Usage
-from agents.models.errors import CutShort, Misfit, Refused
-from agents.models.structured import ask_for, fits, read
+from simworlds.llm.errors import CutShort, Misfit, Refused
+from simworlds.llm.messages import Text, ToolResult, ToolUse, Turn, Usage
+from simworlds.llm.structured import ask_for, fits, read
 
 
 class Part(BaseModel):

@@ -9,14 +9,14 @@ from asks import LOOK, MESSAGES, RUN, ask, png
 from fake_messages_api import Reply
 from pydantic import BaseModel
 
-from agents.models.base import Kept, Picture, Text, ToolResult, user
-from agents.models.context import Limits, fit
-from agents.models.recorded import Recorded, Recording
-from agents.models.spending import Metered, Spending
-from agents.models.structured import ask_for, fits
+from simworlds.llm.context import Limits, fit
+from simworlds.llm.messages import Kept, Picture, Text, ToolResult, user
+from simworlds.llm.recorded import Recorded, Recording
+from simworlds.llm.spending import Metered, Spending
+from simworlds.llm.structured import ask_for, fits
 
 if TYPE_CHECKING:
-    from agents.models.base import Message, Model
+    from simworlds.llm.messages import Message, Model
 
 LIMITS = Limits(budget=2500, pictures=4, newest=2, long=300)
 

@@ -18,7 +18,7 @@ _SECONDS = 240.0
 _MAIN = """\
 import pytest
 from sittings import make_small
-from agents.cli import main
+from simworlds.cli import main
 
 with pytest.MonkeyPatch.context() as patch:
     make_small(patch)

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from sittings import at_home, go_on, sit
 
-from agents.pipeline.journal import KEYS, NAME, Journal
+from agents.loop.journal import KEYS, NAME, Journal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-    from agents.pipeline.journal import Row
+    from agents.loop.journal import Row
 
 Event = tuple[Any, ...]
 _SECONDS = 240.0

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from fake_messages_api import FakeMessagesAPI, Reply
 
-from agents.blender.sandbox import best_sandbox
-from agents.blender.sessions import Setup
+from agents.blender.blender_sessions import Setup
 from agents.blender.tools import previews
-from agents.models.claude import Claude
-from agents.pipeline import answering, judging
-from agents.pipeline.journal import NAME, Row, read_rows
-from agents.pipeline.options import Limits, Options
-from agents.pipeline.sitting import Ended, Sitting, Stop, begin, resume
-from agents.pipeline.toolbox import Toolbox
+from agents.loop import answer_source, judging
+from agents.loop.journal import NAME, Row, read_rows
+from agents.loop.options import Limits, Options
+from agents.loop.session import Ended, Sitting, Stop, begin, resume
+from agents.loop.toolbox import Toolbox
+from simworlds.llm.claude import Claude
+from simworlds.sandbox.confinement import best_sandbox
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,7 +33,7 @@ def make_small(patch: pytest.MonkeyPatch) -> None:
     """Pictures of few pixels, and no pauses before a model is asked again."""
     patch.setattr(previews, "PANEL", 48)
     patch.setattr(judging, "_STILL", {"kind": "still", "name": "look", "width": 48, "samples": 1})
-    patch.setattr(answering, "Claude", lambda **given: Claude(**{**given, "pause": lambda seconds: None}))
+    patch.setattr(answer_source, "Claude", lambda **given: Claude(**{**given, "pause": lambda seconds: None}))
 
 
 @contextmanager

@@ -12,12 +12,12 @@ from PIL import Image
 from sittings import answered, asked_of, scenes, sit
 from team import DONE, Team, reply, run, words_of
 
-from agents.blender.sandbox import best_sandbox
-from agents.blender.sessions import Setup
-from agents.pipeline.errors import Unusable
-from agents.pipeline.events import told_event
-from agents.pipeline.retelling import read_history
-from agents.pipeline.toolbox import Toolbox
+from agents.blender.blender_sessions import Setup
+from agents.loop.errors import Unusable
+from agents.loop.reducer import read_history
+from agents.loop.toolbox import Toolbox
+from agents.views.event_lines import told_event
+from simworlds.sandbox.confinement import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -336,7 +336,7 @@ def test_the_command_says_what_is_wrong_with_a_file_and_nothing_of_resuming(tmp_
     path = tmp_path / "bad.blend"
     path.write_text("This is no .blend.")
     given = ["edit", str(path), "Make it blue", "--run", str(tmp_path / "run")]
-    code = "from agents.cli import main; main()"
+    code = "from simworlds.cli import main; main()"
     done = subprocess.run([sys.executable, "-c", code, *given], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == f"Error: {path} is no .blend: it does not begin as one.\n"

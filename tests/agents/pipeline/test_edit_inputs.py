@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from PIL import Image
 
-from agents.pipeline.baseline import new_findings
-from agents.pipeline.errors import Unusable
-from agents.pipeline.inputs import picture
+from agents.loop.edit.baseline import new_findings
+from agents.loop.edit.inputs import picture
+from agents.loop.errors import Unusable
 from agents.plan.edit import EditPlan, unknown_targets
 
 if TYPE_CHECKING:

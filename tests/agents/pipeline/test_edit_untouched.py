@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from agents.pipeline.untouched import Blocks, compared
+from agents.loop.edit.untouched import Blocks, compared
 from agents.plan.edit import EditPlan
 
 File = dict[str, dict[str, Any]]

@@ -9,10 +9,10 @@ import pytest
 from domino_run import dominoes, finding
 from sample_runs import Tape, write
 
-from agents.models.base import Usage
-from agents.pipeline.history import History, ModelCall, ToolCall
-from agents.pipeline.retelling import after, history_of, read_history
-from agents.pipeline.shown import run_row
+from agents.loop.reducer import after, history_of, read_history
+from agents.loop.run_state import History, ModelCall, ToolCall
+from agents.views.rich_views import run_row
+from simworlds.llm.messages import Usage
 
 if TYPE_CHECKING:
     from pathlib import Path

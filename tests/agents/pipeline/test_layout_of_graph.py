@@ -6,7 +6,7 @@ from itertools import combinations
 
 import pytest
 
-from agents.pipeline.report.layout import Box, lay_out
+from agents.views.report.graph_layout import Box, lay_out
 
 
 def test_higher_ranks_are_higher_and_nothing_overlaps() -> None:

@@ -13,10 +13,10 @@ from domino_run import domino_plan, dominoes, finding
 from rich.console import Console
 from sample_runs import Tape
 
-from agents.pipeline.history import History
-from agents.pipeline.live import Lines, Quiet, Screen, make_view
-from agents.pipeline.retelling import history_of
-from agents.pipeline.shown import Now, Progress, run_row, runs_table, seconds_left, show, working
+from agents.loop.reducer import history_of
+from agents.loop.run_state import History
+from agents.views.live_view import Lines, Quiet, Screen, make_view
+from agents.views.rich_views import Now, Progress, run_row, runs_table, seconds_left, show, working
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

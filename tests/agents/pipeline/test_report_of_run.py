@@ -13,8 +13,8 @@ from domino_run import domino_plan, dominoes, finding
 from PIL import Image
 from sample_runs import Tape, write
 
-from agents.pipeline.report.media import LARGEST_VIDEO, Media
-from agents.pipeline.report.page import NAME, write_report
+from agents.views.report.media import LARGEST_VIDEO, Media
+from agents.views.report.page import NAME, write_report
 
 if TYPE_CHECKING:
     from pathlib import Path

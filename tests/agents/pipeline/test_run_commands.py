@@ -10,8 +10,8 @@ from click.testing import CliRunner, Result
 from sittings import answered, at_home
 from team import ABORT, Team
 
-from agents.cli import main
-from agents.pipeline.journal import NAME
+from agents.loop.journal import NAME
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -14,9 +14,9 @@ from fake_messages_api import Reply, Status
 from sittings import MESSAGES, answered, asked_of, go_on, sit
 from team import ABORT, DONE, Team, calls, last_words, reply, run, turn_of, use, whose, words_of
 
-from agents.models.context import Limits as Kept
-from agents.pipeline import run as run_module
+from agents.loop import run as run_module
 from agents.roles.base import Desk
+from simworlds.llm.context import Limits as Kept
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,9 +12,9 @@ from processes import becomes, of_run
 from sittings import answered, go_on, seat, sit
 from team import ABORT, DONE, Team, reply, run
 
-from agents.pipeline.errors import NoRun
-from agents.pipeline.journal import NAME, read_rows
-from agents.pipeline.options import Limits
+from agents.loop.errors import NoRun
+from agents.loop.journal import NAME, read_rows
+from agents.loop.options import Limits
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from sittings import at_home, go_on, scenes, seat, sit
 
-from agents.pipeline.demos import replay_options
-from agents.pipeline.errors import NoRun
-from agents.pipeline.journal import NAME, read_rows
+from agents.loop.demos import replay_options
+from agents.loop.errors import NoRun
+from agents.loop.journal import NAME, read_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

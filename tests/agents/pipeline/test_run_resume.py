@@ -18,9 +18,9 @@ from sittings import MESSAGES, answered, go_on, scenes, seat, sit
 from team import ABORT, DONE, NEEDS_FIX, Team, call, run
 
 from agents.blender.run_folder import locked
-from agents.pipeline import journal as journal_module
-from agents.pipeline.errors import NoRun, RunError
-from agents.pipeline.journal import NAME, read_rows
+from agents.loop import journal as journal_module
+from agents.loop.errors import NoRun, RunError
+from agents.loop.journal import NAME, read_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable

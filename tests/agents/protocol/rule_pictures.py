@@ -20,11 +20,11 @@ from PIL import Image, ImageDraw  # noqa: E402
 from rule_cases import CASES, Case, judge  # noqa: E402
 from studio import Studio  # noqa: E402
 
-from agents.blender import sheets  # noqa: E402
-from agents.blender.findings_image import Mark, linear, panel_of  # noqa: E402
-from agents.blender.lettering import round_length, shortened, text_width  # noqa: E402
+from agents.blender.sheets import contact_sheet  # noqa: E402
+from agents.blender.sheets.findings_sheet import Mark, linear, panel_of  # noqa: E402
+from agents.blender.sheets.text_layout import round_length, shortened, text_width  # noqa: E402
 from agents.protocol.facts import Facts  # noqa: E402
-from agents.protocol.folding import rows  # noqa: E402
+from agents.protocol.report.folding import rows  # noqa: E402
 from agents.protocol.structure import is_mesh  # noqa: E402
 
 if TYPE_CHECKING:
@@ -36,12 +36,12 @@ if TYPE_CHECKING:
 FOLDER = REPO / "docs" / "rules"
 WIDTH, HEIGHT = 340, 255
 COLOURS = 96  # of a picture: enough for flat shading, and a third of the bytes
-GREEN: sheets.Colour = (25, 135, 60)
-RED: sheets.Colour = (200, 30, 30)
-BLUE: sheets.Colour = (40, 90, 190)
-VIOLET: sheets.Colour = (120, 60, 170)
-PALE: sheets.Colour = (236, 237, 239)
-SMALL = sheets.Style(13)
+GREEN: contact_sheet.Colour = (25, 135, 60)
+RED: contact_sheet.Colour = (200, 30, 30)
+BLUE: contact_sheet.Colour = (40, 90, 190)
+VIOLET: contact_sheet.Colour = (120, 60, 170)
+PALE: contact_sheet.Colour = (236, 237, 239)
+SMALL = contact_sheet.Style(13)
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def draw(studio: Studio, rule: str, case: Case) -> bytes:
 
 
 def take(
-    studio: Studio, case: Case, finding: Finding | None, names: tuple[str, ...], colour: sheets.Colour
+    studio: Studio, case: Case, finding: Finding | None, names: tuple[str, ...], colour: contact_sheet.Colour
 ) -> Shot:
     """The open scene as the case is to be looked at."""
     if case.look == "tree":
@@ -102,13 +102,13 @@ def take(
     return Shot(view(studio, case.look, finding, names, colour))
 
 
-def column(title: str, colour: sheets.Colour, picture: Image.Image, text: str) -> Image.Image:
-    framed = sheets.grid([sheets.Panel(picture, border=colour)], 1)
-    return sheets.stack(
+def column(title: str, colour: contact_sheet.Colour, picture: Image.Image, text: str) -> Image.Image:
+    framed = contact_sheet.grid([contact_sheet.Panel(picture, border=colour)], 1)
+    return contact_sheet.stack(
         [
-            sheets.paragraph(title, framed.width, sheets.Style(16, colour)),
+            contact_sheet.paragraph(title, framed.width, contact_sheet.Style(16, colour)),
             framed,
-            sheets.paragraph(text, framed.width, sheets.Style(14)),
+            contact_sheet.paragraph(text, framed.width, contact_sheet.Style(14)),
         ],
         6,
     )
@@ -118,7 +118,7 @@ def beside(columns: Sequence[Image.Image]) -> Image.Image:
     margin, gap = 10, 16
     width = sum(one.width for one in columns) + gap * (len(columns) - 1)
     sheet = Image.new(
-        "RGB", (width + 2 * margin, max(one.height for one in columns) + 2 * margin), sheets.PAPER
+        "RGB", (width + 2 * margin, max(one.height for one in columns) + 2 * margin), contact_sheet.PAPER
     )
     x = margin
     for one in columns:
@@ -131,7 +131,7 @@ def beside(columns: Sequence[Image.Image]) -> Image.Image:
 
 
 def view(
-    studio: Studio, name: str, finding: Finding | None, names: tuple[str, ...], colour: sheets.Colour
+    studio: Studio, name: str, finding: Finding | None, names: tuple[str, ...], colour: contact_sheet.Colour
 ) -> Image.Image:
     marks = [Mark(1, finding)] if finding else []
     asked = {
@@ -161,7 +161,7 @@ def rendered(studio: Studio) -> Image.Image:
         "bpy.ops.render.render(write_still=True)"
     )
     with studio.blender.folder.open_made("seen.png") as file:
-        return sheets.read_png(file)
+        return contact_sheet.read_png(file)
 
 
 # Trees of collections
@@ -172,16 +172,16 @@ class Line:
     """A line of the tree."""
 
     depth: int
-    mark: sheets.Colour
+    mark: contact_sheet.Colour
     name: str
     also: str
 
 
 def tree(facts: Facts, wrong: tuple[str, ...], with_mechanisms: bool) -> Image.Image:
-    lines = [Line(0, sheets.GREY, "Scene", "")]
+    lines = [Line(0, contact_sheet.GREY, "Scene", "")]
     lines += below(facts, "", 1, with_mechanisms)
     height = 22
-    picture = Image.new("RGB", (WIDTH, max(HEIGHT, height * len(lines) + 16)), sheets.WHITE)
+    picture = Image.new("RGB", (WIDTH, max(HEIGHT, height * len(lines) + 16)), contact_sheet.WHITE)
     drawn = ImageDraw.Draw(picture)
     for row, line in enumerate(lines):
         x, y = 12 + 22 * line.depth, 18 + height * row
@@ -189,11 +189,11 @@ def tree(facts: Facts, wrong: tuple[str, ...], with_mechanisms: bool) -> Image.I
         if is_wrong:
             drawn.rectangle((x - 6, y - 10, WIDTH - 6, y + 10), fill=(255, 228, 225))
         drawn.rectangle((x, y - 5, x + 10, y + 5), fill=line.mark)
-        style = sheets.Style(14, RED if is_wrong else sheets.INK)
-        sheets.write(drawn, (x + 18, y), line.name, style, anchor="lm")
+        style = contact_sheet.Style(14, RED if is_wrong else contact_sheet.INK)
+        contact_sheet.write(drawn, (x + 18, y), line.name, style, anchor="lm")
         start = x + 26 + text_width(line.name, 14)
         also = shortened(line.also, WIDTH - 8 - start, 12) if line.also else ""
-        sheets.write(drawn, (start, y), also, sheets.Style(12, sheets.GREY), anchor="lm")
+        contact_sheet.write(drawn, (start, y), also, contact_sheet.Style(12, contact_sheet.GREY), anchor="lm")
     return picture
 
 
@@ -201,7 +201,10 @@ def below(facts: Facts, parent: str, depth: int, with_mechanisms: bool) -> Itera
     for one in facts.collections:
         if parent in one.parents:
             yield Line(
-                depth, {"system": BLUE, "object": GREEN}.get(one.role or "", sheets.GREY), one.name, tags(one)
+                depth,
+                {"system": BLUE, "object": GREEN}.get(one.role or "", contact_sheet.GREY),
+                one.name,
+                tags(one),
             )
             yield from below(facts, one.name, depth + 1, with_mechanisms)
             objects = {thing.name: thing for thing in facts.objects}
@@ -217,7 +220,7 @@ def tags(one: CollectionFacts) -> str:
     return ", ".join([*words, *filter(None, (one.deformation_kind, one.motion_kind))])
 
 
-def colour_of(thing: ObjectFacts) -> sheets.Colour:
+def colour_of(thing: ObjectFacts) -> contact_sheet.Colour:
     if thing.is_root:
         return (225, 145, 20)
     return (150, 150, 150) if is_mesh(thing) else VIOLET
@@ -278,7 +281,7 @@ def plot(case: Case, shot: Shot, good: Shot, finding: Finding | None) -> Image.I
     low, high = min(0.0, *every), max(every) * 1.12
     left, right, bottom = 46, WIDTH - 14, HEIGHT - 32
     top = 16 + 20 * len(phases)
-    picture = Image.new("RGB", (WIDTH, HEIGHT), sheets.WHITE)
+    picture = Image.new("RGB", (WIDTH, HEIGHT), contact_sheet.WHITE)
     drawn = ImageDraw.Draw(picture)
 
     def x(frame: float) -> float:
@@ -290,7 +293,9 @@ def plot(case: Case, shot: Shot, good: Shot, finding: Finding | None) -> Image.I
     for begin, end in ((first, shot.frames[0]), (shot.frames[1], last)):
         if end > begin:
             drawn.rectangle((x(begin), top, x(end), bottom), fill=(238, 222, 220))
-            sheets.write(drawn, (x((begin + end) / 2), top + 12), "not rendered", sheets.Style(11, RED), "mm")
+            contact_sheet.write(
+                drawn, (x((begin + end) / 2), top + 12), "not rendered", contact_sheet.Style(11, RED), "mm"
+            )
     colours = dict(zip(shot.curves, (BLUE, (200, 110, 0)), strict=False))
     for row, phase in enumerate(phases):
         at = 14 + 20 * row
@@ -300,10 +305,12 @@ def plot(case: Case, shot: Shot, good: Shot, finding: Finding | None) -> Image.I
         label = f"planned: {phase.actor} {phase.kind} {phase.start}–{phase.end}"
         label = shortened(label, right - x(phase.start), 11)
         begin = min(x(phase.start) + 5, right - text_width(label, 11))
-        sheets.write(drawn, (begin, at + 1), label, sheets.Style(11, colours[phase.actor]), "lm")
+        contact_sheet.write(
+            drawn, (begin, at + 1), label, contact_sheet.Style(11, colours[phase.actor]), "lm"
+        )
         for frame in (phase.start, phase.end):
             for dash in range(top, bottom, 8):
-                drawn.line((x(frame), dash, x(frame), dash + 3), fill=sheets.FRAME)
+                drawn.line((x(frame), dash, x(frame), dash + 3), fill=contact_sheet.FRAME)
     axes(drawn, (left, right, top, bottom), (first, last), (x, y), (low, high), shows_heights(case))
     if finding is not None:
         for name, values in good.curves.items():
@@ -313,11 +320,11 @@ def plot(case: Case, shot: Shot, good: Shot, finding: Finding | None) -> Image.I
         drawn.line(points, fill=colours[name], width=3, joint="curve")
         if len(shot.curves) > 1:
             end = points[-1]
-            sheets.write(
+            contact_sheet.write(
                 drawn,
                 (end[0] - 4, end[1] + (14 if row else -10)),
                 name,
-                sheets.Style(12, colours[name], 2),
+                contact_sheet.Style(12, colours[name], 2),
                 "rm",
             )
     if finding is not None and finding.frame is not None:
@@ -335,24 +342,32 @@ def axes(
 ) -> None:
     left, right, top, bottom = box
     x, y = scales
-    drawn.line((left, top, left, bottom, right, bottom), fill=sheets.INK)
+    drawn.line((left, top, left, bottom, right, bottom), fill=contact_sheet.INK)
     step = round_length((values[1] - values[0]) / 3)
     value = 0.0
     while value <= values[1]:
-        drawn.line((left - 4, y(value), left, y(value)), fill=sheets.INK)
-        sheets.write(drawn, (left - 7, y(value)), f"{value:g}", sheets.Style(11, sheets.GREY), "rm")
+        drawn.line((left - 4, y(value), left, y(value)), fill=contact_sheet.INK)
+        contact_sheet.write(
+            drawn, (left - 7, y(value)), f"{value:g}", contact_sheet.Style(11, contact_sheet.GREY), "rm"
+        )
         value = round(value + step, 9)
     stride = int(round_length((frames[1] - frames[0]) / 3)) or 1
     for frame in range(0, frames[1] + 1, stride):
         if frame >= frames[0]:
-            drawn.line((x(frame), bottom, x(frame), bottom + 4), fill=sheets.INK)
-            sheets.write(drawn, (x(frame), bottom + 12), str(frame), sheets.Style(11, sheets.GREY), "mm")
-    sheets.write(drawn, (right, bottom + 24), "frame", sheets.Style(11, sheets.GREY), "rm")
+            drawn.line((x(frame), bottom, x(frame), bottom + 4), fill=contact_sheet.INK)
+            contact_sheet.write(
+                drawn, (x(frame), bottom + 12), str(frame), contact_sheet.Style(11, contact_sheet.GREY), "mm"
+            )
+    contact_sheet.write(
+        drawn, (right, bottom + 24), "frame", contact_sheet.Style(11, contact_sheet.GREY), "rm"
+    )
     what = "height, m" if heights else "way, m"
-    sheets.write(drawn, (4, bottom + 24), what, sheets.Style(11, sheets.GREY), "lm")
+    contact_sheet.write(drawn, (4, bottom + 24), what, contact_sheet.Style(11, contact_sheet.GREY), "lm")
 
 
-def dashed(drawn: ImageDraw.ImageDraw, points: Sequence[tuple[float, float]], colour: sheets.Colour) -> None:
+def dashed(
+    drawn: ImageDraw.ImageDraw, points: Sequence[tuple[float, float]], colour: contact_sheet.Colour
+) -> None:
     """What it would be if the rule held."""
     faint = tuple((part + 2 * 255) // 3 for part in colour)
     for start, end in list(itertools.pairwise(points))[::2]:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.tools.base import Call
 from agents.blender.verification import verify_scene
 from agents.plan.scene import ScenePlan
-from agents.protocol.measures import measure
+from agents.protocol.measures.measure import measure
 from agents.protocol.rules.catalogue import chosen
 
 if TYPE_CHECKING:
     from studio import Studio
 
     from agents.protocol.findings import Finding, Report
-    from agents.protocol.measures import Answer, Measures, Request
+    from agents.protocol.measures.measure import Answer, Measures, Request
 
 TOOLS = '''
 import math

@@ -9,7 +9,7 @@ from scenes import a_plan
 
 from agents.protocol.engine import verify
 from agents.protocol.facts import CollectionFacts, Facts, ObjectFacts
-from agents.protocol.measures import Gap, Measures, Unmeasured
+from agents.protocol.measures.measure import Gap, Measures, Unmeasured
 from agents.protocol.rule import Idle, Rule, Subject
 from agents.protocol.rules.catalogue import BY_ID, RULES, chosen
 from agents.protocol.structure import Structure
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from agents.protocol.findings import Finding, Report, Severity
-    from agents.protocol.measures import Request
+    from agents.protocol.measures.measure import Request
 
 EMPTY = Facts(version="5.1.2", scene="Scene", frame=1, frame_start=1, frame_end=1, fps=24)
 LEG, TOP = Gap(("Leg",), ("Floor",)), Gap(("Top",), ("Leg",))

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from scenes import build, verified
 
-from agents.blender.errors import Refusal
 from agents.blender.tools.group import TOOL as GROUP
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from studio import Studio

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from scenes import a_plan, build, verified
 
-from agents.blender.errors import Refusal
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from studio import Studio

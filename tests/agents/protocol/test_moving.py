@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from scenes import a_plan, build, the_finding, verified
 
-from agents.protocol.moving import told_move
+from agents.protocol.judging.move_advice import told_move
 
 if TYPE_CHECKING:
     from studio import Studio

@@ -10,8 +10,17 @@ import pytest
 from scenes import a_plan
 
 from agents.protocol.facts import Facts
-from agents.protocol.moments import anchor, angle, beginning, moments, moves, placed, rotation, turned
-from agents.protocol.pairs import declared, may_cross, smallest_diagonal
+from agents.protocol.judging.contact_pairs import declared, may_cross, smallest_diagonal
+from agents.protocol.judging.sample_frames import (
+    anchor,
+    angle,
+    beginning,
+    moments,
+    moves,
+    placed,
+    rotation,
+    turned,
+)
 from agents.protocol.rule import Subject
 from agents.protocol.structure import Structure
 from agents.protocol.tolerances import TOLERANCES

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from agents.protocol.patterns import fit_grid, fit_ring, fit_row, mirrored
+from agents.protocol.judging.patterns import fit_grid, fit_ring, fit_row, mirrored
 
 if TYPE_CHECKING:
     import numpy.typing as npt

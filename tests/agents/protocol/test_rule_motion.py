@@ -8,8 +8,8 @@ import pytest
 from scenes import a_motion, build, measured, the_finding, verified
 
 from agents.blender.tools.bake import TOOL as BAKE
-from agents.protocol.measures import Gap
-from agents.protocol.measures_motion import Touches
+from agents.protocol.measures.measure import Gap
+from agents.protocol.measures.motion import Touches
 
 if TYPE_CHECKING:
     from studio import Studio

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from agents.plan.base import STAGES, Stage
+from agents.plan.part import STAGES, Stage
 from agents.protocol.rules.catalogue import BY_ID, RULES
-from agents.protocol.stages import FROM, rules_of
+from agents.protocol.rules_by_stage import FROM, rules_of
 
 
 def ids(stage: Stage, **more: bool) -> list[str]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from scenes import build, measured, measures
 
-from agents.protocol.measures import Crossings, Extents, Gap, Pieces, Surface, Unmeasured
+from agents.protocol.measures.measure import Crossings, Extents, Gap, Pieces, Surface, Unmeasured
 
 if TYPE_CHECKING:
     from studio import Studio

@@ -11,8 +11,8 @@ import pytest
 from rich.console import Console
 
 from agents.protocol.findings import Finding, Report
-from agents.protocol.folding import folded, plain, rows, told_ids, told_value
-from agents.protocol.report import (
+from agents.protocol.report.folding import folded, plain, rows, told_ids, told_value
+from agents.protocol.report.report import (
     Checked,
     as_json,
     as_sarif,

@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 from scenes import build
 
-from agents.blender.errors import Refusal
 from agents.blender.tools.verify import TOOL as VERIFY
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from studio import Studio

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from PIL import Image
 
-from bench.blenderbench.clip import SHAPES
+from bench.blenderbench.n_clip import SHAPES
 
 SEED = 20_260_727
 SIZES = ((224, 224), (95, 61), (300, 511), (33, 400))  # width, height; resized, they end in fractions

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from bench.blenderbench.layout import TaskSet, read_set
 from bench.blenderbench.run import run
-from bench.blenderbench.scenes import Look
 from bench.blenderbench.systems import Unedited
-from kb_build.runtime import clean_environment, installed_bpy
+from bench.blenderbench.task_scenes import Look
+from bench.blenderbench.task_set import TaskSet, read_set
+from simworlds.sandbox.runtime import clean_environment, installed_bpy
 
 HERE = Path(__file__).parent
 # The team that answers for all roles of an edit, and a second provider's server.

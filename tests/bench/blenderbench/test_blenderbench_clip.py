@@ -14,11 +14,11 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from agents.cli import main
 from bench.blenderbench import weights as found_in
-from bench.blenderbench.clip import SHAPES, Tower, clip_distance, prepared
 from bench.blenderbench.errors import NoWeights
+from bench.blenderbench.n_clip import SHAPES, Tower, clip_distance, prepared
 from bench.blenderbench.weights import FILE, SHA256, load_clip
+from simworlds.cli import main
 
 REFERENCE = json.loads((Path(__file__).with_name("clip_reference.json")).read_text())
 EMBEDDINGS = np.array([row["embedding"] for row in REFERENCE["pictures"]])

@@ -11,9 +11,9 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from agents.cli import main
 from bench.blenderbench.errors import NoTasks
-from bench.blenderbench.layout import chosen, in_order, read_set
+from bench.blenderbench.task_set import chosen, in_order, read_set
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -18,22 +18,22 @@ from click.testing import CliRunner
 from fake_messages_api import FakeMessagesAPI
 from PIL import Image
 
-from agents.cli import main
-from bench.blenderbench.clip import Tower, clip_distance
 from bench.blenderbench.errors import BadResults
-from bench.blenderbench.layout import read_set
+from bench.blenderbench.n_clip import Tower, clip_distance
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import Record, Score, place_of, read, read_run
 from bench.blenderbench.run import run
-from bench.blenderbench.scenes import render
 from bench.blenderbench.systems import Folder, Unedited
+from bench.blenderbench.task_scenes import render
+from bench.blenderbench.task_set import read_set
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from bench.blenderbench.layout import Task, TaskSet
-    from bench.blenderbench.scenes import Look
+    from bench.blenderbench.task_scenes import Look
+    from bench.blenderbench.task_set import Task, TaskSet
 
 pytestmark = pytest.mark.blender
 REPO = Path(__file__).resolve().parents[3]
@@ -325,7 +325,7 @@ def test_a_run_that_is_killed_goes_on_where_it_was(mini: TaskSet, tmp_path: Path
     out = tmp_path / "out"
     words = ["bench", "blenderbench", "run", str(mini.root), "--system", "start", "--samples", "4"]
     words += ["--task", "level1", "--out", str(out)]
-    code = "import sys; from agents.cli import main; main(sys.argv[1:], prog_name='simworlds')"
+    code = "import sys; from simworlds.cli import main; main(sys.argv[1:], prog_name='simworlds')"
     killed = subprocess.Popen(
         [sys.executable, "-c", code, *words],
         cwd=REPO,

@@ -14,15 +14,15 @@ from fake_messages_api import FakeMessagesAPI, Reply, Status
 from PIL import Image
 from test_blenderbench_vlm import marks
 
-from agents.cli import main
-from bench.blenderbench.layout import LEVELS, Task, TaskSet
 from bench.blenderbench.published import OVERALL, PUBLISHED, TASKS
 from bench.blenderbench.report import as_markdown, read_results
 from bench.blenderbench.results import Score, place_of, read
 from bench.blenderbench.run import run
 from bench.blenderbench.score import Rule, score
 from bench.blenderbench.systems import Folder
+from bench.blenderbench.task_set import LEVELS, Task, TaskSet
 from bench.blenderbench.weights import Clip
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -12,14 +12,14 @@ import pytest
 from in_blender import run
 from PIL import Image
 
+from bench.audit.untrusted_blend import NotScored
 from bench.frames import video
-from bench.frames.frames import Look, frames_of, take_frames
-from bench.untrusted import NotScored
+from bench.frames.clip_frames import Look, frames_of, take_frames
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from bench.frames.frames import Taken
+    from bench.frames.clip_frames import Taken
 
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 SMALL = Look(pixels=64 * 36, samples=1)

@@ -7,9 +7,9 @@ import os
 import sys
 
 import bpy
-import facts
-import mantaflow
-import opening
+
+from bench.audit.inside import facts, opening
+from simworlds.sandbox.inside import mantaflow
 
 FRAMES = 12
 PLACE, RESULT = sys.argv[1:3]

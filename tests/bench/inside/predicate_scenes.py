@@ -4,8 +4,9 @@ import os
 import shutil
 
 import bpy
-import changes
 from making import FRAMES, PLACE, add, bake, body, cloth_on, empty, finish, get, keys, new, read, save
+
+from bench.validity.mutations.inside import changes
 
 
 def weigh(thing, name):

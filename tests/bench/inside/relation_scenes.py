@@ -9,15 +9,15 @@ import os
 from dataclasses import asdict
 
 import bpy
-import measure
 from making import PLACE, add, bake, body, empty, finish, get, into, new, read, save
 from mathutils import Euler
 from pydantic import TypeAdapter
 
-from bench.actors import find_actors
-from bench.facts import Scene
-from bench.spec import Spec
-from bench.spr import judge_relations, share
+from bench.audit.actors import find_actors
+from bench.audit.facts import Scene
+from bench.audit.inside import measure
+from bench.audit.spr import judge_relations, share
+from bench.scenes.spec import Spec
 
 
 class Here:

@@ -11,12 +11,12 @@ from fake_chat_api import FakeChatAPI, Said
 from fake_messages_api import FakeMessagesAPI, Reply
 from PIL import Image, PngImagePlugin
 
-from agents.models.claude import Claude, Settings
-from agents.models.prices import Prices
-from agents.models.retries import Patience
-from agents.models.spending import Spending
 from bench.judge.openai_chat import Chat
 from bench.judge.providers import Provider
+from simworlds.llm.claude import Claude, Settings
+from simworlds.llm.prices import Prices
+from simworlds.llm.retries import Patience
+from simworlds.llm.spending import Spending
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,8 +10,8 @@ from click.testing import CliRunner
 from fake_messages_api import Status
 from judge_apis import LISTS, PROMPT, STILL, STILL_LISTS
 
-from agents.cli import main
-from bench.spec import FOLDER, spec_of
+from bench.scenes.spec import FOLDER, spec_of
+from simworlds.cli import main
 
 DOCS = Path(__file__).parents[3] / "docs" / "judge.md"
 TABLECLOTH = {

@@ -10,10 +10,10 @@ from fake_messages_api import Drop, Raw, Status, Truncate
 from judge_apis import LISTS, PROMPT, STILL, STILL_LISTS, OpenAI, verdicts
 from PIL import Image
 
-from agents.models.prices import Price
 from bench.judge.errors import NotJudged
 from bench.judge.judge import LONGEST_PROMPT, judge
 from bench.judge.providers import provider_of
+from simworlds.llm.prices import Price
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -95,7 +95,7 @@ def test_killed_between_the_items_and_the_verdicts_the_items_are_not_asked_again
     command = [
         sys.executable,
         "-c",
-        "from agents.cli import main; main()",
+        "from simworlds.cli import main; main()",
         "bench",
         "judge",
         *map(str, frames),

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from bench.measurements.retrieval import KINDS, BadQueries, read_queries, unknown_labels
 from bench.setting import BLENDER, QUERIES
 from kb_build.base_file import read_meta
 from kb_build.errors import StoreError
-from kb_build.settings import base_path, home_folder
+from measurements.retrieval import KINDS, BadQueries, read_queries, unknown_labels
+from simworlds.settings import base_path, home_folder
 
 if TYPE_CHECKING:
     from pathlib import Path

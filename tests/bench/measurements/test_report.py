@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from bench.measurements.main import main
-from bench.measurements.report import Figure, Part, markdown, targets_table, write
-from bench.measurements.targets import TARGETS, Target, shown
+from measurements.main import main
+from measurements.report import Figure, Part, markdown, targets_table, write
+from measurements.targets import TARGETS, Target, shown
 
 if TYPE_CHECKING:
     from pathlib import Path

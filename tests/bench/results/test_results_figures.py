@@ -9,14 +9,14 @@ import pytest
 from bench.results.estimate import estimate, makespan
 from bench.results.figures import OVERALL, ablations, comparisons, figures_of
 from bench.results.tables import tables
-from bench.spec import specs
+from bench.scenes.spec import specs
 
 if TYPE_CHECKING:
     from written_results import Written
 
+    from bench.markdown_tables import Table
     from bench.results.figures import Figure
     from bench.results.scores import Metric
-    from bench.tables import Table
 
 
 def figure(results: Written, metric: Metric, category: str = OVERALL) -> Figure:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from click.testing import CliRunner
 
-from agents.cli import main
 from bench.sweep.records import read_record, write_record
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from pathlib import Path

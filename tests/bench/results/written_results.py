@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image
 
-from bench.sweep.content import digest_of_bytes, digest_of_file
+from bench.sweep.content_hash import digest_of_bytes, digest_of_file
 from bench.sweep.records import (
     Ablation,
     Audited,

@@ -11,13 +11,13 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from bench.sweep.content import digest_of_file
+from bench.sweep.content_hash import digest_of_file
 
 REPO = Path(__file__).resolve().parents[3]
 # Small frames, nobody who judges.
 CHEAP = ("--frame-size", "32x18", "--frame-samples", "1", "--judge", "none")
 SCENES = "cloth_D1,rigid_D1_01,static_D1_01"
-_MAIN = "from agents.cli import main; main(prog_name='simworlds')"
+_MAIN = "from simworlds.cli import main; main(prog_name='simworlds')"
 _SECONDS = 200.0
 
 

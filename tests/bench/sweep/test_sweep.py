@@ -14,14 +14,14 @@ from processes_below import all_end, below
 from sweeping import CHEAP, SCENES, content, record, scores, written
 
 from agents.blender.run_folder import locked
-from agents.cli import main
-from bench.frames.frames import Look
-from bench.sweep.chosen import chosen
-from bench.sweep.crew import LocalCrew
-from bench.sweep.folder import Folder
+from bench.audit.untrusted_blend import Means
+from bench.frames.clip_frames import Look
+from bench.sweep.executor import LocalCrew
 from bench.sweep.records import SystemInfo, read_record, write_record
+from bench.sweep.scene_selection import chosen
 from bench.sweep.sweep import How, tasks_of
-from bench.untrusted import Means
+from bench.sweep.systems.folder import Folder
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from click.testing import Result
     from sweeping import Command
 
-    from bench.sweep.scene import Task
+    from bench.sweep.scene_task import Task
 
 pytestmark = pytest.mark.blender
 

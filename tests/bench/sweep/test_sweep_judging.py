@@ -11,12 +11,12 @@ from click.testing import CliRunner
 from judge_apis import Anthropic
 from PIL import Image
 
-from agents.cli import main
-from bench.frames.frames import Look
+from bench.audit.untrusted_blend import Means
+from bench.frames.clip_frames import Look
 from bench.sweep.judging import Judging, judge_all, judge_of
 from bench.sweep.records import Judged, read_record, write_record
 from bench.sweep.sweep import How, tasks_again
-from bench.untrusted import Means
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,15 +9,15 @@ import pytest
 from pydantic import ValidationError
 from rich.console import Console
 
-from bench.spec import BadSpec, spec_of
+from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep import provenance as origin
-from bench.sweep.chosen import chosen
-from bench.sweep.content import digest_of, write_whole
-from bench.sweep.crew import Done
-from bench.sweep.folder import Folder
+from bench.sweep.content_hash import digest_of, write_whole
+from bench.sweep.executor import Done
 from bench.sweep.records import BadRecord, File, SystemInfo, read_record
-from bench.sweep.scene import Task
-from bench.sweep.view import Lines, Screen
+from bench.sweep.scene_selection import chosen
+from bench.sweep.scene_task import Task
+from bench.sweep.sweep_view import Lines, Screen
+from bench.sweep.systems.folder import Folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -157,7 +157,7 @@ def test_a_step_stands_on_the_code_that_it_imports_and_on_no_other(
 
     def code() -> str:
         origin.code_of.cache_clear()
-        return origin.code_of("bench.audit", "inside/*.py")
+        return origin.code_of("bench.audit.audit", "inside/*.py")
 
     before = code()
     (bench / "other.py").write_text("changed = True")

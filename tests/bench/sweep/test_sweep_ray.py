@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner
 from sweeping import CHEAP, content, record, scores
 
-from agents.cli import main
-from bench.sweep.content import digest_of_bytes
-from bench.sweep.parcels import Damaged, Packed, Parcel, packed, packed_changes, unpacked
+from bench.sweep.bundles import Damaged, Packed, Parcel, packed, packed_changes, unpacked
+from bench.sweep.content_hash import digest_of_bytes
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

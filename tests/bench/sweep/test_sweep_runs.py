@@ -12,9 +12,9 @@ from fake_messages_api import FakeMessagesAPI, Reply
 from processes_below import all_end, below
 from sweeping import CHEAP, record
 
-from bench.spec import spec_of
+from bench.scenes.spec import spec_of
 from bench.sweep.records import SystemInfo
-from bench.sweep.runs import SESSIONS, Make, Replay
+from bench.sweep.systems.simworlds_runs import SESSIONS, Make, Replay
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -115,7 +115,7 @@ def test_a_scene_that_no_session_belongs_to_is_missing(tmp_path: Path) -> None:
 
 
 def test_every_session_is_of_a_scene_that_there_is() -> None:
-    from agents.pipeline.answering import sessions
+    from agents.loop.answer_source import sessions
 
     assert all(spec_of(scene) for scene in SESSIONS)
     assert {*SESSIONS.values()} == {*sessions()} - {"edit"}

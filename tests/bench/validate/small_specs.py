@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from bench.spec import Spec
+from bench.scenes.spec import Spec
 
 _NO_FAKES = ["dense_transform_keys", "animated_shape_keys"]
 STILL: list[Any] = [

@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from small_specs import DRAPE, POUR, ROOM, STILL, spec_like
 
-from bench.guises.cast import cast_of
-from bench.predicates.base import Verdict
-from bench.predicates.table import PREDICATES
-from bench.untrusted import Crashed
-from bench.validate import desk as desks
-from bench.validate.desk import Desk
-from bench.validate.run import prove_on
+from bench.audit.predicates.catalogue import PREDICATES
+from bench.audit.predicates.predicate import Verdict
+from bench.audit.untrusted_blend import Crashed
+from bench.validity import variant_builder as desks
+from bench.validity.invariance.actor_names import cast_of
+from bench.validity.run import prove_on
+from bench.validity.variant_builder import Desk
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.predicates.base import Params, Stage, Unit
-    from bench.validate.proof import Proof
+    from bench.audit.predicates.predicate import Params, Stage, Unit
+    from bench.validity.proof import Proof
 
 pytestmark = pytest.mark.blender
 
@@ -166,7 +166,7 @@ def test_a_predicate_that_fails_for_no_reason_is_found_out(
 
 
 def test_a_check_that_nothing_has_broken_is_reported(drape: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("bench.sabotage.plan.SABOTAGES", dict.fromkeys(PREDICATES, ()))
+    monkeypatch.setattr("bench.validity.mutations.planning.SABOTAGES", dict.fromkeys(PREDICATES, ()))
     found = Counter(faults(prove_on(drape, "sabotages")).values())
     assert set(found) == {"nothing has broken it"}
     assert found.total() == sum(len(actor.checks) for actor in drape.reading.audit.actors)

@@ -14,21 +14,21 @@ import pytest
 from click.testing import CliRunner
 from small_specs import DRAPE, POUR, ROOM, spec_like
 
-from agents.cli import main
-from bench.predicates.base import Verdict
-from bench.predicates.table import PREDICATES
-from bench.sabotage.table import SABOTAGES
-from bench.spec import specs
-from bench.validate.proof import Proof, Row
-from bench.validate.report import as_markdown
-from bench.validate.run import Task, prove, prove_all, subset
+from bench.audit.predicates.catalogue import PREDICATES
+from bench.audit.predicates.predicate import Verdict
+from bench.scenes.spec import specs
+from bench.validity.mutations.catalogue import SABOTAGES
+from bench.validity.proof import Proof, Row
+from bench.validity.report import as_markdown
+from bench.validity.run import Task, prove, prove_all, subset
+from simworlds.cli import main
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from click.testing import Result
 
-    from bench.predicates.base import Params, Stage, Unit
+    from bench.audit.predicates.predicate import Params, Stage, Unit
 
 QUICK = ("satisfiable", "deterministic")
 STATIC = "static_D1_01"
@@ -160,7 +160,14 @@ def test_an_interrupt_ends_all_and_keeps_what_was_proven(home: Path, tmp_path: P
     place = tmp_path / "tmp"
     place.mkdir()
     arguments = ["--scenes", f"{STATIC},cloth_D2_03", "--properties", "satisfiable", "--jobs", "2"]
-    command = [sys.executable, "-c", "from agents.cli import main; main()", "bench", "validate", *arguments]
+    command = [
+        sys.executable,
+        "-c",
+        "from simworlds.cli import main; main()",
+        "bench",
+        "validate",
+        *arguments,
+    ]
     with subprocess.Popen(
         command,
         stderr=subprocess.PIPE,

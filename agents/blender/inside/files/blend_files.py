@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Opening and writing .blend files, from the supervisor's side: checkpoints, saves, the run's own file."""
+
+import contextlib
+import os
+import sys
+import time
+
+import bpy
+
+from simworlds.sandbox.inside.refusal import Refused
+
+SCENE_FILE = "scene.blend"
+_ON_SAVING = ("save_pre", "save_post", "save_post_fail")
+
+
+def ping(arguments, report):
+    """Blender's version; nothing is touched."""
+    del arguments, report
+    return {"version": bpy.app.version_string, "background": bpy.app.background}
+
+
+def open_file(arguments, report):
+    """Opens ``path`` (none: an empty scene), and makes it the run's own file in ``folder``, if it is not already.
+
+    Scripts in the file do not run.
+    """
+    del report
+    path, folder = arguments["path"], arguments["folder"]
+    if path is None:
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+    else:
+        read_file(path)
+    if path != os.path.join(folder, SCENE_FILE):
+        make_own(folder)
+    bpy.context.preferences.filepaths.save_version = 0
+    return {"objects": len(bpy.data.objects)}
+
+
+def read_file(path):
+    """Opens ``path``; scripts in it do not run. Raises Refused."""
+    try:
+        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+    except RuntimeError as error:
+        raise Refused(f"{os.path.basename(path)} cannot be opened: {reason(error)}") from None
+
+
+def make_own(folder):
+    """Makes the open file the run's own: relative paths and caches on disk begin in ``folder`` from here on."""
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, SCENE_FILE), check_existing=False)
+    except RuntimeError as error:
+        raise Refused(f"{folder} cannot be written to: {reason(error)}") from None
+    bpy.context.preferences.filepaths.save_version = 0
+
+
+def write_file(arguments, report):
+    """Writes a copy of the whole state to ``path``, to be opened later as the run's own file in ``folder``.
+
+    Returns ``seconds`` and ``bytes``.
+    """
+    del report
+    path = arguments["path"]
+    # Relative paths are already as the run's own file wants them, unless code has made another file its own.
+    elsewhere = os.path.dirname(bpy.data.filepath or path) not in {arguments["folder"], os.path.dirname(path)}
+    started = time.perf_counter()
+    try:
+        with _unheard(), _no_preview():
+            bpy.ops.wm.save_as_mainfile(
+                filepath=path, copy=True, check_existing=False, relative_remap=elsewhere
+            )
+    except RuntimeError as error:
+        raise Refused(f"{path} cannot be written: {reason(error)}") from None
+    sys.stdout.flush()
+    return {"seconds": time.perf_counter() - started, "bytes": os.path.getsize(path)}
+
+
+@contextlib.contextmanager
+def _unheard():
+    """Runs none of the file's own handlers: a checkpoint is no event of the scene's, and they may never return."""
+    lists = [getattr(bpy.app.handlers, name, []) for name in _ON_SAVING]
+    kept = [list(handlers) for handlers in lists]
+    for handlers in lists:
+        handlers.clear()
+    try:
+        yield
+    finally:
+        for handlers, before in zip(lists, kept):  # noqa: B905 - not in Python 3.9
+            handlers[:] = before
+
+
+@contextlib.contextmanager
+def _no_preview():
+    """Draws no small picture of the scene: nobody browses checkpoints, and drawing it costs as much as writing."""
+    settings = bpy.context.preferences.filepaths
+    before = settings.file_preview_type
+    settings.file_preview_type = "NONE"
+    try:
+        yield
+    finally:
+        settings.file_preview_type = before
+
+
+def reason(error):
+    """What Blender says of an operator's failure, without its word for it."""
+    return str(error).strip().removeprefix("Error: ")

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evaluated geometry as triangles in the world: what distance and penetration are measured on. Metres."""
+
+import bpy
+import numpy
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+
+from .evaluated import Instances, Shape, TooManyInstances, are_numbers, mesh_of
+
+MOST_TRIANGLES = 4_000_000
+# Three directions of no importance: a ray along an edge or through a vertex would count twice.
+_RAYS = tuple(
+    Vector(one).normalized()
+    for one in ((0.371, 0.604, 0.705), (-0.713, 0.181, 0.677), (0.253, -0.871, 0.421))
+)
+_STEP = 1e-5
+_COARSE = 4e-7  # of a coordinate: what is less is lost in single precision
+_MOST_HITS = 1000
+
+
+class Unmeasurable(Exception):  # noqa: N818 - reads as the state it names
+    """Something cannot be measured; the message says why."""
+
+
+class NoSurface(Unmeasurable):
+    """It is there, but has no faces at this frame."""
+
+
+class NotNumbers(Unmeasurable):
+    """It has places that are not numbers."""
+
+
+class Solid:
+    """The triangles of one object: ``points`` (n × 3, world), ``triangles`` (m × 3). ``closed``: it has an inside."""
+
+    def __init__(self, name, points, triangles):
+        self.name = name
+        self.points = points
+        self.triangles = triangles
+        self.low, self.high = points.min(axis=0), points.max(axis=0)
+        self.eye = None  # where the camera is
+        self.shape = self.body = self.nudged = self.pieces = None  # what others found out about it
+        self._tree = self._closed = self._oriented = self._welded = self._sides = self._boxes = None
+
+    @property
+    def tree(self):
+        """Its BVH tree."""
+        if self._tree is None:
+            self._tree = BVHTree.FromPolygons(
+                self.points.tolist(), self.triangles.tolist(), all_triangles=True
+            )
+        return self._tree
+
+    @property
+    def has_tree(self):
+        """Whether its tree was made already."""
+        return self._tree is not None
+
+    @property
+    def boxes(self):
+        """(low, high) corners of the boxes around its triangles."""
+        if self._boxes is None:
+            a, b, c = (self.points[column] for column in self.triangles.T)
+            self._boxes = (
+                numpy.minimum(numpy.minimum(a, b), c),
+                numpy.maximum(numpy.maximum(a, b), c),
+            )
+        return self._boxes
+
+    @property
+    def welded(self):
+        """(places, and for every point which of them it is at): equal points are at one place."""
+        if self._welded is None:
+            order = numpy.lexsort(self.points.T)
+            ordered = self.points[order]
+            first = numpy.ones(len(order), bool)
+            first[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+            same = numpy.empty(len(order), int)
+            same[order] = numpy.cumsum(first) - 1
+            self._welded = ordered[first], same
+        return self._welded
+
+    @property
+    def edges(self):
+        """(edges as pairs of places, how many triangles each has); equal points count as one."""
+        return self._edges()[:2]
+
+    def _edges(self):
+        """… and for each how many more triangles go along it one way than the other."""
+        if self._sides is None:
+            places, same = self.welded
+            corners = same[self.triangles]
+            pairs = numpy.concatenate([corners[:, (0, 1)], corners[:, (1, 2)], corners[:, (2, 0)]])
+            pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+            low, high = pairs.min(axis=1), pairs.max(axis=1)
+            keys, back, counts = numpy.unique(
+                low * len(places) + high, return_inverse=True, return_counts=True
+            )
+            ways = numpy.bincount(back, numpy.where(pairs[:, 0] == low, 1, -1), len(keys))
+            self._sides = numpy.stack([keys // len(places), keys % len(places)], axis=1), counts, ways
+        return self._sides
+
+    @property
+    def closed(self):
+        """Whether every edge has two triangles, or an even number of them."""
+        if self._closed is None:
+            _, counts = self.edges
+            self._closed = bool(len(counts)) and bool((counts % 2 == 0).all())
+        return self._closed
+
+    @property
+    def oriented(self):
+        """Whether neighbouring triangles are turned the same way, so that their sides tell in from out."""
+        if self._oriented is None:
+            self._oriented = not self._edges()[2].any()
+        return self._oriented
+
+    @property
+    def hollow(self):
+        """Whether what a closed one holds is not its material: it is turned inside out, or the camera is in it."""
+        corners = self.points[self.triangles] - self.points.mean(axis=0)
+        volume = numpy.einsum("ij,ij->", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2]))
+        if self.oriented and volume < 0:
+            return True
+        eye = self.eye
+        return eye is not None and bool(((eye > self.low) & (eye < self.high)).all()) and self.holds(eye)
+
+    @property
+    def diagonal(self):
+        """The length of its box's diagonal."""
+        return float(numpy.linalg.norm(self.high - self.low))
+
+    def holds(self, point):
+        """Whether a point is inside of it, by two of three rays. Only for what is closed."""
+        first, second = (self._is_around(point, ray) for ray in _RAYS[:2])
+        return first if first == second else self._is_around(point, _RAYS[2])
+
+    def _is_around(self, point, ray):
+        count = hits = 0
+        start = Vector(point)
+        step = ray * max(_STEP, _COARSE * max(map(abs, point)))
+        for _ in range(_MOST_HITS):
+            place, normal, _, _ = self.tree.ray_cast(start, ray)
+            if place is None:
+                break
+            hits += 1
+            count += 1 if normal.dot(ray) > 0 else -1
+            start = place + step
+        # Triangles that are turned every way tell nothing by their sides, only by their number.
+        return count != 0 if self.oriented else hits % 2 == 1
+
+    def nearest(self, point, within=None):
+        """(place, normal, triangle, distance) of its surface next to a point; Nones if that is further away."""
+        return self.tree.find_nearest(point) if within is None else self.tree.find_nearest(point, within)
+
+    def moved(self, step):
+        """A copy of it, that far from where it is."""
+        copy = Solid(self.name, self.points + step, self.triangles)
+        places, same = self.welded
+        copy.eye, copy._welded = self.eye, (places + step, same)
+        copy._closed, copy._sides, copy._oriented = self._closed, self._sides, self._oriented
+        if self._boxes is not None:
+            copy._boxes = self._boxes[0] + step, self._boxes[1] + step
+        if self.pieces is not None:
+            copy.pieces = self.pieces[0], self.pieces[1] + step, self.pieces[2] + step
+        return copy
+
+    def part(self, chosen):
+        """A solid of some of its triangles (a mask, or their numbers)."""
+        triangles = self.triangles[chosen]
+        used, numbers = numpy.unique(triangles, return_inverse=True)
+        found = Solid(self.name, self.points[used], numbers.reshape(-1, 3))
+        found.eye = self.eye
+        return found
+
+
+class Solids:
+    """The solids of the evaluated scene at its current frame, made when they are asked for."""
+
+    def __init__(self):
+        self._graph = bpy.context.evaluated_depsgraph_get()
+        self._made = {}
+        self._instances = Instances(self._graph)
+        self._things = None
+        camera = bpy.context.scene.camera
+        self._eye = None
+        if camera is not None:
+            self._eye = numpy.array(camera.evaluated_get(self._graph).matrix_world.translation)
+
+    def __getitem__(self, name):
+        found = self._made.get(name)
+        if found is None:
+            try:
+                found = self._solid(name)
+            except Unmeasurable as reason:
+                found = reason
+            self._made[name] = found
+        if isinstance(found, Unmeasurable):
+            raise type(found)(*found.args)
+        return found
+
+    def joined(self, names):
+        """Several as one."""
+        if len(names) == 1:
+            return self[names[0]]
+        key = tuple(names)
+        if key not in self._made:
+            if not names:
+                raise Unmeasurable("nothing was named")
+            self._made[key] = _as_one(
+                " + ".join(names), [(self[name].points, self[name].triangles) for name in names]
+            )
+        return self._made[key]
+
+    def _solid(self, name):
+        if self._things is None:
+            self._things = {thing.name: thing for thing in bpy.context.scene.objects}
+        thing = self._things.get(name)
+        if thing is None:
+            raise Unmeasurable(f"there is no object {name!r} in the scene")
+        evaluated = thing.evaluated_get(self._graph)
+        if not evaluated.is_evaluated:
+            raise Unmeasurable(
+                f"{name!r} is not evaluated: it, or its collection, is hidden from the viewport or excluded"
+            )
+        shapes = [*self._instanced(thing)]
+        with mesh_of(evaluated) as mesh:
+            if mesh is not None and len(mesh.polygons):
+                shapes.append((Shape(mesh), evaluated.matrix_world))
+            count = sum(len(shape.triangles) for shape, _ in shapes)
+            if count > MOST_TRIANGLES:
+                raise Unmeasurable(f"{name!r} has {count} triangles, more than {MOST_TRIANGLES}")
+            placed = [shape.placed(matrix) for shape, matrix in shapes]
+        if not placed:
+            raise NoSurface(f"{name!r} has no surface")
+        if not all(are_numbers(points) for points, _ in placed):
+            raise NotNumbers(f"{name!r} has places that are not numbers")
+        solid = _as_one(name, placed)
+        solid.eye = self._eye
+        return solid
+
+    def _instanced(self, thing):
+        """[(shape, matrix)] of the instances that an object makes."""
+        try:
+            return self._instances.of(thing)
+        except TooManyInstances as reason:
+            raise Unmeasurable(str(reason)) from None
+
+
+# Which triangles meet
+
+
+_CHUNK = 20_000  # triangles that are looked at in one go where both have more
+
+
+def meeting(a, b, most):
+    """Pairs (n × 2) of triangles of two solids that cross or touch; of very many, ``most`` or a few more."""
+    ours, theirs = _reaching(a, b), _reaching(b, a)
+    if not len(ours) or not len(theirs):
+        return numpy.empty((0, 2), int)
+    theirs, other = _tree_of(b, theirs)
+    if len(theirs) <= _CHUNK or len(ours) <= _CHUNK:
+        ours, tree = _tree_of(a, ours)
+        return _numbered(tree.overlap(other), ours, theirs)
+    found, count = [], 0
+    for start in range(0, len(ours), _CHUNK):
+        some = ours[start : start + _CHUNK]
+        found.append(_numbered(a.part(some).tree.overlap(other), some, theirs))
+        count += len(found[-1])
+        if count >= most:
+            break
+    return numpy.concatenate(found)
+
+
+def _numbered(pairs, ours, theirs):
+    pairs = numpy.array(pairs, int).reshape(-1, 2)
+    return numpy.stack([ours[pairs[:, 0]], theirs[pairs[:, 1]]], axis=1)
+
+
+def _reaching(solid, other):
+    """The triangles of a solid whose boxes reach into that of another one."""
+    low, high = solid.boxes
+    # Axis by axis: a reduction over rows of three takes several times as long.
+    meets = numpy.ones(len(low), bool)
+    for axis in range(3):
+        meets &= (low[:, axis] <= other.high[axis]) & (high[:, axis] >= other.low[axis])
+    return numpy.nonzero(meets)[0]
+
+
+def _tree_of(solid, chosen):
+    """(the triangles that a tree is of, the tree): the solid's own, or one of a few triangles."""
+    if solid.has_tree or 4 * len(chosen) > len(solid.triangles):
+        return numpy.arange(len(solid.triangles)), solid.tree
+    return chosen, solid.part(chosen).tree
+
+
+def _as_one(name, found):
+    """A solid of several (points, triangles)."""
+    shifts = numpy.cumsum([0, *(len(points) for points, _ in found)])
+    return Solid(
+        name,
+        numpy.concatenate([points for points, _ in found]),
+        numpy.concatenate([triangles + shift for (_, triangles), shift in zip(found, shifts, strict=False)]),
+    )

@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures what the scene's camera sees of something (see agents.protocol.measures.motion)."""
+
+import bpy
+import numpy
+from mathutils import Vector
+
+from ..geometry.solids import Unmeasurable
+from ..motion.actors import domain_of
+from ..motion.mesh_tracker import spread
+from .movement import actor_of
+
+_SAMPLES = 1000
+_MOST = 20_000  # places that an outline is drawn around
+_THROUGH = 64  # things that a ray may go through before it counts as stopped
+_CLEAR = 0.5  # from which transmission, or below which alpha, one can look through a surface
+_SEEN_THROUGH = {"BSDF_GLASS", "BSDF_TRANSPARENT", "BSDF_REFRACTION"}
+
+
+def view(request, solids):
+    """How much of something is in the picture, how large, and hidden by what."""
+    scene, graph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
+    camera = scene.camera
+    if camera is None:
+        raise Unmeasurable("the scene has no active camera")
+    if camera.data.type == "PANO":
+        raise Unmeasurable("the camera is panoramic")
+    samples, outline = _places(request["names"], solids, graph)
+    if samples is None:
+        return {}
+    projection = _projection(scene, camera, graph)
+    flat = _projected(projection, samples)
+    inside = (numpy.abs(flat[:, :3]) <= flat[:, 3:]).all(axis=1) & (flat[:, 3] > 0)
+    told = {"inside": float(inside.mean()), "cover": _cover(_projected(projection, outline))}
+    told["at"] = samples.mean(axis=0).tolist()
+    if inside.any():
+        told.update(
+            _hidden(scene, graph, camera.evaluated_get(graph), samples[inside], (request["names"], solids))
+        )
+    return told
+
+
+def _places(names, solids, graph):
+    """(samples of its surfaces, particles and fluids; the places that its outline goes around); None for nothing."""
+    samples, outline, surfaces = [], [], []
+    for name in names:
+        actor = actor_of((name,))
+        if actor.measured in {"particles", "fluid"}:
+            moment = actor.moment(graph)
+            found = [] if moment is None else [tuple(place) for place in moment.some(_SAMPLES)]
+            samples.append(numpy.array(found).reshape(-1, 3))
+            outline.append(samples[-1])
+        if actor.measured == "vertices" or (actor.measured == "particles" and _is_shown(actor.objects[0])):
+            surfaces.append(name)
+    if surfaces or not samples:
+        solid = solids.joined(surfaces or names)
+        samples.append(spread(solid, _SAMPLES))
+        outline.append(solid.points)
+        if not len(samples[-1]):
+            raise Unmeasurable("its faces have no area")
+    samples, outline = numpy.concatenate(samples), numpy.concatenate(outline)
+    return (samples, outline[:: -(-len(outline) // _MOST)]) if len(samples) else (None, None)
+
+
+def _is_shown(emitter):
+    """Whether the mesh that particles come out of is rendered itself."""
+    return not emitter.hide_render and emitter.show_instancer_for_render
+
+
+def _projection(scene, camera, graph):
+    render = scene.render
+    matrix = camera.evaluated_get(graph).calc_matrix_camera(
+        graph,
+        x=render.resolution_x,
+        y=render.resolution_y,
+        scale_x=render.pixel_aspect_x,
+        scale_y=render.pixel_aspect_y,
+    )
+    return numpy.array(matrix @ camera.evaluated_get(graph).matrix_world.normalized().inverted_safe(), float)
+
+
+def _projected(projection, places):
+    """Places in the picture, homogeneous (n × 4): it reaches from −w to w."""
+    return places @ projection[:, :3].T + projection[:, 3]
+
+
+# How large
+
+
+def _cover(flat):
+    """The share of the picture that the outline of some projected places fills."""
+    ahead = flat[flat[:, 3] > 1e-6]
+    if len(ahead) < 3:
+        return 0.0
+    outline = _clipped(_hull(ahead[:, :2] / ahead[:, 3:]))
+    if len(outline) < 3:
+        return 0.0
+    x, y = numpy.array(outline).T
+    return float(abs(numpy.dot(x, numpy.roll(y, -1)) - numpy.dot(y, numpy.roll(x, -1))) / 2 / 4)
+
+
+def _hull(points):
+    """The convex outline of points in a plane, counter-clockwise."""
+    points = numpy.unique(points, axis=0).tolist()
+    halves = []
+    for line in (points, points[::-1]):
+        half = []
+        for point in line:
+            while len(half) > 1 and _left(half[-2], half[-1], point) <= 0:
+                half.pop()
+            half.append(point)
+        halves += half[:-1]
+    return halves
+
+
+def _left(a, b, c):
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _clipped(outline):
+    """What of a convex outline is in the picture."""
+    for axis, side in ((0, -1), (0, 1), (1, -1), (1, 1)):
+        kept = []
+        for a, b in zip(outline, [*outline[1:], *outline[:1]], strict=True):
+            over_a, over_b = side * a[axis] - 1, side * b[axis] - 1
+            if over_a <= 0:
+                kept.append(a)
+            if (over_a < 0 < over_b) or (over_b < 0 < over_a):
+                share = over_a / (over_a - over_b)
+                kept.append([a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])])
+        outline = kept
+    return outline
+
+
+# What hides it
+
+
+def _hidden(scene, graph, camera, samples, subject):
+    """The share of samples that something else is in front of, and the names of that, most of all first."""
+    matrix = camera.matrix_world.normalized()
+    eye, towards = matrix.translation, -matrix.col[2].to_3d()
+    count, by = 0, {}
+    rays = _Rays(scene, graph, subject)
+    for place in map(Vector, samples.tolist()):
+        start = place - towards * (place - eye).dot(towards) if camera.data.type == "ORTHO" else eye
+        start = start + (place - start).normalized() * camera.data.clip_start
+        if name := rays.stopped_by(start, place):
+            count += 1
+            by[name] = by.get(name, 0) + 1
+    return {"hidden": count / len(samples), "by": sorted(by, key=by.get, reverse=True)[:3]}
+
+
+class _Rays:
+    """Looks along rays for what stops them: what is rendered, opaque, and not the subject itself."""
+
+    def __init__(self, scene, graph, subject):
+        self._scene, self._graph = scene, graph
+        self._names = set(subject[0])
+        self._own = [solid for name in subject[0] if (solid := _solid(subject[1], name)) is not None]
+        self._rendered = _rendered(bpy.context.view_layer.layer_collection, set())
+        self._clear = {}
+
+    def stopped_by(self, start, place):
+        """The name of the first thing between two places that hides the second; "" for nothing."""
+        way = place - start
+        step = max(way.length * 1e-5, 1e-5)
+        for _ in range(_THROUGH):
+            left = (place - start).length - step
+            if left <= 0:
+                break
+            hit, at, _, _, thing, _ = self._scene.ray_cast(
+                self._graph, start, way.normalized(), distance=left
+            )
+            if not hit:
+                break
+            if self._stops(thing, at, step):
+                return thing.name
+            start = at + way.normalized() * step
+        return ""
+
+    def _stops(self, thing, at, step):
+        thing = thing.original
+        if thing.name in self._names or self._is_clear(thing):
+            return False
+        # An instance goes by the name of what it is one of: it may be a part of the subject.
+        return not any(solid.tree.find_nearest(at, 2 * step)[0] is not None for solid in self._own)
+
+    def _is_clear(self, thing):
+        if thing.name not in self._clear:
+            slots = [slot.material for slot in thing.material_slots]
+            self._clear[thing.name] = (
+                (thing.name in bpy.context.view_layer.objects and thing.name not in self._rendered)
+                or not getattr(thing, "visible_camera", True)
+                or _is_gas(thing)
+                or (bool(slots) and all(map(_is_see_through, slots)))
+            )
+        return self._clear[thing.name]
+
+
+def _solid(solids, name):
+    try:
+        return solids[name]
+    except Unmeasurable:
+        return None
+
+
+def _is_gas(thing):
+    domain = domain_of(thing)
+    return domain is not None and domain.domain_type == "GAS"
+
+
+def _rendered(branch, found):
+    """Names of the objects of a layer collection that are rendered."""
+    if not branch.exclude and not branch.collection.hide_render:
+        found.update(thing.name for thing in branch.collection.objects if not thing.hide_render)
+        for below in branch.children:
+            _rendered(below, found)
+    return found
+
+
+def _is_see_through(material):
+    """Whether one can look through a material: glass, or hardly any alpha, or but a volume."""
+    tree = material.node_tree if material is not None and getattr(material, "use_nodes", True) else None
+    if tree is None:
+        return False
+    output = tree.get_output_node("ALL")
+    if output is None:
+        return False
+    shaders = _shaders(output.inputs["Surface"], set())
+    if not shaders:
+        return output.inputs["Volume"].is_linked
+    return any(_lets_through(node) for node in shaders)
+
+
+def _shaders(socket, seen):
+    """The nodes of surfaces that lead to a socket."""
+    found = []
+    for link in socket.links:
+        node = link.from_node
+        if node.name in seen:
+            continue
+        seen.add(node.name)
+        if node.type.startswith(("BSDF", "EMISSION")):
+            found.append(node)
+        else:
+            for below in node.inputs:
+                if below.type == "SHADER":
+                    found += _shaders(below, seen)
+    return found
+
+
+def _lets_through(node):
+    if node.type in _SEEN_THROUGH:
+        return True
+    if node.type != "BSDF_PRINCIPLED":
+        return False
+    values = {
+        one.name: one.default_value
+        for one in node.inputs
+        if one.name in {"Transmission Weight", "Transmission", "Alpha"}
+    }
+    linked = {one.name for one in node.inputs if one.is_linked}
+    alpha = 1.0 if "Alpha" in linked else values.pop("Alpha", 1.0)
+    values.pop("Alpha", None)
+    return alpha < _CLEAR or any(value >= _CLEAR for value in values.values())

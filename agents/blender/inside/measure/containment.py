@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures what is in a container or sunk into something (see agents.protocol.measures.contact)."""
+
+import math
+
+import numpy
+from mathutils import Vector
+
+from ..geometry.contact_regions import corners_and_edges, shape_of, some
+from ..geometry.solids import Unmeasurable
+
+_SAMPLES = 256
+_PAIRS = 64
+_SURFACE = 1500  # places of a cage's bars
+_SEEN_THROUGH = 0.6  # a wall is perforated if less of what it is in front of is hidden by it
+_SUNK = 5000  # places from which it is looked for the way out
+_WAYS = 12
+_STEEP = 0.3
+_STEP = 1e-5
+
+
+def _directions():
+    """Directions all around, each with its opposite ``_PAIRS`` places later."""
+    heights = (numpy.arange(_PAIRS) + 0.5) / _PAIRS
+    turns = numpy.arange(_PAIRS) * math.pi * (3 - math.sqrt(5))
+    across = numpy.sqrt(1 - heights**2)
+    half = numpy.stack([across * numpy.cos(turns), across * numpy.sin(turns), heights], axis=1)
+    return numpy.concatenate([half, -half])
+
+
+_AROUND = _directions()
+_COARSE = _AROUND.astype(numpy.float32)
+_RAYS_AROUND = [Vector(way) for way in _AROUND]
+
+
+def enclosure(request, solids):
+    """Shares of the samples of a content that are in a container's cavity, and in its walls.
+
+    A place is in the cavity if at least half of all directions lead to the container. Below the plane of a flat rim
+    that is so everywhere, above it nowhere: an open container is thereby closed at its rim. Where a closed container
+    holds a place in its material, its winding number tells; a container that is closed all around and has no hollow
+    (a tank that is one box) holds its content in that.
+    """
+    content, container = solids.joined(request["content"]), solids.joined(request["container"])
+    places, normals = _samples(content, _SAMPLES)
+    step = max(_STEP, min(request["noise"], 0.25 * float((content.high - content.low).min())))
+    cavity = _Cavity(
+        container, [solids[name] for name in request["container"]], max(_STEP, request["noise"] - step)
+    )
+    # Of what lies at a wall, the places a little further in are looked at; a sheet has them on either side.
+    sides = (-1,) if content.closed else (-1, 1)
+    told = [cavity.look(places + side * step * normals) for side in sides]
+    inside = max((numpy.logical_or.reduce(reading) for reading in zip(*told, strict=True)), key=numpy.mean)
+    in_wall = numpy.logical_and.reduce([cavity.in_wall(places + side * step * normals) for side in sides])
+    answer = {"inside": float(inside.mean()), "wall": float((in_wall & ~inside).mean())}
+    if not inside.all():
+        answer["at"] = places[int(numpy.argmin(inside))].tolist()
+    return answer
+
+
+class _Cavity:
+    """What a container leaves free: in its hollow, within its bars, or, where it has neither, in its volume."""
+
+    def __init__(self, whole, parts, noise):
+        self._whole, self._noise = whole, noise
+        self._parts = [one for one in parts if one.closed]
+        self._bars = None
+
+    def in_wall(self, places):
+        """Which places are in its material, deeper than noise."""
+        return self._depths(places) > self._noise
+
+    def look(self, places):
+        """Which places are in it, if it is a volume; if it is a vessel; if it is a cage."""
+        depths = self._depths(places)
+        free = _within_reach(self._whole, places, self._noise) & (depths <= self._noise)
+        vessel = free.copy()
+        vessel[free] = [self._is_enclosed(place) for place in places[free].tolist()]
+        cage = vessel.copy()
+        if not vessel.all() and free.any() and self._is_perforated(places[free].mean(axis=0)):
+            cage[free] = [self._seen(place) >= _PAIRS for place in places[free]]
+        return depths > 0, vessel, cage
+
+    def _depths(self, places):
+        return numpy.array([self._depth(place) for place in places.tolist()])
+
+    def _depth(self, place):
+        depth = 0.0
+        for part in self._parts:
+            if (part.low <= place).all() and (part.high >= place).all() and part.holds(place):
+                depth = max(depth, part.nearest(place)[3] or 0.0)
+        return depth
+
+    def _is_enclosed(self, place):
+        """Whether at least half of all directions lead to it."""
+        hit = miss = 0
+        cast, start = self._whole.tree.ray_cast, Vector(place)
+        for way in _RAYS_AROUND:
+            if cast(start, way)[0] is None:
+                miss += 1
+            else:
+                hit += 1
+            if hit >= _PAIRS or miss > _PAIRS:
+                break
+        return hit >= _PAIRS
+
+    def _is_perforated(self, place):
+        """Whether one sees out between parts of it that are all around: a basket, a cage."""
+        start = Vector(place)
+        hit = sum(self._whole.tree.ray_cast(start, way)[0] is not None for way in _RAYS_AROUND)
+        return hit < _SEEN_THROUGH * self._seen(place)
+
+    def _seen(self, place):
+        """In how many of the directions around a place there is something of its surface nearby."""
+        if self._bars is None:
+            self._bars = _samples(self._whole, _SURFACE)[0].astype(numpy.float32)
+        away = self._bars - place.astype(numpy.float32)
+        return len(numpy.unique((_unit(away) @ _COARSE.T).argmax(axis=1)))
+
+
+def _samples(solid, count):
+    """(places spread evenly over a surface, normals out of it there)."""
+    shape = shape_of(solid)
+    # Whatever order its triangles and their corners are in, the same surface has the same samples.
+    corners = numpy.sort(shape.corners, axis=1)
+    order = numpy.lexsort(shape.places[corners].mean(axis=1).T)
+    whole = numpy.cumsum(shape.areas[order])
+    if not whole[-1] > 0:
+        raise Unmeasurable(f"{solid.name!r} has faces without an area")
+    wanted = (numpy.arange(count) + 0.5) / count * whole[-1]
+    triangles = order[numpy.minimum(numpy.searchsorted(whole, wanted), len(whole) - 1)]
+    steps = numpy.arange(count)
+    root, share = numpy.sqrt((steps * 0.754877666 + 0.5) % 1), (steps * 0.569840290 + 0.5) % 1
+    a, b, c = (shape.places[corners[triangles, corner]] for corner in range(3))
+    weights = (1 - root)[:, None], (root * (1 - share))[:, None], (root * share)[:, None]
+    places = weights[0] * a + weights[1] * b + weights[2] * c
+    outward = shape.outward[triangles][:, None]
+    return places, shape.normals[triangles] * numpy.where(outward == 0, 1, outward)
+
+
+def _within_reach(solid, places, slack):
+    """Which places are no further out than the solid, seen from anywhere around it."""
+    shape = shape_of(solid)
+    largest = numpy.argsort(shape.areas)[-_PAIRS:]
+    ways = numpy.concatenate(
+        [numpy.eye(3), -numpy.eye(3), shape.normals[largest], -shape.normals[largest], _AROUND]
+    )
+    reach = numpy.full(len(ways), -numpy.inf)
+    for start in range(0, len(shape.places), 20_000):
+        reach = numpy.maximum(reach, (shape.places[start : start + 20_000] @ ways.T).max(axis=0))
+    return (places @ ways.T <= reach + slack).all(axis=1)
+
+
+def embedding(request, solids):
+    """How far a part would have to be moved to be out of its host, the shortest way."""
+    part, host = solids.joined(request["part"]), solids.joined(request["host"])
+    pairs = host.tree.overlap(part.tree)
+    shape = shape_of(host)
+    if host.closed:
+        sunk = [place for place in corners_and_edges(part, host).tolist() if host.holds(place)]
+        touched = [pair[0] for pair in pairs] or [host.nearest(place)[2] for place in sunk]
+        ways = _most_common(shape.normals[touched] * shape.outward[touched][:, None]) if touched else []
+    else:
+        sunk = part.points[some(len(part.points), _SUNK)].tolist()
+        ways = _up(shape.normals[[pair[0] for pair in pairs]]) if pairs else []
+    best = None
+    for way in ways:
+        deepest = max(
+            ((distance, place) for place in sunk if (distance := _way_out(host, place, way)) is not None),
+            default=(0.0, None),
+        )
+        if best is None or deepest[0] < best[0]:
+            best = deepest
+    if best is None or best[1] is None:
+        return {"depth": 0.0}
+    return {"depth": max(0.0, best[0]), "at": best[1]}
+
+
+def _most_common(normals):
+    kinds, counts = numpy.unique(normals.round(1) + 0.0, axis=0, return_counts=True)
+    chosen = kinds[numpy.argsort(-counts)[:_WAYS]]
+    found = [normals.mean(axis=0)] if len(normals) else []
+    for kind in chosen:
+        found.append(normals[(numpy.abs(normals - kind) <= 0.06).all(axis=1)].mean(axis=0))
+    return [one / numpy.linalg.norm(one) for one in found if numpy.linalg.norm(one) > _STEEP]
+
+
+def _up(normals):
+    """Out of a sheet: upwards, if it lies; to either side, if it stands."""
+    level = numpy.where(normals[:, 2:] < 0, -normals, normals)
+    way = level.mean(axis=0)
+    way = way / max(float(numpy.linalg.norm(way)), 1e-9)
+    return [way] if way[2] > _STEEP else [way, -way]
+
+
+def _unit(vectors):
+    return vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=1), 1e-12)[:, None]
+
+
+def _way_out(host, place, way):
+    return host.tree.ray_cast(Vector(place), Vector(way))[3]

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures how a filler sits in an opening (see agents.protocol.measures.contact)."""
+
+import math
+
+import numpy
+from mathutils import Vector
+
+from ..geometry.contact_regions import shape_of
+
+_DIRECTIONS = 96
+_COARSE = 6
+_PLANES = 7  # across the filler, in which it is looked for the rim
+_BESIDE = 0.01  # metres before and behind the filler in which a host that is a sheet may be
+_STEPS = 48
+_HALVINGS = 16
+_WAYS = 8
+
+
+def opening(request, solids):
+    """See OpeningMeasure.
+
+    Through the middle of the filler, planes are laid across the way that leads through the opening. In each, rays lead
+    from the middle to the rim; where a host is a sheet, whose rim no ray can meet, it is felt for where it begins to
+    cover what is behind it. Of all planes, the one with the narrowest rim counts, direction by direction.
+    """
+    filler, host = solids.joined(request["filler"]), solids.joined(request["host"])
+    sections = [_Section(filler, host, way) for way in _ways(filler, host)]
+    section = min(sections, key=lambda one: _doubt(one.rim(_COARSE)))
+    rim, way = section.rim(), section.way
+    if not rim:
+        return {"unbounded": 360.0, "at": ((filler.low + filler.high) / 2).tolist()}
+    turns = sorted(rim)
+    before, after = [turns[-1] - _DIRECTIONS, *turns[:-1]], [*turns[1:], turns[0] + _DIRECTIONS]
+    widest = max(b - a for a, b in zip(turns, after, strict=True))
+    gaps = [
+        (_gap(*rim[turn], [rim[one % _DIRECTIONS][0] for one in (last, following)], way), rim[turn][0])
+        for last, turn, following in zip(before, turns, after, strict=True)
+    ]
+    gap, at = max(gaps, key=lambda one: one[0])
+    return {"unbounded": 360.0 * (widest - 1) / _DIRECTIONS, "gap": gap, "at": tuple(at)}
+
+
+def _doubt(rim):
+    """For comparing: an opening has a rim all around, and is least wide when it is looked at straight through it."""
+    return -len(rim), max(((foot - place).length for place, foot in rim.values()), default=0.0)
+
+
+def _gap(place, foot, beside, way):
+    """How wide the gap at a place of the rim is, across it: in a corner not along the diagonal."""
+    away, least = foot - place, (foot - place).length
+    for other in beside:
+        along = (other - place) - (other - place).dot(way) * way
+        if along.length > 0:
+            along.normalize()
+            parts = abs(away.dot(along)), abs(away.dot(way)), abs(away.dot(way.cross(along)))
+            least = min(least, max(parts))
+    return least
+
+
+def _ways(filler, host):
+    """Directions in which an opening may lead through the host: those in which most of the faces nearby look."""
+    found = [numpy.eye(3)[axis] for axis in range(3)]
+    around = filler.diagonal / 2
+    for solid in (filler, host):
+        shape = shape_of(solid)
+        corners = shape.places[shape.corners]
+        near = (
+            (corners.min(axis=1) <= filler.high + around) & (corners.max(axis=1) >= filler.low - around)
+        ).all(axis=1)
+        normals = shape.normals[near]
+        level = numpy.where((normals @ (0.577, 0.211, 0.789) < 0)[:, None], -normals, normals)
+        kinds, back = numpy.unique(level.round(2) + 0.0, axis=0, return_inverse=True)
+        weighed = level * shape.areas[near][:, None]
+        sums = numpy.stack([numpy.bincount(back.reshape(-1), axis, len(kinds)) for axis in weighed.T], axis=1)
+        lengths = numpy.linalg.norm(sums, axis=1)
+        found += [
+            sums[place] / lengths[place] for place in numpy.argsort(-lengths)[:_WAYS] if lengths[place] > 0
+        ]
+    ways = []
+    for way in found:
+        if all(abs(way @ other) < 0.999999 for other in ways):
+            ways.append(way)
+    return ways
+
+
+class _Section:
+    """A filler and a host, looked at along the way that leads through the opening."""
+
+    def __init__(self, filler, host, way):
+        self._filler, self._host, self.way = filler, host, Vector(way)
+        across = numpy.cross(way, numpy.eye(3)[int(numpy.argmin(numpy.abs(way)))])
+        across /= numpy.linalg.norm(across)
+        self._axes = across, numpy.cross(way, across)
+        along = filler.points @ way
+        self._low, self._high = float(along.min()), float(along.max())
+        self._middle = numpy.array(
+            [((spread := filler.points @ axis).min() + spread.max()) / 2 for axis in self._axes]
+        )
+        self._reach = 0.75 * filler.diagonal + 0.05
+
+    def rim(self, every=1):
+        """{direction: (place, the filler's nearest one)}; {} where the middle of the filler is not in an opening."""
+        if self._covered(0.0, (1.0, 0.0)) is not None:
+            return {}
+        shares = (numpy.arange(_PLANES) + 0.5) / _PLANES
+        heights = self._low + shares * (self._high - self._low)
+        if self._host.closed and any(
+            self._host.holds(self._place(0.0, (1.0, 0.0), height)) for height in heights
+        ):
+            return {}
+        found = {}
+        for turn in range(0, _DIRECTIONS, every):
+            angle = 2 * math.pi * turn / _DIRECTIONS
+            heading = math.cos(angle), math.sin(angle)
+            places = [place for height in heights if (place := self._seen(heading, height)) is not None]
+            if not places and (place := self._felt(heading, _STEPS // every)) is not None:
+                places = [place]
+            if places:
+                feet = [(place, self._filler.nearest(place)[0]) for place in places]
+                found[turn] = min(feet, key=lambda one: (one[1] - one[0]).length)
+        return found
+
+    def _place(self, distance, heading, height):
+        u, v = self._middle + distance * numpy.array(heading)
+        return Vector(u * self._axes[0] + v * self._axes[1] + height * numpy.array(self.way))
+
+    def _seen(self, heading, height):
+        """Where a ray from the middle meets the host."""
+        start = self._place(0.0, heading, height)
+        return self._host.tree.ray_cast(start, self._place(1.0, heading, height) - start, self._reach)[0]
+
+    def _felt(self, heading, steps):
+        """Where the host begins to cover what is behind it."""
+        last = 0.0
+        for step in range(1, steps + 1):
+            distance = self._reach * step / steps
+            if self._covered(distance, heading) is None:
+                last = distance
+                continue
+            free, covered = last, distance
+            for _ in range(_HALVINGS):
+                middle = (free + covered) / 2
+                if self._covered(middle, heading) is None:
+                    free = middle
+                else:
+                    covered = middle
+            return self._covered(covered, heading)
+        return None
+
+    def _covered(self, distance, heading):
+        start = self._place(distance, heading, self._low - _BESIDE)
+        length = self._high - self._low + 2 * _BESIDE
+        return self._host.tree.ray_cast(start, self.way, length)[0]

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures where things are to each other (see agents.protocol.measures.position)."""
+
+import math
+
+import bpy
+import numpy
+from mathutils import Vector
+
+from ..geometry.solids import Unmeasurable
+
+_CELLS = 40  # along each side of an outline, in the middle of which it is looked up and down
+_CORNERS = 2000
+_INSET = 0.98  # corners are drawn in by so much: at a wall they would be on either side of it
+_UP = Vector((0, 0, 1))
+
+
+def over(request, solids):
+    """How far something is over something else, and above it, at places that both share in plan view."""
+    a, b = solids.joined(request["a"]), solids.joined(request["b"])
+    cells = _undersides(a)
+    corners = a.points[:: len(a.points) // _CORNERS + 1]
+    middle = (a.low + a.high) / 2
+    drawn = numpy.column_stack([middle[:2] + _INSET * (corners[:, :2] - middle[:2]), corners[:, 2]]).tolist()
+    tops = [_top(b, place) for place in cells or drawn]
+    share = sum(top is not None for top in tops) / len(tops)
+    told = {"share": share, "sunk": None, "at": None}
+    deepest = [*zip(cells or drawn, tops, strict=True)]
+    if cells:
+        deepest += [(place, _top(b, place)) for place in drawn]
+    for place, top in deepest:
+        if top is not None and (told["sunk"] is None or top - place[2] > told["sunk"]):
+            told.update(sunk=top - place[2], at=tuple(place))
+    return told
+
+
+def _undersides(solid):
+    """The lowest place of a solid in each cell of its outline, where it has one."""
+    size = solid.high - solid.low
+    below = solid.low[2] - 1 - size[2]
+    found = []
+    for column in range(_CELLS):
+        for row in range(_CELLS):
+            x, y = (solid.low + (numpy.array((column, row, 0)) + 0.5) / _CELLS * size)[:2]
+            hit = solid.tree.ray_cast(Vector((x, y, below)), _UP)[0]
+            if hit is not None:
+                found.append(tuple(hit))
+    return found
+
+
+def _top(solid, place):
+    """The height of a solid over or under a place; None where it is not there."""
+    x, y = place[:2]
+    if not (solid.low[0] <= x <= solid.high[0] and solid.low[1] <= y <= solid.high[1]):
+        return None
+    hit = solid.tree.ray_cast(Vector((x, y, solid.high[2] + 1)), -_UP)[0]
+    return None if hit is None else hit[2]
+
+
+def beside(request, solids):
+    """In which direction something lies from something else, and how wide the gap between them is."""
+    axes = axes_of(request["of"], level=request["level"]) if request["of"] else numpy.eye(3)
+    side = axes[request["axis"]] * request["way"]
+    a, b = solids.joined(request["a"]).points, solids.joined(request["b"]).points
+    (low_a, high_a), (low_b, high_b) = (
+        (some.min(axis=0), some.max(axis=0)) for some in (a @ axes.T, b @ axes.T)
+    )
+    middle_a, middle_b = (low_a + high_a) / 2, (low_b + high_b) / 2
+    along = (middle_a - middle_b)[request["axis"]] * request["way"]
+    off = numpy.maximum(0.0, numpy.maximum(middle_a - high_b, low_b - middle_a))
+    off[request["axis"]] = off[2] = 0.0  # what is left of something is so at any height
+    ways = [side, *numpy.eye(3), (middle_a - middle_b) @ axes]
+    for name in request["turned"]:
+        ways += [*axes_of(name)]
+    gap = max(
+        float((a @ way).min() - (b @ way).max()) for way in _within(ways, side, math.radians(request["cone"]))
+    )
+    return {
+        "angle": math.degrees(math.atan2(float(numpy.linalg.norm(off)), along)),
+        "gap": gap,
+        "at": (middle_a @ axes).tolist(),
+    }
+
+
+def _within(ways, side, cone):
+    """Those of some directions, or of their opposites, that are so near to a side, as unit vectors."""
+    for way in ways:
+        length = numpy.linalg.norm(way)
+        if length > 0:
+            unit = way / length * (1 if way @ side >= 0 else -1)
+            if unit @ side >= math.cos(cone) - 1e-9:
+                yield unit
+
+
+def axes_of(name, *, level=False):
+    """The unit axes of an object at the current frame, as rows; with its X brought level, and Z up."""
+    thing = bpy.context.scene.objects.get(name)
+    if thing is None:
+        raise Unmeasurable(f"there is no object {name!r} in the scene")
+    matrix = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
+    axes = numpy.array(matrix, dtype=float)[:3, :3].T
+    if level:
+        across = numpy.array((axes[0][0], axes[0][1], 0.0))
+        axes = numpy.array([across, numpy.cross((0, 0, 1), across), (0, 0, 1)])
+    lengths = numpy.linalg.norm(axes, axis=1)
+    if not (numpy.isfinite(axes).all() and (lengths > 1e-6).all()):
+        what = "left and right: its X axis stands upright" if level else "axes: it is scaled to nothing"
+        raise Unmeasurable(f"{name!r} has no {what}")
+    return axes / lengths[:, None]

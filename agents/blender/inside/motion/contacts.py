@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What actors touch while they move: gaps between evaluated surfaces, frame by frame, and what follows from them."""
+
+import itertools
+import math
+
+import bpy
+import numpy
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+
+from .actors import coordinates, domain_of, is_empty_domain, placed, round_to
+
+LARGEST = 100_000  # polygons of a surface that is looked at
+_POINTS = 200  # of a surface from which the way to another one is sought
+_SEEDS, _ROUNDS, _NEIGHBOURS = 4, 24, 40
+_FREE_FALLS = 3.0  # a speed that changes by more than so many times what gravity does in a frame: a blow
+_BLOW = 0.5  # m/s; a change by less is none
+_TIMES = 50  # that a contact begins anew, which are told
+
+
+class Surface:
+    """An object's evaluated mesh. Its tree is kept as long as the mesh stays what it is."""
+
+    def __init__(self, thing):
+        self.thing = thing
+        self.slack = _slack(thing)
+        self.there = False
+        self.matrix = None
+        self._is_rigid = not thing.modifiers and getattr(thing.data, "shape_keys", None) is None
+        self._places = self._tree = self._local = None
+
+    def at(self, graph):
+        """Looks at where it is in an evaluated dependency graph; at its vertices only when they are asked for."""
+        evaluated = self.thing.evaluated_get(graph)
+        self._now = evaluated, graph
+        if self._is_rigid and self.matrix == evaluated.matrix_world:
+            return
+        mesh = evaluated.data
+        self.matrix = evaluated.matrix_world.copy()
+        self.there = (
+            0 < len(mesh.polygons) <= LARGEST
+            and not is_empty_domain(evaluated)
+            and all(math.isfinite(part) for row in self.matrix for part in row)
+        )
+        if self.there:
+            self._fresh = False
+            corners = placed(numpy.array(evaluated.bound_box), self.matrix)
+            self.low, self.high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+
+    def is_near(self, low, high, reach):
+        """Whether its box comes within ``reach`` of another one."""
+        return all(
+            low[axis] - reach <= self.high[axis] and high[axis] + reach >= self.low[axis] for axis in range(3)
+        )
+
+    def _refresh(self):
+        if self._fresh:
+            return
+        self._fresh = True
+        places = coordinates(self._now[0].data.vertices)
+        if not numpy.array_equal(places, self._places):
+            self._places, self._tree = places, None
+            self._local = list(_spread(self._now[0].data, places))
+            box = self._now[0].bound_box
+            self._step = 2 * math.dist(box[0], box[6]) / math.sqrt(len(self._local))
+
+    def points(self):
+        """(places all over it, in the world; how far from one of them another place of it may be)."""
+        self._refresh()
+        return [self.matrix @ point for point in self._local], self._step * max(
+            map(abs, self.matrix.to_scale())
+        )
+
+    def _find(self, search, point, within):
+        self._refresh()
+        if self._tree is None:
+            self._tree = BVHTree.FromObject(*self._now)
+        scale = min(map(abs, self.matrix.to_scale()))
+        return getattr(self._tree, search)(self.matrix.inverted_safe() @ point, within / max(scale, 1e-9))
+
+    def nearest(self, point, within):
+        """The place of it next to a point of the world, if that is near enough."""
+        if not self.is_near(point, point, within):
+            return None
+        place = self._find("find_nearest", point, within)[0]
+        return None if place is None else self.matrix @ place
+
+    def corners_near(self, point, within):
+        """The vertices of its polygons that come so near to a point, in the world."""
+        mesh = self._now[0].data
+        polygons = self._find("find_nearest_range", point, within)[:_NEIGHBOURS]
+        numbers = {at for _, _, polygon, _ in polygons for at in mesh.polygons[polygon].vertices}
+        return [self.matrix @ mesh.vertices[at].co for at in sorted(numbers)]
+
+
+def _spread(mesh, places):
+    """Places all over a surface: its vertices, and if these are few, points on its triangles."""
+    yield from map(Vector, places[:: math.ceil(len(places) / _POINTS)].tolist())
+    if len(places) >= _POINTS:
+        return
+    mesh.calc_loop_triangles()
+    triangles = mesh.loop_triangles
+    whole = sum(triangle.area for triangle in triangles) or 1.0
+    for triangle in triangles:
+        a, b, c = (Vector(places[at]) for at in triangle.vertices)
+        rows = max(1, round(math.sqrt(2 * _POINTS * triangle.area / whole)))
+        for i in range(rows):
+            for j in range(rows - i):
+                u, v = (i + 1 / 3) / rows, (j + 1 / 3) / rows
+                yield a + (b - a) * u + (c - a) * v
+
+
+def _slack(thing):
+    """How far from a surface its collisions begin, in metres."""
+    slack = 0.0
+    body = thing.rigid_body
+    if body is not None and (body.use_margin or body.collision_shape == "MESH"):
+        slack = body.collision_margin
+    for modifier in thing.modifiers:
+        if modifier.type == "CLOTH":
+            slack = max(slack, modifier.collision_settings.distance_min)
+        elif modifier.type == "COLLISION":
+            slack = max(slack, modifier.settings.thickness_outer)
+    return slack
+
+
+class Contacts:
+    """Watches the gaps between actors and everything else that has a surface."""
+
+    def __init__(self, scene, actors):
+        self._blow = max(
+            _BLOW, _FREE_FALLS * scene.gravity.length / (scene.render.fps / scene.render.fps_base)
+        )
+        self._surfaces = {}
+        self._own = [self._own_surfaces(actor) for actor in actors]
+        owners = {
+            thing.name: one.name
+            for one in scene.collection.children_recursive
+            if one.get("protocol_role") == "object"
+            for thing in one.all_objects
+        }
+        touchable = [thing for thing in bpy.context.view_layer.objects if _is_touchable(thing)]
+        self._others = []
+        for actor in actors:
+            own = {thing.name for thing in actor.objects}
+            same = {owners.get(name) for name in own}
+            self._others.append(
+                [
+                    (_told_name(thing, owners.get(thing.name), same), self._surface(thing))
+                    for thing in touchable
+                    if thing.name not in own
+                ]
+            )
+        self._gaps = [{} for _ in actors]  # per actor: {name: {frame: (gap, tolerance)}}
+
+    def _own_surfaces(self, actor):
+        if actor.measured in {"particles", "origin"}:
+            return []
+        return [self._surface(thing) for thing in actor.objects if thing.type == "MESH"]
+
+    def _surface(self, thing):
+        return self._surfaces.setdefault(thing.name, Surface(thing))
+
+    def look(self, frame, graph, tracks):
+        """Measures the gaps at a frame, which the ``tracks`` have taken in already."""
+        for surface in self._surfaces.values():
+            surface.at(graph)
+        for track, own, others, gaps in zip(tracks, self._own, self._others, self._gaps, strict=True):
+            moment = track.last
+            if moment is None:
+                continue
+            small = math.dist(moment.low, moment.high)
+            for name, other in others:
+                if not other.there:
+                    continue
+                size = (
+                    min(small, math.dist(other.low, other.high))
+                    if small
+                    else math.dist(other.low, other.high)
+                )
+                reach = min(max(0.002, 0.005 * size), 0.01) + other.slack
+                reach += max([surface.slack for surface in own], default=0.0)
+                if not other.is_near(moment.low, moment.high, reach + track.moved):
+                    continue
+                gap = _gap(own, other, moment, reach + track.moved)
+                if gap < gaps.setdefault(name, {}).get(frame, (math.inf, 0))[0]:
+                    gaps[name][frame] = gap, reach
+
+    def over(self, number, track, start, end):
+        """What actor ``number`` touches from frame ``start`` to ``end``.
+
+        A list of ``with`` (a name), ``frames`` ([first, last] of each time) and ``gap`` (metres, at the first frame).
+        It touches what is nearer than the tolerance (2 mm to 1 cm by size, and what collisions keep apart), or what
+        is nearest when its motion changes as by a blow: then it hit between this frame and the next.
+        """
+        found = []
+        for name, frames in self._gaps[number].items():
+            touching = [
+                frame
+                for frame, (gap, reach) in frames.items()
+                if start <= frame <= end and (gap <= reach or self._hits(number, track, name, frame))
+            ]
+            if touching:
+                gap = round_to(frames[touching[0]][0])
+                found.append({"with": name, "frames": _times(touching, track.frames)[:_TIMES], "gap": gap})
+        return sorted(found, key=lambda contact: (contact["frames"], contact["gap"]))
+
+    def _hits(self, number, track, name, frame):
+        if track.changes_by(frame) < self._blow:
+            return False
+        near = {other: frames[frame][0] for other, frames in self._gaps[number].items() if frame in frames}
+        return min(near, key=near.get) == name
+
+
+def _times(touching, measured):
+    """[first, last] of each run of frames without a break, among those that were measured."""
+    times, following = [], dict(itertools.pairwise(measured))
+    for frame in touching:
+        if times and following[times[-1][1]] == frame:
+            times[-1][1] = frame
+        else:
+            times.append([frame, frame])
+    return times
+
+
+def _gap(own, other, moment, reach):
+    """The distance of an actor to a surface if it is within ``reach``, or infinite."""
+    own = [surface for surface in own if surface.there]
+    if not own:
+        places = [(point, other.nearest(point, reach)) for point in moment.some(_POINTS)]
+        return min(((place - point).length for point, place in places if place is not None), default=math.inf)
+    near = [surface for surface in own if other.is_near(surface.low, surface.high, reach)]
+    nearest = min((between(surface, other, reach) for surface in near), default=math.inf)
+    return nearest if nearest <= reach else math.inf
+
+
+def between(a, b, reach):
+    """The distance of two surfaces, if it is within ``reach``: from the nearest points of a few, the way is felt along
+    both surfaces to where they are nearest."""
+    seeds = []
+    for one, other in ((a, b), (b, a)):
+        points, step = one.points()
+        for point in points:
+            place = other.nearest(point, reach + step)
+            if place is not None:
+                seeds.append(((place - point).length, place, one, other))
+    seeds.sort(key=lambda seed: seed[0])
+    return min((_felt(*seed) for seed in seeds[:_SEEDS]), default=math.inf)
+
+
+def _felt(gap, place, one, other):
+    """What the distance ``gap``, of ``place`` on ``other`` from its foot on ``one``, shrinks to by and by: to the foot
+    of the foot, or to that of a corner nearby."""
+    for _ in range(_ROUNDS):
+        within = gap * 1.001 + 1e-5
+        feet = [one.nearest(place, within), *one.corners_near(place, within)]
+        pairs = [(foot, other.nearest(foot, within)) for foot in feet if foot is not None]
+        shorter, found = min(
+            (((there - foot).length, there) for foot, there in pairs if there is not None),
+            default=(gap, None),
+            key=lambda pair: pair[0],
+        )
+        if gap - shorter < 1e-5:
+            return min(gap, shorter)
+        gap, place = shorter, found
+    return gap
+
+
+def _told_name(thing, owner, same):
+    """The object collection that a thing is of, or itself if that is the actor's too, or there is none."""
+    return thing.name if owner is None or owner in same else owner
+
+
+def _is_touchable(thing):
+    """Whether something can be seen, or takes part in collisions, that has a mesh."""
+    if thing.type != "MESH" or not thing.visible_get():
+        return False
+    collides = thing.rigid_body is not None or any(one.type == "COLLISION" for one in thing.modifiers)
+    domain = domain_of(thing)
+    return (collides or not thing.hide_render) and (domain is None or domain.domain_type == "LIQUID")

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The meshes of a scene while its frames go by, kept as long as they stay what they are. Metres."""
+
+import bpy
+import numpy
+
+from ..geometry.solids import MOST_TRIANGLES, Solid, Unmeasurable
+from .actors import coordinates, placed
+from .contacts import Surface
+
+_SAMPLES = 300  # of the vertices, and of the faces
+_SAME = 1e-5  # how much the scale may change, in parts, and still count as the same
+_EVENLY = (0.7548776662466927, 0.5698402909980532)  # steps that fill a square evenly
+
+
+class Body:
+    """An object's evaluated mesh without its place and rotation: ``solid`` is the same at all frames of a rigid thing.
+
+    ``samples`` (n × 3) are places all over it, the same ones as long as it has as many vertices. ``low`` and ``high``
+    are the corners of its box along the world's axes.
+    """
+
+    def __init__(self, thing):
+        self.name = thing.name
+        self._thing = thing
+        self._is_rigid = not thing.modifiers and getattr(thing.data, "shape_keys", None) is None
+        self._shape = self._solid = self._samples = self._inwards = None
+        self.frame = self.before = None
+
+    def at(self, frame, graph):
+        """Looks at where it is."""
+        if frame == self.frame:
+            return
+        self._evaluated = self._thing.evaluated_get(graph)
+        matrix = self._evaluated.matrix_world
+        turn = matrix.to_quaternion().to_matrix()
+        shape = turn.transposed() @ matrix.to_3x3()
+        now = numpy.array(turn, float), numpy.array(matrix.translation, float)
+        self.before = self._pose if self.frame == frame - 1 else now
+        self._pose, self.frame = now, frame
+        if (
+            not self._is_rigid
+            or self._shape is None
+            or any(
+                (shape[row] - self._shape[row]).length > _SAME * (1 + shape[row].length) for row in range(3)
+            )
+        ):
+            self._shape, self._solid, self._samples, self._inwards = shape, None, None, None
+        corners = placed(numpy.array(self._evaluated.bound_box), matrix)
+        self.low, self.high = corners.min(axis=0), corners.max(axis=0)
+
+    @property
+    def solid(self):
+        """Its triangles in its own space. Raises Unmeasurable."""
+        if self._solid is None:
+            mesh = self._evaluated.data
+            mesh.calc_loop_triangles()
+            count = len(mesh.loop_triangles)
+            if not 0 < count <= MOST_TRIANGLES:
+                raise Unmeasurable(f"{self.name!r} has {count} triangles")
+            triangles = numpy.empty(3 * count, numpy.int32)
+            mesh.loop_triangles.foreach_get("vertices", triangles)
+            points = placed(coordinates(mesh.vertices), self._shape.to_4x4())
+            if not numpy.isfinite(points).all():
+                raise Unmeasurable(f"{self.name!r} has places that are not numbers")
+            self._solid = Solid(self.name, points, triangles.reshape(-1, 3))
+        return self._solid
+
+    @property
+    def inwards(self):
+        """-1 where normals lead out of a closed mesh, 1 where they lead into it."""
+        if self._inwards is None:
+            a, b, c = (self.solid.points[self.solid.triangles[:, corner]] for corner in range(3))
+            self._inwards = -1 if numpy.einsum("ij,ij->", a, numpy.cross(b, c)) >= 0 else 1
+        return self._inwards
+
+    @property
+    def samples(self):
+        """Places all over it in its own space."""
+        if self._samples is None:
+            points = self.solid.points
+            self._samples = points[:: -(-len(points) // _SAMPLES)]
+            if self._is_rigid:
+                self._samples = numpy.concatenate([self._samples, spread(self.solid, _SAMPLES)])
+        return self._samples
+
+    def placed(self, places, *, before=False):
+        """Places of its own space in the world, as it is or as it was a frame ago."""
+        turn, place = self.before if before else self._pose
+        return places @ turn.T + place
+
+    def seen(self, places, *, before=False):
+        """Places of the world in its own space, as it is or as it was a frame ago."""
+        turn, place = self.before if before else self._pose
+        return (places - place) @ turn
+
+
+def spread(solid, count):
+    """About so many places all over the triangles of a solid, as many as each is large; always the same ones."""
+    corners = solid.points[solid.triangles]
+    sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    reach = numpy.cumsum(numpy.linalg.norm(numpy.cross(*sides), axis=1))
+    if not len(reach) or reach[-1] <= 0:
+        return solid.points[:0]
+    chosen = numpy.searchsorted(reach, (numpy.arange(count) + 0.5) / count * reach[-1])
+    u, v = (numpy.outer(numpy.arange(1, count + 1), _EVENLY) % 1.0).T
+    beyond = u + v > 1
+    u, v = numpy.where(beyond, 1 - u, u), numpy.where(beyond, 1 - v, v)
+    return corners[chosen, 0] + u[:, None] * sides[0][chosen] + v[:, None] * sides[1][chosen]
+
+
+class Cast:
+    """The surfaces and bodies of a scene at the frame that it stands at, made when they are asked for."""
+
+    def __init__(self):
+        self._surfaces, self._bodies = {}, {}
+        self._frame = self._graph = None
+
+    def enter(self, frame, graph):
+        """The scene stands at another frame."""
+        self._frame, self._graph = frame, graph
+        for surface in self._surfaces.values():
+            surface.at(graph)
+        for body in self._bodies.values():
+            body.at(frame, graph)
+
+    def surface(self, name):
+        """What distances are measured on. Raises Unmeasurable."""
+        if name not in self._surfaces:
+            self._surfaces[name] = Surface(mesh_object(name))
+            self._surfaces[name].at(self._graph)
+        return self._surfaces[name]
+
+    def body(self, name):
+        """What depths are measured in. Raises Unmeasurable."""
+        if name not in self._bodies:
+            self._bodies[name] = Body(mesh_object(name))
+            self._bodies[name].at(self._frame, self._graph)
+        return self._bodies[name]
+
+
+def mesh_object(name):
+    """The object of that name. Raises Unmeasurable where there is none, or none with a mesh."""
+    thing = bpy.context.view_layer.objects.get(name)
+    if thing is None:
+        raise Unmeasurable(f"there is no object {name!r} in the view layer")
+    if thing.type != "MESH":
+        raise Unmeasurable(f"{name!r} is no mesh")
+    return thing

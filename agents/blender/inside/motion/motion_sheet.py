@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a motion sheet is made of: the motion of actors in numbers, pictures of it, and how far it can be trusted."""
+
+import os
+
+import bpy
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from ..physics.caches import of_objects
+from ..preview.frame_pictures import Films, Job
+from .actors import resolve
+from .contacts import Contacts
+from .keyed_frames import keyed_frames
+from .reliability_notes import notes_on
+from .trajectories import Playing, Track
+from .viewpoints import close_by, wants_close_views, whole_path
+
+_FEWEST, _MOST = 6, 12  # pictures of an actor
+_USUAL = 7  # where no phases are given
+_IN_A_ROW, _WIDEST = 8, 300  # pictures, and pixels of one
+_MEASURED = 600  # frames of a longer range are measured at a stride
+_LONGEST = 20_000
+_RAYS = 16  # from an actor to the viewer, that tell whether it is hidden
+
+
+def motion_sheet(arguments, report):
+    """Follows ``actors`` over ``phases``, draws them at ``frames``; pictures go to ``folder``, ``width`` wide in a row.
+
+    Returns the range, the sampled frames, and for each actor its caches, keyframes, curves, numbers and pictures.
+    """
+    scene = bpy.context.scene
+    actors = resolve(arguments["actors"], scene)
+    phases, sampled = _plan(arguments, scene)
+    first, last = min(phases[0]["start"], sampled[0]), max(phases[-1]["end"], sampled[-1])
+    stride = -(-(last - first + 1) // _MEASURED)
+    ends = {frame for phase in phases for frame in (phase["start"], phase["end"])}
+    measured = sorted({*range(first, last + 1, stride), *sampled, *ends})
+    caches = [_caches(actor, scene) for actor in actors]  # as they are before they are stepped
+    playing = Playing(scene, first)
+    tracks = [Track(actor, scene.render.fps / scene.render.fps_base) for actor in actors]
+    contacts = Contacts(scene, actors)
+    films = Films(scene)
+    strips = _Strips(tracks, sampled, arguments)
+    steps = playing.count(measured)
+    if steps > _LONGEST:
+        waiting = f" Not baked: {', '.join(playing.stepped_for[:3])}." if playing.stepped_for else ""
+        raise Refused(f"{steps} frames would have to be visited; {_LONGEST} at most.{waiting}")
+    meter = _Meter(report, steps + playing.count(sampled))
+    with playing:
+        for frame, graph in playing.through(measured, meter.step):
+            for track in tracks:
+                track.add(frame, track.actor.moment(graph))
+            contacts.look(frame, graph, tracks)
+        strips.plan()
+        for frame, graph in playing.through(sampled if strips.any else [], meter.step):
+            strips.draw(frame, graph, films, meter)
+    return {
+        "start": first,
+        "end": last,
+        "fps": tracks[0].fps,
+        "stride": stride,
+        "sampled": sampled,
+        "phases": phases,
+        "stepped_from": playing.stepped_from,
+        "stepped_for": playing.stepped_for,
+        "notes": films.notes,
+        "actors": [
+            {
+                **_told(track, (first, last)),
+                "phases": [_phase(track, number, phase, contacts) for phase in phases],
+                "caches": [state for _, state in caches[number]],
+                "notes": notes_on(track, caches[number], films.missing, scene),
+                "columns": strips.columns,
+                "views": strips.views[number],
+            }
+            for number, track in enumerate(tracks)
+        ],
+    }
+
+
+class _Meter:
+    """Tells how far things are, of ``total`` frames that are visited."""
+
+    def __init__(self, report, total):
+        self._report, self._total, self._done = report, total, 0
+
+    def step(self, frame):
+        """A frame is visited."""
+        self._done += 1
+        self._report(self._done - 1, self._total, f"frame {frame}")
+
+    def part(self, share, text):
+        """So much of what is to be done at this frame is done."""
+        self._report(self._done - 1 + share, self._total, text)
+
+
+# What is asked for
+
+
+def _plan(arguments, scene):
+    """(phases in order, frames to be drawn). Raises Refused."""
+    phases, frames = arguments["phases"], arguments["frames"]
+    bounds = scene.frame_start, scene.frame_end
+    for frame in [*frames, *(phase[key] for phase in phases for key in ("start", "end"))]:
+        if not bounds[0] <= frame <= bounds[1]:
+            raise Refused(
+                f"Frame {frame} is outside the scene's range, {bounds[0]} to {bounds[1]} (Scene.frame_start and "
+                "frame_end)."
+            )
+    if not phases:
+        first, last = (min(frames), max(frames)) if frames else bounds
+        phases = [{"name": "", "start": first, "end": last}]
+    phases = sorted(phases, key=lambda phase: phase["start"])
+    return phases, sorted(set(frames)) or _sampled(phases)
+
+
+def _sampled(phases):
+    """Frames that show the phases: where they begin and end, and evenly between."""
+    if len(phases) == 1:
+        return _evenly(phases[0]["start"], phases[0]["end"], _USUAL)
+    frames = set()
+    for phase in phases:
+        frames.update(_evenly(phase["start"], phase["end"], 3 if 2 * len(phases) + 1 >= _FEWEST else 4))
+    # Where one phase ends and the next begins in neighbouring frames, one picture shows both.
+    frames -= {
+        phase["start"] for phase in phases if phase["start"] - 1 in frames and phase["start"] != phase["end"]
+    }
+    if len(frames) > _MOST:
+        frames = {phases[0]["start"], *(phase["end"] for phase in phases)}
+    if len(frames) > _MOST:
+        ordered = sorted(frames)
+        frames = {ordered[at] for at in _evenly(0, len(ordered) - 1, _MOST)}
+    return sorted(frames)
+
+
+def _evenly(first, last, count):
+    count = min(count, last - first + 1)
+    return sorted({round(first + (last - first) * at / max(count - 1, 1)) for at in range(count)})
+
+
+# Pictures
+
+
+class _Strips:
+    """The pictures of all actors: the whole path of each and, of what is small in it, itself close by."""
+
+    def __init__(self, tracks, sampled, arguments):
+        self._tracks, self._sampled, self._folder = tracks, sampled, arguments["folder"]
+        self.columns = len(sampled) if len(sampled) <= _IN_A_ROW else -(-len(sampled) // 2)
+        tile = (arguments["width"] - arguments["gap"] * (self.columns - 1)) // self.columns - 2
+        self._tile = min(tile, _WIDEST)
+        self.views = [[] for _ in tracks]
+        self.any = False
+        self._jobs = {frame: [] for frame in sampled}
+
+    def plan(self):
+        """Chooses the views, from tracks that are complete."""
+        for number, track in enumerate(self._tracks):
+            view = whole_path(track, self._tile)
+            if view is None:
+                continue
+            self._add(number, "path", dict.fromkeys(self._sampled, view))
+            if wants_close_views(track, view):
+                self._add(number, "close", {frame: close_by(track, view, frame) for frame in self._sampled})
+
+    def _add(self, number, kind, views):
+        pictures = [{"frame": frame, "view": view and view.told()} for frame, view in views.items()]
+        self.views[number].append({"kind": kind, "pictures": pictures})
+        for frame, view in views.items():
+            if view is not None:
+                path = os.path.join(self._folder, f"{number}-{kind}-{frame}.png")
+                self._jobs[frame].append((number, view, path))
+                self.any = True
+
+    def draw(self, frame, graph, films, meter):
+        """Takes the pictures of a frame, at which the scene stands."""
+        moments = [track.actor.moment(graph) for track in self._tracks]
+        for track, moment in zip(self._tracks, moments, strict=True):
+            track.check(frame, moment)
+        jobs = []
+        for number, view, path in self._jobs[frame]:
+            names = {thing.name for thing in self._tracks[number].actor.objects}
+            moment = moments[number]
+            jobs.append(Job(names, moment.some(_RAYS) if moment is not None else [], view, path))
+        for number, _ in enumerate(films.shoot(jobs), 1):
+            meter.part(number / len(jobs), f"drawing frame {frame}")
+
+
+# What is told
+
+
+def _told(track, span):
+    actor = track.actor
+    names = [thing.name for thing in actor.objects]
+    return {
+        "name": actor.name,
+        "kind": actor.kind,
+        "objects": names[:20],
+        "object_count": len(names),
+        "measured": actor.measured,
+        "deforms": track.deforms,
+        "speed_of": track.speed_name,
+        "keyframes": keyed_frames(actor.objects, *span),
+        "frames": track.frames,
+        "centres": [centre and [round(part, 5) for part in centre] for centre in track.centres],
+        "displacements": track.displacements(),
+        "speeds": track.told_speeds,
+    }
+
+
+def _phase(track, number, phase, contacts):
+    told = {"phase": phase["name"], "start": phase["start"], "end": phase["end"]}
+    told.update(track.over(phase["start"], phase["end"]))
+    told["contacts"] = contacts.over(number, track, phase["start"], phase["end"])
+    return told
+
+
+def _caches(actor, scene):
+    """(cache, its state as data) for all that the actor takes part in."""
+    found = []
+    for cache in of_objects(scene, [thing.name for thing in actor.objects]):
+        state = "unbaked" if not cache.baked else "baked, outdated" if cache.outdated else "baked"
+        start, end = cache.range
+        told = {"label": cache.label, "state": state, "start": start, "end": end, "on": cache.simulated}
+        found.append((cache, told))
+    return found

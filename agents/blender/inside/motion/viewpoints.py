@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From where a motion is seen: one fixed view of an actor's whole path, and close ones that follow it."""
+
+import math
+
+from mathutils import Matrix, Vector
+
+from ..preview.framing import Box, turned_to
+
+# (azimuth, elevation) in degrees, best liked first; azimuth 0 looks along +Y, 90 along -X.
+_ANGLES = ((30, 24), (-30, 24), (60, 24), (-60, 24), (0, 24), (90, 24), (30, 45), (-30, 45), (0, 65))
+_WORTH = 1.06  # how much more of the motion a less liked angle must show
+_AROUND = 1.22  # what is seen, in sizes of what must be seen
+_CLOSE_AROUND = 1.5
+_FLATTEST, _TALLEST = 0.62, 1.25  # height of a picture, in widths
+_CLOSE_HEIGHT = 0.72
+_SMALL = 0.2  # an actor that takes less of the picture's width is shown close as well
+
+
+class View:
+    """An orthographic camera: ``centre`` of the picture, ``width`` in metres, ``size`` in pixels; it sees all behind
+    ``depth``, metres from the centre towards the viewer, and nothing before it."""
+
+    def __init__(self, angle, centre, width, size, depth):
+        self.angle, self.centre, self.width, self.size, self.depth = angle, centre, width, size, depth
+
+    @property
+    def axes(self):
+        """Unit vectors to the picture's right, up, and towards the viewer."""
+        return _axes(self.angle)
+
+    @property
+    def box(self):
+        """A box around what it frames."""
+        half = Vector((1, 1, 1)) * (self.width * max(1.0, self.size[1] / self.size[0]) / 2)
+        return Box(self.centre - half, self.centre + half)
+
+    def told(self):
+        """The view as data for drawing on its pictures."""
+        return {
+            "axes": [list(axis) for axis in self.axes],
+            "centre": list(self.centre),
+            "metres_per_pixel": self.width / self.size[0],
+            "size": list(self.size),
+            "angle": list(self.angle),
+        }
+
+
+def whole_path(track, tile):
+    """The view of everything that a track covers, in pictures ``tile`` pixels wide. None if there is nothing of it."""
+    boxes = [(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
+    if not boxes:
+        return None
+    angle = _best_angle([centre for centre in track.centres if centre is not None])
+    centre, across, upward, depth = _fit(angle, boxes)
+    size = max(_size(low, high) for low, high in boxes)
+    across = max(across * _AROUND, size * _AROUND * 1.2, 1e-3)
+    upward = upward * _AROUND
+    height = min(max(upward / across, _FLATTEST), _TALLEST)
+    width = max(across, upward / height)
+    return View(angle, centre, width, (tile, round(tile * height)), depth + 0.02 * width)
+
+
+def wants_close_views(track, view):
+    """Whether the actor is too small in that view to be made out."""
+    sizes = [_size(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
+    return track.actor.measured == "vertices" and 1e-4 * view.width < max(sizes) < _SMALL * view.width
+
+
+def close_by(track, view, frame):
+    """A view of the actor alone at a frame, of the same scale at every frame. None if it is not there."""
+    at = track.frames.index(frame)
+    if track.lows[at] is None:
+        return None
+    largest = max(
+        _size(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None
+    )
+    centre, _, _, depth = _fit(view.angle, [(track.lows[at], track.highs[at])])
+    tile = view.size[0]
+    width = largest * _CLOSE_AROUND
+    return View(view.angle, centre, width, (tile, round(tile * _CLOSE_HEIGHT)), depth + 0.02 * width)
+
+
+def _size(low, high):
+    return (high - low).length
+
+
+def _axes(angle):
+    azimuth, elevation = map(math.radians, angle)
+    towards = (
+        math.sin(azimuth) * math.cos(elevation),
+        -math.cos(azimuth) * math.cos(elevation),
+        math.sin(elevation),
+    )
+    return tuple(axis.copy() for axis in turned_to(towards, (0, 0, 1)).col)
+
+
+def _best_angle(places):
+    """The angle from which the most of a path is seen across the line of sight."""
+    mean = sum(places, Vector()) / len(places)
+    best, shown = _ANGLES[0], -1.0
+    for angle in _ANGLES:
+        towards = _axes(angle)[2]
+        seen = math.sqrt(
+            sum((place - mean).length_squared - (place - mean).dot(towards) ** 2 for place in places)
+        )
+        if seen > shown * _WORTH + 1e-6:
+            best, shown = angle, seen
+    return best
+
+
+def _fit(angle, boxes):
+    """(centre, width, height, half the depth) of what holds all of the boxes, seen from an angle."""
+    turn = Matrix(_axes(angle))
+    corners = [
+        turn @ Vector((x, y, z))
+        for low, high in boxes
+        for x in (low.x, high.x)
+        for y in (low.y, high.y)
+        for z in (low.z, high.z)
+    ]
+    low, high = (Vector(pick(corner[axis] for corner in corners) for axis in range(3)) for pick in (min, max))
+    across, upward, depth = high - low
+    return turn.transposed() @ ((low + high) / 2), across, upward, depth / 2

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders the scene's own camera view, a frame a call; every call leaves the scene's settings as they were."""
+
+import contextlib
+import os
+import re
+import sys
+import threading
+import time
+
+import bpy
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from ..physics import caches
+from ..state.fingerprint import fingerprint
+from .shot_settings import settings_for, shot_of
+
+_STILL_FRAME = 1  # the frame at which scenes are compared
+_BACK_SECONDS = 20.0  # of stepping back to where the scene stood
+_DENOISER = "Build without OpenImageDenoiser"  # as Cycles says it
+_SAMPLE = re.compile(r"Sample (\d+)/(\d+)")
+_REMAINING = re.compile(r"Remaining:\s*([\d:.]+)")
+
+
+def plan(arguments, report):
+    """What to render with which settings, after what was asked for and what the scene has; renders nothing.
+
+    Returns ``shot`` (see shot_of), ``scene`` (see fingerprint), ``unbaked`` (caches.unbaked and simulation
+    zones), ``notes``, and where the scene stands: ``current``, ``subframe``, ``frame_start``, ``frame_end``, ``fps``.
+    What is not baked is made to begin afresh, and the scene stays at frame 1 then.
+    """
+    del report
+    scene = bpy.context.scene
+    notes = []
+    shot = shot_of(scene, arguments, notes)
+    current, subframe = scene.frame_current, scene.frame_subframe
+    unbaked = [*caches.unbaked(scene), *_zones(scene)]
+    with _Settings(settings_for(scene, shot, shot["samples"], "")):
+        scene.frame_set(_STILL_FRAME)
+        digests = fingerprint(scene)
+    if unbaked:
+        caches.renew(scene)
+    else:
+        scene.frame_set(current, subframe=subframe)
+    render = scene.render
+    return {
+        "shot": shot,
+        "scene": digests,
+        "unbaked": unbaked,
+        "notes": notes,
+        "current": current,
+        "subframe": subframe,
+        "frame_start": scene.frame_start,
+        "frame_end": scene.frame_end,
+        "fps": render.fps,
+        "fps_base": render.fps_base,
+    }
+
+
+def step(arguments, report):
+    """Goes through the frames ``first`` to ``last`` for ``seconds`` at most; returns the last one reached."""
+    scene = bpy.context.scene
+    first, last = arguments["first"], arguments["last"]
+    deadline = time.monotonic() + arguments["seconds"]
+    for frame in range(first, last + 1):
+        scene.frame_set(frame)
+        report(frame - first, last - first, f"simulated up to {frame}")
+        if time.monotonic() > deadline:
+            return frame
+    return last
+
+
+def render_frame(arguments, report):
+    """Renders ``frame`` of ``shot`` with ``samples`` into ``path`` (PNG). Returns the seconds it took.
+
+    The scene stays at that frame: who renders the next one goes on from there.
+    """
+    scene = bpy.context.scene
+    shot, path = arguments["shot"], arguments["path"]
+    had_result = "Render Result" in bpy.data.images
+    started = time.perf_counter()
+    try:
+        with _Settings(settings_for(scene, shot, arguments["samples"], path)), _Watched(report):
+            scene.frame_set(arguments["frame"])
+            bpy.ops.render.render(write_still=True, scene=scene.name)
+    except RuntimeError as error:
+        said = str(error).strip()[:600]
+        if _DENOISER in said:
+            said = f"{said}. This Blender has no denoiser: pass denoise=false"
+        raise Refused(f"Blender cannot render this: {said}") from None
+    finally:
+        drop_result(had_result)
+    sys.stdout.flush()
+    if not os.path.isfile(path):
+        raise Refused(f"{shot['engine']} left no picture.")
+    return time.perf_counter() - started
+
+
+def put_back(arguments, report):
+    """The scene goes back to ``frame``, ``subframe``; steps from ``first``, unless that is None or takes long."""
+    frame, first = arguments["frame"], arguments["first"]
+    if first is not None and first < frame:
+        step({"first": first, "last": frame - 1, "seconds": _BACK_SECONDS}, report)
+    bpy.context.scene.frame_set(frame, subframe=arguments["subframe"])
+
+
+def drop_result(had):
+    """Rendering leaves its picture among the images; it goes, unless one was there before."""
+    result = bpy.data.images.get("Render Result")
+    if result is not None and not had:
+        bpy.data.images.remove(result)
+
+
+def _zones(scene):
+    """Objects with simulation zones in their geometry nodes. Whether these are baked, no property tells."""
+    found = []
+    for thing in scene.objects:
+        for modifier in thing.modifiers:
+            if modifier.type == "NODES" and modifier.show_viewport and _has_zone(modifier.node_group, set()):
+                found.append(
+                    {
+                        "kind": "simulation_zone",
+                        "object": thing.name,
+                        "label": f"simulation zone of {thing.name!r} (if it is not baked)",
+                        "start": scene.frame_start,
+                    }
+                )
+    return found
+
+
+def _has_zone(tree, seen):
+    if tree is None or tree in seen:
+        return False
+    seen.add(tree)
+    return any(
+        node.bl_idname == "GeometryNodeSimulationOutput" or _has_zone(getattr(node, "node_tree", None), seen)
+        for node in tree.nodes
+    )
+
+
+class _Settings:
+    """Sets what is wanted, and puts it back; in the same order, since some settings bound others."""
+
+    def __init__(self, wanted):
+        self._wanted = list(wanted)
+
+    def __enter__(self):
+        self._before = [(owner, name, getattr(owner, name)) for owner, name, _ in self._wanted]
+        try:
+            for owner, name, value in self._wanted:
+                setattr(owner, name, value)
+        except BaseException:
+            self.__exit__()
+            raise
+
+    def __exit__(self, *error):
+        for owner, name, value in self._before:
+            setattr(owner, name, value)
+
+
+class _Watched:
+    """Reports how far the engine is with a frame, as a share of it. Engines tell from threads of their own."""
+
+    def __init__(self, report):
+        self._report = report
+        self._lock = threading.Lock()
+        self._told = time.monotonic()
+        self._share = 0.0
+
+    def __enter__(self):
+        bpy.app.handlers.render_stats.append(self._note)
+
+    def __exit__(self, *error):
+        with contextlib.suppress(ValueError):
+            bpy.app.handlers.render_stats.remove(self._note)
+
+    def _note(self, stats, *_rest):
+        if not isinstance(stats, str) or not (found := _SAMPLE.search(stats)):
+            return
+        with self._lock:
+            share = int(found[1]) / max(1, int(found[2]))
+            if share <= self._share or time.monotonic() < self._told + 0.5:
+                return
+            self._share, self._told = share, time.monotonic()
+            left = _REMAINING.search(stats)
+            self._report(
+                share, 1.0, f"sample {found[1]} of {found[2]}" + (f", {left[1]} left" if left else "")
+            )

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What to render: what was asked for, and what the scene has where nothing was; and the settings for it."""
+
+import os
+import sys
+
+import bpy
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from .graphics import CYCLES, WORKBENCH, best_engine
+
+_ENGINES = {
+    "cycles": (CYCLES,),
+    "eevee": ("BLENDER_EEVEE", "BLENDER_EEVEE_NEXT"),  # the second in 4.2 to 4.5
+    "workbench": (WORKBENCH,),
+}
+_DRAWN = (*_ENGINES["eevee"], WORKBENCH)  # with OpenGL
+_QUICK_SAMPLES = 32  # of Cycles in the place of an EEVEE that has no GPU
+_MOST_ON_CPU = 128  # samples that are taken without having been asked for
+_SMOOTHING = {"OFF": 1, "FXAA": 1, "5": 5, "8": 8, "11": 11, "16": 16, "32": 32}  # Workbench's, in samples
+_GPUS = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
+_NAMED = 20
+
+
+def shot_of(scene, asked, notes):
+    """engine, device, samples (None: the engine has none), denoise (None: likewise), width, height, camera."""
+    engine, quick = _engine(scene, asked["engine"], notes)
+    device = _device(engine)
+    samples, own = asked["samples"], _samples_of(scene, engine)
+    if own is None:
+        if samples is not None:
+            notes.append(f"{engine} has no samples to set.")
+        samples = None
+    elif samples is None:
+        samples = _QUICK_SAMPLES if quick else own
+        if device == "CPU" and samples > _MOST_ON_CPU:
+            notes.append(
+                f"{_MOST_ON_CPU} samples instead of the scene's {own}: there is no GPU; say samples={own} to insist."
+            )
+            samples = _MOST_ON_CPU
+    denoise = None
+    if engine == CYCLES:
+        denoise = asked["denoise"] if asked["denoise"] is not None else quick or scene.cycles.use_denoising
+    elif asked["denoise"]:
+        notes.append(f"{engine} has no denoiser; only Cycles has.")
+    if engine == WORKBENCH and scene.display.shading.color_type == "MATERIAL":
+        notes.append("Workbench shows materials' viewport colours (diffuse_color), not what their nodes say.")
+    width, height = _size(scene, asked, notes)
+    return {
+        "engine": engine,
+        "device": device,
+        "samples": samples,
+        "denoise": denoise,
+        "width": width,
+        "height": height,
+        "camera": _camera(scene, asked["camera"], notes),
+        "bound": asked["camera"] is None,  # cameras that are bound to timeline markers take their turns
+    }
+
+
+def _engine(scene, asked, notes):
+    """(identifier, whether it stands in for another one)."""
+    listed = {item.identifier for item in scene.render.bl_rna.properties["engine"].enum_items}
+    if asked is not None:
+        engine = next((one for one in _ENGINES[asked] if one in listed), _ENGINES[asked][0])
+        if engine in _DRAWN and (fault := best_engine()[1]):
+            raise Refused(f"{asked} cannot draw here: {fault}. Say engine='cycles'.")
+        if engine in _ENGINES["eevee"] and not _has_gpu():
+            notes.append("EEVEE runs without a GPU here: its first frame takes long.")
+        return engine, False
+    engine, why = scene.render.engine, ""
+    if engine in _DRAWN:
+        why = best_engine()[1]
+        if not why and engine in _ENGINES["eevee"] and not _has_gpu():
+            why = "it is slow without a GPU; say engine='eevee' to insist"
+    if not why:
+        return engine, False
+    name = "EEVEE" if engine in _ENGINES["eevee"] else "Workbench"
+    notes.append(f"Cycles instead of the scene's {name}: {why}.")
+    return CYCLES, True
+
+
+def _has_gpu():
+    """Whether something better than a software renderer is likely to draw."""
+    if sys.platform in {"darwin", "win32"}:
+        return True
+    return any(os.path.exists(f"/dev/{name}") for name in ("nvidia0", "kfd", "dri/renderD128"))
+
+
+def _device(engine):
+    """GPU or CPU; for Cycles the scene's own choice counts only where there is one."""
+    if engine != CYCLES:
+        return "GPU" if _has_gpu() else "CPU"
+    addon = bpy.context.preferences.addons.get("cycles")
+    if addon is None:
+        return "CPU"
+    settings = addon.preferences
+    for kind in _GPUS:
+        try:
+            found = settings.get_devices_for_type(kind)
+        except (ValueError, TypeError, AttributeError):
+            continue
+        devices = [device for device in found if device.type == kind]
+        if devices:
+            settings.compute_device_type = kind
+            for device in settings.devices:
+                device.use = device.type == kind
+            return "GPU"
+    return "CPU"
+
+
+def _samples_of(scene, engine):
+    if engine == CYCLES:
+        return scene.cycles.samples
+    if engine == WORKBENCH:
+        return _SMOOTHING.get(scene.display.render_aa, 1)
+    if engine in _ENGINES["eevee"]:
+        return scene.eevee.taa_render_samples
+    return None
+
+
+def _size(scene, asked, notes):
+    render = scene.render
+    full = (render.resolution_x, render.resolution_y)
+    width, height = asked["width"], asked["height"]
+    if width and not height:
+        height = width * full[1] / full[0]
+    elif height and not width:
+        width = height * full[0] / full[1]
+    elif not width:
+        share = (asked["percentage"] or render.resolution_percentage) / 100
+        width, height = full[0] * share, full[1] * share
+    size = [max(4, round(side)) for side in (width, height)]
+    if asked["even"]:
+        even = [side - side % 2 for side in size]
+        if even != size:
+            notes.append(f"{even[0]}×{even[1]} instead of {size[0]}×{size[1]}: video needs even sizes.")
+        size = even
+    return size
+
+
+def _camera(scene, name, notes):
+    cameras = sorted(thing.name for thing in scene.objects if thing.type == "CAMERA")
+    listed = ", ".join(repr(one) for one in cameras[:_NAMED]) + (" …" if len(cameras) > _NAMED else "")
+    if name is not None:
+        thing = scene.objects.get(name)
+        if thing is None or thing.type != "CAMERA":
+            what = f"{name!r} is no camera" if thing else f"The scene has no camera {name!r}"
+            raise Refused(f"{what}. Its cameras: {listed or 'none'}.")
+        return name
+    if scene.camera is not None:
+        return scene.camera.name
+    if len(cameras) == 1:
+        notes.append(f"Seen by {cameras[0]!r}, the only camera; scene.camera is not set.")
+        return cameras[0]
+    if cameras:
+        raise Refused(f"The scene has cameras, but scene.camera is not set: say camera= one of {listed}.")
+    raise Refused(
+        "The scene has no camera. Add one with blender_execute, for example:\n"
+        "from mathutils import Vector\n"
+        "camera = bpy.data.objects.new('Camera', bpy.data.cameras.new('Camera'))\n"
+        "bpy.context.scene.collection.objects.link(camera)\n"
+        "camera.location = (7, -7, 5)\n"
+        "camera.rotation_euler = (Vector((0, 0, 1)) - camera.location).to_track_quat('-Z', 'Y').to_euler()\n"
+        "bpy.context.scene.camera = camera"
+    )
+
+
+def settings_for(scene, shot, samples, path):
+    """(owner, name, value) of every setting that a picture needs."""
+    render = scene.render
+    image = render.image_settings
+    transparent = render.film_transparent
+    if not shot["bound"]:
+        for marker in scene.timeline_markers:
+            yield marker, "camera", None
+    # After the markers: they change the scene's.
+    yield scene, "camera", scene.objects.get(shot["camera"]) or scene.camera
+    for name, value in (
+        ("engine", shot["engine"]),
+        ("resolution_x", shot["width"]),
+        ("resolution_y", shot["height"]),
+        ("resolution_percentage", 100),
+        ("use_sequencer", False),
+        ("use_multiview", False),
+        ("use_file_extension", False),
+        ("use_overwrite", True),
+        ("use_placeholder", False),
+        ("filepath", literal(path)),
+    ):
+        yield render, name, value
+    # Each of these decides what the next may be: they are set, and put back, in this order.
+    for name, value in (
+        ("media_type", "IMAGE"),
+        ("file_format", "PNG"),
+        ("color_mode", "RGBA" if transparent else "RGB"),
+        ("color_depth", "8"),
+        ("compression", 15),
+        ("color_management", "FOLLOW_SCENE"),
+    ):
+        if hasattr(image, name):
+            yield image, name, value
+    if shot["engine"] == CYCLES:
+        yield scene.cycles, "device", shot["device"]
+        yield scene.cycles, "use_denoising", shot["denoise"]
+    if samples is not None and samples != _samples_of(scene, shot["engine"]):
+        yield _samples_setting(scene, shot["engine"], samples)
+
+
+def _samples_setting(scene, engine, samples):
+    if engine == CYCLES:
+        return scene.cycles, "samples", samples
+    if engine == WORKBENCH:
+        fitting = [name for name, count in _SMOOTHING.items() if count <= max(samples, 1)]
+        return scene.display, "render_aa", fitting[-1]
+    return scene.eevee, "taa_render_samples", samples
+
+
+def literal(path):
+    """A path as an output setting takes it: since 5.0, braces in one are variables."""
+    return path.replace("{", "{{").replace("}", "}}") if bpy.app.version >= (5, 0, 0) else path

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Puts pictures together to a film with Blender's own FFmpeg: H.264 in MP4."""
+
+import os
+import sys
+import time
+
+import bpy
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from .frame_render import drop_result
+from .shot_settings import literal
+
+_SCENE = ".film"
+
+
+def assemble(arguments, report):
+    """Makes ``path`` of ``pictures`` (file names in ``folder``, one a frame, repeated where one is held).
+
+    ``width`` and ``height`` are the pictures' own and even; ``fps`` / ``fps_base`` frames a second. Returns what is
+    read back from the film: {"frames", "width", "height", "fps", "bytes", "seconds"}.
+    """
+    path = arguments["path"]
+    started = time.perf_counter()
+    had_result = "Render Result" in bpy.data.images
+    scene = bpy.data.scenes.new(_SCENE)
+    told = _Told(scene.name, len(arguments["pictures"]), report)
+    try:
+        _cut(scene, arguments)
+        _set_up(scene, arguments)
+        bpy.app.handlers.render_post.append(told)
+        bpy.ops.render.render(animation=True, scene=scene.name)
+    except RuntimeError as error:
+        raise Refused(f"The video could not be made: {str(error).strip()[:600]}") from None
+    finally:
+        if told in bpy.app.handlers.render_post:
+            bpy.app.handlers.render_post.remove(told)
+        bpy.data.scenes.remove(scene)
+        drop_result(had_result)
+    sys.stdout.flush()
+    if not os.path.isfile(path):
+        raise Refused("The video could not be made: FFmpeg left no file.")
+    return {**_read_back(path), "bytes": os.path.getsize(path), "seconds": time.perf_counter() - started}
+
+
+def _cut(scene, arguments):
+    """One strip of all the pictures."""
+    pictures = arguments["pictures"]
+    editor = scene.sequence_editor_create()
+    strips = editor.strips if hasattr(editor, "strips") else editor.sequences  # the second before 4.4
+    first = os.path.join(arguments["folder"], pictures[0])
+    strip = strips.new_image(name="frames", filepath=first, channel=1, frame_start=1, fit_method="ORIGINAL")
+    for name in pictures[1:]:
+        strip.elements.append(name)
+
+
+def _set_up(scene, arguments):
+    scene.frame_start, scene.frame_end = 1, len(arguments["pictures"])
+    render, image, film = scene.render, scene.render.image_settings, scene.render.ffmpeg
+    render.resolution_x, render.resolution_y = arguments["width"], arguments["height"]
+    render.resolution_percentage = 100
+    render.fps, render.fps_base = arguments["fps"], arguments["fps_base"]
+    render.use_file_extension, render.use_overwrite, render.use_placeholder = False, True, False
+    render.filepath = literal(arguments["path"])
+    if hasattr(image, "media_type"):
+        image.media_type = "VIDEO"
+    image.file_format = "FFMPEG"
+    image.color_mode = "RGB"
+    film.format, film.codec, film.audio_codec = "MPEG4", "H264", "NONE"
+    film.constant_rate_factor, film.ffmpeg_preset = "HIGH", "GOOD"
+    film.gopsize = max(1, round(arguments["fps"] / arguments["fps_base"]))
+    film.use_autosplit = False
+    # The pictures carry their look already.
+    view = scene.view_settings
+    view.view_transform, view.look, view.exposure, view.gamma = "Standard", "None", 0.0, 1.0
+
+
+def _read_back(path):
+    try:
+        clip = bpy.data.movieclips.load(path)
+    except RuntimeError as error:
+        raise Refused(f"The video that was made cannot be read: {str(error).strip()[:300]}") from None
+    try:
+        width, height = clip.size
+        return {"frames": clip.frame_duration, "width": width, "height": height, "fps": clip.fps}
+    finally:
+        bpy.data.movieclips.remove(clip)
+
+
+class _Told:
+    """Counts the frames that were written."""
+
+    def __init__(self, scene, total, report):
+        self._scene, self._total, self._report = scene, total, report
+        self._done = 0
+        self._at = time.monotonic()
+
+    def __call__(self, scene, *_rest):
+        if getattr(scene, "name", None) != self._scene:
+            return
+        self._done += 1
+        if time.monotonic() > self._at + 0.5:
+            self._at = time.monotonic()
+            self._report(self._done, self._total, f"{self._done} of {self._total} frames of the video")

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Modifier stacks and constraints, in order, with the settings that are not as Blender makes them."""
+
+from .rna_values import differing, plain, text
+
+# Their settings are told with the physics.
+_OF_PHYSICS = {"CLOTH", "SOFT_BODY", "COLLISION", "FLUID", "PARTICLE_SYSTEM", "DYNAMIC_PAINT"}
+MOST_MODIFIERS = 40
+MOST_CONSTRAINTS = 40
+
+
+def modifiers_of(thing):
+    """A stack from first to last: ``name``, ``type``, ``settings``, ``off`` (viewport, render)."""
+    found = []
+    for modifier in thing.modifiers:
+        if len(found) == MOST_MODIFIERS:
+            found.append({"name": f"… {len(thing.modifiers) - MOST_MODIFIERS} more", "type": ""})
+            break
+        entry = {"name": text(modifier.name), "type": modifier.type}
+        off = [word for word in ("viewport", "render") if not getattr(modifier, f"show_{word}")]
+        if off:
+            entry["off"] = off
+        settings = {} if modifier.type in _OF_PHYSICS else differing(modifier)
+        if modifier.type == "NODES":
+            settings = {**_nodes(modifier), **settings}
+        if settings:
+            entry["settings"] = settings
+        found.append(entry)
+    return found
+
+
+def _nodes(modifier):
+    """The node group, and the inputs that are not as the group has them."""
+    tree = modifier.node_group
+    if tree is None:
+        return {"node_group": None}
+    told = {"node_group": text(tree.name)}
+    keys = set(modifier.keys())
+    for identifier, name, default in _inputs(tree):
+        if f"{identifier}_use_attribute" in keys and modifier[f"{identifier}_use_attribute"]:
+            told[name] = f"attribute {text(str(modifier.get(f'{identifier}_attribute_name', '')))}"
+        elif identifier in keys:
+            value = plain(modifier[identifier])
+            if value != plain(default):
+                told[name] = value
+        if len(told) > 24:
+            told["…"] = "further inputs"
+            break
+    return told
+
+
+def _inputs(tree):
+    """(identifier, name, default) of a group's inputs that have a value."""
+    interface = getattr(tree, "interface", None)
+    items = tree.inputs if interface is None else interface.items_tree
+    for item in items:
+        if interface is not None and (item.item_type != "SOCKET" or item.in_out != "INPUT"):
+            continue
+        if hasattr(item, "default_value"):
+            yield item.identifier, text(item.name), item.default_value
+
+
+def constraints_of(thing):
+    """Constraints of an object and of its bones: ``name``, ``type``, ``bone``, ``settings``, ``off``."""
+    found = [_constraint(constraint) for constraint in thing.constraints]
+    if thing.pose is not None:
+        for bone in thing.pose.bones:
+            for constraint in bone.constraints:
+                found.append({"bone": text(bone.name), **_constraint(constraint)})
+    if len(found) > MOST_CONSTRAINTS:
+        left = len(found) - MOST_CONSTRAINTS
+        found[MOST_CONSTRAINTS:] = [{"name": f"… {left} more", "type": ""}]
+    return found
+
+
+def _constraint(constraint):
+    entry = {"name": text(constraint.name), "type": constraint.type}
+    settings = differing(constraint)
+    targets = getattr(constraint, "targets", None)
+    if targets:
+        settings["targets"] = [text(one.target.name) if one.target else None for one in targets][:16]
+    if constraint.mute or not getattr(constraint, "enabled", True):
+        entry["off"] = True
+    # Blender sets this when it evaluates: not a word for a constraint that is off.
+    elif not constraint.is_valid:
+        entry["invalid"] = True
+    if settings:
+        entry["settings"] = settings
+    return entry

@@ -1,0 +1,232 @@
+"""The sheet on which findings are seen: what is at fault is coloured, and each fault is marked where it is."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from PIL import Image, ImageDraw
+
+from agents.blender.sheets import contact_sheet
+from agents.blender.sheets.text_layout import text_width
+from agents.protocol.report.folding import rows
+from agents.protocol.report.report import told, verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from agents.blender.run_folder import RunFolder
+    from agents.blender.supervisor import Supervisor
+    from agents.blender.tools.base import Call
+    from agents.protocol.findings import Finding, Report
+
+PANEL = 462  # pixels a side
+MOST_MARKS = 12
+_SECONDS = 120.0
+_BACKGROUND: contact_sheet.Colour = (236, 237, 239)
+_HARD: contact_sheet.Colour = (200, 30, 30)
+_SOFT: contact_sheet.Colour = (190, 105, 0)
+_UNSURE: contact_sheet.Colour = (110, 60, 170)
+_RING = 8  # pixels
+_LABEL = contact_sheet.Style(13, halo=2)
+_LEGEND = 14
+_CLOSE, _CLOSE_COLUMNS, _TICK = 226, 4, 14
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A finding that is marked: its number on the sheet, and what is written beside it."""
+
+    number: int
+    finding: Finding
+
+    @property
+    def colour(self) -> contact_sheet.Colour:
+        """What it is drawn in."""
+        if self.finding.outcome != "broken":
+            return _UNSURE
+        return _HARD if self.finding.severity == "hard" else _SOFT
+
+    @property
+    def label(self) -> str:
+        """What is written in the pictures."""
+        return f"{self.number}  {told(self.finding)}"
+
+    @property
+    def line(self) -> str:
+        """What is written below them."""
+        return f"{self.number}  {told(self.finding)}: {self.finding.message}"
+
+
+def worth_marking(findings: Sequence[Finding], most: int = MOST_MARKS) -> list[Finding]:
+    """At most so many, of each kind the worst first, so that no kind crowds the others out."""
+    kinds = [row.findings for row in rows(findings) if any(one.objects or one.at for one in row.findings)]
+    kinds = [kind for kind in kinds if not _is_everywhere(kind)] or kinds
+    found: list[Finding] = []
+    for rank in range(max((len(kind) for kind in kinds), default=0)):
+        found += [kind[rank] for kind in kinds if rank < len(kind)]
+    return found[:most]
+
+
+def _is_everywhere(kind: Sequence[Finding]) -> bool:
+    """Whether findings that say the same are so many, and so far from any place, that a picture tells nothing."""
+    return len(kind) > MOST_MARKS and not any(one.at for one in kind)
+
+
+def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -> bytes:
+    """A PNG: four views of the open scene, the findings marked in them and listed below. Raises BlenderError."""
+    marks = [Mark(place + 1, one) for place, one in enumerate(worth_marking(report.findings))]
+    marked = {id(mark.finding) for mark in marks}
+    asked = [mark.finding for mark in marks]
+    # All that is at fault is coloured, though not all of it is marked.
+    vague = [row for row in rows(report.findings) if _is_everywhere(row.findings)] if marks else []
+    vague = [row for row in vague if not marked & {id(one) for one in row.findings}]
+    left_out = {id(one) for row in vague for one in row.findings}
+    asked += [
+        one for one in report.findings if id(one) not in marked and id(one) not in left_out and one.objects
+    ]
+    folder = blender.folder
+    reply = blender.call(
+        "findings_image",
+        {
+            "findings": [_asked(one, id(one) in marked) for one in asked],
+            "folder": str(folder.workspace),
+            "size": PANEL,
+            "close": _CLOSE,
+        },
+        timeout=_SECONDS,
+        progress=call.progress,
+        given_up=call.given_up,
+    )
+    data: dict[str, Any] = reply.value
+    blocks = [contact_sheet.grid([panel_of(folder, view, marks) for view in data["views"]], 2)]
+    if data["close"]:
+        blocks.append(
+            contact_sheet.grid([_close_up(folder, one, marks) for one in data["close"]], _CLOSE_COLUMNS)
+        )
+    if marks:
+        lines = [
+            contact_sheet.paragraph(mark.line, blocks[0].width, contact_sheet.Style(_LEGEND, mark.colour))
+            for mark in marks
+        ]
+        blocks.append(contact_sheet.stack(lines, 2))
+    sheet = contact_sheet.sheet(
+        title,
+        blocks,
+        subtitle=verdict(report),
+        remarks=[
+            *(f"Not coloured, for it is everywhere: {row.worst.rule}, {row.message}" for row in vague),
+            *_unmarked(report, marks, data["frame"]),
+        ],
+        notes=data["notes"],
+    )
+    return contact_sheet.to_png(sheet)
+
+
+def _asked(finding: Finding, marked: bool) -> dict[str, Any]:
+    length = finding.measured if finding.unit == "m" and finding.outcome == "broken" else None
+    return {
+        "objects": finding.objects,
+        "colour": linear(Mark(0, finding).colour),
+        "at": finding.at,
+        "size": length,
+        "frame": finding.frame,
+        "marked": marked,
+    }
+
+
+def linear(colour: contact_sheet.Colour) -> list[float]:
+    """A colour of a picture, as materials have it."""
+    parts = [part / 255 for part in colour]
+    return [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+
+
+def _taken(folder: RunFolder, file: str, size: int) -> Image.Image:
+    """A picture that Blender left in the workspace, which is removed."""
+    with folder.open_made(file) as made:
+        picture = contact_sheet.read_png(made, _BACKGROUND)
+    with contextlib.suppress(OSError):
+        (folder.workspace / file).unlink()
+    return picture.resize((size, size), Image.Resampling.LANCZOS)
+
+
+def panel_of(folder: RunFolder, view: dict[str, Any], marks: Sequence[Mark]) -> contact_sheet.Panel:
+    """A view that Blender has told of, with scale, axes and ``marks``. Raises Refusal."""
+    picture = _taken(folder, view["file"], view["size"][0])
+    if view["ground"] is not None:
+        contact_sheet.draw_level(picture, view["ground"], "z = 0")
+    contact_sheet.draw_scale_bar(picture, view["metres_per_pixel"])
+    contact_sheet.draw_axes(picture, view["axes"])
+    placed = [(mark, (place[0], place[1])) for mark, place in zip(marks, view["marks"], strict=True) if place]
+    _draw_marks(picture, placed)
+    return contact_sheet.Panel(picture, view["name"])
+
+
+def _close_up(folder: RunFolder, told: dict[str, Any], marks: Sequence[Mark]) -> contact_sheet.Panel:
+    picture = _taken(folder, told["file"], _CLOSE)
+    contact_sheet.draw_scale_bar(picture, told["metres_per_pixel"])
+    mark, draw, middle = marks[told["mark"]], ImageDraw.Draw(picture), _CLOSE // 2
+    for start, end in ((0, _TICK), (_CLOSE - _TICK, _CLOSE)):  # they point to the fault, and do not hide it
+        draw.line((start, middle, end, middle), fill=mark.colour, width=2)
+        draw.line((middle, start, middle, end), fill=mark.colour, width=2)
+    return contact_sheet.Panel(picture, mark.label, told["name"], border=mark.colour)
+
+
+def _draw_marks(picture: Image.Image, marks: Sequence[tuple[Mark, tuple[float, float]]]) -> None:
+    """A ring at each place, and beside it the rule and the size of the fault, where there is room."""
+    draw = ImageDraw.Draw(picture)
+    inside = [(mark, at) for mark, at in marks if 0 <= at[0] < picture.width and 0 <= at[1] < picture.height]
+    for mark, (x, y) in inside:
+        for width, colour, radius in ((4, contact_sheet.WHITE, _RING + 1), (2, mark.colour, _RING)):
+            draw.ellipse((x - radius, y - radius, x + radius, y + radius), outline=colour, width=width)
+    taken = [(x - _RING, y - _RING, x + _RING, y + _RING) for _, (x, y) in inside]
+    for mark, (x, y) in inside:
+        for text in (mark.label, str(mark.number)):
+            place = _room_for(text, (x, y), picture.size, taken)
+            if place is not None:
+                taken.append(_box(text, place))
+                style = contact_sheet.Style(_LABEL.size, mark.colour, _LABEL.halo)
+                contact_sheet.write(draw, place, text, style, anchor="lm")
+                break
+
+
+def _room_for(
+    text: str,
+    ring: tuple[float, float],
+    size: tuple[int, int],
+    taken: Sequence[tuple[float, float, float, float]],
+) -> tuple[float, float] | None:
+    """Where a label can begin (its left, the middle of its height) beside a ring; None where all is taken."""
+    width, (x, y) = text_width(text, _LABEL.size), ring
+    aside = _RING + 4
+    for down in (0, -1, 1, -2, 2, -3, 3):
+        for left in (x + aside, x - aside - width, x - width / 2):
+            if left == x - width / 2 and abs(down) < 2:
+                continue
+            place = (left, y + down * 0.75 * _LABEL.size)
+            box = _box(text, place)
+            fits = box[0] >= 2 and box[1] >= 2 and box[2] <= size[0] - 2 and box[3] <= size[1] - 2
+            if fits and not any(_overlap(box, other) for other in taken):
+                return place
+    return None
+
+
+def _box(text: str, place: tuple[float, float]) -> tuple[float, float, float, float]:
+    half = _LABEL.size * 0.6
+    return (place[0], place[1] - half, place[0] + text_width(text, _LABEL.size), place[1] + half)
+
+
+def _overlap(one: tuple[float, float, float, float], two: tuple[float, float, float, float]) -> bool:
+    return one[0] < two[2] and two[0] < one[2] and one[1] < two[3] and two[1] < one[3]
+
+
+def _unmarked(report: Report, marks: Sequence[Mark], frame: int) -> list[str]:
+    """What is not to be seen in the pictures, in words."""
+    elsewhere = [mark for mark in marks if mark.finding.frame not in {None, frame}]
+    told = [f"{mark.number} (frame {mark.finding.frame})" for mark in elsewhere]
+    remarks = [f"Not marked, for it is not at frame {frame}: {', '.join(told)}."] if told else []
+    left = len(report.findings) - len(marks)
+    if left:
+        remarks.append(f"{left} more {'finding is' if left == 1 else 'findings are'} not marked.")
+    return remarks

@@ -1,0 +1,188 @@
+"""Motion sheets: strips of pictures and timelines, put together from what Blender answered."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PIL import Image, ImageDraw
+
+from agents.blender.sheets.contact_sheet import (
+    FRAME,
+    PAPER,
+    WARNING,
+    Panel,
+    Style,
+    draw_scale_bar,
+    grid,
+    paragraph,
+    read_png,
+    sheet,
+    stack,
+    to_png,
+    write,
+)
+from agents.blender.sheets.motion_plot import EDGES, Course, Phase, Row, draw_trail, state_colour, timeline
+from agents.blender.sheets.text_layout import text_width
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import BinaryIO
+
+    from agents.blender.sheets.motion_reply import ActorMotion, CacheState, Motion, Shot, Stretch, Strip, View
+
+WIDTH = 1240
+_TALLEST = 1450  # pixels of actors on one sheet, if there are several
+_NAME, _CHIP, _NOTE = Style(18), Style(13), Style(14, WARNING.colour)
+_MOST_ROWS, _APART = 6, 28
+_SPEEDS = {"vertices": "vertex speed, m/s", "particles": "particle speed, m/s"}
+
+
+def draw_sheets(motion: Motion, open_tile: Callable[[str], BinaryIO]) -> list[bytes]:
+    """The sheets as PNGs: as many actors on each as are still readable. ``open_tile`` opens a picture by its name.
+
+    Raises Refusal for a picture that is missing or is none.
+    """
+
+    def tile(number: int, strip: Strip, shot: Shot, view: View) -> Image.Image:
+        with open_tile(f"{number}-{strip.kind}-{shot.frame}.png") as file:
+            return read_png(file).resize(view.size, Image.Resampling.BOX)
+
+    blocks: list[Image.Image] = []
+    for number, actor in enumerate(motion.actors):
+        parts = [_heading(actor)]
+        for strip in actor.views:
+            panels = [
+                _panel(actor, strip, shot, partial(tile, number, strip, shot)) for shot in strip.pictures
+            ]
+            parts.append(grid(panels, actor.columns))
+        parts.append(timeline(_course(motion, actor), WIDTH))
+        parts += [paragraph(note, WIDTH, _NOTE) for note in actor.notes]
+        blocks.append(stack(parts))
+    pages: list[list[Image.Image]] = [[]]
+    for block in blocks:
+        if pages[-1] and sum(one.height for one in pages[-1]) + block.height > _TALLEST:
+            pages.append([])
+        pages[-1].append(block)
+    subtitle = f"Frames {motion.start}–{motion.end} at {motion.fps:g} fps, {motion.how_played}."
+    made: list[bytes] = []
+    for number, page in enumerate(pages, 1):
+        title = f"Motion sheet ({number} of {len(pages)})" if len(pages) > 1 else "Motion sheet"
+        made.append(
+            to_png(
+                sheet(
+                    title, [stack(page, _APART)], subtitle=subtitle, notes=motion.notes if number == 1 else ()
+                )
+            )
+        )
+    return made
+
+
+def _heading(actor: ActorMotion) -> Image.Image:
+    """The actor's name, and a chip for every cache that moves it."""
+    line = paragraph(actor.name, WIDTH, _NAME)
+    draw = ImageDraw.Draw(line)
+    x: float = WIDTH
+    chips = [(f"{cache.label}: {_state(cache)}", state_colour(_state(cache))) for cache in actor.caches[:3]]
+    if not actor.caches:
+        chips = [
+            ("keyframed, no physics" if actor.keyframes else "no physics, no keyframes", state_colour(""))
+        ]
+    for text, colour in reversed(chips):
+        wide = text_width(text, _CHIP.size) + 16
+        if x - wide < WIDTH / 3:
+            break
+        draw.rounded_rectangle((x - wide, 1, x - 1, line.height - 3), 8, fill=colour)
+        write(draw, (x - wide / 2, line.height / 2 - 1), text, Style(_CHIP.size, PAPER), anchor="mm")
+        x -= wide + 8
+    return line
+
+
+def _state(cache: CacheState) -> str:
+    return cache.state if cache.on else "switched off"
+
+
+def _panel(actor: ActorMotion, strip: Strip, shot: Shot, tile: Callable[[View], Image.Image]) -> Panel:
+    phase, colour = _phase_of(actor, shot.frame)
+    caption = f"frame {shot.frame}"
+    if shot.view is None:
+        return Panel(Image.new("RGB", (32, 32), PAPER), caption, "not there", colour)
+    picture = tile(shot.view)
+    if strip.kind == "path":
+        places = [None if centre is None else shot.view.pixel(centre) for centre in actor.centres]
+        draw_trail(picture, places, actor.frames.index(shot.frame))
+    if shot is strip.pictures[0]:
+        draw_scale_bar(picture, shot.view.metres_per_pixel)
+    return Panel(picture, caption, "close" if strip.kind == "close" else phase, colour)
+
+
+def _phase_of(actor: ActorMotion, frame: int) -> tuple[str, tuple[int, int, int]]:
+    for number, phase in enumerate(actor.phases):
+        if phase.start <= frame <= phase.end:
+            return phase.phase, EDGES[number % len(EDGES)]
+    return "", FRAME
+
+
+def _course(motion: Motion, actor: ActorMotion) -> Course:
+    return Course(
+        frames=actor.frames,
+        displacements=actor.displacements,
+        speeds=actor.speeds,
+        speed_label=_SPEEDS.get(actor.speed_of, "speed, m/s"),
+        phases=[Phase(one.phase, one.start, one.end, _summaries(one)) for one in actor.phases],
+        sampled=motion.sampled,
+        keyframes=actor.keyframes,
+        rows=_rows(actor),
+        axes=_axes(actor),
+    )
+
+
+def _axes(actor: ActorMotion) -> list[tuple[str, float, float, float]]:
+    """How the world's axes stand in the pictures."""
+    views = [shot.view for strip in actor.views for shot in strip.pictures if shot.view is not None]
+    if not views:
+        return []
+    right, up, towards = views[0].axes
+    return [(name, right[at], up[at], towards[at]) for at, name in enumerate("XYZ")]
+
+
+def _summaries(phase: Stretch) -> tuple[str, ...]:
+    """What the motion comes to in a phase, at length and shorter and shorter."""
+    if not phase.present:
+        return ("not there",)
+    way, turn = f"{phase.displacement:.3g} m", ""
+    if phase.turn is not None and phase.turn >= 1:
+        turn = f" · turns {phase.turn:.0f}°"
+    if phase.peak_speed is None or phase.final_speed is None:
+        return (f"moves {way}{turn}", way)
+    peak, final = f"{phase.peak_speed:.3g}", f"{phase.final_speed:.2g}"
+    return (
+        f"moves {way} · peak {peak} m/s, ends at {final} m/s{turn}",
+        f"moves {way} · peak {peak}, end {final} m/s{turn}",
+        f"{way} · peak {peak}, end {final} m/s",
+        f"{way} · peak {peak} m/s",
+        way,
+    )
+
+
+def _rows(actor: ActorMotion) -> list[Row]:
+    rows = [
+        Row(
+            cache.label,
+            [(cache.start, cache.end)],
+            state_colour(_state(cache)),
+            f"{_state(cache)}, {cache.start}–{cache.end}",
+            dashed=cache.state != "baked" or not cache.on,
+        )
+        for cache in actor.caches[:_MOST_ROWS]
+    ]
+    touched: dict[str, list[tuple[int, int]]] = {}
+    for phase in actor.phases:
+        for touch in phase.contacts:
+            spans = touched.setdefault(touch.partner, [])
+            for first, last in touch.frames:
+                goes_on = spans and first <= spans[-1][1] + 1  # from the phase before
+                spans.append((spans.pop()[0] if goes_on else first, last))
+    for name, spans in sorted(touched.items(), key=lambda one: one[1])[:_MOST_ROWS]:
+        rows.append(Row("touches", spans, EDGES[3], f"{name}, from {spans[0][0]}"))
+    return rows

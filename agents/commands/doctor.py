@@ -1,0 +1,105 @@
+"""The command ``simworlds doctor``: what works on this machine, found by trying it."""
+
+from __future__ import annotations
+
+import json
+import sys
+from contextlib import closing
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from rich.console import Console, Group
+    from rich.text import Text
+
+    from agents.commands.doctor_checks import Choice, Finding, State
+    from simworlds.sandbox.confinement import Kind
+
+_NEEDED = ("Blender", "Start", "Sandbox")  # without these Blender cannot work, or must not
+_SIGNS: dict[State, tuple[str, str]] = {"good": ("✓", "green"), "poor": ("!", "yellow"), "bad": ("✗", "red")}
+
+
+@click.command()
+@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
+@click.option(
+    "--blender-exe",
+    type=click.Path(path_type=Path),
+    envvar="BLENDER_EXE",
+    show_envvar=True,
+    help="The Blender to look at, if not bpy.",
+)
+@click.option(
+    "--sandbox",
+    type=click.Choice(["bubblewrap", "landlock", "none"]),
+    help="What confines Blender. Default: the strongest that works.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Everything that was found, as JSON.")
+def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | None, as_json: bool) -> None:
+    """Try what a live Blender needs on this machine, and say what is missing.
+
+    Exits with 0 if Blender can work here, otherwise with 1.
+    """
+    if sys.platform == "win32":
+        raise click.ClickException("A live Blender needs Linux or macOS. On Windows, use the Linux of WSL.")
+    from rich.console import Console  # noqa: PLC0415 - not for --help
+
+    from agents.commands.doctor_checks import Choice  # noqa: PLC0415
+
+    found = _found(Choice(blender, blender_exe, sandbox), Console(stderr=True))
+    well = all(finding.state != "bad" for finding in found if finding.name in _NEEDED)
+    if as_json:
+        told = {"works": well, "findings": [asdict(finding) for finding in found]}
+        click.echo(json.dumps(told, indent=2, ensure_ascii=False))
+    else:
+        Console(highlight=False).print(_page(found, well))
+    sys.exit(0 if well else 1)
+
+
+def _found(choice: Choice, console: Console) -> list[Finding]:
+    """What each check came to; what is being done is shown meanwhile, where somebody looks on."""
+    from agents.commands.doctor_checks import checks  # noqa: PLC0415 - not for --help
+
+    found: list[Finding] = []
+    with console.status("") as status, closing(checks(choice)) as each:
+        for doing, check in each:
+            status.update(f"[dim]{doing} …[/dim]")
+            found.append(check())
+    return found
+
+
+def _page(found: list[Finding], well: bool) -> Group:
+    from rich.console import Group  # noqa: PLC0415 - not for --json
+    from rich.table import Table  # noqa: PLC0415 - not for --json
+    from rich.text import Text  # noqa: PLC0415
+
+    page = Table.grid(padding=(0, 2, 0, 0))
+    page.add_column(no_wrap=True)
+    page.add_column(no_wrap=True)
+    page.add_column(overflow="fold")
+    for finding in found:
+        sign, colour = _SIGNS[finding.state]
+        page.add_row(Text(sign, colour), Text(finding.name, "bold"), Text(finding.text))
+        below = Table.grid(padding=(0, 1, 0, 0))
+        if finding.place:
+            page.add_row("", "", Text(finding.place, "dim"))
+        for line in finding.keeps:
+            below.add_row(Text("+", "green"), Text(line, "dim"))
+        for line in finding.lacks:
+            below.add_row(Text("-", "yellow"), Text(f"does not keep out: {line}"))
+        if finding.advice:
+            below.add_row(Text("→", "bold cyan"), Text(finding.advice, "cyan"))
+        if below.row_count:
+            page.add_row("", "", below)
+    return Group(page, "", _verdict([finding.name for finding in found if finding.state == "poor"], well), "")
+
+
+def _verdict(poor: list[str], well: bool) -> Text:
+    from rich.text import Text  # noqa: PLC0415 - not for --json
+
+    if not well:
+        return Text("✗  Blender cannot work here.", "bold red")
+    without = f", but look at: {', '.join(poor)}" if poor else ""
+    return Text(f"✓  Blender can work here{without}.", "bold green")

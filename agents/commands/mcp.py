@@ -1,0 +1,164 @@
+"""The command ``simworlds mcp``."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from agents.blender.blender_sessions import Setup
+    from simworlds.sandbox.confinement import Kind, Sandbox
+
+_ERROR = 2
+_PORT = 8766
+_SIGNAL_SECONDS = 1.5  # clients kill two seconds after they have asked to end
+_TYPED = click.core.ParameterSource.COMMANDLINE
+_ONLY_HTTP = ("host", "port", "allow_host", "sessions", "idle")
+_ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=Path)
+
+
+@click.command()
+@click.option(
+    "--run",
+    type=click.Path(file_okay=False, resolve_path=True, path_type=Path),
+    help="Folder to work in; a run that is there goes on. Default: a new one for each client.",
+)
+@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
+@click.option(
+    "--blender-exe",
+    type=click.Path(path_type=Path),
+    envvar="BLENDER_EXE",
+    show_envvar=True,
+    help="The Blender to start, if not bpy.",
+)
+@click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, as of assets.")
+@click.option(
+    "--sandbox",
+    type=click.Choice(["bubblewrap", "landlock", "none"]),
+    help="What confines Blender. Default: the strongest that works.",
+)
+@click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=_PORT, show_default=True, help="0 takes a free one."
+)
+@click.option("--token", envvar="SIMWORLDS_TOKEN", show_envvar=True, help="What clients must send.")
+@click.option("--allow-host", multiple=True, metavar="NAME", help="A further name of this server.")
+@click.option("--sessions", type=click.IntRange(1), default=4, show_default=True, help="Blenders at once.")
+@click.option(
+    "--idle",
+    type=click.FloatRange(0, min_open=True),
+    default=30.0,
+    show_default=True,
+    metavar="MINUTES",
+    help="A Blender is closed after so long without a call.",
+)
+@click.pass_context
+def mcp(  # noqa: PLR0913 - one for each option
+    context: click.Context,
+    *,
+    run: Path | None,
+    blender: str | None,
+    blender_exe: Path | None,
+    read: tuple[Path, ...],
+    sandbox: Kind | None,
+    over_http: bool,
+    host: str,
+    port: int,
+    token: str | None,
+    allow_host: tuple[str, ...],
+    sessions: int,
+    idle: float,
+) -> None:
+    """Serve a live Blender over MCP, on stdio or HTTP, with blender_docs beside it.
+
+    Every client has a Blender of its own, in a run's folder of its own, which it finds as it left it. On an address
+    other than loopback clients must send a token: Authorization: Bearer …
+    """
+    for_http = [name for name in _ONLY_HTTP if context.get_parameter_source(name) is _TYPED]
+    if for_http and not over_http:
+        raise click.UsageError(f"--{for_http[0].replace('_', '-')} goes with --http.")
+    # Nothing of what is loaded is garbage: looking for it would take part of the time to start.
+    gc.disable()
+    from agents.blender.blender_sessions import Setup  # noqa: PLC0415
+    from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415 - not for --help
+    from simworlds.sandbox.launch import find_blender  # noqa: PLC0415
+
+    setup_of = partial(Setup, version=blender, blender_exe=blender_exe, read=read, run=run)
+    try:
+        if blender_exe is not None:
+            find_blender(blender, blender_exe)
+        setup = setup_of(_confined(sandbox))
+        if over_http:
+            _over_http(setup, sessions, idle * 60, host, port, token or "", allow_host)
+        else:
+            _over_stdio(setup)
+    except CannotStart as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(_ERROR)
+
+
+def _over_stdio(setup: Setup) -> None:
+    from agents.blender.blender_sessions import Studios  # noqa: PLC0415 - not for --help
+
+    studios = Studios(setup)
+    # Blender comes up while the MCP package is loaded: each takes half a second.
+    studios.start("")
+    from agents.blender.docs_client import DocsClient  # noqa: PLC0415
+    from agents.blender.server import make_server  # noqa: PLC0415
+    from agents.blender.team import Team  # noqa: PLC0415
+    from simworlds.mcp_transport.stdio import run_stdio  # noqa: PLC0415
+
+    server = make_server(studios, DocsClient(_same_blender(setup)), Team())
+    _loaded()
+    run_stdio(server, partial(studios.close, _SIGNAL_SECONDS))
+
+
+def _over_http(setup: Setup, sessions: int, idle: float, *address: Any) -> None:
+    from agents.blender.blender_sessions import Studios  # noqa: PLC0415
+    from agents.blender.docs_client import DocsClient  # noqa: PLC0415 - not for --help
+    from agents.blender.server import make_app, make_server  # noqa: PLC0415
+    from agents.blender.team import Team  # noqa: PLC0415
+    from simworlds.mcp_transport.http import Address, CannotServe, run_http  # noqa: PLC0415
+    from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
+
+    studios = Studios(setup, at_most=sessions, idle=idle)
+    server = make_server(studios, DocsClient(_same_blender(setup)), Team())
+    _loaded()
+    try:
+        run_http(partial(make_app, server, studios, idle), Address(*address), "Blender")
+    except CannotServe as error:
+        raise CannotStart(str(error)) from error
+
+
+def _loaded() -> None:
+    gc.freeze()
+    gc.enable()
+
+
+def _same_blender(setup: Setup) -> list[str]:
+    """The options by which ``simworlds serve`` answers for the Blender that is worked with."""
+    options = {"--blender": setup.version, "--blender-exe": setup.blender_exe}
+    return [word for name, value in options.items() if value is not None for word in (name, str(value))]
+
+
+def _confined(wanted: Kind | None) -> Sandbox:
+    """The sandbox, said on stderr. Raises CannotStart when the one that is wanted does not work here."""
+    from simworlds.sandbox.confine import landlock_abi  # noqa: PLC0415 - not for --help
+    from simworlds.sandbox.confinement import best_sandbox, bubblewrap_fault  # noqa: PLC0415
+    from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
+
+    if wanted == "bubblewrap" and (fault := bubblewrap_fault()) is not None:
+        raise CannotStart(f"bubblewrap does not work here: {fault}")
+    if wanted == "landlock" and not (sys.platform == "linux" and landlock_abi()):
+        raise CannotStart("This system's kernel has no Landlock.")
+    found = best_sandbox(wanted)
+    click.echo(f"Sandbox ({found.kind}): {'; '.join(found.holds)}.", err=True)
+    if found.lacks:
+        click.echo(f"It does not keep out: {'; '.join(found.lacks)}.", err=True)
+    return found

@@ -1,0 +1,273 @@
+"""The commands ``simworlds make``, ``edit``, ``demo``, ``replay``, ``resume``, ``runs`` and ``show``."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator
+    from types import FrameType
+
+    from agents.loop.session import Ended, Sitting, Stop
+
+    Command = TypeVar("Command", bound=Callable[..., Any])
+
+EXITS = {"done": 0, "aborted": 1, "failed": 2, "stopped": 3}
+_FOLDER = click.Path(file_okay=False, resolve_path=True, path_type=Path)
+_FILE = click.Path(exists=True, dir_okay=False, resolve_path=True, path_type=Path)
+_ROLES = ("planner", "coder", "reviewer", "final_reviewer")
+
+
+def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    def add(command: Command) -> Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return add
+
+
+_limits = _options(
+    click.option(
+        "--max-cost", type=click.FloatRange(0), metavar="USD", help="Stop before it would cost more."
+    ),
+    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help="Stop after so long."),
+    click.option("--quiet", is_flag=True, help="Say nothing but how it ended."),
+)
+_model = _options(
+    click.option("--model", metavar="NAME", help="The model for all roles.  [default: claude-opus-5-5]"),
+    click.option(
+        "--role-model", multiple=True, metavar="ROLE=NAME", help=f"Another one for {', '.join(_ROLES)}."
+    ),
+)
+_blender = _options(
+    click.option("--run", "root", type=_FOLDER, help="Folder of the run.  [default: a new one]"),
+    click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's."),
+    click.option(
+        "--blender-exe",
+        type=_FILE,
+        envvar="BLENDER_EXE",
+        show_envvar=True,
+        help="The Blender to start, if not bpy.",
+    ),
+    click.option("--read", type=_FOLDER, multiple=True, help="A folder that Blender may read, as of assets."),
+    click.option(
+        "--sandbox", type=click.Choice(["bubblewrap", "landlock", "none"]), help="What confines Blender."
+    ),
+    click.option(
+        "--render-minutes", type=click.FloatRange(0, min_open=True), help="A time for the rendering."
+    ),
+    click.option(
+        "--samples", type=click.IntRange(1), help="Samples of the rendering, instead of the plan's."
+    ),
+)
+_ablations = _options(
+    click.option("--no-verifier", is_flag=True, help="Leave the verifier out (ablation)."),
+    click.option("--no-stages", is_flag=True, help="Build everything in one pass (ablation)."),
+)
+
+
+@click.command()
+@click.argument("prompt")
+@_model
+@_limits
+@_blender
+@_ablations
+def make(prompt: str, **given: Any) -> None:
+    """Make a scene from a sentence: a .blend with baked physics, a video and a report.
+
+    Asks a language model (ANTHROPIC_API_KEY; ANTHROPIC_BASE_URL for another server that speaks its API). Without a
+    key, try 'simworlds demo'. Exit code 0: done. 1: a stage could not be closed. 2: it failed. 3: it was stopped, and
+    can be resumed.
+    """
+    _begin({"prompt": prompt, **_of_model(given)}, given)
+
+
+@click.command()
+@click.argument("file", type=_FILE)
+@click.argument("instruction")
+@click.option("--reference", type=_FILE, help="A picture of what the result should look like.")
+@_model
+@_limits
+@_blender
+def edit(file: Path, instruction: str, reference: Path | None, **given: Any) -> None:
+    """Change a scene as told, and leave the rest alone. The file itself stays as it is.
+
+    Any .blend will do. The report lists every data-block that was changed or left alone. Exit codes as of 'make'.
+    """
+    asked = {"mode": "edit", "prompt": instruction, "file": file, "reference": reference, **_of_model(given)}
+    _begin(asked, given)
+
+
+@click.command()
+@click.argument("name", required=False)
+@_limits
+@_blender
+def demo(name: str | None, **given: Any) -> None:
+    """Play a session that was written by hand against a real Blender; needs no key. Without a name: list them.
+
+    What the roles say was written by people for this program; Blender, verifier, baking and rendering are real.
+    """
+    from agents.loop.demos import demo_options, listed  # noqa: PLC0415 - not for --help
+    from agents.loop.errors import NoRun  # noqa: PLC0415
+
+    if name is None:
+        click.echo(listed())
+        return
+    root = _root(given)
+    try:
+        asked = demo_options(name, root.with_name(f"{root.name}-input.blend"))
+    except NoRun as error:
+        raise click.UsageError(str(error)) from error
+    _begin(asked, given | {"root": root})
+
+
+@click.command()
+@click.argument("run", type=_FOLDER)
+@_limits
+@_blender
+def replay(run: Path, **given: Any) -> None:
+    """Play the recorded answers of a run against a real Blender, without a key or network, as a run of its own.
+
+    Where the conversation is not the recorded one, it says so, and stops.
+    """
+    from agents.loop.demos import replay_options  # noqa: PLC0415 - not for --help
+    from agents.loop.errors import NoRun  # noqa: PLC0415
+
+    try:
+        asked = replay_options(run)
+    except NoRun as error:
+        raise click.UsageError(str(error)) from error
+    _begin(asked, given)
+
+
+@click.command()
+@click.argument("run", type=_FOLDER)
+@_limits
+def resume(run: Path, **given: Any) -> None:
+    """Go on with a run that was stopped, or killed. Nothing that was done or paid for is done again."""
+    from agents.loop.session import resume as go_on  # noqa: PLC0415 - not for --help
+
+    _sit(lambda sitting: go_on(run, sitting), run, given)
+
+
+@click.command()
+def runs() -> None:
+    """List the runs there are, newest first."""
+    from rich.console import Console  # noqa: PLC0415 - not for --help
+
+    from agents.views.run_list import table_of_runs  # noqa: PLC0415
+
+    Console().print(table_of_runs())
+
+
+@click.command()
+@click.argument("run", type=_FOLDER)
+@click.option("--report", is_flag=True, help="Write report.html anew.")
+def show(run: Path, *, report: bool) -> None:
+    """Show how a run stands, or what became of it."""
+    from rich.console import Console  # noqa: PLC0415 - not for --help
+
+    from agents.loop.errors import RunError  # noqa: PLC0415
+    from agents.views.report.page import write_report  # noqa: PLC0415
+    from agents.views.run_list import shown  # noqa: PLC0415
+
+    try:
+        Console().print(shown(run))
+        if report:
+            click.echo(write_report(run))
+    except RunError as error:
+        raise click.UsageError(str(error)) from error
+
+
+def _of_model(given: dict[str, Any]) -> dict[str, Any]:
+    asked: dict[str, Any] = {} if given["model"] is None else {"model": given["model"]}
+    models = dict(one.partition("=")[::2] for one in given["role_model"])
+    for role, name in models.items():
+        if role not in _ROLES or not name:
+            raise click.UsageError(f"--role-model takes ROLE=NAME with a role of {', '.join(_ROLES)}.")
+    return asked | {"models": models}
+
+
+def _limited(given: dict[str, Any]) -> Any:
+    from agents.loop.options import Limits  # noqa: PLC0415 - not for --help
+
+    return Limits(max_cost=given["max_cost"], max_minutes=given["max_minutes"])
+
+
+def _root(given: dict[str, Any]) -> Path:
+    from agents.blender.launch import runs_folder  # noqa: PLC0415 - not for --help
+    from agents.views.run_list import new_root  # noqa: PLC0415
+
+    return given["root"] or new_root(runs_folder())
+
+
+def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
+    from pydantic import ValidationError  # noqa: PLC0415 - not for --help
+
+    from agents.loop.options import Options  # noqa: PLC0415
+    from agents.loop.session import begin  # noqa: PLC0415
+
+    names = ("blender", "blender_exe", "read", "sandbox", "render_minutes", "samples")
+    asked = asked | {name: given[name] for name in names if given[name] is not None}
+    asked |= {"verifier": not given.get("no_verifier", False), "stages": not given.get("no_stages", False)}
+    try:
+        options = Options(**asked)
+    except ValidationError as error:
+        wrong = "; ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
+        raise click.UsageError(wrong) from error
+    root = _root(given)
+    _sit(lambda sitting: begin(root, options, sitting), root, given)
+
+
+def _sit(sit: Callable[[Sitting], Ended], root: Path, given: dict[str, Any]) -> None:
+    from agents.loop.errors import RunError  # noqa: PLC0415 - not for --help
+    from agents.loop.reducer import read_history  # noqa: PLC0415
+    from agents.loop.session import Sitting, Stop  # noqa: PLC0415
+    from agents.views.live_view import Quiet, make_view  # noqa: PLC0415
+    from agents.views.report.page import write_report  # noqa: PLC0415
+
+    stop = Stop(threading.Event())
+    try:
+        before = read_history(root)
+        watched = Quiet(before) if given["quiet"] else make_view(sys.stderr, str(root), before)
+        with watched as view, _signals(stop):
+            ended = sit(Sitting(_limited(given), view, stop))
+        report = write_report(root)
+    except RunError as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(EXITS["failed"])
+    if ended.why:
+        click.echo(f"{ended.how.capitalize()}: {ended.why}", err=True)
+    for path in (ended.file, ended.shown, report):
+        if path is not None and path.exists():
+            click.echo(path)
+    if ended.how in ("stopped", "failed") and ended.again:
+        click.echo(f"Go on with: simworlds resume {root}", err=True)
+    sys.exit(EXITS[ended.how])
+
+
+@contextmanager
+def _signals(stop: Stop) -> Generator[None]:
+    """The first Ctrl-C asks for a stop at the next safe point, the second for one now."""
+
+    def ask(_number: int, _frame: FrameType | None) -> None:
+        if stop.event.is_set():
+            stop.now()
+            raise KeyboardInterrupt
+        stop.event.set()
+        click.echo("\nStopping at the next safe point. Once more: now. The run can be resumed.", err=True)
+
+    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,61 @@
+"""Findings that a file had before it was edited: they are not the edit's, unless it makes them worse."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from agents.loop.task import Finding
+
+_SLACK = 0.01  # of what was measured before, by which it may be worse: measuring is not exact
+_LEAST = 1e-4
+_OUTCOMES = ("undecided", "error", "broken")  # from what is least known to be wrong
+
+
+def new_findings(known: Iterable[Finding], findings: Sequence[Finding]) -> list[Finding]:
+    """Those ``findings`` that were not ``known``, or are worse than they were; of the latter, the message says so."""
+    before: dict[tuple[Any, ...], list[Finding]] = defaultdict(list)
+    for finding in known:
+        before[_about(finding)].append(finding)
+    found: dict[int, Finding] = {}
+    for place in sorted(range(len(findings)), key=lambda place: -_badness(findings[place])):
+        finding = findings[place]
+        same = before[_about(finding)]
+        as_bad = [one for one in same if _is_no_worse(finding, one)]
+        if as_bad:
+            same.remove(min(as_bad, key=_badness))
+        elif same:
+            found[place] = {**finding, "message": _told_worse(finding, max(same, key=_badness))}
+        else:
+            found[place] = finding
+    return [found[place] for place in sorted(found)]
+
+
+def _about(finding: Mapping[str, Any]) -> tuple[Any, ...]:
+    return (finding["rule"], *sorted(finding.get("objects", ())))  # which comes first may depend on sizes
+
+
+def _badness(finding: Finding) -> float:
+    """How far what was measured is from what is allowed; 0 where nothing was measured."""
+    measured, tolerance = finding.get("measured"), finding.get("tolerance")
+    return 0.0 if measured is None else abs(measured - (tolerance or 0.0))
+
+
+def _is_no_worse(now: Finding, before: Finding) -> bool:
+    if now["severity"] == "hard" and before["severity"] != "hard":
+        return False
+    if _OUTCOMES.index(now["outcome"]) > _OUTCOMES.index(before["outcome"]):
+        return False
+    if now.get("measured") is None or before.get("measured") is None:
+        return True
+    return _badness(now) <= _badness(before) * (1 + _SLACK) + _LEAST
+
+
+def _told_worse(now: Finding, before: Finding) -> str:
+    if now.get("measured") is None or before.get("measured") is None:
+        return f"{now['message']} Before the edit: {before['message']}"
+    unit = f" {now['unit']}" if now.get("unit") else ""
+    return f"{now['message']} The edit made this worse: it was {before['measured']:.4g}{unit}."

@@ -1,0 +1,75 @@
+"""Edit mode: the same loop on a scene that is there; what the request does not name stays (paper, "Edit Mode")."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from agents.loop.algorithm import ALL_AT_ONCE, build, finish
+from agents.loop.edit.inputs import picture
+from agents.loop.edit.untouched import blocks, compared
+from agents.loop.errors import Unusable
+from agents.loop.judging import verify
+from agents.loop.run import RUNNER, START, plan_file
+from agents.loop.task import Task
+from agents.roles.planner import Planner, told_edit
+from simworlds.llm.messages import Picture
+
+if TYPE_CHECKING:
+    from agents.loop.edit.untouched import Blocks
+    from agents.loop.rendering import Rendering
+    from agents.loop.run import Run
+    from agents.plan.edit import EditPlan
+    from agents.plan.part import Stage
+
+_FIRST: Stage = "modeling"
+
+
+def edit(run: Run) -> Rendering:
+    """From a .blend and an instruction to the edited scene, rendered. Raises Unusable, RunError, ModelError."""
+    options = run.options
+    reference = _reference(run)
+    before = _opened(run)
+    state = run.state(_FIRST)
+    seen = run.use(RUNNER, _FIRST, "blender_scene_layout_preview", {})
+    planner = Planner(run.desk, edit=True)
+    plan = planner.edit(options.prompt, state, before.names, seen.pictures, reference)
+    run.write("plan.json", plan_file(plan))
+    run.journal.note("plan", edit=plan.model_dump(mode="json"))
+    task = _task(run, plan, before)
+    wanted = plan.stages if options.stages else ALL_AT_ONCE
+    last = build(run, planner, task, wanted)
+    rendering = finish(run, task, plan.render, last)
+    run.journal.note("edited", **compared(before, blocks(run, "render"), plan))
+    return rendering
+
+
+def _opened(run: Run) -> Blocks:
+    """Opens the file that is to be edited, which is only read, and keeps what is in it as the start of the run."""
+    file = run.options.file
+    assert file is not None
+    opened = run.use(RUNNER, _FIRST, "blender_load", {"path": str(file)})
+    if opened.failed:
+        raise Unusable(f"{file} cannot be edited: {opened.text}")
+    run.save(_FIRST, START, run.checkpoints)
+    return blocks(run, _FIRST)
+
+
+def _reference(run: Run) -> Picture | None:
+    """What the result should look like. It is kept with the run: its file may be gone when the run is taken up."""
+    if run.options.reference is None:
+        return None
+    kept = run.journal.find("reference")
+    if kept is None:
+        given = picture(run.options.reference)
+        kept = run.journal.note("reference", path=run.keep(given), media_type=given.media_type)
+    return Picture((run.root / kept["path"]).read_bytes(), kept["media_type"])
+
+
+def _task(run: Run, plan: EditPlan, before: Blocks) -> Task:
+    """What the edit is held to: its plan, and not to leave the file worse than it was."""
+    actors = tuple(actor.name for actor in plan.actors)
+    bare = Task("", None, actors, edit=True, tagged=before.tagged)
+    known = verify(run, "light", bare).findings
+    told = [f"{one['rule']} {', '.join(one['objects'])}: {one['message']}" for one in known]
+    return replace(bare, told=told_edit(plan, run.options.prompt, told), known=known, declared=plan.actors)

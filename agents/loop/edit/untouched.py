@@ -1,0 +1,75 @@
+"""What an edit has changed and what it has left alone, data-block by data-block, and what of that nobody asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from agents.loop.edit.consequences import Consequences
+from agents.loop.errors import RunError
+from agents.loop.run import RUNNER
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from agents.loop.run import Run
+    from agents.plan.edit import EditPlan
+    from agents.plan.part import Stage
+
+
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """A file's data-blocks, by kind and name ("Object Cube").
+
+    ``parts``: a digest of each part of one. ``uses``: what each part of one points to. ``tagged``: whether the file
+    has anything of the scene protocol.
+    """
+
+    digests: Mapping[str, str]
+    parts: Mapping[str, Mapping[str, str]] = field(default_factory=dict[str, dict[str, str]])
+    uses: Mapping[str, Mapping[str, Sequence[str]]] = field(default_factory=dict[str, dict[str, list[str]]])
+    tagged: bool = False
+
+    @property
+    def names(self) -> frozenset[str]:
+        """What they are called, with and without their kind."""
+        return frozenset({*self.digests, *(name.partition(" ")[2] for name in self.digests)})
+
+
+def blocks(run: Run, stage: Stage) -> Blocks:
+    """Those of the open scene. Raises RunError."""
+    outcome = run.use(RUNNER, stage, "blender_scene_state", {"sections": ["data_blocks"]})
+    data = outcome.data
+    if not isinstance(data.get("data_blocks"), dict):
+        raise RunError(f"The scene's data-blocks cannot be told apart: {outcome.text}")
+    return Blocks(
+        data["data_blocks"], data["data_block_parts"], data["data_block_uses"], bool(data["tagged"])
+    )
+
+
+def compared(before: Blocks, after: Blocks, plan: EditPlan) -> dict[str, Any]:
+    """What was ``added``, ``removed``, ``changed`` and left ``unchanged``, and what of it is ``outside`` of the plan.
+
+    ``parts`` has what of a changed one differs (its transform, modifiers, …) where that is known; ``why`` says, of all
+    that is not unchanged, what it follows from, or for what is outside, why it does not.
+    """
+    both = before.digests.keys() & after.digests.keys()
+    added = after.digests.keys() - before.digests.keys()
+    removed = before.digests.keys() - after.digests.keys()
+    changed = {name for name in both if before.digests[name] != after.digests[name]}
+    parts = {name: _differing(before.parts.get(name, {}), after.parts.get(name, {})) for name in changed}
+    found = Consequences(before.uses, after.uses, plan, added=added, removed=removed, changed=parts)
+    touched = added | removed | changed
+    return {
+        "added": sorted(added),
+        "removed": sorted(removed),
+        "changed": sorted(changed),
+        "unchanged": sorted(both - changed),
+        "outside": sorted(touched - found.reasons.keys()),
+        "parts": {name: parts[name] for name in sorted(changed)},
+        "why": {name: found.told(name) for name in sorted(touched)},
+    }
+
+
+def _differing(one: Mapping[str, str], other: Mapping[str, str]) -> list[str]:
+    return sorted(part for part in one.keys() | other.keys() if one.get(part) != other.get(part))

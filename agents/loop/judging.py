@@ -1,0 +1,163 @@
+"""What is found out about an attempt: the verifier and the reviewer, side by side, and what may come of it."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from agents.loop.edit.baseline import new_findings
+from agents.loop.edit.declared_mechanisms import undeclared
+from agents.loop.run import RUNNER, VERIFIER, VERIFY
+from agents.plan.part import STAGES
+from agents.plan.tactical import Review
+from simworlds.llm.errors import Misfit, Refused
+from simworlds.llm.messages import Text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from agents.loop.run import Run
+    from agents.loop.task import Finding, Task
+    from agents.plan.part import Stage
+    from agents.plan.tactical import Decision, TacticalPlan
+    from agents.roles.reviewer import Reviewer
+    from simworlds.llm.messages import Block
+
+_MOST_ACTORS = 6
+_SEEN_BY_CAMERA: tuple[Stage, ...] = ("camera", "light")
+_STILL = {"kind": "still", "name": "look", "width": 480, "samples": 16, "denoise": True}
+_OFF = "It is left out in this run."
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The verifier's: ``ok`` unless a hard rule is broken, undecided or failed; ``told`` is for models."""
+
+    ok: bool
+    told: str
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def hard(self) -> int:
+        """How many findings keep the stage open."""
+        return sum(finding["severity"] == "hard" for finding in self.findings)
+
+
+def verify(run: Run, stage: Stage, task: Task) -> Verdict:
+    """Judges the scene by the rules of the stage. Findings that were known before are none."""
+    if not run.options.verifier:
+        return Verdict(True, _OFF)
+    outcome = run.use(VERIFIER, stage, VERIFY, {}, task.verification(stage))
+    if outcome.failed or "findings" not in outcome.data:
+        return _undecided(outcome.text, task)
+    findings = new_findings(task.known, outcome.data["findings"])
+    told = _listed(findings) if task.known else outcome.text
+    if task.declared and moves(stage) and (untagged := undeclared(run, stage, task.declared)):
+        findings, told = [*untagged, *findings], f"{_listed(untagged)}\n{told}"
+    return Verdict(all(one["severity"] != "hard" for one in findings), told, tuple(findings))
+
+
+def moves(stage: Stage) -> bool:
+    """Whether things move from this stage on."""
+    return STAGES.index(stage) >= STAGES.index("motion")
+
+
+def _undecided(why: str, task: Task) -> Verdict:
+    """A scene that cannot be judged stays where it is, unless the file could not be judged before it was edited."""
+    before = any(finding["rule"] == VERIFIER for finding in task.known)
+    finding: Finding = {
+        "rule": VERIFIER,
+        "severity": "soft" if before else "hard",
+        "objects": (),
+        "message": why,
+        "fix": "",
+        "outcome": "error",
+    }
+    told = "It could not judge the scene" + (", as it could not before the edit" if before else "")
+    return Verdict(before, f"{told}: {why}", (finding,))
+
+
+def _listed(findings: Sequence[Finding]) -> str:
+    if not findings:
+        return "Nothing is at fault that was not before."
+    return "\n".join(
+        f"- {one['rule']} ({one['severity']}) {', '.join(one['objects'])}: {one['message']} {one['fix']}".rstrip()
+        for one in findings
+    )
+
+
+# The reviewer
+
+
+def review(run: Run, reviewer: Reviewer, tactic: TacticalPlan, actors: Sequence[str]) -> Review:
+    """What the reviewer says; one who declines, or gives nothing that fits, has not reviewed: that blocks."""
+    try:
+        return reviewer.review(tactic, run.attempt or 1, evidence(run, tactic.stage, actors))
+    except (Refused, Misfit) as error:
+        return Review(judgements=(), blocking=True, summary=f"There is no review: {error}"[:4000])
+
+
+def evidence(run: Run, stage: Stage, actors: Sequence[str]) -> list[Block | str]:
+    """What there is to see of a stage: the layout, the readout, the motion, the camera's view."""
+    shown: list[Block | str] = []
+    calls: list[tuple[str, Mapping[str, Any]]] = [("blender_scene_layout_preview", {})]
+    if actors:
+        few = actors[:: max(1, -(-len(actors) // _MOST_ACTORS))]
+        calls.append(("blender_motion_sheet_preview", {"actors": list(few)}))
+    if stage in _SEEN_BY_CAMERA:
+        calls.append(("blender_render", _STILL))
+    calls.append(("blender_scene_state", {}))
+    for name, arguments in calls:
+        outcome = run.use(RUNNER, stage, name, arguments)
+        shown += [Text(f"{name}:"), *outcome.content]
+    return shown
+
+
+# Together
+
+
+def judged(
+    run: Run, stage: Stage, attempt: int, verifying: Callable[[], Verdict], reviewing: Callable[[], Review]
+) -> tuple[Verdict, Review]:
+    """Both, side by side: while the model thinks, Blender measures. What they found is written down."""
+    with ThreadPoolExecutor(1, thread_name_prefix="verifier") as pool:
+        verified = pool.submit(verifying)
+        review = reviewing()
+        verdict = verified.result()
+    note_verdict(run, stage, attempt, verdict)
+    run.journal.note("reviewed", stage=stage, attempt=attempt, review=review.model_dump(mode="json"))
+    return verdict, review
+
+
+def note_verdict(run: Run, stage: Stage, attempt: int, verdict: Verdict) -> None:
+    """Writes down what the verifier found."""
+    run.journal.note(
+        "verified",
+        stage=stage,
+        attempt=attempt,
+        ok=verdict.ok,
+        hard=verdict.hard,
+        soft=len(verdict.findings) - verdict.hard,
+        findings=list(verdict.findings),
+    )
+
+
+def in_words(review: Review) -> str:
+    """A review as the other roles read it."""
+    lines = [f"{'Blocking' if review.blocking else 'Not blocking'}: {review.summary}"]
+    lines += [
+        f"- {'yes' if one.holds else 'NO'}: {one.question} ({one.evidence})" for one in review.judgements
+    ]
+    return "\n".join(lines)
+
+
+def overruled(decision: Decision, how: str, verdict: Verdict, review: Review) -> str:
+    """Why a decision to advance is not followed; "" if it may be (paper, "Per-Stage Execution Loop")."""
+    if decision.transition != "advance":
+        return ""
+    if not verdict.ok:
+        return f"The verifier has {verdict.hard} hard finding{'s' if verdict.hard != 1 else ''}."
+    if review.blocking:
+        return "The review blocks."
+    return "" if how == "done" else f"The coder did not finish ({how})."

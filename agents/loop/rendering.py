@@ -1,0 +1,116 @@
+"""The last stage: what the camera sees, rendered, judged once, and mended once (paper, "Final Render and Review")."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from agents.blender.render.image_checks import shown
+from agents.loop.errors import RunError
+from agents.loop.judging import note_verdict, verify
+from agents.loop.run import RUNNER
+from agents.plan.tactical import FinalReview
+from agents.roles.coder import Coder
+from agents.roles.final_reviewer import final_review
+from simworlds.llm.errors import Misfit, Refused
+from simworlds.llm.messages import Picture, Text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from agents.loop.run import Run
+    from agents.loop.task import Task
+    from agents.plan.scene import Render
+    from simworlds.llm.messages import Block
+
+_FRAMES_SHOWN = 5  # at 0, 25, 50, 75, 100 %
+_ENGINES = {"CYCLES": "cycles", "BLENDER_EEVEE": "eevee", "BLENDER_WORKBENCH": "workbench"}
+
+
+@dataclass(frozen=True, slots=True)
+class Rendering:
+    """What was rendered: a ``video`` and its frames, or a still; ``path`` is the file in the run's folder."""
+
+    path: Path
+    frames: tuple[Path, ...]
+    told: str
+
+
+def render(run: Run, plan: Render | None, number: int) -> Rendering:
+    """Renders the scene as planned (None: by the scene's own settings). Raises RunError."""
+    run.attempt = number
+    asked: dict[str, Any] = {"kind": plan.kind if plan else "still"}
+    if plan is not None:
+        asked |= {"engine": _ENGINES[plan.engine], "samples": run.options.samples or plan.samples}
+        asked |= {"width": plan.resolution[0], "height": plan.resolution[1]}
+    if run.options.render_minutes is not None:
+        asked["time_budget"] = run.options.render_minutes * 60
+    outcome = run.use(RUNNER, "render", "blender_render", asked)
+    if outcome.failed:
+        raise RunError(f"The scene could not be rendered: {outcome.text}")
+    data = outcome.data
+    moving = data["kind"] == "animation"
+    made = Path(data["video"]["path"] if moving and data.get("video") else data["path"])
+    frames = tuple(sorted(Path(data["path"]).glob("*.png"))) if moving else (made,)
+    result = run.root / ("video.mp4" if moving else "still.png")
+    if made.is_file():
+        _link(made, result)
+    run.journal.note(
+        "rendered",
+        round=number,
+        kind=data["kind"],
+        path=result.name,
+        frames=len(frames),
+        samples=data.get("samples"),
+        seconds=data.get("seconds"),
+        pictures=[run.keep(Picture(shown(path))) for path in _spread(frames)],
+    )
+    return Rendering(result, frames, outcome.text)
+
+
+def reviewed(run: Run, task: Task, rendering: Rendering, number: int) -> FinalReview:
+    """The final reviewer's verdict. One who declines has no objection, which the verdict says."""
+    content: list[Block | str] = [Text(rendering.told)]
+    for place, path in enumerate(_spread(rendering.frames)):
+        content += [Text(f"Frame {path.stem} ({25 * place} %):"), Picture(shown(path))]
+    try:
+        review = final_review(run.desk, task.told, content, edit=task.edit)
+    except (Refused, Misfit) as error:
+        review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
+    run.journal.note("final.reviewed", round=number, review=review.model_dump(mode="json"))
+    return review
+
+
+def fixed(run: Run, task: Task, review: FinalReview, last: str) -> bool:
+    """One fix of what the final reviewer wants, from the last checkpoint on; whether it holds.
+
+    A fix that is not finished, or breaks a hard rule, is undone: the result is never worse for it.
+    """
+    run.attempt = 2
+    run.roll_back("render", 1, last)
+    coder = Coder(run.desk, "render", task.told, edit=task.edit)
+    worked = run.attempted("render", 2, lambda: coder.fix(review.instructions, run.state("render")))
+    verdict = verify(run, "render", task)
+    note_verdict(run, "render", 2, verdict)
+    if verdict.ok and worked.how == "done":
+        return True
+    run.roll_back("render", 2, last)
+    return False
+
+
+def _spread(frames: Sequence[Path]) -> list[Path]:
+    """Five of them, from the first to the last."""
+    last = len(frames) - 1
+    places = {round(last * share / (_FRAMES_SHOWN - 1)) for share in range(_FRAMES_SHOWN)}
+    return [frames[place] for place in sorted(places)]
+
+
+def _link(made: Path, result: Path) -> None:
+    result.unlink(missing_ok=True)
+    try:
+        os.link(made, result)
+    except OSError:
+        shutil.copyfile(made, result)

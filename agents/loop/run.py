@@ -1,0 +1,271 @@
+"""A run: its folder, its journal, its tools, and what may still be used up.
+
+The folder holds ``journal.jsonl``, ``plan.json``, ``checkpoints/STAGE.blend``, ``pictures/`` (what the roles saw, by
+content), ``blender/`` (the worker's own), and in the end ``scene.blend``, ``video.mp4`` or ``still.png``, and
+``report.html``.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import threading
+import time
+from collections import Counter
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from agents.loop.errors import NoRun, RunError, Stopping
+from agents.loop.toolbox import Outcome
+from agents.roles import coder, reviewer
+from agents.roles.base import Desk
+from simworlds.llm.messages import Picture, Text, ToolResult
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from agents.loop.journal import Journal, Row
+    from agents.loop.options import Limits, Options
+    from agents.loop.task import Task
+    from agents.loop.toolbox import Toolbox
+    from agents.plan.part import Stage
+    from agents.roles.base import Worked
+    from simworlds.llm.messages import Model, Tool, ToolUse
+
+RUNNER, VERIFIER = "runner", "verifier"
+VERIFY = "blender_verify"
+START = "start"
+_LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
+
+
+@dataclass
+class Run:
+    """What the loop works with. Calls may come from two threads at once."""
+
+    root: Path
+    options: Options
+    limits: Limits
+    journal: Journal
+    toolbox: Toolbox
+    model: Model
+    saying: Callable[[str, str], object]
+    stop: threading.Event = field(default_factory=threading.Event)
+    attempt: int | None = None
+    task: Task | None = None
+    _began: float = field(default_factory=time.monotonic)
+    _calls: Counter[tuple[str, str]] = field(default_factory=Counter[tuple[str, str]])
+    _aligned: bool = False
+    _door: threading.RLock = field(default_factory=threading.RLock)
+
+    @cached_property
+    def desk(self) -> Desk:
+        """What the roles work with."""
+        return Desk(
+            self.model,
+            self.options.model,
+            tools=lambda role, stage: RoleTools(self, role, stage),
+            saying=self.saying,
+            safe=self.safe,
+            names=self.options.models,
+        )
+
+    @property
+    def checkpoints(self) -> Path:
+        """The folder of the stages' files, out of every tool's reach but to read."""
+        return self.root / "checkpoints"
+
+    def safe(self) -> None:
+        """Called before everything that costs time or money. Raises Stopping."""
+        if self.stop.is_set():
+            raise Stopping("You asked it to stop.")
+        most = self.limits.max_minutes
+        if most is not None and time.monotonic() - self._began > most * 60:
+            raise Stopping(f"The limit of {most:g} minutes is reached.")
+
+    # Tools
+
+    def use(
+        self,
+        role: str,
+        stage: Stage,
+        name: str,
+        arguments: Mapping[str, Any],
+        known: Mapping[str, Any] | None = None,
+    ) -> Outcome:
+        """Calls a tool, or takes what the journal has of this call.
+
+        ``known`` are arguments that follow from the run, which ``arguments`` may replace.
+        """
+        with self._door:
+            self._calls[role, stage] += 1
+            number = self._calls[role, stage]
+        about = {"role": role, "stage": stage, "attempt": self.attempt, "n": number}
+        if row := self.journal.find("tool.answered", **about):
+            return self._recalled(row)
+        self.safe()
+        self._align()
+        self.journal.note("tool.called", **about, name=name, input=dict(arguments))
+        outcome = self._called(name, {**(known or {}), **arguments})
+        kept = None if self.toolbox.only_looks(name) else self.toolbox.checkpoint()
+        self.journal.note(
+            "tool.answered",
+            **about,
+            name=name,
+            content=[self._written(block) for block in outcome.content],
+            data=dict(outcome.data),
+            failed=outcome.failed,
+            seconds=round(outcome.seconds, 3),
+            checkpoint=kept,
+        )
+        return outcome
+
+    def _called(self, name: str, arguments: Mapping[str, Any]) -> Outcome:
+        if name in self.toolbox.names:
+            return self.toolbox.call(name, arguments)
+        known = ", ".join(self.toolbox.names)
+        return Outcome((Text(f"There is no tool {name[:80]!r}; there are {known}."),), failed=True)
+
+    def _align(self) -> None:
+        """Before the first call of a sitting: Blender is put where the journal says that it stands."""
+        with self._door:
+            if self._aligned:
+                return
+            wanted = self.journal.last("checkpoint")
+            if wanted is not None:
+                now = self.toolbox.stand_at(wanted)
+                if now != wanted:
+                    self.journal.append({"type": "scene.restored", "from": wanted, "checkpoint": now})
+            self._aligned = True
+
+    # Pictures: in the journal by name, on the disk by content
+
+    def _written(self, block: Text | Picture) -> Row:
+        if isinstance(block, Text):
+            return {"type": "text", "text": block.text}
+        return {"type": "picture", "path": self.keep(block), "media_type": block.media_type}
+
+    def keep(self, picture: Picture) -> str:
+        """Writes a picture down; its path in the run's folder."""
+        name = f"pictures/{hashlib.sha256(picture.data).hexdigest()[:16]}.png"
+        path = self.root / name
+        try:
+            path.parent.mkdir(exist_ok=True)
+            if not path.exists():
+                part = path.with_suffix(f".{threading.get_ident()}.part")
+                part.write_bytes(picture.data)
+                part.replace(path)
+        except OSError as error:
+            raise RunError(f"{path} cannot be written: {error.strerror or error}.") from error
+        return name
+
+    def _recalled(self, row: Row) -> Outcome:
+        """What a call came to. Raises NoRun."""
+        try:
+            content = tuple(
+                Text(one["text"])
+                if one["type"] == "text"
+                else Picture((self.root / one["path"]).read_bytes(), one["media_type"])
+                for one in row["content"]
+            )
+            return Outcome(content, row["data"], row["failed"], row["seconds"])
+        except OSError as error:
+            raise NoRun(
+                f"{error.filename}, which the run has seen, cannot be read: {error.strerror}."
+            ) from error
+        except (KeyError, TypeError) as error:
+            raise NoRun(f"{self.journal.path}, row {row.get('i')}, is no answer of a tool.") from error
+
+    # The scene
+
+    def state(self, stage: Stage) -> str:
+        """The scene's readout."""
+        return self.use(RUNNER, stage, "blender_scene_state", {}).text
+
+    def save(self, stage: Stage, name: str, folder: Path, *, verify: bool = False) -> Path:
+        """Saves the scene as ``folder/name.blend``, with its caches beside it. Raises RunError."""
+        outcome = self.use(RUNNER, stage, "blender_save", {"name": name, "verify": verify})
+        target = folder / f"{name}.blend"
+        made = self.root / "blender" / f"{name}.blend"
+        if made.exists() and not target.exists():  # it may have been moved in an earlier sitting
+            folder.mkdir(exist_ok=True)
+            caches = f"blendcache_{name}"
+            if (made.parent / caches).is_dir():
+                (made.parent / caches).replace(folder / caches)
+            made.replace(target)  # last: where it is, all is
+        if not target.exists():
+            raise RunError(f"The scene could not be saved: {outcome.text}")
+        return target
+
+    def load(self, stage: Stage, file: Path) -> None:
+        """Opens a .blend in place of the scene. Raises RunError."""
+        outcome = self.use(RUNNER, stage, "blender_load", {"path": str(file)})
+        if outcome.failed:
+            raise RunError(f"{file} cannot be opened: {outcome.text}")
+
+    def roll_back(self, stage: Stage, attempt: int, to: str) -> None:
+        """Puts the scene back to a closed stage, or to the START, which is written down."""
+        self.load(stage, self.checkpoints / f"{to}.blend")
+        self.journal.note("rolled.back", stage=stage, attempt=attempt, to=to)
+
+    def attempted(self, stage: Stage, attempt: int, code: Callable[[], Worked]) -> Worked:
+        """Lets a coder work; that it began and how it ended is written down."""
+        self.attempt = attempt
+        about = {"stage": stage, "attempt": attempt}
+        self.journal.note("attempt.began", **about)
+        worked = code()
+        self.journal.note("attempt.ended", **about, report=worked.said, ended=worked.how, calls=worked.calls)
+        return worked
+
+    # Files
+
+    def write(self, name: str, text: str) -> Path:
+        """Writes a file into the run's folder, whole or not at all. Raises RunError."""
+        path = self.root / name
+        part = path.with_name(f".{name}.part")
+        try:
+            part.write_text(text, "utf-8")
+            part.replace(path)
+        except OSError as error:
+            raise RunError(f"{path} cannot be written: {error.strerror or error}.") from error
+        return path
+
+
+class RoleTools:
+    """The tools of one role in one stage: the coder has all, who reviews only looks (paper, "Agents")."""
+
+    def __init__(self, run: Run, role: str, stage: Stage) -> None:
+        self._run = run
+        self._role = role
+        self._stage: Stage = stage
+        self._names: Sequence[str] = ()
+        if role == coder.NAME:
+            without = () if run.options.verifier else (VERIFY,)
+            self._names = [name for name in run.toolbox.names if name not in without]
+        elif role == reviewer.NAME:
+            self._names = [
+                name
+                for name in run.toolbox.names
+                if run.toolbox.only_looks(name) and any(word in name for word in _LOOKS)
+            ]
+
+    @property
+    def offered(self) -> tuple[Tool, ...]:
+        """What the model is told of them."""
+        return self._run.toolbox.offered(self._names)
+
+    def use(self, call: ToolUse) -> ToolResult:
+        """Calls one, for the model."""
+        if call.name not in self._names and call.name in self._run.toolbox.names:
+            text = f"{call.name} is not yours to call; you have {', '.join(self._names)}."
+            return ToolResult(call.id, (Text(text),), failed=True)
+        task = self._run.task if call.name == VERIFY else None
+        known = task.verification(self._stage) if task else None
+        outcome = self._run.use(self._role, self._stage, call.name, call.input, known)
+        return ToolResult(call.id, outcome.content, outcome.failed)
+
+
+def plan_file(value: Any) -> str:
+    """A plan as it is written to ``plan.json``."""
+    return json.dumps(value.model_dump(mode="json"), indent=2, ensure_ascii=False) + "\n"

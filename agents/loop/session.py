@@ -1,0 +1,227 @@
+"""One sitting at a run: from its beginning, or from where it stands, to its end or to a safe point."""
+
+from __future__ import annotations
+
+import logging
+import os
+from contextlib import ExitStack
+from dataclasses import dataclass
+from importlib import metadata
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+from pydantic import ValidationError
+
+from agents.blender.blender_sessions import Setup
+from agents.blender.run_folder import locked
+from agents.loop.algorithm import make, result_so_far
+from agents.loop.answer_source import Line, answering
+from agents.loop.edit.edit_mode import edit
+from agents.loop.edit.inputs import check_inputs
+from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
+from agents.loop.journal import NAME, Journal, read_rows
+from agents.loop.options import ROLES, Limits, Options
+from agents.loop.run import Run
+from agents.loop.toolbox import Toolbox
+from simworlds.llm.errors import ModelError, OverBudget
+from simworlds.llm.spending import Spending
+from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.errors import BlenderError, Refusal
+from simworlds.sandbox.launch import find_blender
+
+if TYPE_CHECKING:
+    import threading
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
+    from simworlds.llm.retries import Retry
+
+_LOG = logging.getLogger(__name__)
+How = Literal["done", "aborted", "stopped", "failed"]
+
+
+class Watcher(Protocol):
+    """Somebody who looks on."""
+
+    def take(self, row: Mapping[str, Any]) -> None:
+        """A row of the journal was written."""
+        ...
+
+    def saying(self, role: str, text: str) -> None:
+        """A model says something, as it comes."""
+        ...
+
+    def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
+        """A tool has got so far."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """How a sitting ended. ``file`` is the .blend that stands, ``shown`` the video or still.
+
+    ``again``: whether another sitting could come further.
+    """
+
+    how: How
+    why: str = ""
+    file: Path | None = None
+    shown: Path | None = None
+    again: bool = True
+
+
+@dataclass(slots=True)
+class Stop:
+    """Asks a sitting to end: at the next safe point, or now."""
+
+    event: threading.Event
+    toolbox: Toolbox | None = None
+
+    def now(self) -> None:
+        """Gives up what runs. From any thread."""
+        self.event.set()
+        if self.toolbox is not None:
+            self.toolbox.give_up()
+
+
+@dataclass(frozen=True, slots=True)
+class Sitting:
+    """What a sitting may use, who looks on, and how it is asked to stop."""
+
+    limits: Limits
+    watcher: Watcher
+    stop: Stop
+
+
+def begin(root: Path, options: Options, sitting: Sitting) -> Ended:
+    """Begins a run in ``root``, a folder that is new or empty. Raises NoRun; Unusable, then there is no folder."""
+    check_inputs(options)
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        if any(root.iterdir()):
+            raise NoRun(
+                f"{root} is not empty. Choose another folder, or go on with 'simworlds resume {root}'."
+            )
+    except OSError as error:
+        raise NoRun(f"{root} cannot be the folder of a run: {error.strerror or error}.") from error
+    return _sit(root, options, sitting)
+
+
+def resume(root: Path, sitting: Sitting) -> Ended:
+    """Goes on with the run in ``root``. Raises NoRun."""
+    if not (root / NAME).is_file():
+        raise NoRun(f"{root} is no run: it has no {NAME}.")
+    *_, last = [{}, *read_rows(root / NAME)]
+    if last.get("type") == "run.ended" and last.get("outcome") == "done":
+        file, shown = (root / str(last.get(name)) for name in ("file", "video"))
+        return Ended("done", "It was done already.", file, shown)
+    return _sit(root, None, sitting)
+
+
+def _sit(root: Path, options: Options | None, sitting: Sitting) -> Ended:
+    root = root.resolve()
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(locked(root))
+        except Refusal as refusal:
+            raise NoRun(str(refusal)) from refusal
+        except OSError as error:
+            raise NoRun(f"{root} cannot be written: {error.strerror or error}.") from error
+        journal = Journal(root / NAME)
+        stack.callback(journal.close)
+        journal.listen(sitting.watcher.take)
+        asked = options or _options(journal)
+        ended = _ended(lambda: _run(root, asked, journal, sitting))
+        told = {"outcome": ended.how, "why": ended.why}
+        files = {"file": _within(root, ended.file), "video": _within(root, ended.shown)}
+        journal.append({"type": "run.ended", **told, **files})
+        return ended
+
+
+def _ended(run: Callable[[], Ended]) -> Ended:
+    """Whatever ends a sitting, in words."""
+    try:
+        return run()
+    except (Stopping, OverBudget) as stopping:
+        return Ended("stopped", str(stopping))
+    except KeyboardInterrupt:
+        return Ended("stopped", "You interrupted it.")
+    except Aborted as aborted:
+        return Ended("aborted", str(aborted))
+    except Unusable as error:
+        return Ended("failed", str(error), again=False)
+    except (RunError, ModelError, BlenderError, OSError) as error:
+        return Ended("failed", str(error))
+
+
+def _run(root: Path, options: Options, journal: Journal, sitting: Sitting) -> Ended:
+    stop = sitting.stop
+    journal.note(
+        "run.began",
+        version=metadata.version("simworlds"),
+        mode=options.mode,
+        prompt=options.prompt,
+        source=options.told,
+        models={role: options.model_of(role) for role in ROLES},
+        blender=find_blender(options.blender, options.blender_exe).version,
+        options=options.model_dump(mode="json"),
+    )
+    journal.append({"type": "sitting.began", "pid": os.getpid()})
+    (root / "checkpoints").mkdir(exist_ok=True)
+    setup = Setup(
+        best_sandbox(options.sandbox),
+        version=options.blender,
+        blender_exe=options.blender_exe,
+        read=(root / "checkpoints", *_readable(options)),
+        run=root / "blender",
+        tell=_LOG.info,
+    )
+    with ExitStack() as stack:
+        pause = stop.event.wait  # asked to stop, nobody waits for an overloaded server
+        line = Line(Spending(sitting.limits.max_cost), _retrying(sitting), pause, stack)
+        model = answering(root, options, journal, line)
+        toolbox = stack.enter_context(Toolbox(setup, _same_blender(options), sitting.watcher.progress))
+        stop.toolbox = toolbox
+        saying = sitting.watcher.saying
+        run = Run(root, options, sitting.limits, journal, toolbox, model, saying, stop.event)
+        try:
+            rendering = (edit if options.mode == "edit" else make)(run)
+        except Aborted as aborted:
+            return Ended("aborted", str(aborted), result_so_far(run))
+        finally:
+            stop.toolbox = None
+    return Ended("done", "", root / "scene.blend", rendering.path)
+
+
+def _options(journal: Journal) -> Options:
+    began = journal.find("run.began")
+    if began is None:
+        raise NoRun(
+            f"{journal.path} does not say what the run is: it was killed before it began. Start anew."
+        )
+    try:
+        return Options.model_validate(began.get("options"))
+    except ValidationError as error:
+        raise NoRun(f"{journal.path} does not say what the run is to do: {error}") from error
+
+
+def _readable(options: Options) -> tuple[Path, ...]:
+    return (*options.read, *((options.file.parent,) if options.file else ()))
+
+
+def _same_blender(options: Options) -> list[str]:
+    """The options by which ``simworlds serve`` answers for the Blender that is worked with."""
+    given = {"--blender": options.blender, "--blender-exe": options.blender_exe}
+    return [word for name, value in given.items() if value is not None for word in (name, str(value))]
+
+
+def _retrying(sitting: Sitting) -> Callable[[Retry], object]:
+    def tell(retry: Retry) -> None:
+        if sitting.stop.event.is_set():
+            raise Stopping("You asked it to stop.")
+        sitting.watcher.saying(retry.ask.role, f"\n[{retry}]\n")
+
+    return tell
+
+
+def _within(root: Path, path: Path | None) -> str | None:
+    return str(path.relative_to(root)) if path else None

@@ -1,0 +1,120 @@
+"""One stage: plan, code, verify, review, decide, until it is closed or cannot be got past (paper, Algorithm 1)."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Literal
+
+from agents.loop.errors import Aborted
+from agents.loop.judging import in_words, judged, moves, overruled, review, verify
+from agents.roles.coder import Coder
+from agents.roles.reviewer import Reviewer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from agents.loop.judging import Verdict
+    from agents.loop.run import Run
+    from agents.loop.task import Task
+    from agents.plan.part import Stage
+    from agents.plan.tactical import Decision, Review, TacticalPlan
+    from agents.roles.base import Worked
+    from agents.roles.planner import Planner
+
+MAX_RETRIES_PER_STAGE = 10
+MAX_REPLANS_PER_STAGE = 5
+
+Taken = Literal["advance", "retry", "replan", "abort"]
+
+
+class StageLoop:
+    """Builds one stage. ``before`` is the stage that was closed last (START: none)."""
+
+    def __init__(self, run: Run, planner: Planner, task: Task, stage: Stage, before: str) -> None:
+        self._run = run
+        self._planner = planner
+        self._task = task
+        self._stage: Stage = stage
+        self._before = before
+        self._coder = Coder(run.desk, stage, task.told, edit=task.edit)
+        self._reviewer = Reviewer(run.desk, stage, task.told, edit=task.edit)
+        self._retries = self._replans = 0
+        self._overruled = ""
+
+    def build(self) -> int:
+        """How many attempts it took. Raises Aborted, with the scene as it was before the stage; ModelError."""
+        self._run.journal.note("stage.began", stage=self._stage)
+        attempt = 1
+        tactic, worked = self._fresh(attempt, self._coder.begin)
+        while True:
+            verdict, review = self._judged(attempt, tactic)
+            decision, taken, why = self._decided(attempt, worked, verdict, review)
+            if taken == "advance":
+                return attempt
+            if taken == "abort":
+                self._run.roll_back(self._stage, attempt, self._before)
+                raise Aborted(f"The stage {self._stage} could not be closed: {why or decision.reason}")
+            attempt += 1
+            if taken == "retry":
+                self._retries += 1
+                mend = (why or decision.instructions, verdict.told, in_words(review))
+                worked = self._run.attempted(self._stage, attempt, partial(self._coder.again, *mend))
+            else:
+                self._replans += 1
+                self._run.roll_back(self._stage, attempt, self._before)
+                why = f"The last plan did not do: {decision.reason}"
+                tactic, worked = self._fresh(attempt, self._coder.replanned, why)
+
+    def _fresh(
+        self, attempt: int, code: Callable[[TacticalPlan, str], Worked], why: str = ""
+    ) -> tuple[TacticalPlan, Worked]:
+        """A tactical plan, and the first attempt to realise it."""
+        run, stage = self._run, self._stage
+        run.attempt = attempt
+        state = run.state(stage)
+        tactic = self._planner.tactical(stage, state, why)
+        run.journal.note("tactic", stage=stage, attempt=attempt, plan=tactic.model_dump(mode="json"))
+        return tactic, run.attempted(stage, attempt, partial(code, tactic, state))
+
+    def _judged(self, attempt: int, tactic: TacticalPlan) -> tuple[Verdict, Review]:
+        run, task, stage = self._run, self._task, self._stage
+        actors = task.actors if moves(stage) else ()
+        return judged(
+            run,
+            stage,
+            attempt,
+            partial(verify, run, stage, task),
+            partial(review, run, self._reviewer, tactic, actors),
+        )
+
+    def _decided(
+        self, attempt: int, worked: Worked, verdict: Verdict, review: Review
+    ) -> tuple[Decision, Taken, str]:
+        """The planner's decision, what is done, which is never to advance over what blocks, and why not the former."""
+        retries, replans = MAX_RETRIES_PER_STAGE - self._retries, MAX_REPLANS_PER_STAGE - self._replans
+        decision = self._planner.decide(
+            self._stage,
+            attempt,
+            how=worked.how,
+            report=worked.said,
+            verified=verdict.told,
+            reviewed=in_words(review),
+            left=f"{self._overruled}{retries} retries and {replans} replans are left.",
+        )
+        taken: Taken = decision.transition
+        if why := overruled(decision, worked.how, verdict, review):
+            taken = "retry"
+        if (taken, retries) == ("retry", 0) or (taken, replans) == ("replan", 0):
+            why = f"{why} There is no {taken} left.".strip()
+            taken = "abort"
+        self._overruled = f"Your last decision was not followed: {why} " if why else ""
+        self._run.journal.note(
+            "decided",
+            stage=self._stage,
+            attempt=attempt,
+            decision=decision.model_dump(mode="json"),
+            taken=taken,
+            overruled=taken != decision.transition,
+            why=why,
+        )
+        return decision, taken, why

@@ -1,0 +1,42 @@
+"""What a run is held to, from its plan on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from agents.protocol.rules_by_stage import rules_of
+
+if TYPE_CHECKING:
+    from agents.plan.edit import EditedActor
+    from agents.plan.part import Stage
+    from agents.plan.scene import ScenePlan
+
+Finding = Mapping[str, Any]
+"""A finding of the verifier, as ``agents.protocol.report.report.as_json`` gives it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """``told`` is the whole plan in words; ``plan`` the scene plan that the verifier compares with.
+
+    An ``edit`` has no scene plan; it is judged without what was ``known`` of the file before, and, unless the file is
+    ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
+    of an edit, ``declared`` says by what.
+    """
+
+    told: str
+    plan: ScenePlan | None = None
+    actors: tuple[str, ...] = ()
+    edit: bool = False
+    tagged: bool = True
+    known: tuple[Finding, ...] = ()
+    declared: tuple[EditedActor, ...] = ()
+
+    def verification(self, stage: Stage) -> dict[str, Any]:
+        """What ``blender_verify`` is asked at the end of a stage."""
+        rules = [rule.id for rule in rules_of(stage, edit=self.edit, tagged=self.tagged)]
+        if self.plan is None:
+            return {"rules": rules}
+        return {"rules": rules, "plan": self.plan.model_dump(mode="json", exclude_defaults=True)}

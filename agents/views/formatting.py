@@ -1,0 +1,138 @@
+"""How values look to a reader: lengths of time, money, tokens, colours."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from agents.protocol.report.folding import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from agents.loop.run_state import Attempt, History
+    from simworlds.llm.messages import Usage
+    from simworlds.llm.spending import Row
+
+
+def told_time(seconds: float | None) -> str:
+    """``0.4 s``, ``42 s``, ``3 min 5 s``, ``2 h 11 min``; "" for none."""
+    if seconds is None:
+        return ""
+    if seconds < 9.95:
+        return f"{seconds:.1f} s"
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s" if whole % 60 else f"{whole // 60} min"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"
+
+
+def told_clock(seconds: float) -> str:
+    """``03:05``, ``2:11:40``."""
+    whole = int(seconds)
+    hours, minutes = divmod(whole // 60, 60)
+    return f"{hours}:{minutes:02}:{whole % 60:02}" if hours else f"{minutes:02}:{whole % 60:02}"
+
+
+def told_money(dollars: float) -> str:
+    """``$0.42``; ``$0.003`` where cents are too coarse."""
+    return f"${dollars:,.2f}" if dollars >= 0.1 or not dollars else f"${dollars:.3f}"
+
+
+def told_count(number: int) -> str:
+    """``812``, ``15.2k``, ``1.30M``."""
+    if number < 10_000:
+        return f"{number:,}"
+    return f"{number / 1000:.1f}k" if number < 999_950 else f"{number / 1e6:.2f}M"
+
+
+def told_tokens(usage: Usage) -> str:
+    """``17.3k in, 410 out``."""
+    return f"{told_count(usage.prompt)} in, {told_count(usage.output)} out"
+
+
+def told_cost(row: Row) -> str:
+    """What was paid, and whether that is all: recorded turns cost nothing, some have no known price."""
+    if not row.calls and not row.unpriced and not row.cost:
+        return "nothing"
+    return told_money(row.cost) + (f" and {row.unpriced} of unknown price" if row.unpriced else "")
+
+
+def shortened(text: str, most: int) -> str:
+    """The text on one line, cut with an ellipsis where it is longer than ``most`` letters."""
+    line = plain(" ".join(text.split()))
+    return line if len(line) <= most else f"{line[: most - 1].rstrip()}…"
+
+
+def counted(number: int, words: str) -> str:
+    """``1 stage``, ``2 stages``."""
+    return f"{number:,} {words}{'s' * (number != 1)}"
+
+
+def swatch(linear: Sequence[float]) -> str:
+    """A linear RGB colour (Rec. 709, from 0 to 1) as CSS has it (sRGB, IEC 61966-2-1)."""
+    return "#" + "".join(f"{round(_encoded(value) * 255):02x}" for value in linear[:3])
+
+
+def _encoded(value: float) -> float:
+    value = min(1.0, max(0.0, value))
+    return value * 12.92 if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+
+
+# Runs
+
+
+def told_source(history: History) -> str:
+    """Where the answers came from, in a sentence that nobody can misread; "" for a live run."""
+    source = plain(history.source)
+    calls = history.total.calls
+    recorded = history.total.recorded
+    match history.answers or ("" if source in ("", "live") else "recorded"):
+        case "hand-written":
+            return (
+                f"No model was asked in this run: its answers were written by hand ({source}). Blender, the "
+                "physics, the verifier and the pictures are real."
+            )
+        case "recorded":
+            return (
+                f"No model was asked in this run: its answers were played back from a record ({source}). Blender, "
+                "the physics, the verifier and the pictures are real."
+            )
+        case "mixed":
+            return f"{counted(calls, 'answer')} came live from a model; {recorded:,} were played back from a record."
+        case _:
+            return ""
+
+
+STAGE_TITLES = {
+    "modeling": "Modeling",
+    "uv": "UV",
+    "texture": "Texture",
+    "deformation_setup": "Deformation setup",
+    "motion": "Motion",
+    "camera": "Camera",
+    "light": "Light",
+    "render": "Render",
+}
+
+
+def stage_title(name: str) -> str:
+    """The stage's name as a heading."""
+    return STAGE_TITLES.get(name) or plain(name)
+
+
+def told_attempt(attempt: Attempt) -> str:
+    """What came of an attempt, in a few words."""
+    found = attempt.verification
+    taken = attempt.choice.taken if attempt.choice else ""
+    words = {
+        "advance": "closed the stage",
+        "retry": "sent back",
+        "replan": "planned anew",
+        "abort": "given up",
+    }
+    told = words.get(taken) or (plain(attempt.ended) if attempt.ended not in ("", "done") else "")
+    faults = [counted(found.hard, "hard finding")] if found and found.hard else []
+    faults += ["the reviewer blocks"] if attempt.review and attempt.review.blocking else []
+    return ": ".join(filter(None, [told, ", ".join(faults)]))

@@ -1,0 +1,44 @@
+"""Which runs there are, and how one stands."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from agents.blender.launch import runs_folder
+from agents.blender.run_folder import roots
+from agents.loop.errors import NoRun
+from agents.loop.journal import NAME
+from agents.loop.reducer import read_history
+from agents.loop.run_state import Ending, History
+from agents.views.rich_views import runs_table, show
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rich.console import RenderableType
+    from rich.table import Table
+
+
+def new_root(runs: Path) -> Path:
+    """A folder below ``runs`` that is not there yet, named after the time."""
+    return next(path for path in roots(runs) if not path.exists())
+
+
+def table_of_runs() -> Table:
+    """All runs that have a journal, newest first; of one that cannot be read, just that."""
+    found = sorted(runs_folder().glob(f"*/{NAME}"), key=lambda path: path.stat().st_mtime, reverse=True)
+    return runs_table((path.parent.name, _known_of(path.parent)) for path in found)
+
+
+def _known_of(run: Path) -> History:
+    try:
+        return read_history(run)
+    except NoRun:
+        return History(ending=Ending("unreadable"))
+
+
+def shown(run: Path) -> RenderableType:
+    """How a run stands. Raises NoRun."""
+    if not (run / NAME).is_file():
+        raise NoRun(f"{run} is no run: it has no {NAME}.")
+    return show(read_history(run))

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is animated, and how densely: actions with and without layers, NLA strips, drivers, shape keys, constraints."""
+
+from array import array
+
+from .json_values import called, number, text
+
+MOST_KEYS = 5_000_000  # of a file that are looked at; of further ones only the number
+_SAME = 1e-4  # metres, radians, factors: less is no motion
+_GENERATORS = {"GENERATOR", "FNGENERATOR", "CYCLES", "NOISE"}
+_DEFORMING = {"ARMATURE", "LATTICE", "MESH_DEFORM", "SURFACE_DEFORM", "HOOK", "CURVE"}
+
+_looked_at = [0]
+
+
+def forget():
+    """To be called when another file has been opened."""
+    _looked_at[0] = 0
+
+
+class Watched:
+    """A driven property, whose values at the moments tell whether it varies. ``told`` is its channel."""
+
+    def __init__(self, block, curve, told):
+        self.block, self.path, self.index, self.told = block, curve.data_path, curve.array_index, told
+        self.values = []
+
+    def look(self):
+        """Takes down the value as it stands."""
+        try:
+            value = self.block.path_resolve(self.path)
+            value = value[self.index] if hasattr(value, "__getitem__") else value
+            self.values.append(float(value))
+        except (ValueError, TypeError, IndexError, KeyError):
+            return
+        if max(self.values) - min(self.values) > _SAME:
+            self.told["varies"] = True
+
+
+def channels_of(block, frames, watched):
+    """The animated properties of a data-block over ``frames`` (first, last), sorted; drivers go to ``watched``."""
+    animated = getattr(block, "animation_data", None)
+    if animated is None:
+        return []
+    found = {}
+    if animated.action is not None and animated.action_influence > 0:
+        _gather(found, "action", curves_of(animated.action, getattr(animated, "action_slot", None)), frames)
+    if animated.use_nla:
+        for track in animated.nla_tracks:
+            for strip in track.strips:
+                if not track.mute and not strip.mute and strip.action is not None:
+                    curves = curves_of(strip.action, getattr(strip, "action_slot", None))
+                    _gather(found, "nla", curves, None, strip.scale)
+    for curve in animated.drivers:
+        if not curve.mute:
+            _driven(found, block, curve, watched)
+    return [found[key] for key in sorted(found)]
+
+
+def curves_of(action, slot):
+    """The f-curves that an action has for a slot: of its layers (Blender 4.4 and later), or its own."""
+    if not hasattr(action, "layers"):
+        return list(action.fcurves)
+    found = []
+    for layer in action.layers if slot is not None else ():
+        for strip in layer.strips:
+            bag = strip.channelbag(slot) if strip.type == "KEYFRAME" else None
+            found += bag.fcurves if bag is not None else ()
+    return found
+
+
+def _gather(found, way, curves, frames, scale=1.0):
+    """Adds curves to what was found, those of one property as one: the densest counts."""
+    for curve in curves:
+        if curve.mute:
+            continue
+        keys, span, varies = _keys(curve, frames)
+        generated = any(each.type in _GENERATORS and not each.mute for each in curve.modifiers)
+        key = (curve.data_path, way)
+        told = found.setdefault(key, _channel(curve.data_path, way))
+        if keys > told["keys"]:
+            told["keys"], told["span"] = keys, number(span * abs(scale))
+        told["generated"] = told["generated"] or generated
+        told["varies"] = told["varies"] or varies or generated
+
+
+def _channel(path, way):
+    return {"path": text(path), "way": way, "keys": 0, "span": 0.0, "generated": False, "varies": False}
+
+
+def _keys(curve, frames):
+    """(keys and samples within ``frames``, frames from the first to the last of them, whether they differ)."""
+    places, values = [], []
+    for points in (curve.keyframe_points, curve.sampled_points):
+        count = len(points)
+        _looked_at[0] += count
+        if _looked_at[0] > MOST_KEYS:
+            low, high = curve.range()
+            return count, high - low, True
+        flat = array("f", bytes(8 * count))
+        points.foreach_get("co", flat)
+        places += flat[0::2]
+        values += flat[1::2]
+    if frames is not None:
+        kept = [index for index, place in enumerate(places) if frames[0] - 1 <= place <= frames[1] + 1]
+        # Motion towards a key behind the clip is motion: what is left out is only the density there.
+        varies = bool(values) and max(values) - min(values) > _SAME
+        places = [places[index] for index in kept]
+    else:
+        varies = bool(values) and max(values) - min(values) > _SAME
+    return len(places), (max(places) - min(places) if places else 0.0), varies
+
+
+def _driven(found, block, curve, watched):
+    told = found.setdefault((curve.data_path, "driver"), _channel(curve.data_path, "driver"))
+    told["generated"] = True
+    driver = curve.driver
+    if driver.type == "SCRIPTED" and not driver.is_simple_expression:
+        # It is not run: what it would have given cannot be seen.
+        told["varies"] = True
+    else:
+        watched.append(Watched(block, curve, told))
+
+
+def shapes_of(thing, frames, watched):
+    """(how many shape keys its data has, the animated properties of them and of the data's own points)."""
+    data = thing.data
+    keys = getattr(data, "shape_keys", None)
+    found = []
+    if keys is not None:
+        found += channels_of(keys, frames, watched)
+    if data is not None and getattr(data, "animation_data", None) is not None:
+        own = channels_of(data, frames, watched)
+        found += [each for each in own if each["path"].startswith(("vertices[", "splines[", "points["))]
+    return (len(keys.key_blocks) if keys is not None else 0), found
+
+
+def constraints_of(thing):
+    """Its constraints that act, each with what it takes motion from."""
+    found = []
+    for constraint in thing.constraints:
+        if constraint.mute or not constraint.enabled or constraint.influence == 0:
+            continue
+        targets = [constraint.target] if getattr(constraint, "target", None) is not None else []
+        targets += [each.target for each in getattr(constraint, "targets", ()) if each.target is not None]
+        names = {called(target) for target in targets}
+        file = getattr(constraint, "cache_file", None)
+        if file is not None:
+            names.add(text(file.filepath))
+        found.append({"type": constraint.type, "targets": sorted(names)})
+    return found
+
+
+def followed(thing, constraints):
+    """Names of the objects that its motion may come from."""
+    names = {called(thing.parent)} if thing.parent is not None else set()
+    for constraint in constraints:
+        names.update(constraint["targets"])
+    for modifier in thing.modifiers:
+        target = getattr(modifier, "object", None) or getattr(modifier, "target", None)
+        if modifier.type in _DEFORMING and target is not None:
+            names.add(called(target))
+    return sorted(names - {called(thing)})

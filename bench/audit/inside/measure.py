@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How things stand to each other at the start, middle and end of the clip; see audit/relation_measures.py.
+
+To be asked after the facts, which have switched off what is not baked: nothing is simulated here.
+"""
+
+import bpy
+import numpy
+from mathutils import Vector
+
+from .columns import Columns, order_of
+from .json_values import number
+from .sample_frames import frames_of, metres
+from .surfaces import Looker
+
+MOST_WHOLE = 60_000  # triangles; of more, only those near to the other thing
+_WALKS, _STEPS = 6, 8
+_TOUCHING = 1e-6
+_LEVEL = 0.7  # of a normal, upwards
+_LOOKED_AT = 64  # points of a thing that are asked whether they are enclosed
+_SIDES = [
+    Vector(side).normalized()
+    for side in ((1, 0.03, 0.02), (-1, 0.02, 0.03), (0.03, 1, 0.02), (0.02, -1, 0.03))
+]
+_ENDS = [Vector(end).normalized() for end in ((0.02, 0.03, 1), (0.03, 0.02, -1))]
+_CORNERS = [Vector((x, y, z)).normalized() for x in (-1, 1.03) for y in (-1.05, 1) for z in (-1.02, 1.04)]
+_AROUND = [*_SIDES, *_ENDS, *_CORNERS]
+_ENCLOSED = 8 / 14  # of the directions: a box without its lid has nine
+
+
+def measure(pairs):
+    """Measures pairs. Returns, per pair, {turn: what was measured}; turns are 0 start, 1 middle, 2 end.
+
+    A pair has ``a`` and ``b`` (names of objects), ``turns`` at which it is wanted, ``tolerance`` (metres), and the
+    ``wants`` beyond the distance: ``depth``, ``columns`` (with depth), ``inside``, ``view``.
+    """
+    scene = bpy.context.scene
+    looker = Looker(metres(scene))
+    known = {}
+    found = [{} for _ in pairs]
+    for turn, frame in enumerate(frames_of(scene)):
+        if not any(turn in pair["turns"] for pair in pairs):
+            continue
+        scene.frame_set(frame)
+        graph = bpy.context.evaluated_depsgraph_get()
+        now = [(place, pair) for place, pair in enumerate(pairs) if turn in pair["turns"]]
+        groups = list(dict.fromkeys(tuple(pair[side]) for _, pair in now for side in ("a", "b")))
+        surfaces = dict(zip(groups, looker.surfaces(groups, graph), strict=True))
+        view = _view(scene, graph)
+        for place, pair in now:
+            first, second = surfaces[tuple(pair["a"])], surfaces[tuple(pair["b"])]
+            asked = (id(first), id(second), pair["tolerance"], tuple(pair["wants"]), view)
+            if asked not in known:
+                known[asked] = _measured(first, second, pair["tolerance"], set(pair["wants"]), view)
+            found[place][str(turn)] = {"frame": frame, **known[asked]}
+    return found
+
+
+def _view(scene, graph):
+    """Where the right is, (x, y), for who looks through the camera, or along y where there is none."""
+    if scene.camera is None:
+        return 1.0, 0.0
+    x, y, _ = scene.camera.evaluated_get(graph).matrix_world.col[0].xyz
+    length = (x * x + y * y) ** 0.5
+    return (x / length, y / length) if length > 1e-3 else (1.0, 0.0)
+
+
+def _measured(first, second, tolerance, wants, view):
+    told = {"empty": [side for side, one in (("a", first), ("b", second)) if one.empty]}
+    if told["empty"]:
+        return told
+    told["a_low"], told["a_high"], told["b_low"], told["b_high"] = (
+        _plain(each) for each in (first.low, first.high, second.low, second.high)
+    )
+    if "view" in wants:
+        told["right"] = _along(first, second, view)
+        told["near"] = _along(first, second, (view[1], -view[0]))
+        return told
+    pair = _near(first, second, tolerance)
+    gap, from_first, from_second = _gap(*pair)
+    told["gap"] = number(gap)
+    if "columns" in wants or ("depth" in wants and _overlap(first, second)):
+        told |= _stand(first, second, pair, (from_first, from_second), tolerance)
+    elif "depth" in wants:
+        told["depth"] = 0.0
+    if "inside" in wants:
+        told["inside"] = number(_inside(first, second, tolerance))
+    return told
+
+
+def _overlap(first, second):
+    return bool((first.low <= second.high).all() and (second.low <= first.high).all())
+
+
+def _plain(values):
+    return [round(float(each), 5) + 0.0 for each in values]
+
+
+def _along(first, second, axis):
+    """How far both reach along a horizontal direction: [low and high of the first, of the second]."""
+    found = []
+    for one in (first, second):
+        reached = numpy.concatenate([one.corners, one.points])[:, :2] @ numpy.array(axis)
+        found += [reached.min(), reached.max()]
+    return _plain(found)
+
+
+def _near(first, second, tolerance):
+    """Both, or of large ones the part that matters: what of it can be nearest to the other, or in it."""
+    found = []
+    for one, other in ((first, second), (second, first)):
+        if len(one.faces) <= MOST_WHOLE:
+            found.append(one)
+            continue
+        apart = numpy.maximum(numpy.maximum(one.low - other.high, other.low - one.high), 0)
+        reach = float(numpy.linalg.norm(apart)) + max(10 * tolerance, 0.1)
+        while (part := one.part(other.low - reach, other.high + reach)) is None:
+            reach *= 2
+        found.append(part)
+    return found
+
+
+# Distance
+
+
+def _gap(first, second):
+    """(least distance, 0 where they cross; points on the second near the first's seeds, and the reverse)."""
+    feet, reversed_feet = _feet(first, second), _feet(second, first)
+    if first.tree is not None and second.tree is not None and first.tree.overlap(second.tree):
+        return 0.0, feet[0], reversed_feet[0]
+    best = _least_of_points(first, second, feet[1], reversed_feet[1])
+    for one, other, (points, lengths) in ((first, second, feet), (second, first, reversed_feet)):
+        if one.tree is None or other.tree is None:
+            continue
+        for place in numpy.argsort(lengths, kind="stable")[:_WALKS]:
+            best = min(best, _walked(points[place], one.tree, other.tree))
+    return (0.0 if best < _TOUCHING else best), feet[0], reversed_feet[0]
+
+
+def _feet(one, other):
+    """The points of the other nearest to this one's seeds, with their distances."""
+    seeds = one.seeds
+    if other.tree is None:
+        spread = numpy.linalg.norm(seeds[:, None] - other.points[None, :2000], axis=2)
+        return other.points[spread.argmin(axis=1)], spread.min(axis=1)
+    found = [other.tree.find_nearest(seed) for seed in seeds.tolist()]
+    return numpy.array([tuple(each[0]) for each in found]), numpy.array([each[3] for each in found])
+
+
+def _least_of_points(first, second, lengths, reversed_lengths):
+    best = float(min(lengths.min(), reversed_lengths.min()))
+    for one, other in ((first, second), (second, first)):
+        if len(one.points) > len(one.seeds) and other.tree is not None:
+            best = min(best, *(other.tree.find_nearest(point)[3] for point in one.points.tolist()))
+    return best
+
+
+def _walked(point, one, other):
+    """From a point on the other surface to the nearest of the one, and back, until that brings nothing."""
+    length = numpy.inf
+    for _ in range(_STEPS):
+        there = one.find_nearest(Vector(point))[0]
+        point, _, _, now = other.find_nearest(there)
+        if length - now < _TOUCHING:
+            return min(length, now)
+        length = now
+    return length
+
+
+# Over and in each other
+
+
+def _stand(first, second, pair, feet, tolerance):
+    """What vertical lines tell: which is over which, how deep either is in the other, what share of it."""
+    on_second, on_first = feet
+    columns = Columns(
+        first,
+        second,
+        numpy.concatenate([first.seeds, on_first]),
+        numpy.concatenate([second.seeds, on_second]),
+    )
+    told = {
+        key: None if value is None else number(value) for key, value in order_of(columns, tolerance).items()
+    }
+    told["depth"] = number(_depth(columns, *pair))
+    told["a_in_b"] = number(_share_in(first, columns.b, columns.places))
+    told["b_in_a"] = number(_share_in(second, columns.a, columns.places))
+    return told
+
+
+def _depth(columns, first, second):
+    """How deep they are in each other: of their points that are in the other, the greatest distance to its surface.
+
+    A level sheet has no inside: of a solid that it cuts, what sticks out on the lesser side counts.
+    """
+    deepest = 0.0
+    if first.tree is None or second.tree is None:
+        return deepest
+    for place, above, below in zip(columns.places.tolist(), columns.a, columns.b, strict=True):
+        for one, other, near, far in ((above, below, first, second), (below, above, second, first)):
+            for low, high in one:
+                for bottom, top in other:
+                    inner = [z for z in {bottom, top} if low + _TOUCHING < z < high - _TOUCHING]
+                    for z in inner:
+                        deepest = max(deepest, near.tree.find_nearest((*place, z))[3])
+                    if inner and bottom == top and _is_level(far.tree, (*place, top)):
+                        ends = [far.tree.find_nearest((*place, z))[3] for z in (low, high)]
+                        deepest = max(deepest, min(ends))
+    return deepest
+
+
+def _is_level(tree, point):
+    normal = tree.find_nearest(point)[1]
+    return abs(normal.z) > _LEVEL
+
+
+def _share_in(one, stretches, places):
+    """The share of a thing's seeds that are in the other's solid."""
+    known = {tuple(place): each for place, each in zip(places.tolist(), stretches, strict=True)}
+    inner = sum(
+        any(low + _TOUCHING < z < high - _TOUCHING for low, high in known.get((x, y), ()))
+        for x, y, z in one.seeds.tolist()
+    )
+    return inner / len(one.seeds) if len(one.seeds) else 0.0
+
+
+def _inside(first, second, tolerance):
+    """The share of the first's points that the second encloses, or that are as near to its bounds as is tolerated."""
+    seeds = first.seeds
+    seeds = seeds[numpy.linspace(0, len(seeds) - 1, min(_LOOKED_AT, len(seeds))).astype(int)]
+    within = ((seeds >= second.low - tolerance) & (seeds <= second.high + tolerance)).all(axis=1)
+    if second.tree is None:
+        return 0.0
+    return sum(_enclosed(seed, second.tree) for seed in seeds[within].tolist()) / len(seeds)
+
+
+def _enclosed(point, tree):
+    seen = sum(tree.ray_cast(point, direction)[0] is not None for direction in _AROUND)
+    return seen >= _ENCLOSED * len(_AROUND)

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where things are at the start, the middle and the end of the clip, as played from keys and baked caches.
+
+Physics that is not baked is never jumped: it is switched off first (the file is not saved), and what it would have
+moved is looked at where it starts, alone.
+"""
+
+from itertools import islice
+
+import bpy
+import numpy
+from mathutils import Vector
+
+from .json_values import called, number, vector
+
+MOST_VERTICES = 500_000  # of one mesh whose bounds are taken from its corners
+MOST_INSTANCES = 20_000
+_WITHOUT_EXTENT = {"CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE", "ARMATURE"}
+_HELD = 0.5  # of the frames that a cache should hold: with less it is no bake, whatever it is marked as
+
+
+class Unbaked:
+    """Physics that is not baked: what it is in words, the objects that it moves, and its switch."""
+
+    def __init__(self, label, things, holder, switch):
+        self.label, self.things = label, things
+        self._holder, self._switch = holder, switch
+
+    def switch_off(self):
+        """Keeps it from being simulated."""
+        setattr(self._holder, self._switch, False)
+
+
+def metres(scene):
+    """Metres of one unit of the scene."""
+    units = scene.unit_settings
+    return 1.0 if units.system == "NONE" else units.scale_length
+
+
+def frames_of(scene):
+    """The three frames."""
+    first, last = scene.frame_start, scene.frame_end
+    return first, (first + last) // 2, last
+
+
+def play(scene, told, unbaked):
+    """Adds ``moments`` to each of ``told`` ({object: its facts}). Yields at each frame, with it set and evaluated."""
+    still = set()
+    for each in unbaked:
+        each.switch_off()
+        still.update(each.things)
+    _show_all(told)
+    for turn, frame in enumerate(frames_of(scene)):
+        scene.frame_set(frame)
+        graph = bpy.context.evaluated_depsgraph_get()
+        instances = _instanced(graph, told)
+        scale = metres(scene)
+        for thing, facts in told.items():
+            if facts["in_scene"] and (turn == 0 or thing not in still):
+                facts["moments"].append(_moment(thing, frame, graph, instances.get(called(thing)), scale))
+        yield graph
+
+
+def _show_all(told):
+    """Has the viewport evaluate what a render shows."""
+    for layer in _layers(bpy.context.view_layer.layer_collection):
+        layer.hide_viewport = layer.collection.hide_viewport = False
+    for thing, facts in told.items():
+        if facts["renders"]:
+            thing.hide_viewport = False
+            try:
+                thing.hide_set(False)
+            except RuntimeError:
+                continue  # it is not in this view layer
+
+
+def _layers(layer):
+    yield layer
+    for below in layer.children:
+        yield from _layers(below)
+
+
+def unbaked_of(scene, told):
+    """The physics of a scene that is not baked. ``told``: {object: its facts}."""
+    found = []
+    world = scene.rigidbody_world
+    if world is not None and world.enabled and world.point_cache is not None:
+        bodies = [thing for thing in told if _falls(thing, world)]
+        if bodies and not world.point_cache.is_baked:
+            found.append(Unbaked("rigid-body world", bodies, world, "enabled"))
+    for thing, facts in told.items():
+        for modifier, seen in zip(thing.modifiers, facts["modifiers"], strict=True):
+            if modifier.show_viewport and (what := _unbaked(modifier, seen)):
+                found.append(Unbaked(f"{what} of {called(thing)}", [thing], modifier, "show_viewport"))
+    return found
+
+
+def _falls(thing, world):
+    body = thing.rigid_body
+    return body is not None and body.type == "ACTIVE" and world.collection in thing.users_collection
+
+
+def _unbaked(modifier, seen):
+    """In a word, what a modifier would have to simulate; "" for nothing."""
+    for key, word in (("cloth", "cloth"), ("soft", "soft body"), ("particles", "particles")):
+        cache = (seen.get(key) or {}).get("cache")
+        if cache is not None and (not cache["is_baked"] or cache["frames"] < _HELD * cache["expected"]):
+            return word
+    domain = (seen.get("fluid") or {}).get("domain")
+    if domain is not None:
+        cache = domain["cache"]
+        first, last = cache["range"]
+        data = next((part for part in cache["parts"] if part["name"] == "data"), None)
+        if data is None or data["frames"] < last - first + 1:
+            return "fluid"
+    if modifier.type == "DYNAMIC_PAINT" and modifier.canvas_settings is not None:
+        surfaces = modifier.canvas_settings.canvas_surfaces
+        if any(each.is_cache_user and not each.point_cache.is_baked for each in surfaces):
+            return "dynamic paint"
+    return ""
+
+
+# One object at one frame
+
+
+def _moment(thing, frame, graph, instanced, scale):
+    evaluated = thing.evaluated_get(graph)
+    matrix = evaluated.matrix_world
+    corners = instanced if instanced is not None else _corners(evaluated)
+    told = {"frame": frame, "low": None, "high": None}
+    if corners is not None and len(corners) and numpy.isfinite(corners).all():
+        told["low"] = vector(corners.min(axis=0), scale)
+        told["high"] = vector(corners.max(axis=0), scale)
+    told["location"] = vector(matrix.translation, scale)
+    try:
+        told["rotation"] = vector(matrix.to_quaternion())
+    except ValueError:
+        told["rotation"] = [1.0, 0.0, 0.0, 0.0]
+    return told
+
+
+def _corners(evaluated):
+    """Points in world space whose bounds are the object's; None of what has no extent."""
+    matrix = numpy.array(evaluated.matrix_world, dtype=numpy.float64)
+    data = evaluated.data
+    if isinstance(data, bpy.types.Mesh) and 0 < len(data.vertices) <= MOST_VERTICES:
+        flat = numpy.empty(3 * len(data.vertices), dtype=numpy.float32)
+        data.vertices.foreach_get("co", flat)
+        points = flat.reshape(-1, 3)
+    elif data is None or evaluated.type in _WITHOUT_EXTENT or not len(getattr(data, "vertices", "?")):
+        return None
+    else:
+        points = numpy.array([tuple(corner) for corner in evaluated.bound_box], dtype=numpy.float64)
+    return points.astype(numpy.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _instanced(graph, told):
+    """{name of an object that shows a collection: corners of the bounds of what it shows}."""
+    wanted = {called(thing) for thing, facts in told.items() if facts["instances"] is not None}
+    found = {}
+    if not wanted:
+        return found
+    for instance in islice(graph.object_instances, MOST_INSTANCES):
+        if not instance.is_instance or instance.parent is None:
+            continue
+        name = called(instance.parent.original)
+        if name in wanted and instance.object.type in {"MESH", "CURVE", "SURFACE", "FONT", "META", "VOLUME"}:
+            matrix = instance.matrix_world
+            found.setdefault(name, []).extend(matrix @ Vector(corner) for corner in instance.object.bound_box)
+    return {name: numpy.array([tuple(corner) for corner in corners]) for name, corners in found.items()}
+
+
+def surface_of(thing, graph):
+    """(vertices, faces) of an object as evaluated; of one whose modifiers leave nothing yet, of its own data."""
+    data = thing.evaluated_get(graph).data
+    counts = [0, 0]
+    for mesh in (data, thing.data):
+        if isinstance(mesh, bpy.types.Mesh):
+            counts = [max(counts[0], len(mesh.vertices)), max(counts[1], len(mesh.polygons))]
+    if thing.type in {"CURVE", "SURFACE", "FONT", "META"}:
+        evaluated = thing.evaluated_get(graph)
+        mesh = evaluated.to_mesh()
+        if mesh is not None:
+            counts = [len(mesh.vertices), len(mesh.polygons)]
+            evaluated.to_mesh_clear()
+    return counts
+
+
+def rate(scene):
+    """Frames a second."""
+    return number(scene.render.fps / scene.render.fps_base)

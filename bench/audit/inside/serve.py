@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Answers what the audit asks about one untrusted .blend. No script of the file runs."""
+
+from simworlds.sandbox.inside import mantaflow, service
+from simworlds.sandbox.inside.refusal import Refused
+
+# What is asked → the module and function that answer, with the arguments of the call as their own.
+JOBS = {
+    "open": ("opening", "open_file"),
+    "facts": ("facts", "read_facts"),
+    "measure": ("measure", "measure"),
+    "frames": ("frames", "render"),
+}
+_LARGEST = 256 << 20  # bytes of an answer: the facts of a large scene, or frames of it
+
+
+def main(arguments):
+    """Serves the audit on the socket whose descriptor is the first argument."""
+    serve(int(arguments[0]), service.Tools(__package__, JOBS))
+
+
+def serve(descriptor, jobs):
+    """Answers ``jobs`` until the other end is closed."""
+
+    def answer(job, arguments, _report):
+        try:
+            return jobs.find(job)(**arguments)
+        except MemoryError:
+            raise Refused("it needs more memory than it may have") from None
+
+    mantaflow.mend()
+    service.serve(descriptor, answer, largest=_LARGEST)

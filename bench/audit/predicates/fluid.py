@@ -1,0 +1,252 @@
+"""Fluids: domains, what flows into them, what stands in their way, and what is on disk."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field
+
+from bench.audit.predicates.predicate import Params, Verdict, judged
+from bench.audit.predicates.shared_readings import (
+    admits,
+    has_files,
+    members,
+    moved,
+    number,
+    parts_of,
+    reaches,
+    travel,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from bench.audit.facts import Domain, Fluid, Object
+    from bench.audit.predicates.predicate import Stage, Unit
+
+
+FlowKind = Literal["LIQUID", "SMOKE", "BOTH", "FIRE"]
+FluidKind = FlowKind | Literal["GAS", "COLLISION", "GUIDE"]
+Behavior = Literal["INFLOW", "OUTFLOW", "GEOMETRY"]
+
+
+class FluidType(Params):
+    """``type``: DOMAIN, FLOW, EFFECTOR. ``kind``: of a domain LIQUID, GAS, of a flow LIQUID, SMOKE, BOTH, FIRE, of an
+    effector COLLISION, GUIDE, or several that will do; ``behavior``: of a flow. None: any.
+    """
+
+    type: Literal["DOMAIN", "FLOW", "EFFECTOR"]
+    kind: FluidKind | tuple[FluidKind, ...] | None = None
+    behavior: Behavior | None = None
+
+
+class DomainKind(Params):
+    """``kind``: LIQUID or GAS; None: either."""
+
+    kind: Literal["LIQUID", "GAS"] | None = None
+
+
+class Flows(Params):
+    """``min``: how many; ``kind`` and ``behavior`` as for fluid_type (None: any, of behaviors all but OUTFLOW)."""
+
+    min: int = Field(default=1, ge=1)
+    kind: FlowKind | tuple[FlowKind, ...] | None = None
+    behavior: Behavior | None = None
+
+
+class Resolution(Params):
+    """``min``: divisions of the domain's longest side."""
+
+    min: int = Field(default=32, ge=1)
+
+
+def _fluids(objects: tuple[Object, ...], kind: str) -> Iterator[tuple[Object, Fluid]]:
+    """Fluid modifiers of a type, with the objects that they stand on."""
+    for one in objects:
+        for modifier in one.of_type("FLUID"):
+            if modifier.fluid is not None and modifier.fluid.type == kind:
+                yield one, modifier.fluid
+
+
+def _domains(objects: tuple[Object, ...]) -> Iterator[tuple[Object, Domain]]:
+    for one, fluid in _fluids(objects, "DOMAIN"):
+        if fluid.domain is not None:
+            yield one, fluid.domain
+
+
+def _working(objects: tuple[Object, ...], kind: str) -> Iterator[tuple[Object, Fluid]]:
+    for one, fluid in _fluids(objects, kind):
+        if fluid.used and any(each.on for each in one.of_type("FLUID")):
+            yield one, fluid
+
+
+def fluid_modifier(unit: Unit, stage: Stage, params: Params) -> Verdict:
+    """The actor takes part in a fluid simulation: one of its objects has a FLUID modifier with a type other than
+    NONE, on or off (see solver_enabled).
+    """
+    del stage, params
+    found = {
+        one.name: modifier.fluid.type
+        for one, modifier in unit.modifiers("FLUID")
+        if modifier.fluid is not None and modifier.fluid.type != "NONE"
+    }
+    return judged(found, types=dict(sorted(found.items())[:8]))
+
+
+def fluid_type(unit: Unit, stage: Stage, params: FluidType) -> Verdict:
+    """The actor takes the part in the fluid simulation that it should: one of its FLUID modifiers has the type asked
+    for, and the kind and behavior where they are named (a flow that gives smoke where liquid is asked for does not).
+    """
+    del stage
+    found = [
+        (one.name, modifier.fluid)
+        for one, modifier in unit.modifiers("FLUID")
+        if modifier.fluid is not None and modifier.fluid.type != "NONE"
+    ]
+    fits = any(
+        fluid.type == params.type
+        and admits(params.kind, fluid.kind)
+        and admits(params.behavior, fluid.behavior)
+        for _, fluid in found
+    )
+    seen = [
+        {"name": name, "type": fluid.type, "kind": fluid.kind, "behavior": fluid.behavior}
+        for name, fluid in found
+    ]
+    return judged(fits, fluids=seen[:8])
+
+
+def _takes_in(domain: Domain, one: Object, stage: Stage, *, flow: bool) -> bool:
+    """Whether a domain has to do with a flow or effector: in its collection, and where it reaches."""
+    within = members(stage.scene, domain.flows if flow else domain.effectors)
+    return (within is None or one.name in within) and reaches(domain, one)
+
+
+def fluid_domain_exists(unit: Unit, stage: Stage, params: DomainKind) -> Verdict:
+    """There is a domain for the actor to be fluid in: an object of the scene with a FLUID modifier of type DOMAIN, of
+    the kind asked for. Where the actor is a flow or an effector, its bounds must meet the domain's at the start,
+    middle or end of the clip, and it must be in the domain's collection for such, where it has one: outside of them
+    it does nothing. Whose role it is to flow or to stand in the way, and who does neither, is in no domain.
+    """
+    found = [
+        (one, domain) for one, domain in _domains(stage.scene.objects) if admits(params.kind, domain.kind)
+    ]
+    parts = [(one, True) for one, _ in _fluids(unit.objects, "FLOW")]
+    parts += [(one, False) for one, _ in _fluids(unit.objects, "EFFECTOR")]
+    anywhere = not parts and unit.role not in ("fluid_flow", "fluid_effector")
+    reached = [
+        owner.name
+        for owner, domain in found
+        if anywhere or any(_takes_in(domain, one, stage, flow=flow) for one, flow in parts)
+    ]
+    return judged(reached, domains=[one.name for one, _ in found][:8], reached=reached[:8])
+
+
+def fluid_flow_count(unit: Unit, stage: Stage, params: Flows) -> Verdict:
+    """Enough flows into the scene's domains: at least ``min`` objects have a FLUID modifier of type FLOW that is on
+    and used, of the kind and behavior asked for (outflows count only when asked for), in reach of a domain and of its
+    collection of flows.
+    """
+    del unit
+    domains = list(_domains(stage.scene.objects))
+    found = sorted(
+        {
+            one.name
+            for one, flow in _working(stage.scene.objects, "FLOW")
+            if admits(params.kind, flow.kind)
+            and (params.behavior == flow.behavior if params.behavior else flow.behavior != "OUTFLOW")
+            and any(_takes_in(domain, one, stage, flow=True) for _, domain in domains)
+        }
+    )
+    return judged(len(found) >= params.min, flows=found[:12], count=len(found), min=params.min)
+
+
+def fluid_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
+    """The fluid is there to be seen: the domain's cache range covers 95 % of the scene's frames and of the least
+    length of the clip, the files on disk of all that it shows (data; with a mesh also mesh, with noise also noise)
+    number 95 % of these frames, and Blender calls these parts baked, or the cache is of type REPLAY, which knows no
+    bake and plays what is on disk. Both are looked at, as a flag survives the loss of the files and files that of the
+    flag. For an actor that is no domain itself, the domains that it flows into are looked at.
+    """
+    del params
+    own = list(_domains(unit.objects))
+    if not own:
+        parts = [(one, True) for one, _ in _fluids(unit.objects, "FLOW")]
+        parts += [(one, False) for one, _ in _fluids(unit.objects, "EFFECTOR")]
+        own = [
+            (owner, domain)
+            for owner, domain in _domains(stage.scene.objects)
+            if any(_takes_in(domain, one, stage, flow=flow) for one, flow in parts)
+        ]
+    baked = [_is_baked(domain, stage) for _, domain in own]
+    return judged(any(baked), domains=[_cache_seen(one, domain, stage) for one, domain in own][:4])
+
+
+def _is_baked(domain: Domain, stage: Stage) -> bool:
+    flagged = domain.cache.kind == "REPLAY" or set(parts_of(domain)) <= set(domain.cache.baked)
+    return flagged and has_files(domain, stage)
+
+
+def _cache_seen(one: Object, domain: Domain, stage: Stage) -> dict[str, Any]:
+    cache = domain.cache
+    return {
+        "domain": one.name,
+        "kind": cache.kind,
+        "baked": list(cache.baked),
+        "needed": list(parts_of(domain)),
+        "on_disk": {part.name: [part.first, part.last, part.frames] for part in cache.parts},
+        "cache_range": list(cache.range),
+        "clip": list(stage.scene.range),
+        "least_frames": stage.least_frames,
+        "found_elsewhere": cache.moved,
+    }
+
+
+def fluid_dynamic_effector(unit: Unit, stage: Stage, params: Params) -> Verdict:
+    """The actor pushes the fluid as it moves: one of its objects has a FLUID modifier of type EFFECTOR that is on and
+    used, and that object went at least a centimetre or turned at least a degree between the start, the middle and the
+    end of the clip, as played from keys and caches. What was not played (unbaked physics) is not known to move.
+    """
+    del stage, params
+    found = [one for one, _ in _working(unit.objects, "EFFECTOR")]
+    seen = {one.name: [number(value) for value in travel(one) or ()] for one in found}
+    return judged(any(moved(one) for one in found), metres_and_degrees=dict(sorted(seen.items())[:8]))
+
+
+def fluid_guiding(unit: Unit, stage: Stage, params: Params) -> Verdict:
+    """The fluid is led: a domain of the actor (or, where the actor is no domain, one of the scene) uses guiding, and
+    has what guides it: an object of the scene with an EFFECTOR of kind GUIDE that is on and used, or, where another
+    domain leads, that domain. Where the actor is an effector, it must be such a guide itself.
+    """
+    del params
+    guides = [one.name for one, fluid in _working(stage.scene.objects, "EFFECTOR") if fluid.kind == "GUIDE"]
+    effectors = [one.name for one, _ in _fluids(unit.objects, "EFFECTOR")]
+    own = list(_domains(unit.objects)) or list(_domains(stage.scene.objects))
+    led = [
+        one.name
+        for one, domain in own
+        if domain.use_guide
+        and (domain.guide_domain is not None if domain.guide_source == "DOMAIN" else bool(guides))
+    ]
+    by_actor = not effectors or bool(set(effectors) & set(guides))
+    return judged(led and by_actor, led=led[:8], guides=guides[:8])
+
+
+def fluid_resolution(unit: Unit, stage: Stage, params: Resolution) -> Verdict:
+    """The fluid is fine enough to read as one: a domain of the actor has at least ``min`` divisions along its longest
+    side. At fewer than 32, a stream of a tenth of that side is three cells wide, and comes apart in blobs.
+    """
+    del stage
+    found = {one.name: domain.resolution for one, domain in _domains(unit.objects)}
+    return judged(any(value >= params.min for value in found.values()), resolution=found, min=params.min)
+
+
+def fluid_mesh(unit: Unit, stage: Stage, params: Params) -> Verdict:
+    """The liquid has a surface: a domain of the actor is of kind LIQUID and gives a mesh. Without one, a render shows
+    the domain's box, or particles.
+    """
+    del stage, params
+    found = {
+        one.name: {"kind": domain.kind, "mesh": domain.use_mesh} for one, domain in _domains(unit.objects)
+    }
+    return judged(any(one["kind"] == "LIQUID" and one["mesh"] for one in found.values()), domains=found)

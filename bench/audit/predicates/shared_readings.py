@@ -1,0 +1,169 @@
+"""What several predicates look at: caches over the clip, partners, motion. Thresholds that they share stand here."""
+
+from __future__ import annotations
+
+from math import acos, degrees, dist
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field
+
+from bench.audit.predicates.predicate import Params
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from bench.audit.facts import Domain, Object, PointCache, Scene, Vector
+    from bench.audit.predicates.predicate import Stage, Unit
+
+# Of the clip's frames, and of a bake's: the first or last may be one off without anyone seeing it; a cache that was
+# freed, or baked for another clip, holds far less.
+COVERED = 0.95
+# A thing that moved less than a centimetre and turned less than a degree stands still to whoever looks.
+MOVED_METRES, MOVED_DEGREES = 0.01, 1.0
+
+
+class Partners(Params):
+    """``partners``: names of actors. None: anything else in the scene will do."""
+
+    partners: tuple[str, ...] = ()
+
+
+class Least(Params):
+    """``min``: how many there must be."""
+
+    min: int = Field(default=1, ge=1)
+
+
+def admits(wanted: str | tuple[str, ...] | None, found: str) -> bool:
+    """Whether a value is the one asked for, or one of those; of none, any is."""
+    return not wanted or found in ((wanted,) if isinstance(wanted, str) else wanted)
+
+
+def number(value: float) -> float:
+    """As it is reported: four digits behind the point, and no minus before zero."""
+    return round(value, 4) + 0.0
+
+
+def common(first: tuple[int, int], second: tuple[int, int]) -> int:
+    """How many frames two ranges share."""
+    return max(0, min(first[1], second[1]) - max(first[0], second[0]) + 1)
+
+
+def spans(frames: tuple[int, int], stage: Stage, since: float | None = None) -> bool:
+    """Whether a range covers the scene's, and the least length that the scene's spec asks for.
+
+    ``since``: the first frame at which there is anything; those of the scene before it need not be covered.
+    """
+    shared = common(frames, stage.scene.range)
+    before = max(0.0, since - stage.scene.range[0]) if since is not None else 0.0
+    return shared >= COVERED * (max(stage.scene.length, stage.least_frames) - before)
+
+
+def is_filled(cache: PointCache, stage: Stage, since: float | None = None) -> bool:
+    """Whether a cache is baked, over the clip (from ``since`` on, as for spans), and holds the frames."""
+    held = cache.frames >= max(1.0, COVERED * cache.expected)
+    return cache.is_baked and held and spans(cache.range, stage, since)
+
+
+def cache_seen(cache: PointCache, stage: Stage) -> dict[str, Any]:
+    """A point cache, as it is reported."""
+    return {
+        "baked": cache.is_baked,
+        "cache_range": list(cache.range),
+        "clip": list(stage.scene.range),
+        "least_frames": stage.least_frames,
+        "frames": cache.frames,
+        "frames_expected": cache.expected,
+        "outdated": cache.outdated,
+        "where": cache.where,
+    }
+
+
+def parts_of(domain: Domain) -> tuple[str, ...]:
+    """The parts of its cache that a domain needs for what it is to show."""
+    if domain.kind == "LIQUID":
+        return ("data", "mesh") if domain.use_mesh else ("data",)
+    return ("data", "noise") if domain.use_noise else ("data",)
+
+
+def has_files(domain: Domain, stage: Stage) -> bool:
+    """Whether all that a domain needs lies on disk, over the clip."""
+    cache = domain.cache
+    length = common(cache.range, stage.scene.range)
+    found = [cache.part(name) for name in parts_of(domain)]
+    return spans(cache.range, stage) and all(part and part.frames >= COVERED * length for part in found)
+
+
+def members(scene: Scene, collection: str | None) -> frozenset[str] | None:
+    """Names of the objects in a collection and in those below it; None for no collection: everything."""
+    if collection is None:
+        return None
+    wanted, found = [collection], set[str]()
+    seen = set[str]()
+    while wanted:
+        name = wanted.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        for each in scene.collections:
+            if each.name == name:
+                found.update(each.objects)
+            elif each.parent == name:
+                wanted.append(each.name)
+    return frozenset(found)
+
+
+def collides(one: Object) -> bool:
+    """Whether it has a collision modifier that is on."""
+    return any(modifier.on for modifier in one.of_type("COLLISION"))
+
+
+def blows(one: Object) -> bool:
+    """Whether it is a force field that has a strength, or at some time gets one: a gust begins with none."""
+    animated = any(channel.path == "field.strength" and channel.varies for channel in one.channels)
+    return one.force is not None and (one.force.strength != 0 or animated)
+
+
+def partners_of(unit: Unit, stage: Stage, names: Iterable[str]) -> Iterator[tuple[str, tuple[Object, ...]]]:
+    """Each partner's name with its objects; of none, ``"anything"`` with all objects but the unit's."""
+    given = tuple(names)
+    for name in given:
+        yield name, stage.named(name)
+    if not given:
+        yield "anything", tuple(one for one in stage.scene.objects if one.name not in unit.names)
+
+
+def travel(one: Object) -> tuple[float, float] | None:
+    """How far its corners or origin went (metres), and how far it turned (degrees), since the start.
+
+    At the middle or at the end, whichever is more; None where its motion was not played.
+    """
+    if len(one.moments) < 2:
+        return None
+    first = one.moments[0]
+    metres = turned = 0.0
+    for moment in one.moments[1:]:
+        metres = max(metres, dist(first.location, moment.location))
+        for before, after in ((first.low, moment.low), (first.high, moment.high)):
+            if before is not None and after is not None:
+                metres = max(metres, dist(before, after))
+        cosine = abs(sum(a * b for a, b in zip(first.rotation, moment.rotation, strict=True)))
+        turned = max(turned, degrees(2 * acos(min(1.0, cosine))))
+    return metres, turned
+
+
+def moved(one: Object) -> bool:
+    """Whether it went or turned further than nobody would see."""
+    way = travel(one)
+    return way is not None and (way[0] >= MOVED_METRES or way[1] >= MOVED_DEGREES)
+
+
+def reaches(domain: Domain, one: Object) -> bool:
+    """Whether an object's bounds meet the domain's box at one of the moments."""
+    boxes = ((moment.low, moment.high) for moment in one.moments)
+    return any(low and high and _meet(domain.low, domain.high, low, high) for low, high in boxes)
+
+
+def _meet(low: Vector, high: Vector, other_low: Vector, other_high: Vector) -> bool:
+    below = all(a <= b for a, b in zip(low, other_high, strict=True))
+    return below and all(a <= b for a, b in zip(other_low, high, strict=True))

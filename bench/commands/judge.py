@@ -1,0 +1,202 @@
+"""``simworlds bench judge``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from bench.commands.scenes import chosen_spec
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from bench.judge.agreement import Agreement
+    from bench.judge.errors import NotJudged
+    from bench.judge.estimate import Asked
+    from bench.judge.providers import Provider
+    from bench.judge.verdicts import Judgement
+    from simworlds.llm.prices import Price
+
+_PATH = click.Path(path_type=Path)
+_PROVIDERS = ("anthropic", "openai")
+_PASSING = ("refused", "cut short", "malformed")  # another time, the model may answer otherwise
+
+
+@click.command()
+@click.argument("frames", nargs=-1, type=_PATH)
+@click.option("--scene", metavar="ID", help="Judge by this scene's prompt (see list), or a YAML file's.")
+@click.option("--prompt", metavar="TEXT", help="Judge by a prompt of your own.")
+@click.option("--static", is_flag=True, help="The prompt asks for a still. Scenes know by themselves.")
+@click.option("--provider", type=click.Choice(_PROVIDERS), default="anthropic", show_default=True)
+@click.option("--model", metavar="NAME", help="The model.  [default: claude-opus-5-5, or gpt-5.5 of openai]")
+@click.option("--base-url", metavar="URL", help="Another server that speaks the provider's API.")
+@click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Judge so often.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option("--cache", type=_PATH, help="Folder that answers are kept in.  [default: in SimWorlds' own]")
+@click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="Ask nothing that might cost more.")
+@click.option("--price", metavar="IN/OUT", help="Dollars per million tokens, of a model that is in no list.")
+@click.option("--dry-run", is_flag=True, help="Show what would be asked, and what it can cost; ask nobody.")
+def judge(frames: tuple[Path, ...], **given: Any) -> None:
+    """Judge FRAMES by a prompt: pictures from the first to the last of a film, evenly spread; of a still, one.
+
+    A model lists what the prompt asks for, then says of each item whether the frames show it. Needs a key
+    (ANTHROPIC_API_KEY or OPENAI_API_KEY); with --dry-run, none. Without frames, a dry run assumes five of them; without
+    a prompt, it tells what all scenes of the benchmark would cost for one system. Nothing is asked twice.
+
+    Exit code 0: judged, well or badly. 2: not judged, and the reason is told.
+    """
+    from bench.judge.errors import NotJudged  # noqa: PLC0415 - not for --help
+    from bench.judge.providers import DEFAULTS  # noqa: PLC0415
+
+    given["price"] = _price(given["price"])
+    given["model"] = given["model"] or DEFAULTS[given["provider"]]
+    given["cache"] = given["cache"] or _own_cache()
+    wanted = _wanted(frames, given)
+    if (frames and wanted is None) or not (frames or given["dry_run"]):
+        raise click.UsageError("Give the frames, and --scene or --prompt.")
+    try:
+        if given["dry_run"]:
+            _dry_run(wanted, given)
+        elif wanted is not None:
+            _judge(wanted, given)
+    except NotJudged as error:
+        click.echo(f"Not judged ({error.reason}): {error}", err=True)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        click.echo("Interrupted. What was answered is kept.", err=True)
+        sys.exit(130)
+
+
+def _wanted(frames: Sequence[Path], given: dict[str, Any]) -> Asked | None:
+    """What is to be judged; None where nothing is named."""
+    from bench.judge.estimate import Asked  # noqa: PLC0415 - not for --help
+
+    if given["scene"] is not None and given["prompt"] is not None:
+        raise click.UsageError("Give --scene or --prompt, not both.")
+    if given["prompt"] is not None:
+        return Asked(given["prompt"], given["static"], frames)
+    if given["scene"] is None:
+        return None
+    spec = chosen_spec(given["scene"])
+    static = spec.category == "static"
+    if given["static"] and not static:
+        raise click.UsageError(f"{spec.id} is no still.")
+    return Asked(spec.prompt, static, frames, spec.id)
+
+
+def _price(text: str | None) -> Price | None:
+    from simworlds.llm.prices import read_price  # noqa: PLC0415 - not for --help
+
+    try:
+        return None if text is None else read_price(text)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
+
+
+def _own_cache() -> Path:
+    from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415 - not for --help
+
+    return cache_folder(home_folder()) / "judge"
+
+
+def _tell(doing: object) -> None:
+    """Says on a terminal what is being done; elsewhere, nothing: it takes seconds."""
+    if sys.stderr.isatty():
+        click.echo(f"{doing} …", err=True)
+
+
+# Judging
+
+
+def _judge(wanted: Asked, given: dict[str, Any]) -> None:
+    from bench.judge.agreement import agreement  # noqa: PLC0415 - not for --help
+    from bench.judge.errors import NotJudged  # noqa: PLC0415
+    from bench.judge.judge import judge as run  # noqa: PLC0415
+    from bench.judge.judgement_text import judgement_lines  # noqa: PLC0415
+    from bench.judge.providers import provider_of  # noqa: PLC0415
+
+    names = ("model", "base_url", "max_cost", "price")
+    provider = provider_of(given["provider"], tell=_tell, **{name: given[name] for name in names})
+    judged: list[Judgement] = []
+    failed: list[tuple[int, NotJudged]] = []
+    for number in range(given["repeat"]):
+        try:
+            judged.append(
+                run(
+                    wanted.prompt,
+                    wanted.frames,
+                    static=wanted.static,
+                    provider=provider,
+                    cache=given["cache"],
+                    scene=wanted.scene,
+                    repetition=number,
+                    tell=_tell,
+                )
+            )
+        except NotJudged as error:
+            failed.append((number, error))
+            if error.reason not in _PASSING:
+                break
+    agreed = agreement(judged) if len(judged) > 1 else None
+    if given["as_json"]:
+        click.echo(json.dumps(_as_json(judged, failed, agreed, provider), indent=1, ensure_ascii=False))
+    elif judged:
+        click.echo("\n".join(judgement_lines(judged, agreed, provider.spending.total())))
+    for number, error in failed:
+        which = f" (repetition {number})" if given["repeat"] > 1 else ""
+        click.echo(f"Not judged{which}: {error.reason}: {error}", err=True)
+    sys.exit(2 if failed else 0)
+
+
+def _as_json(
+    judged: Sequence[Judgement],
+    failed: Sequence[tuple[int, NotJudged]],
+    agreed: Agreement | None,
+    provider: Provider,
+) -> dict[str, Any]:
+    spent = provider.spending.total()
+    return {
+        "judgements": [one.model_dump(mode="json") for one in judged],
+        "not_judged": [
+            {"repetition": number, "reason": error.reason, "message": str(error)} for number, error in failed
+        ],
+        "agreement": agreed.model_dump(mode="json") if agreed else None,
+        "asked_now": {"requests": spent.calls, "cost": None if spent.unpriced else spent.cost},
+    }
+
+
+# Asking nobody
+
+
+def _dry_run(wanted: Asked | None, given: dict[str, Any]) -> None:
+    from bench.judge.estimate import Asked, estimate  # noqa: PLC0415
+    from bench.judge.judgement_text import question_lines, sum_lines  # noqa: PLC0415
+    from bench.scenes.spec import specs  # noqa: PLC0415
+    from simworlds.llm.prices import Prices  # noqa: PLC0415 - not for --help
+
+    prices = Prices({given["model"]: given["price"]} if given["price"] else None)
+    named = [wanted] if wanted else [Asked(spec.prompt, spec.category == "static") for spec in specs()]
+    questions = [
+        question
+        for one in named
+        for question in estimate(
+            one,
+            given["provider"],
+            given["model"],
+            prices=prices,
+            cache=given["cache"],
+            repeat=given["repeat"],
+        )
+    ]
+    if given["as_json"]:
+        click.echo(
+            json.dumps([one.model_dump(mode="json") for one in questions], indent=1, ensure_ascii=False)
+        )
+        return
+    if wanted:
+        click.echo("\n".join(line for one in questions for line in question_lines(one)))
+    click.echo("\n".join(sum_lines(questions, f"{given['provider']}/{given['model']}")))

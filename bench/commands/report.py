@@ -1,0 +1,185 @@
+"""``simworlds bench report`` and ``simworlds bench estimate``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from bench.results.estimate import Estimate
+    from bench.results.scores import Results
+
+_PATH = click.Path(path_type=Path)
+
+
+@click.command()
+@click.argument("results", type=_PATH, nargs=-1, required=True)
+@click.option("--baseline", metavar="SYSTEM", help="Compare all others with this one.  [default: the first]")
+@click.option(
+    "--html", type=_PATH, help="Write the page with every scene.  [default: report.html in the first RESULTS]"
+)
+@click.option("--markdown", type=_PATH, help="Write the tables.")
+@click.option(
+    "--json", "as_json", type=_PATH, help="Write the numbers; '-' prints them instead of the tables."
+)
+@click.option("--paper", is_flag=True, help="Show the paper's published figures beside.")
+def report(results: tuple[Path, ...], **given: Any) -> None:
+    """Print the tables of RESULTS, folders that 'bench run' wrote, and write a page with every scene.
+
+    The paper's Table 1 with 95 % intervals, coverage, systems compared by paired tests, ablations, cost. On the page:
+    frames, scores, what failed with the values seen, and what the judge said.
+    """
+    from bench.markdown_tables import table  # noqa: PLC0415 - not for --help
+    from bench.results.notes import notes  # noqa: PLC0415
+    from bench.results.tables import tables  # noqa: PLC0415
+
+    found = _read(results)
+    if given["baseline"] is not None and found.system(given["baseline"]) is None:
+        names = ", ".join(system.name for system in found.systems)
+        raise click.UsageError(
+            f"There is no system {given['baseline'][:80]!r} in these results; there are {names}."
+        )
+    told = tables(found, baseline=given["baseline"], with_paper=given["paper"])
+    said = notes(found)
+    text = _plain("\n\n".join((*(f"> {note}" for note in said), *(table(one) for one in told))) + "\n")
+    place = given["html"] or results[0] / "report.html"
+    numbers = json.dumps(_numbers(found, given["baseline"], said), indent=1, ensure_ascii=False) + "\n"
+    try:
+        _write_page(place, found, told, said)
+        if given["markdown"] is not None:
+            _write(given["markdown"], text)
+        if given["as_json"] is not None and str(given["as_json"]) != "-":
+            _write(given["as_json"], numbers)
+    except OSError as error:
+        click.echo(f"Error: {error.filename or place} cannot be written: {error.strerror or error}", err=True)
+        sys.exit(2)
+    click.echo(numbers if str(given["as_json"]) == "-" else text, nl=False)
+    click.echo(f"Page: {place}", err=True)
+
+
+@click.command()
+@click.argument("results", type=_PATH, nargs=-1, required=True)
+@click.option(
+    "--systems", type=click.IntRange(1, 10_000), default=10, show_default=True, help="How many of them."
+)
+@click.option("--machines", type=click.IntRange(1, 100_000), default=20, show_default=True)
+@click.option(
+    "--jobs",
+    type=click.IntRange(1, 256),
+    default=2,
+    show_default=True,
+    help="Scenes at a time on each machine.",
+)
+@click.option(
+    "--making",
+    type=click.FloatRange(0),
+    metavar="MINUTES",
+    help="What a system takes for a scene, instead of what was measured.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def estimate(results: tuple[Path, ...], **given: Any) -> None:
+    """Tell how long all scenes take by many systems on many machines, from the times that RESULTS measured."""
+    from bench.results.estimate import estimate as run  # noqa: PLC0415 - not for --help
+
+    making = given["making"] * 60 if given["making"] is not None else None
+    sizes = {"systems": given["systems"], "machines": given["machines"], "at_a_time": given["jobs"]}
+    found = run(_read(results), **sizes, making=making)
+    if found is None:
+        click.echo("Error: no scene in these results was scored, so no time is known.", err=True)
+        sys.exit(2)
+    click.echo(json.dumps(asdict(found), indent=1) if given["as_json"] else "\n".join(_estimated(found)))
+
+
+def _read(folders: Sequence[Path]) -> Results:
+    """The results; ends the command where there are none."""
+    from bench.results.scores import read_results  # noqa: PLC0415 - not for --help
+    from bench.scenes.spec import BadSpec  # noqa: PLC0415
+
+    try:
+        found = read_results([folder.expanduser().resolve() for folder in folders])
+    except (BadSpec, OSError) as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(2)
+    if not found.systems:
+        for fault in found.faults:
+            click.echo(fault, err=True)
+        where = ", ".join(map(str, folders))
+        click.echo(f"Error: there are no results in {where}. 'simworlds bench run' makes them.", err=True)
+        sys.exit(2)
+    return found
+
+
+def _plain(text: str) -> str:
+    """Without what a terminal would act on: results may be anybody's."""
+    return "".join(char if char.isprintable() or char == "\n" else " " for char in text)
+
+
+def _write_page(place: Path, found: Results, told: Any, said: Sequence[str]) -> None:
+    from bench.results.page import page  # noqa: PLC0415 - not for --help
+    from bench.sweep.provenance import code_of, provenance  # noqa: PLC0415
+
+    seal = provenance(code_of("bench.results.page"))
+    _write(place, page(found, told, said, seal))
+
+
+def _write(path: Path, text: str) -> None:
+    from bench.sweep.content_hash import write_whole  # noqa: PLC0415 - not for --help
+
+    write_whole(path.expanduser(), text.encode("utf-8", "replace"))
+
+
+def _numbers(results: Results, baseline: str | None, said: Sequence[str]) -> dict[str, Any]:
+    """All figures as data, with how they were drawn."""
+    from bench.results import statistics  # noqa: PLC0415 - not for --help
+    from bench.results.figures import ablations, comparisons, figures_of  # noqa: PLC0415
+    from bench.results.scores import METRICS  # noqa: PLC0415
+
+    return {
+        "notes": list(said),
+        "bootstrap": {"seed": statistics.SEED, "draws": statistics.DRAWS, "level": statistics.LEVEL},
+        "systems": {
+            system.name: {
+                "info": system.info.model_dump(mode="json"),
+                "figures": {
+                    metric: {category: asdict(figure) for category, figure in figures.items()}
+                    for metric, figures in figures_of(system).items()
+                },
+                "scenes": {
+                    name: {
+                        **{metric: scene.score(metric) for metric in METRICS},
+                        "why_not": {metric: why for metric in METRICS if (why := scene.why_not(metric))},
+                    }
+                    for name, scene in sorted(system.scenes.items())
+                },
+            }
+            for system in results.systems
+        },
+        "comparisons": [asdict(one) for one in comparisons(results, baseline)],
+        "ablations": [asdict(one) for one in ablations(results)],
+    }
+
+
+def _estimated(found: Estimate) -> Iterator[str]:
+    yield f"measured: {found.measured} of {found.scenes} scenes; the others as their category, or as all"
+    steps = {"produced": "making", "audited": "audit", "framed": "frames", "judged": "judge"}
+    parts = ", ".join(f"{steps[step]} {_told(seconds)}" for step, seconds in found.work.items() if seconds)
+    yield f"{found.scenes} scenes by one system, one after the other: {_told(found.one)} ({parts})"
+    workers = found.machines * found.at_a_time
+    yield (
+        f"{found.systems} systems on {found.machines} machines, {found.at_a_time} scenes at a time on each: "
+        f"{_told(found.together)}; the longest scene takes {_told(found.longest)}"
+    )
+    yield f"that is {found.systems * found.one / 3600:.1f} hours of work for {workers} workers"
+
+
+def _told(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

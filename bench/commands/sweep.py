@@ -1,0 +1,241 @@
+"""``simworlds bench run`` and ``simworlds bench rescore``."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from bench.commands.system_options import of_systems, system_of, together
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Sequence
+
+    from bench.sweep.executor import Crew
+    from bench.sweep.judging import Judge
+    from bench.sweep.sweep import How, Summary
+    from bench.sweep.systems.system import System
+
+_PATH = click.Path(path_type=Path)
+
+_scoring = together(
+    click.option(
+        "--jobs",
+        type=click.IntRange(1, 256),
+        default=os.cpu_count() or 1,
+        show_default="one a core",
+        help="Scenes at a time.",
+    ),
+    click.option(
+        "--frames",
+        type=click.Choice(["video", "blend", "none"]),
+        default="video",
+        show_default=True,
+        help="Of the system's video where there is one, of the .blend, or none.",
+    ),
+    click.option(
+        "--frame-size",
+        default="480x270",
+        show_default=True,
+        metavar="WxH",
+        help="Of frames of a .blend: as many pixels, in the scene's proportions.",
+    ),
+    click.option(
+        "--frame-samples",
+        type=click.IntRange(1, 4096),
+        default=16,
+        show_default=True,
+        help="Of frames of a .blend.",
+    ),
+    click.option(
+        "--judge",
+        type=click.Choice(["anthropic", "openai", "none"]),
+        default="anthropic",
+        show_default=True,
+        help="Who judges the frames; needs a key.",
+    ),
+    click.option("--judge-model", metavar="NAME", help="The judge's model.  [default: as of 'bench judge']"),
+    click.option("--judge-url", metavar="URL", help="Another server that speaks the provider's API."),
+    click.option(
+        "--judge-max-cost", type=click.FloatRange(0), metavar="USD", help="For all scenes together."
+    ),
+    click.option("--judge-cache", type=_PATH, help="Folder of answers.  [default: in SimWorlds' own]"),
+    click.option(
+        "--seconds", default=120.0, show_default=True, help="How long the audit of a scene may take."
+    ),
+    click.option(
+        "--memory", default=4.0, show_default=True, help="How much memory a Blender may take (GiB)."
+    ),
+    click.option("--read", type=_PATH, multiple=True, help="A further folder that Blender may read."),
+    click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's."),
+    click.option(
+        "--blender-exe",
+        type=_PATH,
+        envvar="BLENDER_EXE",
+        show_envvar=True,
+        help="The Blender to use, if not bpy.",
+    ),
+)
+
+
+@click.command()
+@of_systems
+@click.option(
+    "--scenes",
+    multiple=True,
+    metavar="NAMES",
+    help="Ids, categories, levels, patterns, or all, dynamic, ablation; with commas.  [default: all; of replay, those "
+    "with a session]",
+)
+@click.option(
+    "--out",
+    type=_PATH,
+    default=Path("bench-results"),
+    show_default=True,
+    help="Folder of the results.",
+)
+@click.option(
+    "--ray", metavar="auto|ADDRESS", help="Do it on a Ray cluster instead of here; needs the extra 'ray'."
+)
+@_scoring
+def run(**given: Any) -> None:
+    """Have a system make the benchmark's scenes, or take its .blend files; audit them, take frames, judge these.
+
+    Results are kept below --out. The same command again goes on where it was, however it ended, and does again only
+    what depends on something that changed. Exit code 0: each scene is scored, or it is told why not. 1: some could not
+    be done here. 2: nothing could be begun. 130: it was interrupted.
+    """
+    from bench.sweep.sweep import sweep, tasks_of  # noqa: PLC0415 - not for --help
+    from bench.sweep.sweep_view import make_view  # noqa: PLC0415
+
+    with _errors():
+        system = system_of(given)
+        specs = _specs(given["scenes"], system)
+        tasks = tasks_of(system, specs, given["out"].expanduser().resolve(), _how(given))
+        system.ready()
+        summary = sweep(tasks, _judge(given), _crew(given), make_view(sys.stderr, len(tasks)))
+    _conclude([summary], given["out"])
+
+
+@click.command()
+@click.argument("results", type=_PATH)
+@_scoring
+def rescore(results: Path, **given: Any) -> None:
+    """Score all that is in a folder of results anew, as far as specs, code, Blender or judge are others by now.
+
+    No system is run again. What was scored stays where its file is gone. Exit codes as of 'run'.
+    """
+    from bench.sweep.sweep import sweep, tasks_again  # noqa: PLC0415 - not for --help
+    from bench.sweep.sweep_view import make_view  # noqa: PLC0415
+
+    summaries: list[Summary] = []
+    with _errors():
+        systems = tasks_again(results.expanduser().resolve(), _how(given))
+        if not systems:
+            raise click.UsageError(f"There are no results in {results}.")
+        judge = _judge(given)
+        for tasks in systems:
+            click.echo(f"{tasks[0].system.info.name}:", err=True)
+            view = make_view(sys.stderr, len(tasks))
+            summaries.append(sweep(tasks, judge, _crew(given), view))
+    _conclude(summaries, results)
+
+
+@contextmanager
+def _errors() -> Generator[None]:
+    """Ends the command with what is wrong in one sentence."""
+    from bench.scenes.spec import BadSpec  # noqa: PLC0415
+    from bench.sweep.records import BadRecord  # noqa: PLC0415
+    from bench.sweep.systems.system import NotReady  # noqa: PLC0415
+    from simworlds.sandbox.errors import BlenderError, Refusal  # noqa: PLC0415 - not for --help
+
+    try:
+        yield
+    except (BadSpec, BadRecord, NotReady, Refusal, BlenderError, OSError) as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        click.echo("Interrupted. The same command goes on from here.", err=True)
+        sys.exit(130)
+
+
+# What was asked for
+
+
+def _specs(names: Sequence[str], system: System) -> Any:
+    from bench.scenes.spec import specs  # noqa: PLC0415 - not for --help
+    from bench.sweep.scene_selection import chosen  # noqa: PLC0415
+
+    found = chosen(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
+    if not found:
+        raise click.UsageError("--scenes names no scene.")
+    return found
+
+
+def _how(given: dict[str, Any]) -> How:
+    from bench.audit.untrusted_blend import GIB, Means  # noqa: PLC0415
+    from bench.frames.clip_frames import Look  # noqa: PLC0415 - not for --help
+    from bench.sweep.sweep import How  # noqa: PLC0415
+
+    means = Means(
+        given["blender"],
+        given["blender_exe"],
+        given["seconds"],
+        int(given["memory"] * GIB),
+        tuple(folder.expanduser().resolve() for folder in given["read"]),
+    )
+    look = Look(_pixels(given["frame_size"]), given["frame_samples"])
+    return How(means, look, given["frames"] != "none", given["frames"] == "video")
+
+
+def _pixels(size: str) -> int:
+    width, _, height = size.partition("x")
+    if not (width.isdecimal() and height.isdecimal() and 256 <= int(width) * int(height) <= 4096 * 4096):
+        raise click.UsageError(f"--frame-size takes WIDTHxHEIGHT, as 480x270; not {size[:40]!r}.")
+    return int(width) * int(height)
+
+
+def _judge(given: dict[str, Any]) -> Judge:
+    from bench.sweep.judging import Judging, judge_of  # noqa: PLC0415 - not for --help
+    from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415
+
+    cache = given["judge_cache"] or cache_folder(home_folder()) / "judge"
+    who = (given["judge"], given["judge_model"], given["judge_url"], given["judge_max_cost"], cache)
+    return judge_of(Judging(*who))
+
+
+def _crew(given: dict[str, Any]) -> Crew:
+    if given.get("ray"):
+        from bench.sweep.ray_executor import RayCrew  # noqa: PLC0415 - an optional extra
+
+        return RayCrew(given["ray"])
+    from bench.sweep.executor import LocalCrew  # noqa: PLC0415 - not for --help
+
+    return LocalCrew(given["jobs"])
+
+
+# How it ended
+
+
+def _conclude(summaries: Sequence[Summary], out: Path) -> None:
+    from bench.sweep.sweep_view import plain  # noqa: PLC0415 - not for --help
+
+    for one in summaries:
+        click.echo(f"{_counted(one.asked, 'scene')}: {one.scored} scored, {one.judged} judged")
+        for why, count in sorted(one.why_not_scored.items(), key=lambda item: -item[1]):
+            click.echo(f"  {count} not scored: {plain(why)}")
+        for why, count in sorted(one.why_not_judged.items(), key=lambda item: -item[1]):
+            click.echo(f"  {count} not judged: {plain(why)}")
+    faults = [fault for one in summaries for fault in one.faults]
+    for scene, why in faults:
+        click.echo(f"  {scene} could not be done: {plain(why)}", err=True)
+    click.echo(f"Tables and page: simworlds bench report {out}")
+    sys.exit(1 if faults else 0)
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}{'' if count == 1 else 's'}"

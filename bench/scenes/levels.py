@@ -1,0 +1,67 @@
+"""The difficulty of a scene, read off what its spec asks for (paper, "Benchmark Details").
+
+D1: one solver actor as it comes. D2: more within the category: several solver actors, or a solver's inner workings. D3:
+solvers of two categories or more. Of static scenes, D1 is a room and D2 a place.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from bench.audit.predicates.catalogue import PREDICATES
+
+if TYPE_CHECKING:
+    from bench.scenes.spec import Level, Spec
+
+SOLVER_GROUPS = {
+    "cloth": "cloth",
+    "fluid": "fluid",
+    "rigid": "rigid body",
+    "particle": "particle",
+    "soft": "soft body",
+}
+# What makes a single actor's solver more than its default.
+INNER = frozenset({
+    "cloth_self_collision", "cloth_pin_group", "fluid_dynamic_effector", "fluid_guiding", "rigid_constraint",
+    "rigid_constraint_no_collision", "particle_from_deformed", "particle_force_fields", "soft_goal_group",
+})  # fmt: skip
+_SOLVED = ("cloth", "soft", "fluid_domain", "rigid_active", "particle_emitter", "particle_hair")
+# A heap of bodies settles as one; from so many on, each has its part in a chain of events.
+_CHAIN = 10
+# Metres that something of a place spans at least; a room has nothing of this length.
+_PLACE = 15.0
+
+
+def solver_groups(spec: Spec) -> frozenset[str]:
+    """Groups of the solvers that the spec's actors must have."""
+    found = {PREDICATES[check.predicate].group for actor in spec.actors for check in actor.must_have}
+    return frozenset(found & set(SOLVER_GROUPS.values()))
+
+
+def level_of(spec: Spec) -> Level:
+    """The level that a spec's checks amount to. Its predicates must be known."""
+    if spec.category == "static":
+        spans = [actor.hints.size[0] for actor in spec.actors if actor.hints.size]
+        return "D2" if max(spans, default=0.0) >= _PLACE else "D1"
+    if len(solver_groups(spec)) > 1:
+        return "D3"
+    return "D2" if _several(spec) or _inner(spec) else "D1"
+
+
+def _several(spec: Spec) -> bool:
+    """Several solver actors, flows or a long chain of bodies."""
+    solved = [actor for actor in spec.actors if actor.role in _SOLVED]
+    flows = sum(actor.count for actor in spec.actors if actor.role == "fluid_flow")
+    counted = [
+        int(check.params.get("min", 1))
+        for actor in spec.actors
+        for check in actor.must_have
+        if check.predicate == "fluid_flow_count"
+    ]
+    return len(solved) > 1 or max((flows, *counted)) > 1 or any(actor.count >= _CHAIN for actor in solved)
+
+
+def _inner(spec: Spec) -> bool:
+    """Self-collision, pins, goals, constraints, fields, guides, effectors that move."""
+    asked = {check.predicate for actor in spec.actors for check in actor.must_have}
+    return bool(asked & INNER) or any(actor.role == "force" for actor in spec.actors)

@@ -1,0 +1,188 @@
+"""A scene of 4DBuildBench: what is asked for, and what the result is held to (paper, "Benchmark Details").
+
+Specs are YAML files in ``bench/scenes``, one a scene, named after its id. A check is written as its name, or as a
+mapping of its name to its parameters.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+FOLDER = Path(__file__).parent
+
+Category = Literal["cloth", "fluid", "rigid", "particle", "soft", "static"]
+Level = Literal["D1", "D2", "D3"]
+Role = Literal[
+    "cloth", "fluid_domain", "fluid_flow", "fluid_effector", "rigid_active", "rigid_passive", "particle_emitter",
+    "particle_hair", "soft", "force", "collider", "keyframed", "static",
+]  # fmt: skip
+PhaseKind = Literal[
+    "hold", "move", "fall", "slide", "roll", "spin", "topple", "swing", "bounce", "break", "drape", "flutter", "deform",
+    "flow", "emit", "settle",
+]  # fmt: skip
+When = Literal["start", "middle", "end"]
+RelationType = Literal[
+    "SupportedBy", "OnTopOf", "Inside", "InContact", "Against", "AttachedTo", "NextTo", "Above", "Below", "LeftOf",
+    "RightOf", "InFrontOf", "Behind",
+]  # fmt: skip
+CATEGORIES: tuple[Category, ...] = ("cloth", "fluid", "rigid", "particle", "soft", "static")
+WHEN: tuple[When, ...] = ("start", "middle", "end")
+Name = Annotated[str, Field(min_length=1, max_length=60)]
+Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class BadSpec(Exception):  # noqa: N818 - reads as the state it names
+    """A spec that is none; the message says which file, where, and what is wrong."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Check(_Part):
+    """A predicate, and its parameters."""
+
+    predicate: str
+    params: dict[str, Any] = Field(default_factory=dict[str, Any])
+
+    @model_validator(mode="before")
+    @classmethod
+    def _written(cls, given: Any) -> Any:
+        """``name``, or ``{name: {…}}``."""
+        if isinstance(given, str):
+            return {"predicate": given}
+        if isinstance(given, dict) and len(given) == 1 and "predicate" not in given:
+            [(name, params)] = given.items()
+            return {"predicate": name, "params": params or {}}
+        return given
+
+
+class Hints(_Part):
+    """What an actor looks like whose name is not known: the diagonal of its bounds (metres), its surface, its place."""
+
+    size: tuple[float, float] | None = None
+    topology: Literal["open", "closed", "any"] = "any"
+    collection: Literal["object", "any"] = "any"
+
+
+class Actor(_Part):
+    """Something that the prompt names. ``count``: how many objects stand for it at least.
+
+    ``implied``: the prompt does not name it, but nobody could build the scene without it (what pours, a floor).
+    """
+
+    name: Name
+    synonyms: tuple[Name, ...] = ()
+    role: Role
+    implied: bool = False
+    count: int = Field(default=1, ge=1)
+    hints: Hints = Hints()
+    must_have: tuple[Check, ...] = Field(min_length=1)
+    must_not_have: tuple[Check, ...] = ()
+
+
+class Relation(_Part):
+    """``a`` stands so to ``b``, at these times of the clip; surfaces at most ``tolerance`` metres apart (or deep).
+
+    Of an actor with a count each of ``a`` is meant; of any other, and of ``b``, all that was found of it together.
+    """
+
+    type: RelationType
+    a: Name
+    b: Name
+    when: tuple[When, ...] = WHEN
+    tolerance: float = Field(default=0.02, gt=0)
+
+
+class Phase(_Part):
+    """What an actor does, from and to a share of the clip."""
+
+    actor: Name
+    kind: PhaseKind
+    start: Share
+    end: Share
+
+
+class Frames(_Part):
+    """The least length of the clip."""
+
+    min: int = Field(ge=2)
+    fps: int = Field(default=24, ge=1)
+
+
+class Spec(_Part):
+    """One scene. ``assertions`` are predicates of the whole scene that must not hold."""
+
+    id: str = Field(pattern=r"^(cloth|fluid|rigid|particle|soft|static)_D[123]_\d\d$")
+    category: Category
+    level: Level
+    prompt: str = Field(min_length=20, max_length=900)
+    frames: Frames | None = None
+    actors: tuple[Actor, ...] = Field(min_length=1)
+    relations: tuple[Relation, ...] = ()
+    phases: tuple[Phase, ...] = ()
+    assertions: tuple[Check, ...] = ()
+
+    @property
+    def cell(self) -> str:
+        """The cell of the result tables that it counts in: its category and level."""
+        return f"{self.category}_{self.level}"
+
+    def actor(self, name: str) -> Actor | None:
+        """The actor of that name."""
+        return next((one for one in self.actors if one.name == name), None)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Spec:
+        names = [actor.name for actor in self.actors]
+        if not self.id.startswith(f"{self.category}_{self.level}_"):
+            raise ValueError(f"id: {self.id} is not of {self.category}, {self.level}")
+        if twice := {name for name in names if names.count(name) > 1}:
+            raise ValueError(f"actors: {', '.join(sorted(twice))} twice")
+        if unknown := {name for name in self._named() if name not in names}:
+            raise ValueError(f"no actor is called {', '.join(sorted(unknown))}")
+        if (self.frames is None) != (self.category == "static"):
+            raise ValueError("frames: a static scene has none, any other has some")
+        return self
+
+    def _named(self) -> Iterator[str]:
+        for relation in self.relations:
+            yield from (relation.a, relation.b)
+        yield from (phase.actor for phase in self.phases)
+
+
+def read_spec(path: Path) -> Spec:
+    """The spec in a file. Raises BadSpec."""
+    try:
+        return Spec.model_validate(yaml.safe_load(path.read_text("utf-8")))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise BadSpec(f"{path.name} cannot be read: {error}") from error
+    except ValidationError as error:
+        wrong = "; ".join(
+            f"{'.'.join(map(str, one['loc'])) or 'spec'}: {one['msg']}"
+            for one in error.errors(include_url=False, include_context=False)
+        )
+        raise BadSpec(f"{path.name}: {wrong}") from error
+
+
+@cache
+def specs() -> tuple[Spec, ...]:
+    """All scenes, by category, level and number. Raises BadSpec."""
+    found = [read_spec(path) for path in FOLDER.glob("*.yaml")]
+    return tuple(sorted(found, key=lambda spec: (CATEGORIES.index(spec.category), spec.id)))
+
+
+def spec_of(name: str) -> Spec:
+    """The scene of that id. Raises BadSpec."""
+    found = next((spec for spec in specs() if spec.id == name), None)
+    if found is None:
+        raise BadSpec(f"There is no scene {name[:80]!r}; 'simworlds bench list' names them.")
+    return found

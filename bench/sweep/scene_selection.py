@@ -1,0 +1,46 @@
+"""Which scenes are meant: ids, categories, levels, patterns, and the sets that have names."""
+
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING
+
+from bench.scenes.spec import BadSpec, specs
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from bench.scenes.spec import Spec
+
+# The paper's ablations are of one scene for each mechanism and level; it does not say which. These are the first ones.
+SETS: dict[str, Callable[[Spec], bool]] = {
+    "all": bool,
+    "dynamic": lambda spec: spec.category != "static",
+    "ablation": lambda spec: spec.category != "static" and spec.id.endswith("_01"),
+}
+
+
+def chosen(names: Iterable[str]) -> tuple[Spec, ...]:
+    """The scenes that any of ``names`` means, in the benchmark's order. Raises BadSpec for a name that means none.
+
+    A name is an id (``cloth_D1_01``), a category, a level (``D2``), a cell (``cloth_D1``), a pattern (``*_D?_01``), or
+    a set: all, dynamic, ablation. Several may stand in one, with commas.
+    """
+    wanted = [name.strip() for several in names for name in several.split(",") if name.strip()]
+    every = specs()
+    found = {spec.id for name in wanted for spec in _meant(name, every)}
+    return tuple(spec for spec in every if spec.id in found)
+
+
+def _meant(name: str, every: Sequence[Spec]) -> list[Spec]:
+    if name in SETS:
+        return [spec for spec in every if SETS[name](spec)]
+    found = [
+        spec for spec in every if name in (spec.category, spec.level, spec.cell) or fnmatchcase(spec.id, name)
+    ]
+    if not found:
+        sets = ", ".join(SETS)
+        raise BadSpec(
+            f"{name[:80]!r} means no scene: give an id, a category, a level, a pattern, or one of {sets}."
+        )
+    return found

@@ -1,0 +1,184 @@
+"""The systems ``simworlds`` and ``replay``: ``simworlds make`` and ``simworlds demo``, as a person calls them.
+
+Each scene is a run in a folder of its own. A run that was cut off is taken up again by ``simworlds resume``, so that
+nothing is paid for twice; how it ended, what it made and what it cost is read from its journal.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import pairwise
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Any, cast
+
+from agents.loop.errors import NoRun
+from agents.loop.journal import NAME, read_rows
+from bench.sweep.command import called, last_words
+from bench.sweep.records import FINAL, Outcome, SystemInfo
+from bench.sweep.systems.system import Made, NotReady
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from bench.scenes.spec import Spec
+
+# The session that plays a scene: of each, the spec whose prompt asks for the same actors. The edit belongs to none.
+SESSIONS = {
+    "rigid_D2_01": "dominoes",
+    "cloth_D1_01": "tablecloth",
+    "fluid_D1_01": "pour",  # cider from a keg into a glass, where the scene has milk from a jug into a bowl
+}
+KEYS = ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN")
+_OUTCOMES = ("done", "aborted", "failed", "stopped")
+_TOKENS = ("input", "output", "cache_read", "cache_write")
+
+
+@dataclass(frozen=True)
+class _Runs:
+    """``options``: further words of the command that begins a run; ``limits``: those of every sitting at it."""
+
+    info: SystemInfo
+    options: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()
+
+    @property
+    def source(self) -> None:
+        """None: it makes its own files."""
+        return
+
+    def files(self, spec: Spec) -> list[Path]:
+        """None."""
+        del spec
+        return []
+
+    def run(self, place: Path, prompt: str, words: Sequence[str], tell: Callable[[str], object]) -> Made:
+        """What is in a run's folder, after it was begun by ``words``, or taken up again where it was left."""
+        before = _read(place, prompt)
+        if before is not None and before.outcome in FINAL:
+            return before
+        tell("making it" if before is None else "going on with making it")
+        log = place.with_name(f"{place.name}.log")
+        log.parent.mkdir(parents=True, exist_ok=True)
+        begin = [words[0], *self.options, *self.limits, "--quiet", "--run", str(place), "--", *words[1:]]
+        if before is None:
+            shutil.rmtree(place, ignore_errors=True)  # one that was killed before it began
+        code = called(begin if before is None else ["resume", *self.limits, "--quiet", str(place)], log)
+        after = _read(place, prompt)
+        if after is None or (after.outcome not in FINAL and not after.why):
+            return Made("failed", prompt, f"simworlds {words[0]} ended with {code}: {last_words(log)}")
+        return after
+
+
+@dataclass(frozen=True)
+class Make(_Runs):
+    """SimWorlds itself, asked by a scene's prompt."""
+
+    def ready(self) -> None:
+        """Raises NotReady without a key."""
+        if not any(os.environ.get(name) for name in KEYS):
+            raise NotReady(
+                f"'simworlds make' asks a language model and needs a key: set {KEYS[0]}. Without one, try --system "
+                "replay."
+            )
+
+    def is_for(self, spec: Spec) -> bool:
+        """Any scene."""
+        del spec
+        return True
+
+    def depends_on(self, spec: Spec) -> str:
+        """The prompt."""
+        return spec.prompt
+
+    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> Made:
+        """See System."""
+        return self.run(place, spec.prompt, ["make", spec.prompt], tell)
+
+
+@dataclass(frozen=True)
+class Replay(_Runs):
+    """The sessions that were written by hand and ship with SimWorlds, against a real Blender."""
+
+    def ready(self) -> None:
+        """Always."""
+
+    def is_for(self, spec: Spec) -> bool:
+        """Whether a session belongs to the scene."""
+        return spec.id in SESSIONS
+
+    def depends_on(self, spec: Spec) -> str:
+        """The session."""
+        return SESSIONS.get(spec.id, "")
+
+    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> Made:
+        """See System."""
+        name = SESSIONS.get(spec.id)
+        if name is None:
+            return Made("missing", spec.prompt, "no session belongs to it")
+        return self.run(place, spec.prompt, ["demo", name], tell)
+
+
+# What a journal tells
+
+
+def _read(run: Path, prompt: str) -> Made | None:
+    """What became of a run; None where none was begun."""
+    try:
+        rows = read_rows(run / NAME)
+    except NoRun as error:
+        return Made("failed", prompt, str(error))
+    began = next((row for row in rows if row["type"] == "run.began"), None)
+    if began is None:
+        return None
+    ended = rows[-1] if rows[-1]["type"] == "run.ended" else {}
+    outcome = ended.get("outcome") if ended.get("outcome") in _OUTCOMES else "stopped"
+    turns = [turn for row in rows if isinstance(turn := row.get("turn"), dict) and turn.get("live")]
+    costs = [turn.get("cost") for turn in turns]
+    return Made(
+        cast("Outcome", outcome),
+        str(began.get("prompt", prompt)),
+        str(ended.get("why", "")),
+        _beneath(run, ended.get("file")),
+        _beneath(run, ended.get("video")),
+        _models(began),
+        None if None in costs else round(sum(filter(None, costs)), 6),
+        round(_worked(rows) / 60, 2),
+        {name: sum(_tokens(turn, name) for turn in turns) for name in _TOKENS} if turns else {},
+    )
+
+
+def _models(began: Mapping[str, Any]) -> dict[str, str]:
+    """By role; of a session, who wrote it."""
+    source = str(began.get("source", ""))
+    if source and source != "live":
+        return {"all roles": source}
+    return {str(role): str(name) for role, name in dict(began.get("models") or {}).items()}
+
+
+def _tokens(turn: Mapping[str, Any], name: str) -> int:
+    """Of a turn, and of attempts at it that were lost."""
+    return sum(int((turn.get(part) or {}).get(name, 0)) for part in ("usage", "lost"))
+
+
+def _beneath(run: Path, name: Any) -> Path | None:
+    """A plain file of the run that its journal names."""
+    relative = PurePosixPath(name) if isinstance(name, str) and name else None
+    if relative is None or relative.is_absolute() or ".." in relative.parts:
+        return None
+    path = run / relative
+    return path if path.is_file() else None
+
+
+def _worked(rows: Sequence[Mapping[str, Any]]) -> float:
+    """Seconds that somebody sat at it: from row to row, but for the time between two sittings."""
+    seconds = 0.0
+    for before, row in pairwise(rows):
+        if row["type"] != "sitting.began":
+            with suppress(ValueError, KeyError, TypeError):
+                passed = datetime.fromisoformat(row["t"]) - datetime.fromisoformat(before["t"])
+                seconds += max(0.0, passed.total_seconds())
+    return seconds

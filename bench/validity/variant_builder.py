@@ -1,0 +1,158 @@
+"""One scene on the desk: a copy in a folder of its own, a Blender that makes variants of it, one that audits them.
+
+Both are confined as for any untrusted file. The scene itself is only read; of its caches the folder has links, which
+the workshop can neither write through nor delete behind. Either Blender is started when it is first needed, and again
+after it has crashed.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from bench.audit.actors import find_actors
+from bench.audit.audit import audit, audit_of, audited, read_scene
+from bench.audit.untrusted_blend import AUDITOR, Crashed, Means, Untrusted
+from simworlds.sandbox.program import Program
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+
+    from bench.audit.actors import Found
+    from bench.audit.audit import Audit
+    from bench.audit.facts import Scene
+    from bench.scenes.spec import Spec
+
+_VALIDITY = Path(__file__).parent
+_PROGRAM = Program(
+    "bench.validity.inside.variant_builder",
+    {
+        **AUDITOR.packages,
+        "bench.validity.inside": _VALIDITY / "inside",
+        **{
+            f"bench.validity.{name}.inside": _VALIDITY / name / "inside"
+            for name in ("counterfeits", "invariance", "mutations")
+        },
+    },
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A file without its relations: facts, actors, and the audit of their predicates."""
+
+    scene: Scene
+    found: dict[str, Found]
+    audit: Audit
+
+
+class Desk:
+    """To be used in a ``with``. What it makes is gone afterwards."""
+
+    def __init__(self, spec: Spec, blend: Path, means: Means | None = None) -> None:
+        self.spec, self.blend = spec, blend.resolve()
+        means = means or Means()
+        self._means = replace(means, read=(*means.read, self.blend.parent))
+
+    def __enter__(self) -> Desk:
+        self._stack = ExitStack()
+        made = tempfile.TemporaryDirectory(prefix="simworlds-validate-", ignore_cleanup_errors=True)
+        self.folder = Path(self._stack.enter_context(made)).resolve()
+        self.original = self.folder / self.blend.name
+        shutil.copy2(self.blend, self.original)
+        for beside in self.blend.parent.iterdir():
+            if beside.is_dir():
+                (self.folder / beside.name).symlink_to(beside)
+        self._auditor = _Session(lambda path: Untrusted(path, self._means))
+        self._workshop = _Session(lambda path: Untrusted(path, self._means, _PROGRAM, self.folder))
+        self._stack.callback(self._auditor.close)
+        self._stack.callback(self._workshop.close)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stack.close()
+
+    # Variants
+
+    def make(self, name: str, job: str, **arguments: Any) -> tuple[Path, Any]:
+        """Has the workshop do a job with the scene as it was, and saves what becomes of it as ``name``.
+
+        Returns the file and the workshop's answer. Raises NotScored where it refuses or crashes, CannotStart.
+        """
+        path = self.folder / f"{name}.blend"
+        shop = self._workshop.opened(self.original)
+        told = shop.ask(job, doing=f"at the {job}", **arguments)
+        shop.ask("save", doing="saving", path=str(path))
+        return path, told
+
+    def pictures(self, path: Path, *, cycles: bool, seed: int = 0) -> None:
+        """Renders start, middle and end of a variant, beside it: its name with -0, -1, -2.png.
+
+        By Workbench, or by Cycles with ``seed``.
+        """
+        shop = self._workshop.opened(path)
+        shop.ask("take", doing="rendering", path=str(path.with_suffix("")), cycles=cycles, seed=seed)
+
+    def difference(self, first: Path, second: Path) -> float:
+        """The mean absolute difference of two variants' pictures: red, green and blue from 0 to 1."""
+        names = {"first": str(first.with_suffix("")), "second": str(second.with_suffix(""))}
+        return float(self._workshop.opened(self.original).ask("compare", doing="comparing", **names))
+
+    # Audits
+
+    @cached_property
+    def reading(self) -> Reading:
+        """The scene as it is."""
+        return self.read(self.original)
+
+    @cached_property
+    def audited(self) -> Audit:
+        """The audit of the scene as it is, where it lies, by a Blender that sees nothing else."""
+        return audit(self.blend, self.spec, self._means)
+
+    def read(self, path: Path) -> Reading:
+        """What a variant is, without its relations. Raises NotScored, CannotStart."""
+        scene = read_scene(self._auditor.opened(path), play=True)
+        found = find_actors(self.spec, scene)
+        return Reading(scene, found, audited(self.spec, scene, found))
+
+    def audit(self, path: Path) -> Audit:
+        """The whole audit of a variant, by the Blender that has read the others. Raises NotScored, CannotStart."""
+        file = self._auditor.opened(path)
+        return audit_of(file, read_scene(file, play=True), self.spec)
+
+    def audit_alone(self, path: Path) -> Audit:
+        """The whole audit of a variant, by a Blender that sees nothing else."""
+        return audit(path, self.spec, self._means)
+
+
+class _Session:
+    """A Blender that opens one file after the other."""
+
+    def __init__(self, start: Callable[[Path], Untrusted]) -> None:
+        self._start, self._stack = start, ExitStack()
+        self._file: Untrusted | None = None
+
+    def opened(self, path: Path) -> Untrusted:
+        """The Blender with that file open: the one that there is, unless it has crashed. Raises NotScored."""
+        if self._file is not None:
+            try:
+                self._file.reopen(path)
+            except Crashed:
+                self.close()
+        if self._file is None:
+            self._file = self._stack.enter_context(self._start(path))
+        return self._file
+
+    def close(self) -> None:
+        """Ends the Blender, if there is one."""
+        self._file = None
+        self._stack.close()

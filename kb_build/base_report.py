@@ -1,0 +1,154 @@
+"""What a build did and what a base holds, in lines for people."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from kb_build.base_file import described, read_meta
+from kb_build.errors import StoreError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from kb_build.pipeline import BuildReport
+    from kb_build.versions.history_builder import HistoryReport
+
+_PLURALS = {
+    "class": "classes", "property": "properties", "data": "constants", "context": "context members",
+    "enum": "shared enumerations", "guide": "guides", "template": "templates", "manual": "manual",
+}  # fmt: skip
+_SHOWN_FAILURES = 5
+
+
+def base_facts(path: Path) -> dict[str, Any]:
+    """All that a base knows of itself, with ``path`` and ``bytes``; ``fault`` where it cannot be read."""
+    try:
+        meta = described(read_meta(path))
+        return {"path": str(path), "bytes": path.stat().st_size, **meta}
+    except (StoreError, OSError) as error:
+        return {"path": str(path), "fault": str(error)}
+
+
+def base_lines(facts: Mapping[str, Any]) -> Iterator[str]:
+    """One base at length."""
+    if fault := facts.get("fault"):
+        yield f"Error: {fault}"
+        return
+    yield f"Blender {facts['blender']} (build {facts['build_hash']})"
+    yield _row("file", f"{facts['path']}, {_megabytes(facts['bytes'])}")
+    yield _row("built", f"{facts['built_at']} by SimWorlds {facts['simworlds']}")
+    yield _row("fingerprint", facts["fingerprint"])
+    yield from _content(facts)
+    for missing in facts["missing"]:
+        yield _row("MISSING", f"{missing['role']}: {missing['reason']}")
+    yield _row("add-ons", ", ".join(facts["addons"]) or "none")
+    for fault in facts["faults"]:
+        yield _row("fault", str(fault).strip().splitlines()[-1])
+
+
+def _content(facts: Mapping[str, Any]) -> Iterator[str]:
+    counts = facts["counts"]
+    symbols = counts["symbols"]
+    yield _row("symbols", f"{sum(symbols.values()):,}: {_numbers(symbols)}")
+    yield _row("classes", _numbers(counts["classes"], plain=True))
+    pages = counts["pages"]
+    yield _row("pages", f"{sum(pages.values()):,}: {_numbers(pages)}; {counts['sections']:,} sections")
+    yield _row("links", _numbers(counts["links"], plain=True) or "none")
+    for source in facts["sources"]:
+        yield _row("source", _source(source))
+    if not facts["options"]["pages"]:
+        yield _row("source", "built without pages (--no-pages)")
+    yield _row("summaries", _summaries(facts["summaries"]))
+    if warned := facts.get("page_warnings"):
+        yield _row("warnings", f"{len(warned):,} pages carry some; kb info --json lists them")
+
+
+def _source(source: Mapping[str, Any]) -> str:
+    given = ", given by path" if source["given"] else ""
+    return (
+        f"{source['role']} {source['version']} ({source['form'].upper()}{given}): {source['pages']:,} pages "
+        f"from {source['origin']}, sha256 {source['sha256'][:16]}…"
+    )
+
+
+def _summaries(facts: Mapping[str, Any]) -> str:
+    text = _numbers(facts["methods"], plain=True) or "none"
+    if "cost_usd" in facts:
+        text += f"; this build cost ${facts['cost_usd']:.2f}, {len(facts['failed']):,} pages failed"
+    return text
+
+
+def bases_lines(bases: Sequence[Mapping[str, Any]], home: Path) -> Iterator[str]:
+    """All bases, one on a line."""
+    if not bases:
+        yield f"No knowledge base in {home} yet. Build one: simworlds kb build"
+    for facts in bases:
+        if "fault" in facts:
+            yield f"unreadable: {facts['fault']}"
+            continue
+        counts = facts["counts"]
+        symbols, pages = (sum(counts[kind].values()) for kind in ("symbols", "pages"))
+        missing = ", ".join(one["role"] for one in facts["missing"])
+        yield (
+            f"{facts['blender']:<8} {symbols:>7,} symbols {pages:>6,} pages {_megabytes(facts['bytes']):>9}"
+            f"  {facts['path']}" + (f"  (missing: {missing})" if missing else "")
+        )
+
+
+def build_lines(report: BuildReport) -> Iterator[str]:
+    """What a build came to."""
+    facts = base_facts(report.path)
+    if not report.built:
+        yield (
+            f"Nothing has changed: the knowledge base of Blender {report.version} is up to date "
+            f"(built {report.meta['built_at']})."
+        )
+        yield _row("file", f"{report.path}, {_megabytes(facts.get('bytes', 0))}")
+        return
+    yield f"Built the knowledge base of Blender {report.version} in {report.seconds:.1f} s."
+    yield _row("file", f"{report.path}, {_megabytes(facts.get('bytes', 0))}")
+    yield from _content(described(dict(report.meta)))
+
+
+def warning_lines(report: BuildReport) -> Iterator[str]:
+    """What the user must know about a build that went well."""
+    for warning in report.warnings:
+        yield f"WARNING: {warning}"
+    if report.summaries is not None:
+        for note in report.summaries.notes:
+            yield f"Note: {note}"
+        failed = report.summaries.failed
+        for failure in failed[:_SHOWN_FAILURES]:
+            yield f"WARNING: no summary by Claude for {failure.slug} ({failure.reason}): {failure.detail}"
+        if len(failed) > _SHOWN_FAILURES:
+            yield f"WARNING: … and {len(failed) - _SHOWN_FAILURES:,} more; kb info --json lists them"
+
+
+def history_lines(report: HistoryReport) -> Iterator[str]:
+    """What the comparison of versions came to."""
+    yield (
+        f"{'Wrote' if report.written else 'Nothing to change in'} {report.path}: {report.symbols:,} symbols, "
+        f"{report.size / 1e3:.0f} kB."
+    )
+    yield _row("asked", ", ".join(report.asked) or "none")
+    if report.kept:
+        yield _row("kept", f"{', '.join(report.kept)} (from the file as it was)")
+    for version, reason in report.missing.items():
+        yield _row("MISSING", f"{version}: {reason}")
+    for fault in report.faults:
+        yield _row("fault", fault.strip().splitlines()[-1])
+
+
+def _numbers(counts: Mapping[str, int], *, plain: bool = False) -> str:
+    """``10,921 properties, 6,622 functions``, the largest first."""
+    ordered = sorted(counts.items(), key=lambda item: -item[1])
+    return ", ".join(f"{n:,} {name if plain else _PLURALS.get(name, name + 's')}" for name, n in ordered)
+
+
+def _row(name: str, text: str) -> str:
+    return f"  {name:<12} {text}"
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:.1f} MB"

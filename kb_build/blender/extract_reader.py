@@ -1,0 +1,262 @@
+"""What the script inside Blender wrote → symbols, links and templates."""
+
+from __future__ import annotations
+
+import fnmatch
+import json
+import re
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from kb_build.blender.access_paths import reached_expressions
+from kb_build.blender.docstrings import parse_docstring
+from kb_build.errors import ExtractError
+from kb_build.records import Default, Link, Page, Parameter, Section, Symbol, symbol_from_json
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+_INDEXABLE = re.compile(r"[\[*?]")
+_SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
+_SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
+_METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
+# RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
+_TREES = {
+    "bpy.types.FreestyleLineStyle.node_tree": "ShaderNodeTree",
+    "bpy.types.Light.node_tree": "ShaderNodeTree",
+    "bpy.types.Material.node_tree": "ShaderNodeTree",
+    "bpy.types.World.node_tree": "ShaderNodeTree",
+    "bpy.types.NodesModifier.node_group": "GeometryNodeTree",
+    "bpy.types.Scene.compositing_node_group": "CompositorNodeTree",
+    "bpy.types.Scene.node_tree": "CompositorNodeTree",
+    "bpy.types.Texture.node_tree": "TextureNodeTree",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Extract:
+    """One Blender's API. ``version`` is the full one (``"5.1.2"``), ``build`` its commit hash.
+
+    ``faults`` are the tracebacks of steps that failed inside Blender; what the other steps found is there.
+    """
+
+    version: str
+    build: str
+    addons: tuple[str, ...]
+    symbols: tuple[Symbol, ...]
+    links: tuple[Link, ...]
+    templates: tuple[Page, ...]
+    faults: tuple[str, ...] = ()
+
+
+@dataclass(slots=True)
+class _Raw:
+    header: dict[str, Any] = field(default_factory=dict)
+    symbols: dict[str, dict[str, Any]] = field(default_factory=dict)
+    trees: dict[str, list[str]] = field(default_factory=dict)
+    manual: list[tuple[str, str]] = field(default_factory=list)
+    templates: list[tuple[str, str]] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+
+
+def _complete_items(row: dict[str, Any] | None, identifiers: list[str]) -> None:
+    """The items that an instance listed take the place of RNA's placeholder."""
+    if row is not None:
+        known = {item["identifier"]: item for item in row.get("enum_items", ())}
+        row["enum_items"] = [known.get(name, {"identifier": name}) for name in identifiers]
+
+
+def _read(path: Path) -> _Raw:
+    raw, lines, ended = _Raw(), 0, -1
+    with path.open(encoding="utf-8") as file:
+        for line in file:
+            try:
+                row = json.loads(line)
+            except json.JSONDecodeError as error:
+                raise ExtractError(
+                    f"{path}: line {lines + 1} is cut off; Blender stopped half-way"
+                ) from error
+            record = row.pop("record")
+            if record == "end":
+                ended = row["lines"]
+                break
+            lines += 1
+            match record:
+                case "symbol":
+                    raw.symbols.setdefault(row["path"], row)
+                case "blender":
+                    raw.header = row
+                case "node":
+                    raw.trees[row["path"]] = row["trees"]
+                case "manual":
+                    raw.manual.append((row["pattern"], row["page"]))
+                case "enum_items":
+                    _complete_items(raw.symbols.get(row["path"]), row["items"])
+                case "template":
+                    raw.templates.append((row["name"], row["text"]))
+                case _:
+                    raw.faults.append(f"{row.get('step')}: {row.get('traceback')}")
+    if ended != lines:
+        raise ExtractError(
+            f"{path}: {lines} records and no end; Blender stopped half-way. "
+            "The log beside it holds what Blender printed; run the build again."
+        )
+    return raw
+
+
+def _substitute(rows: Iterable[dict[str, Any]]) -> None:
+    """Puts the texts that a module's docstring defines (``.. |NAME| replace::``) where its members name them."""
+    documented = [row for row in rows if "|" in row.get("docstring", "")]
+    texts = {name: text for row in documented for name, text in _SUBSTITUTION.findall(row["docstring"])}
+    for row in documented:
+        row["docstring"] = _SUBSTITUTED.sub(lambda m: texts.get(m[1], m[0]), row["docstring"])
+
+
+def python_value(value: Default) -> str:
+    """A default as Python source."""
+    if isinstance(value, list):
+        return f"({', '.join(map(python_value, value))}{',' if len(value) == 1 else ''})"
+    return repr(value)
+
+
+def call_text(name: str, parameters: Iterable[Parameter]) -> str:
+    """``modifier_add(type='SUBSURF')``: a call with every argument's default."""
+    shown: list[str] = []
+    for parameter in parameters:
+        if parameter.required:
+            shown.append(parameter.name)
+        elif isinstance(parameter.default, list) and parameter.type == "enum":
+            chosen = ", ".join(map(repr, parameter.default))  # a list in order, which a set would lose
+            shown.append(f"{parameter.name}={{{chosen}}}" if chosen else f"{parameter.name}=set()")
+        else:
+            shown.append(f"{parameter.name}={python_value(parameter.default)}")
+    return f"{name}({', '.join(shown)})"
+
+
+def _symbol(row: dict[str, Any]) -> Symbol:
+    """One line of the extract, its docstring read and its call spelled out."""
+    docstring = row.pop("docstring", "")
+    written = row.get("signature", "")
+    symbol = symbol_from_json(row)
+    if docstring:
+        parsed = parse_docstring(docstring, written)
+        call = parsed.signature
+        symbol = replace(
+            symbol,
+            description=parsed.description,
+            type=parsed.type or symbol.type,
+            signature=symbol.name + call[call.index("(") :] if "(" in call else "",
+            parameters=parsed.parameters,
+            returns=parsed.returns,
+        )
+    elif symbol.kind == "function" and not written:
+        symbol = replace(symbol, signature=call_text(symbol.name, symbol.parameters))
+    elif symbol.kind == "operator":
+        symbol = replace(symbol, signature=call_text(symbol.path, symbol.parameters))
+    elif written.startswith("("):
+        symbol = replace(symbol, signature=symbol.name + written)
+    return symbol
+
+
+def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
+    """Methods that only the docstring of their class knows, as Freestyle's: the reference lists them."""
+    for row in rows:
+        if row["kind"] == "class" and row.get("docstring"):
+            for member in parse_docstring(row["docstring"], row.get("signature", "")).members:
+                told, call = member.docstring, member.docstring.signature
+                is_call = "(" in call
+                yield Symbol(
+                    path=f"{row['path']}.{member.name}",
+                    kind="function" if is_call else "property",
+                    owner=row["path"],
+                    description=told.description,
+                    type=told.type,
+                    signature=call if is_call else "",
+                    parameters=told.parameters,
+                    returns=told.returns,
+                    flags=_METHOD_FLAGS.get(member.kind, ()),
+                )
+
+
+def _subclass_lookups(classes: Iterable[Symbol], prototypes: list[Symbol]) -> Iterator[Symbol]:
+    """``bl_rna_get_subclass`` and its twin, which the reference lists on every class."""
+    for cls in classes:
+        for prototype in prototypes:
+            yield replace(prototype, path=f"{cls.path}.{prototype.name}", owner=cls.path)
+
+
+def manual_links(symbols: Iterable[Symbol], table: list[tuple[str, str]]) -> Iterator[Link]:
+    """Applies Blender's table (fnmatch pattern over lower-case ids → page) to every symbol; first match wins."""
+    by_prefix: dict[str, list[tuple[int, re.Pattern[str], str]]] = defaultdict(list)
+    for rank, (pattern, page) in enumerate(table):
+        lowered = pattern.lower()
+        prefix = _INDEXABLE.split(lowered, maxsplit=1)[0]
+        by_prefix[prefix].append((rank, re.compile(fnmatch.translate(lowered)), page))
+    lengths = sorted({len(prefix) for prefix in by_prefix})
+    for symbol in symbols:
+        if not symbol.path.startswith("bpy.") or symbol.kind == "socket":
+            continue
+        path = symbol.path.lower()
+        rows = (row for n in lengths if n <= len(path) for row in by_prefix.get(path[:n], ()))
+        best = min((row for row in rows if row[1].match(path)), default=None, key=lambda row: row[0])
+        if best:
+            yield Link(symbol.path, best[2].removesuffix(".html").replace(".html#", "#"), "manual")
+
+
+def _structure(symbols: Iterable[Symbol]) -> Iterator[Link]:
+    """What RNA itself says about who belongs to whom."""
+    for symbol in symbols:
+        if symbol.kind == "class" and symbol.base:
+            yield Link(symbol.path, symbol.base, "base")
+        elif symbol.kind == "socket":
+            yield Link(symbol.path, symbol.owner, "socket-of")
+        elif symbol.target and symbol.kind in {"property", "context"}:
+            kind = "collection" if symbol.type == "collection" else "pointer"
+            yield Link(symbol.path, f"bpy.types.{symbol.target}", kind)
+
+
+def _template(name: str, text: str, version: str) -> Page:
+    title = name.replace("_", " ").capitalize()
+    body = f"```python\n{text.rstrip()}\n```"
+    return Page(f"templates_py/{name}", "template", version, title, (Section("", title, 1, body),))
+
+
+def read_extract(path: Path) -> Extract:
+    """Reads the extractor's output. Raises ExtractError when it is not whole."""
+    raw = _read(path)
+    for owner, trees in raw.trees.items():
+        if owner in raw.symbols:
+            raw.symbols[owner]["trees"] = trees
+    for holder, tree in _TREES.items():
+        if holder in raw.symbols and f"bpy.types.{tree}" in raw.symbols:
+            raw.symbols[holder]["target"] = tree
+    _substitute(raw.symbols.values())
+    described = [*_described_members(raw.symbols.values())]
+    symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}
+    for member in described:
+        symbols.setdefault(member.path, member)
+    prototypes = [
+        symbol
+        for name in ("bl_rna_get_subclass", "bl_rna_get_subclass_py")
+        if (symbol := symbols.get(f"bpy.types.bpy_struct.{name}"))
+    ]
+    classes = [
+        symbol for symbol in symbols.values() if symbol.kind == "class" and symbol.owner == "bpy.types"
+    ]
+    for extra in _subclass_lookups((cls for cls in classes if cls.group == "data"), prototypes):
+        symbols.setdefault(extra.path, extra)
+    for name, expression in reached_expressions(symbols.values()).items():
+        if (class_path := f"bpy.types.{name}") in symbols:
+            symbols[class_path] = replace(symbols[class_path], reached=expression)
+    minor = ".".join(raw.header["version"].split(".")[:2])
+    return Extract(
+        version=raw.header["version"],
+        build=raw.header["build"],
+        addons=tuple(raw.header.get("addons", ())),
+        symbols=tuple(symbols.values()),
+        links=(*manual_links(symbols.values(), raw.manual), *_structure(symbols.values())),
+        templates=tuple(_template(name, text, minor) for name, text in raw.templates),
+        faults=tuple(raw.faults),
+    )

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Members of ``bpy.context``: those of its class, and those that the screen provides.
+
+Which of the latter exist, and of what type, depends on editor and mode: a member's type is what Blender
+returns for it in one of the scratch situations made here. The reference lists them below ``bpy.context`` in
+some versions, below ``bpy.types.Context`` in others; both names are written.
+"""
+
+import bpy
+
+from .rna import describe
+
+MODES = ("EDIT", "POSE", "OBJECT")
+
+
+def member_names():
+    """Names by where they come from (``screen``, ``view3d``, ``buttons``, …)."""
+    import _bpy
+
+    if hasattr(_bpy, "context_members"):
+        return {place: tuple(names) for place, names in _bpy.context_members().items()}
+    rna = set(bpy.types.Context.bl_rna.properties.keys()) | set(bpy.types.Context.bl_rna.functions.keys())
+    return {
+        "screen": tuple(name for name in dir(bpy.context) if name not in rna and not name.startswith("_"))
+    }
+
+
+def type_of(value):
+    """(type, target) of a context member's value; ("", "") when there is nothing to tell from."""
+    if isinstance(value, bpy.types.bpy_struct):
+        return "pointer", value.bl_rna.identifier
+    if isinstance(value, (list, tuple)) or hasattr(value, "foreach_get"):
+        first = next(iter(value), None)
+        if isinstance(first, bpy.types.bpy_struct):
+            return "collection", first.bl_rna.identifier
+    elif isinstance(value, (str, bool, int)):
+        return type(value).__name__, ""
+    return "", ""
+
+
+def ask(names, found):
+    """Reads every name whose type is still unknown in the present situation."""
+    for name in names:
+        if name not in found:
+            try:
+                answer = type_of(getattr(bpy.context, name, None))
+            except Exception:
+                continue
+            if answer[0]:
+                found[name] = answer
+
+
+def ask_editors(names, found):
+    """The same from inside every kind of area of the window, where there is one."""
+    ask(names, found)
+    window = bpy.context.window_manager.windows[0] if bpy.context.window_manager.windows else None
+    if window is None or not hasattr(bpy.context, "temp_override"):
+        return
+    for area in window.screen.areas:
+        region = next((item for item in area.regions if item.type == "WINDOW"), None)
+        with bpy.context.temp_override(window=window, area=area, region=region):
+            ask(names, found)
+
+
+def make_object(kind):
+    """Adds a scratch object and makes it active; False when this Blender refuses."""
+    try:
+        if kind == "ARMATURE":
+            bpy.ops.object.armature_add()
+        elif kind == "CURVE":
+            bpy.ops.curve.primitive_bezier_curve_add()
+        else:
+            bpy.ops.mesh.primitive_cube_add()
+            bpy.ops.object.particle_system_add()
+    except Exception:
+        return False
+    return True
+
+
+def probe(names):
+    """name → (type, target), from a mesh, a curve and an armature in each mode that they have."""
+    found = {}
+    ask_editors(names, found)
+    for kind in ("MESH", "CURVE", "ARMATURE"):
+        if not make_object(kind):
+            continue
+        for mode in MODES:
+            try:
+                bpy.ops.object.mode_set(mode=mode)
+            except Exception:
+                continue
+            ask_editors(names, found)
+    return found
+
+
+def guess(name):
+    """A class whose name the member bears (``node_tree``… ``texture_slot`` → TextureSlot), as Blender names them."""
+    stem = name
+    for prefix in ("active_", "edit_", "selected_", "editable_", "visible_", "selectable_"):
+        stem = stem[len(prefix) :] if stem.startswith(prefix) else stem
+    stem = stem.replace("editable_", "")
+    plural = stem.endswith("s")
+    for candidate, kind in ((stem, "pointer"), (stem[:-1] if plural else stem, "collection")):
+        camel = "".join(part.title() for part in candidate.split("_"))
+        if hasattr(bpy.types, camel):
+            return kind, camel
+    return "", ""
+
+
+def write_global(write, screen):
+    """The properties of the class ``Context`` as members of ``bpy.context``."""
+    for prop in bpy.types.Context.bl_rna.properties:
+        name = prop.identifier
+        if name != "rna_type" and name not in screen:
+            row = describe(prop)
+            row["flags"] = [*row["flags"], f"same-as:bpy.types.Context.{name}"]
+            write("symbol", path=f"bpy.context.{name}", kind="context", owner="bpy.context", **row)
+
+
+def write_all(write):
+    """One record a member, with the editors that provide it."""
+    by_place = member_names()
+    places = {}
+    for place, names in by_place.items():
+        for name in names:
+            places.setdefault(name, []).append(place)
+    write_global(write, places)
+    own = set(bpy.types.Context.bl_rna.properties.keys())
+    found = probe(tuple(places))
+    for name in sorted(places):
+        kind, target = found.get(name) or guess(name)
+        flags = ["readonly", *(f"from:{place}" for place in sorted(places[name]))]
+        row = {"kind": "context", "type": kind, "target": target}
+        write("symbol", path=f"bpy.context.{name}", owner="bpy.context", flags=flags, **row)
+        if name not in own:
+            also = [*flags, f"same-as:bpy.context.{name}"]
+            write("symbol", path=f"bpy.types.Context.{name}", owner="bpy.types.Context", flags=also, **row)

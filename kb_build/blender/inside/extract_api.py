@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes the whole API of this Blender as JSON Lines.
+
+The first line names the Blender, the last one counts the lines before it: a file without it is incomplete.
+A step that fails is a ``fault`` line with its traceback; the other steps still run.
+"""
+
+import os
+import sys
+import traceback
+
+import bpy
+
+from . import context, instances, modules, nodes, operators, rna
+from .wire import Writer
+
+
+def text(value):
+    """Blender gives its build facts as bytes."""
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def write_enum_sets(write, _found):
+    """The enumerations that several properties share, under the names the reference gives them."""
+    import _bpy
+
+    for name, items in getattr(_bpy, "rna_enum_items_static", dict)().items():
+        write("symbol", path=name, kind="enum", owner="bpy.types", enum_items=rna.read_items(items))
+
+
+def write_manual_links(write, _found):
+    """Blender's own table: a pattern over RNA ids and the manual page that explains them."""
+    try:
+        import _rna_manual_reference as table
+    except ImportError:
+        import rna_manual_reference as table
+    for pattern, page in table.url_manual_mapping:
+        write("manual", pattern=pattern, page=page)
+
+
+def write_templates(write, _found):
+    """The example scripts that Blender ships."""
+    for folder in bpy.utils.script_paths(subdir="templates_py"):
+        for name in sorted(os.listdir(folder)):
+            if name.endswith(".py"):
+                with open(os.path.join(folder, name), encoding="utf-8") as file:
+                    write("template", name=name[:-3], text=file.read())
+
+
+def write_rna(write, found):
+    """RNA classes; later steps look at the same ones."""
+    found["structs"] = rna.write_all(write, modules.write_member)
+
+
+STEPS = (
+    ("classes", write_rna),
+    ("operators", lambda write, _found: operators.write_all(write)),
+    ("nodes", lambda write, found: nodes.write_all(write, found["structs"])),
+    ("modules", lambda write, _found: modules.write_all(write)),
+    ("enums", write_enum_sets),
+    ("links", write_manual_links),
+    ("templates", write_templates),
+    ("instances", lambda write, _found: instances.write_all(write)),
+    # Last, because it changes the scene.
+    ("context", lambda write, _found: context.write_all(write)),
+)
+
+
+def main(arguments):
+    """Writes everything to the file that is the first argument; a failing step is reported in place."""
+    write = Writer(arguments[0])
+    write(
+        "blender",
+        version=bpy.app.version_string.split()[0],
+        build=text(bpy.app.build_hash),
+        addons=sorted(bpy.context.preferences.addons.keys()),
+    )
+    found = {}
+    for name, step in STEPS:
+        try:
+            step(write, found)
+        except Exception:
+            write("fault", step=name, traceback=traceback.format_exc())
+    write("end", lines=write.count)
+    write.close()
+    # Blender's own shutdown can abort after scratch data was made; everything is on disk by now.
+    sys.stdout.flush()
+    os._exit(0)

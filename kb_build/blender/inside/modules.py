@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything that lives outside RNA: modules, their classes and functions, from their reST docstrings."""
+
+import importlib
+import inspect
+import pkgutil
+import types
+
+import bpy
+
+from .rna import ATTRIBUTE_TYPES, METHOD_TYPES
+from .wire import plain
+
+# Canonical homes first: what a later module merely imports is already known by then.
+ROOTS = (
+    "mathutils", "bmesh.types", "bmesh", "gpu.types", "gpu", "gpu_extras", "bl_math", "blf", "aud", "idprop.types",
+    "idprop", "bgl", "imbuf.types", "imbuf", "freestyle.types", "freestyle", "bpy.app", "bpy.props", "bpy.utils",
+    "bpy.path", "bpy.msgbus", "bpy_extras",
+)  # fmt: skip
+# Class → path of those written so far.
+WRITTEN = {}
+PRIVATE_BUT_DOCUMENTED = {"bpy.props._PropertyDeferred"}
+PLAIN = (bool, int, float, str, bytes, tuple, list, dict, set, frozenset)
+
+
+def load(name):
+    """A module (or Blender's module-like object) by its dotted name; None where this version lacks it."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        pass
+    head, _, rest = name.partition(".")
+    try:
+        value = importlib.import_module(head)
+        for part in rest.split("."):
+            value = getattr(value, part)
+    except (ImportError, AttributeError):
+        return None
+    return value
+
+
+def belongs(value_name, owner, attribute):
+    """Whether a module found as ``owner.attribute`` is at home there, or was merely imported by it."""
+    root, _, rest = value_name.partition(".")
+    return root.lower() == owner.partition(".")[0] and rest.rpartition(".")[2] == attribute
+
+
+def signature(value):
+    """A call's text for what Python can inspect; empty for the rest, whose docstring carries it."""
+    try:
+        return str(inspect.signature(value))
+    except (TypeError, ValueError):
+        return ""
+
+
+def write_member(write, owner, name, value, flags=()):
+    """A method or attribute of a class."""
+    attribute = isinstance(value, ATTRIBUTE_TYPES)
+    function = getattr(value, "__func__", value)
+    flags = list(flags)
+    if isinstance(value, (classmethod, types.ClassMethodDescriptorType)):
+        flags.append("classmethod")
+    elif isinstance(value, staticmethod):
+        flags.append("static")
+    if isinstance(value, property) and value.fset is None:
+        flags.append("readonly")
+    write(
+        "symbol",
+        path=f"{owner}.{name}",
+        kind="property" if attribute else "function",
+        owner=owner,
+        docstring=inspect.getdoc(function) or "",
+        signature="" if attribute else signature(function),
+        flags=flags,
+    )
+
+
+def base_path(cls):
+    """Where a class's base is written; nothing where it is not: Python's own, unnamed helpers of the class."""
+    return WRITTEN.get(cls.__mro__[1], "") if len(cls.__mro__) > 1 else ""
+
+
+def annotated(hint):
+    """What an annotation says: the property that a class gets when it is registered, or just a type."""
+    given = getattr(hint, "keywords", None)
+    if given is None:
+        return {"type": hint if isinstance(hint, str) else getattr(hint, "__name__", str(hint))}
+    kind = hint.function.__name__.removesuffix("Property").lower()
+    return {
+        "type": "boolean" if kind == "bool" else kind,
+        "label": given.get("name", ""),
+        "description": given.get("description", ""),
+        "default": plain(given.get("default")),
+        "subtype": given.get("subtype", ""),
+    }
+
+
+def write_class(write, path, cls):
+    """A class outside RNA with its own members."""
+    owner = path.rpartition(".")[0]
+    WRITTEN[cls] = path
+    write(
+        "symbol",
+        path=path,
+        kind="class",
+        owner=owner,
+        docstring=inspect.getdoc(cls) if "__doc__" in vars(cls) and cls.__doc__ else "",
+        signature=signature(cls) if cls.__module__ != "builtins" and "__init__" in vars(cls) else "",
+        base=base_path(cls),
+        group="data",
+    )
+    written = set()
+    for ancestor in cls.__mro__:
+        # Mix-ins of a private kind are not documented anywhere else.
+        if ancestor is not cls and not ancestor.__name__.startswith("_"):
+            break
+        for name, value in vars(ancestor).items():
+            if name.startswith("_") or name in written:
+                continue
+            written.add(name)
+            if isinstance(value, METHOD_TYPES + ATTRIBUTE_TYPES):
+                write_member(write, path, name, value)
+            elif isinstance(value, type) and value.__module__ == cls.__module__:
+                write_class(write, f"{path}.{name}", value)
+            elif isinstance(value, PLAIN):
+                write(
+                    "symbol",
+                    path=f"{path}.{name}",
+                    kind="data",
+                    owner=path,
+                    type=type(value).__name__,
+                    default=plain(value),
+                )
+    for name, hint in getattr(cls, "__annotations__", {}).items():
+        if not name.startswith("_") and name not in written:
+            write("symbol", path=f"{path}.{name}", kind="property", owner=path, **annotated(hint))
+
+
+class Walk:
+    """One pass over the modules; remembers objects, so that each is written where it is at home."""
+
+    def __init__(self, write):
+        self.write = write
+        self.seen = set()
+        self.modules = set()
+
+    def module(self, name, module):
+        """A module, what it defines, and the modules below it."""
+        if name in self.modules:
+            return
+        self.modules.add(name)
+        self.write(
+            "symbol",
+            path=name,
+            kind="module",
+            owner=name.rpartition(".")[0],
+            docstring=inspect.getdoc(module) or ""
+            if not isinstance(module, tuple)
+            else type(module).__doc__ or "",
+        )
+        below = []
+        for attribute in dir(module):
+            if attribute.startswith("_") and not self.is_documented(name, module, attribute):
+                continue
+            try:
+                value = getattr(module, attribute)
+            except Exception:
+                continue
+            path = f"{name}.{attribute}"
+            if isinstance(value, types.ModuleType):
+                if belongs(value.__name__, name, attribute):
+                    below.append((path, value))
+            else:
+                self.member(name, module, path, attribute, value)
+        if hasattr(module, "__path__"):
+            for info in pkgutil.iter_modules(module.__path__):
+                if not info.name.startswith("_"):
+                    below.append((f"{name}.{info.name}", load(f"{name}.{info.name}")))
+        for path, value in below:
+            if value is not None:
+                self.module(path, value)
+
+    def is_documented(self, name, module, attribute):
+        """Whether a name with an underscore in front has documentation all the same."""
+        if f"{name}.{attribute}" in PRIVATE_BUT_DOCUMENTED:
+            return True
+        described = getattr(type(module), attribute, None)
+        return (
+            not attribute.startswith("__")
+            and isinstance(described, types.MemberDescriptorType)
+            and described.__doc__
+        )
+
+    def member(self, name, module, path, attribute, value):
+        """One thing that a module holds; what it merely imported is passed over."""
+        home = getattr(value, "__module__", None)
+        if isinstance(value, type):
+            if home != name and attribute not in getattr(module, "__all__", (attribute,)):
+                return
+            if value in self.seen or (
+                home not in {name, None, "builtins"} and not home.startswith(name.split(".")[0])
+            ):
+                return
+            if home == "builtins" and value.__name__ != attribute:
+                return
+            self.seen.add(value)
+            write_class(self.write, path, value)
+        elif isinstance(value, types.FunctionType):
+            if home == name or name.startswith(home + ".") or home.startswith("_bpy"):
+                self.function(path, name, value)
+        elif isinstance(value, types.BuiltinFunctionType) or type(value).__name__ == "BMeshOpFunc":
+            self.function(path, name, value)
+        elif type(value).__module__ == "typing" or home in {"typing", "collections.abc"}:
+            return
+        elif self.holds_documented_members(value):
+            self.module(path, value)
+        else:
+            self.data(path, name, module, attribute, value)
+
+    def holds_documented_members(self, value):
+        """Blender's module-like objects: handlers, build options, unit categories, translations, …"""
+        cls = type(value)
+        return cls.__name__ in {"bpy_app_translations", "_translations_type"} or (
+            isinstance(value, tuple) and cls is not tuple and hasattr(cls, "n_fields")
+        )
+
+    def function(self, path, owner, value):
+        """A function of a module. bmesh operators describe themselves in their own way."""
+        text = inspect.getdoc(value) or ""
+        self.write(
+            "symbol",
+            path=path,
+            kind="function",
+            owner=owner,
+            docstring=text,
+            signature=signature(value),
+        )
+
+    def data(self, path, owner, module, attribute, value):
+        """A constant or a list that a module holds; its documentation is on the descriptor, if anywhere."""
+        described = getattr(type(module), attribute, None)
+        documented = isinstance(described, ATTRIBUTE_TYPES)
+        self.write(
+            "symbol",
+            path=path,
+            kind="data",
+            owner=owner,
+            type=type(value).__name__,
+            default=plain(value)
+            if isinstance(value, (bool, int, float, str)) and not owner.startswith("bpy.app")
+            else None,
+            docstring=inspect.getdoc(described) or "" if documented else "",
+        )
+
+
+def write_bpy_types(write):
+    """The classes of ``bpy.types`` that are not RNA: bpy_struct, bpy_prop_collection, GeometrySet, …"""
+    for name in dir(bpy.types):
+        value = getattr(bpy.types, name)
+        if isinstance(value, type) and not name.startswith("_") and not hasattr(value, "bl_rna"):
+            write_class(write, f"bpy.types.{name}", value)
+
+
+def write_all(write):
+    """Every module of the public API outside ``bpy.types`` and ``bpy.ops``."""
+    for name, text in (
+        ("bpy", "Blender's Python API."),
+        ("bpy.types", "The classes of Blender's data."),
+        ("bpy.ops", "Operators: the actions of Blender's interface, callable from Python."),
+    ):
+        write("symbol", path=name, kind="module", owner=name.rpartition(".")[0], description=text)
+    write("symbol", path="bpy.data", kind="data", owner="bpy", type="BlendData", target="BlendData",
+          description="Access to Blender's internal data.")  # fmt: skip
+    write("symbol", path="bpy.context", kind="data", owner="bpy", type="Context", target="Context",
+          description="The current context: window, area, scene, active and selected objects.")  # fmt: skip
+    write_bpy_types(write)
+    walk = Walk(write)
+    for name in ROOTS:
+        module = load(name)
+        if module is not None:
+            walk.module(name, module)

@@ -1,0 +1,284 @@
+"""Where manual and guides come from: a path given, a folder of sources, the cache, the official site."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from kb_build.digests import Digests
+from kb_build.errors import SourceError
+from kb_build.pages.archives import unpack
+from kb_build.pages.download import Patience, download
+from simworlds.releases import ROLES, Role, address, archive_suffixes, minor_of, source_names
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+    from pathlib import Path, PurePosixPath
+
+    from kb_build.pages.archives import Progress
+
+Form = Literal["rst", "html"]
+
+_SUFFIXES: dict[Form, str] = {"rst": ".rst", "html": ".html"}
+_DEPTH = 4
+_FOLDERS = 5_000
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Pages to build from.
+
+    ``path`` is the folder that the pages' slugs are relative to; ``version`` the documentation's own minor
+    version, ``"unknown"`` where a given path does not tell; ``sha256`` the archive's, or over the folder's
+    page names and contents; ``origin`` the path they came from; ``given`` whether the user named it.
+    """
+
+    role: Role
+    path: Path
+    form: Form
+    version: str
+    sha256: str
+    origin: str
+    given: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a source was had from, and whether the user had named it."""
+
+    path: Path
+    given: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """A source that could not be had: what was tried, and what to do."""
+
+    role: Role
+    reason: str
+
+
+def find_sources(  # noqa: PLR0913 - each names one place to look in
+    version: str,
+    *,
+    cache: Path,
+    manual: Path | None = None,
+    guides: Path | None = None,
+    corpora: Path | None = None,
+    before: Mapping[str, Origin] | None = None,
+    allow_download: bool = True,
+    base_url: str | None = None,
+    patience: Patience | None = None,
+    progress: Progress | None = None,
+) -> tuple[list[Source], list[Missing]]:
+    """The manual and the guides of a Blender version: those found, and those that could not be had.
+
+    ``manual`` and ``guides`` are folders or archives named by the user, taken whatever their version;
+    ``corpora`` is a folder with sources of several versions; ``before`` tells by role where the last build had
+    them from; ``cache`` keeps downloads, unpacked archives and
+    digests; ``base_url`` replaces the official site; silent addresses cost what ``patience`` allows
+    (ten seconds), both roles together. Raises SourceError when a path that the user named cannot be used.
+    """
+    waits = patience or Patience()
+    search = _Search(
+        minor_of(version), cache, corpora, before or {}, allow_download, base_url, waits, progress
+    )
+    given = {"manual": manual, "guides": guides}
+    found = [search.find(role, given[role]) for role in ROLES]
+    search.digests.save()
+    return [s for s in found if isinstance(s, Source)], [s for s in found if isinstance(s, Missing)]
+
+
+@dataclass(slots=True)
+class _Search:
+    """The search for one version's sources."""
+
+    version: str
+    cache: Path
+    corpora: Path | None
+    before: Mapping[str, Origin]
+    allow_download: bool
+    base_url: str | None
+    patience: Patience
+    progress: Progress | None
+    digests: Digests = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.digests = Digests(self.cache / "digests.json")
+
+    @property
+    def downloads(self) -> Path:
+        return self.cache / "downloads"
+
+    def find(self, role: Role, given: Path | None) -> Source | Missing:
+        if given is not None:
+            return self._open(role, given.expanduser().absolute(), given=True)
+        faults: list[str] = []
+        attempts = (self._among_corpora, self._among_downloads, self._as_before, self._from_site)
+        for attempt in attempts:
+            if source := attempt(role, faults):
+                return source
+        name = "manual" if role == "manual" else "API guides"
+        return Missing(
+            role,
+            f"no {name} of Blender {self.version}: {'; '.join(faults)}. "
+            f"Give one with --{role} PATH (make kb {role.upper()}=PATH), or run again with a network",
+        )
+
+    def _among_corpora(self, role: Role, faults: list[str]) -> Source | None:
+        if self.corpora is None:
+            faults.append("no folder of sources is named (SIMWORLDS_CORPORA)")
+            return None
+        return self._among(self.corpora, role, faults)
+
+    def _among_downloads(self, role: Role, faults: list[str]) -> Source | None:
+        return self._among(self.downloads, role, faults)
+
+    def _as_before(self, role: Role, faults: list[str]) -> Source | None:
+        """Where the last build had it from: a build that names nothing must not lose what the base has."""
+        origin = self.before.get(role)
+        if self.corpora is not None or origin is None or not origin.path.exists():
+            return None
+        try:
+            return self._open(role, origin.path, given=origin.given)
+        except SourceError as error:
+            faults.append(str(error))
+            return None
+
+    def _among(self, folder: Path, role: Role, faults: list[str]) -> Source | None:
+        """The first usable source of this version that lies in ``folder`` under one of the usual names."""
+        for path in _candidates(folder, role, self.version):
+            try:
+                return self._open(role, path, given=False)
+            except SourceError as error:
+                faults.append(str(error))
+        faults.append(f"{folder} has none" if folder.is_dir() else f"{folder} does not exist")
+        return None
+
+    def _from_site(self, role: Role, faults: list[str]) -> Source | None:
+        if not self.allow_download:
+            faults.append("downloads are off")
+            return None
+        url = address(role, self.version, self.base_url)
+        target = self.downloads / f"{source_names(role, self.version)[-1]}.zip"
+        try:
+            download(url, target, patience=self.patience, progress=self.progress)
+            return self._open(role, target, given=False)
+        except SourceError as error:
+            faults.append(str(error))
+        return None
+
+    def _open(self, role: Role, path: Path, *, given: bool) -> Source:
+        """The source at ``path``. Raises SourceError if it has no pages of this role, or another version."""
+        try:
+            return self._read(role, path, given=given)
+        except OSError as error:
+            raise SourceError(f"{path} cannot be read: {error}") from error
+
+    def _read(self, role: Role, path: Path, *, given: bool) -> Source:
+        if path.is_dir():
+            top, digest = path, None
+        elif path.is_file():
+            digest = self.digests.of_file(path)
+            top = self.cache / "unpacked" / f"{role}-{digest[:32]}"
+            if not top.is_dir():
+                unpack(path, top, wanted=_RELEVANT[role], progress=self.progress)
+        else:
+            raise SourceError(f"{path} does not exist; give a folder, a .zip or a .tar archive")
+        pages, form = _pages_folder(top, role, path)
+        version = _version_of(pages, top, path)
+        if not given and version not in {self.version, "unknown"}:
+            raise SourceError(f"{path} holds Blender {version}")
+        return Source(
+            role=role,
+            path=pages,
+            form=form,
+            version=self.version if version == "unknown" and not given else version,
+            sha256=digest or self.digests.of_folder(pages, _RELEVANT[role]),
+            origin=str(path),
+            given=given,
+        )
+
+
+def _is_manual_file(path: PurePosixPath) -> bool:
+    return path.suffix in {".rst", ".html", ".inv"}
+
+
+def _is_guides_file(path: PurePosixPath) -> bool:
+    """The API reference's other pages say what Blender itself says better, and they are 2,000."""
+    return (
+        path.suffix in {".rst", ".inv"}
+        or (path.suffix == ".html" and path.name.startswith("info_"))
+        or path.name == "index.html"
+    )
+
+
+_RELEVANT: dict[Role, Callable[[PurePosixPath], bool]] = {
+    "manual": _is_manual_file,
+    "guides": _is_guides_file,
+}
+_MARKS: dict[Role, tuple[str, ...]] = {"manual": ("index", "*"), "guides": ("info_*",)}
+
+
+def _candidates(folder: Path, role: Role, version: str) -> Iterator[Path]:
+    for name in source_names(role, version):
+        for suffix in ("", *archive_suffixes()):
+            path = folder / (name + suffix)
+            if path.is_dir() if not suffix else path.is_file():
+                yield path
+
+
+def _pages_folder(top: Path, role: Role, origin: Path) -> tuple[Path, Form]:
+    """The folder below ``top`` that the pages' slugs are relative to, and their form; RST before HTML."""
+    folders = list(_breadth_first(top))
+    for mark in _MARKS[role]:
+        for form, suffix in _SUFFIXES.items():
+            for folder in folders:
+                if any(folder.glob(mark + suffix)):
+                    return folder, form
+    wanted = "manual pages (.rst or .html)" if role == "manual" else "guides (info_*.rst or info_*.html)"
+    raise SourceError(f"{origin} holds no {wanted}")
+
+
+def _breadth_first(top: Path) -> Iterator[Path]:
+    level, count = [top], 0
+    for _ in range(_DEPTH + 1):
+        yield from level
+        count += len(level)
+        if count > _FOLDERS:
+            return
+        level = [
+            child
+            for folder in level
+            for child in sorted(folder.iterdir())
+            if child.name[0] not in "._" and child.is_dir()
+        ]
+
+
+_INVENTORY = re.compile(rb"^# (?:Version|Project):[^\n]*?(\d{1,2}\.\d{1,2})", re.MULTILINE)
+_CONF = re.compile(rb"^(?:blender_version|version|release)\s*=\s*['\"](\d{1,2}\.\d{1,2})", re.MULTILINE)
+_TITLE = re.compile(rb"<title>[^<]*Blender (\d{1,2}\.\d{1,2})")
+_NAME = re.compile(r"(?:blender|manual|api|guides|python)\D*?(\d{1,2})[._](\d{1,2})(?!\d)", re.IGNORECASE)
+_COMPACT_NAME = re.compile(r"manual_v(\d)(\d{1,2})0_")
+
+
+def _version_of(pages: Path, top: Path, origin: Path) -> str:
+    """The documentation's minor version as its own files say, else as its names say, else "unknown"."""
+    for path, pattern in (
+        (pages / "objects.inv", _INVENTORY),
+        (pages / "conf.py", _CONF),
+        (pages.parent / "conf.py", _CONF),
+        (pages / "index.html", _TITLE),
+        (pages / "info_overview.html", _TITLE),
+    ):
+        if path.is_file():
+            with path.open("rb") as file:
+                if match := pattern.search(file.read(400_000)):
+                    return minor_of(match[1].decode())
+    inside = reversed(pages.relative_to(top).parts)
+    outside = (origin.name, origin.parent.name)
+    for name in (*inside, *outside):
+        if match := _COMPACT_NAME.search(name) or _NAME.search(name):
+            return minor_of(f"{match[1]}.{match[2]}")
+    return "unknown"

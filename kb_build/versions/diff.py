@@ -1,0 +1,231 @@
+"""What two Blenders' APIs do not have in common: added, removed and changed symbols."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from kb_build.blender.extract_reader import python_value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from kb_build.blender.extract_reader import Extract
+    from kb_build.records import EnumItem, Parameter, Symbol
+
+_REPEATED = ".bl_rna_get_subclass"
+_NOT_DATA = frozenset({"ui", "operator"})
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One difference of a symbol that both have.
+
+    ``what`` is ``type``, ``default``, ``range``, ``unit``, ``base``, ``read-only``, ``deprecated``,
+    ``enum items`` or ``parameters``; ``old`` and ``new`` are texts for people (enum items and parameters: what
+    was removed, what was added).
+    """
+
+    path: str
+    what: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A symbol that only one of the two has."""
+
+    path: str
+    kind: str
+    owner: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diff:
+    """The differences between two full versions, each list sorted by path."""
+
+    old: str
+    new: str
+    added: tuple[Entry, ...]
+    removed: tuple[Entry, ...]
+    changed: tuple[Change, ...]
+
+    def under(self, prefix: str) -> Diff:
+        """The part whose paths are ``prefix`` or go on from it (``bpy.types.Mesh``, ``bpy.ops``)."""
+
+        def belongs(path: str) -> bool:
+            return path.startswith(prefix) and not path[len(prefix) : len(prefix) + 1].isidentifier()
+
+        return Diff(
+            self.old,
+            self.new,
+            tuple(entry for entry in self.added if belongs(entry.path)),
+            tuple(entry for entry in self.removed if belongs(entry.path)),
+            tuple(change for change in self.changed if belongs(change.path)),
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """The same as JSON-ready data."""
+        return asdict(self)
+
+
+def diff(old: Extract, new: Extract, *, interface: bool = False) -> Diff:
+    """Compares two extracts. Panels, menus and their like are left out unless ``interface``."""
+    before, after = (_compared(extract.symbols, interface) for extract in (old, new))
+    both = before.keys() & after.keys()
+    return Diff(
+        old.version,
+        new.version,
+        _entries(after[path] for path in sorted(after.keys() - before.keys())),
+        _entries(before[path] for path in sorted(before.keys() - after.keys())),
+        tuple(change for path in sorted(both) for change in _changes(before[path], after[path])),
+    )
+
+
+def _compared(symbols: Sequence[Symbol], interface: bool) -> dict[str, Symbol]:
+    hidden = {symbol.path for symbol in symbols if symbol.group in _NOT_DATA and not interface}
+    return {
+        symbol.path: symbol
+        for symbol in symbols
+        if symbol.path not in hidden and symbol.owner not in hidden and not _is_repeated(symbol)
+    }
+
+
+def _is_repeated(symbol: Symbol) -> bool:
+    return _REPEATED in symbol.path or any(flag.startswith("same-as:") for flag in symbol.flags)
+
+
+def _entries(symbols: Iterable[Symbol]) -> tuple[Entry, ...]:
+    return tuple(Entry(symbol.path, symbol.kind, symbol.owner) for symbol in symbols)
+
+
+def _changes(old: Symbol, new: Symbol) -> Iterator[Change]:
+    before, after = _facts(old), _facts(new)
+    for what in dict.fromkeys((*before, *after)):
+        if before.get(what, "") != after.get(what, ""):
+            yield Change(new.path, what, before.get(what, ""), after.get(what, ""))
+    yield from _items_change(new.path, old.enum_items, new.enum_items)
+    if old.kind == new.kind:
+        yield from _parameters_change(new.path, old.parameters, new.parameters)
+
+
+def _facts(symbol: Symbol) -> dict[str, str]:
+    """What is compared as a whole, as texts. Classes compare by base, members by type and value."""
+    if symbol.kind in {"class", "module"}:
+        return {"base": symbol.base}
+    facts = {
+        "type": _type(symbol),
+        "unit": symbol.unit,
+        "range": _range(symbol.hard_min, symbol.hard_max),
+        "read-only": "yes" if "readonly" in symbol.flags else "",
+        "deprecated": symbol.deprecation.note or "yes" if symbol.deprecation else "",
+    }
+    # A default of a run-time enumeration or of a constant is the machine's, not the API's.
+    if symbol.default is not None and not symbol.enum_computed and symbol.kind != "data":
+        facts["default"] = python_value(symbol.default)
+    return facts
+
+
+def _type(symbol: Symbol) -> str:
+    length = "".join(f"[{n}]" for n in symbol.array)
+    return (
+        symbol.type + length + (f" of {symbol.target}" if symbol.target and symbol.kind != "operator" else "")
+    )
+
+
+def _range(low: float | None, high: float | None) -> str:
+    if low is None and high is None:
+        return ""
+    return f"{'-inf' if low is None else low} … {'inf' if high is None else high}"
+
+
+def _items_change(
+    path: str, old: Sequence[EnumItem], new: Sequence[EnumItem], prefix: str = ""
+) -> Iterator[Change]:
+    if not old or not new:
+        return
+    before, after = [item.identifier for item in old], [item.identifier for item in new]
+    gone = [name for name in before if name not in set(after)]
+    come = [name for name in after if name not in set(before)]
+    if gone or come:
+        yield Change(path, f"{prefix}enum items", ", ".join(gone), ", ".join(come))
+
+
+def _parameters_change(path: str, old: Sequence[Parameter], new: Sequence[Parameter]) -> Iterator[Change]:
+    before = {parameter.name: parameter for parameter in old}
+    after = {parameter.name: parameter for parameter in new}
+    gone = [name for name in before if name not in after]
+    come = [name for name in after if name not in before]
+    if gone or come:
+        yield Change(path, "parameters", ", ".join(gone), ", ".join(come))
+    for name in (name for name in after if name in before):
+        one, other = before[name], after[name]
+        if one.type != other.type:
+            yield Change(path, f"{name}: type", one.type, other.type)
+        elif (one.required, one.default) != (other.required, other.default) and not one.enum_items:
+            yield Change(path, f"{name}: default", _default(one), _default(other))
+        yield from _items_change(path, one.enum_items, other.enum_items, f"{name}: ")
+
+
+def _default(parameter: Parameter) -> str:
+    return "required" if parameter.required else python_value(parameter.default)
+
+
+def format_diff(found: Diff, *, limit: int | None = None) -> str:
+    """The differences as Markdown: counts first, then by owner. ``limit`` cuts each part to so many lines."""
+    counts = [
+        f"# Blender {found.old} → {found.new}",
+        "",
+        f"- added: {_counted(entry.kind for entry in found.added)}",
+        f"- removed: {_counted(entry.kind for entry in found.removed)}",
+        f"- changed: {_counted(change.what.rpartition(': ')[2] for change in found.changed)}",
+    ]
+    owners = {entry.path: entry.owner for entry in (*found.added, *found.removed)}
+    removed = {entry.path: entry.kind for entry in found.removed}
+    added = {entry.path: entry.kind for entry in found.added}
+    changed: defaultdict[str, list[str]] = defaultdict(list)
+    for change in found.changed:
+        changed[change.path].append(_change_text(change))
+    parts = [
+        _part("Removed", removed, owners, limit),
+        _part("Added", added, owners, limit),
+        _part("Changed", {path: "; ".join(texts) for path, texts in changed.items()}, {}, limit),
+    ]
+    return "\n".join([*counts, *(line for part in parts for line in part), ""])
+
+
+def _counted(kinds: Iterable[str]) -> str:
+    counts = Counter(kinds)
+    listed = ", ".join(f"{kind} {count}" for kind, count in counts.most_common())
+    return f"{counts.total()} ({listed})" if counts else "0"
+
+
+def _change_text(change: Change) -> str:
+    if change.what.endswith(("enum items", "parameters")):
+        sides = (f"{sign}{names}" for sign, names in (("- ", change.old), ("+ ", change.new)) if names)
+        return f"{change.what} {' '.join(sides)}"
+    return f"{change.what} {change.old or 'none'} → {change.new or 'none'}"
+
+
+def _part(
+    title: str, entries: Mapping[str, str], owners: Mapping[str, str], limit: int | None
+) -> Iterator[str]:
+    """A heading, and the entries in the order of their paths below their owners."""
+    if not entries:
+        return
+    yield from ("", f"## {title}", "")
+    group = None
+    for number, (path, text) in enumerate(sorted(entries.items())):
+        if limit is not None and number == limit:
+            yield f"- … and {len(entries) - limit} more"
+            return
+        owner = owners.get(path, path.rpartition(".")[0])
+        if owner in entries:
+            # The whole owner came or went: its members follow from that.
+            continue
+        if owner != group:
+            group = owner
+            yield f"- **{owner or 'top level'}**"
+        yield f"  - `{path[len(owner) :].lstrip('.') if owner else path}` {text}"

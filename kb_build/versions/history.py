@@ -1,0 +1,372 @@
+"""Which symbol exists in which Blender version: identifiers and versions, nothing else.
+
+The file is a tree in plain text. A line is its depth in blanks, a mark for how the path goes on (``.``
+member, ``(`` parameter, ``:`` enum item, ``<`` input and ``>`` output of a node), a span where it is not that
+of the path above, a blank, and the names that share all of this; deeper lines go on from the last name. Spans
+are ``4.3-`` (since then), ``-4.5`` (until then), ``4.2`` (only then), joined by commas where there are gaps,
+``-`` for all versions and ``!`` for what is no symbol itself. ``=name`` behind a name: it has the items of
+the shared enumeration ``name``.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import defaultdict
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kb_build.errors import KBBuildError, StoreError
+from simworlds.releases import minor_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from kb_build.blender.extract_reader import Extract
+
+HISTORY_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "api.txt"
+FORMAT = "1"
+_WIDTH = 110
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\S+')
+_PLAIN = re.compile(r'[^\s"=][^\s"]*')
+_PATH = re.compile(r'(.*)\.(inputs|outputs)\["(.*)"\]|(.*)\(([^()]*)\)', re.DOTALL)
+_JOINED = {"<": ("inputs", "<"), ">": ("outputs", ">")}
+_SHARED = "rna_enum_"
+
+
+def version_key(version: str) -> tuple[int, ...]:
+    """For sorting versions as numbers."""
+    return tuple(int(part) for part in version.split("."))
+
+
+def history_paths(extract: Extract) -> Iterator[str]:
+    """The identifiers of one Blender: its symbols, their parameters and enum items.
+
+    What every class repeats from its base (the reference lists it on each) is as old as the class: left out.
+    """
+    for symbol in extract.symbols:
+        if any(flag.startswith("same-as:") for flag in symbol.flags) or ".bl_rna_get_subclass" in symbol.path:
+            continue
+        yield symbol.path
+        for item in symbol.enum_items:
+            yield f"{symbol.path}:{item.identifier}"
+        for parameter in symbol.parameters:
+            path = f"{symbol.path}({parameter.name})"
+            yield path
+            for item in parameter.enum_items:
+                yield f"{path}:{item.identifier}"
+
+
+def split_path(path: str) -> tuple[str, str, str]:
+    """(path above, mark, name): the last step of a path. Enum items follow the last ``:`` of a path."""
+    if match := _PATH.fullmatch(path):
+        if match[2]:
+            return match[1], "<" if match[2] == "inputs" else ">", match[3]
+        return match[4], "(", match[5]
+    above, colon, item = path.partition(":")
+    if colon and not above.endswith('"]') and '["' in above:
+        # A colon inside a socket's name.
+        above, colon, item = path.rpartition('"]:')
+        return f'{above}"]', ":", item
+    if colon:
+        return above, ":", item
+    above, _, name = path.rpartition(".")
+    return above, ".", name
+
+
+def join_path(above: str, mark: str, name: str) -> str:
+    """The inverse of :func:`split_path`."""
+    match mark:
+        case ".":
+            return f"{above}.{name}" if above else name
+        case "(":
+            return f"{above}({name})"
+        case ":":
+            return f"{above}:{name}"
+        case _:
+            return f'{above}.{_JOINED[mark][0]}["{name}"]'
+
+
+def _runs(mask: int) -> Iterator[tuple[int, int]]:
+    """(first, last) of each unbroken run of set bits."""
+    position = 0
+    while mask >> position:
+        if not mask >> position & 1:
+            position += 1
+            continue
+        first = position
+        while mask >> position & 1:
+            position += 1
+        yield first, position - 1
+
+
+@dataclass(slots=True)
+class History:
+    """The known versions (minor ones, oldest first) and what existed in which.
+
+    ``patches`` are the full versions that were looked at, in the same order. ``masks`` hold one bit a
+    version, lowest the oldest; ``shared`` names the enumeration whose items a property or parameter has.
+    """
+
+    versions: tuple[str, ...]
+    patches: tuple[str, ...]
+    masks: dict[str, int]
+    shared: dict[str, str] = field(default_factory=dict[str, str])
+
+    @classmethod
+    def of(cls, paths: Mapping[str, Iterable[str]]) -> History:
+        """The history of these full versions and their paths (see :func:`history_paths`)."""
+        patches = tuple(sorted(paths, key=version_key))
+        masks: defaultdict[str, int] = defaultdict(int)
+        for number, version in enumerate(patches):
+            for path in paths[version]:
+                masks[path] |= 1 << number
+        _fill_unbuilt(masks, len(patches))
+        plain = dict(masks)
+        return cls(tuple(map(minor_of, patches)), patches, *_share(plain))
+
+    @classmethod
+    def load(cls, path: Path | None = None) -> History:
+        """The history in a file; by default the one that comes with the package. Raises StoreError."""
+        source = path or HISTORY_FILE
+        try:
+            return parse_history(source.read_text(encoding="utf-8"))
+        except (OSError, KBBuildError, UnicodeError, ValueError, KeyError, IndexError) as error:
+            raise StoreError(
+                f"{source} is not a readable history ({error}); make it again: simworlds kb history"
+            ) from error
+
+    def including(self, version: str, paths: Iterable[str]) -> History:
+        """This history, and where it does not know the version, with that full version's paths added."""
+        if self._number(version) is not None:
+            return self
+        known = {patch: set(self.paths(patch)) for patch in self.patches}
+        return History.of({**known, version: paths})
+
+    def mask(self, path: str) -> int:
+        """One bit a version, lowest the oldest; 0 for what no known version has."""
+        mask = self.masks.get(path)
+        if mask is not None or ":" not in path:
+            return mask or 0
+        above, _, item = split_path(path)
+        enumeration = self.shared.get(above)
+        return self.masks[above] & self.masks.get(f"{enumeration}:{item}", 0) if enumeration else 0
+
+    def exists(self, path: str, version: str) -> bool | None:
+        """Whether a version (minor or full) has the symbol; None for a version that is not known."""
+        number = self._number(version)
+        return None if number is None else bool(self.mask(path) >> number & 1)
+
+    def span(self, path: str) -> tuple[str, str] | None:
+        """The first and the last known version that have the symbol; None when none has."""
+        runs = list(_runs(self.mask(path)))
+        return (self.versions[runs[0][0]], self.versions[runs[-1][1]]) if runs else None
+
+    def paths(self, version: str) -> Iterator[str]:
+        """Everything that a version has, the items of shared enumerations included."""
+        number = self._number(version)
+        if number is None:
+            return
+        yield from (path for path, mask in self.symbols() if mask >> number & 1)
+
+    def removed_from(self, version: str) -> Iterator[tuple[str, str, str]]:
+        """(path, first, last) of what other versions have and this one lacks: gone, or not there yet.
+
+        The span is the latest one before ``version``, or else the earliest one behind it.
+        """
+        number = self._number(version)
+        if number is None:
+            return
+        for path, mask in self.symbols():
+            if not mask >> number & 1:
+                before = mask & ((1 << number) - 1)
+                first, last = list(_runs(before))[-1] if before else next(_runs(mask))
+                yield path, self.versions[first], self.versions[last]
+
+    def symbols(self) -> Iterator[tuple[str, int]]:
+        """(path, mask) of everything, the items of shared enumerations at each of their places included."""
+        yield from self.masks.items()
+        items: defaultdict[str, list[tuple[str, int]]] = defaultdict(list)
+        for path, mask in self.masks.items():
+            if path.startswith(_SHARED) and ":" in path:
+                name, _, item = path.partition(":")
+                items[name].append((item, mask))
+        for path, enumeration in self.shared.items():
+            own = self.masks[path]
+            yield from ((f"{path}:{item}", mask & own) for item, mask in items[enumeration] if mask & own)
+
+    def since(self, version: str) -> dict[str, str]:
+        """What the version has → since which one without a gap; only where that is not the oldest known."""
+        number = self._number(version)
+        if number is None:
+            return {}
+        full = (2 << number) - 1
+        found: dict[str, str] = {}
+        for path, mask in self.symbols():
+            if mask >> number & 1 and mask & full != full:
+                first = next(first for first, last in _runs(mask) if last >= number)
+                found[path] = self.versions[first]
+        return found
+
+    def text(self) -> str:
+        """The file's content. Equal histories give equal texts."""
+        head = [f"format {FORMAT}", *(f"version {patch}" for patch in self.patches), ""]
+        return "\n".join([*head, *_tree_lines(self), ""])
+
+    def _number(self, version: str) -> int | None:
+        minor = minor_of(version)
+        return self.versions.index(minor) if minor in self.versions else None
+
+
+def _fill_unbuilt(masks: dict[str, int], count: int) -> None:
+    """A whole module missing between two versions that have it was left out of that build, not of Blender."""
+    for root in [path for path in masks if "." not in path and not path.startswith(_SHARED)]:
+        for number in range(1, count - 1):
+            bit = 1 << number
+            around = bit >> 1, masks[root] >> (number + 1)
+            if not masks[root] & bit and masks[root] & around[0] and around[1]:
+                for path, mask in masks.items():
+                    if (path == root or path.startswith(f"{root}.")) and mask & around[0] and mask > bit:
+                        masks[path] = mask | bit
+
+
+def _share(masks: dict[str, int]) -> tuple[dict[str, int], dict[str, str]]:
+    """Takes out the items of properties and parameters that have those of a shared enumeration."""
+    items: defaultdict[str, dict[str, int]] = defaultdict(dict)
+    for path, mask in masks.items():
+        above, mark, name = split_path(path)
+        if mark == ":":
+            items[above][name] = mask
+    by_names: defaultdict[frozenset[str], list[str]] = defaultdict(list)
+    holders: defaultdict[str, list[str]] = defaultdict(list)
+    for name in sorted(path for path in items if path.startswith(_SHARED)):
+        for item in items[name]:
+            holders[item].append(name)
+        by_names[frozenset(items[name])].append(name)
+    shared: dict[str, str] = {}
+    for path, own in items.items():
+        if path.startswith(_SHARED):
+            continue
+        rarest = min((holders.get(item, []) for item in own), key=len)
+        for name in rarest:
+            if {item: mask & masks[path] for item, mask in items[name].items() if mask & masks[path]} == own:
+                shared[path] = name
+                break
+    dropped = {f"{path}:{item}" for path in shared for item in items[path]}
+    return {path: mask for path, mask in masks.items() if path not in dropped}, shared
+
+
+def _span_text(mask: int, above: int, versions: tuple[str, ...]) -> str:
+    if mask == above:
+        return ""
+    if not mask:
+        return "!"
+    newest = len(versions) - 1
+    texts: list[str] = []
+    for first, last in _runs(mask):
+        start, end = "" if first == 0 else versions[first], "" if last == newest else versions[last]
+        texts.append(start if first == last and start else f"{start}-{end}")
+    return ",".join(texts)
+
+
+def _span_mask(text: str, versions: tuple[str, ...]) -> int:
+    mask = 0
+    for run in text.split(","):
+        start, dash, end = run.partition("-")
+        first = versions.index(start) if start else 0
+        last = (versions.index(end) if end else len(versions) - 1) if dash else first
+        mask |= (2 << last) - (1 << first)
+    return mask
+
+
+def _quoted(name: str) -> str:
+    return name if _PLAIN.fullmatch(name) else json.dumps(name, ensure_ascii=False)
+
+
+def _children(history: History) -> dict[str, dict[str, list[str]]]:
+    """Path → mark → names below it, with the paths in between that are no symbols."""
+    below: dict[str, dict[str, list[str]]] = {"": {}}
+    known = {""}
+
+    def add(path: str) -> None:
+        if path in known:
+            return
+        known.add(path)
+        above, mark, name = split_path(path)
+        add(above)
+        below.setdefault(above, {}).setdefault(mark, []).append(name)
+
+    for path in sorted(history.masks):
+        add(path)
+    return below
+
+
+def _tree_lines(history: History) -> Iterator[str]:
+    below = _children(history)
+    versions, everywhere = history.versions, (1 << len(history.versions)) - 1
+
+    def lines(path: str, inherited: int, depth: int) -> Iterator[str]:
+        for mark, names in sorted(below[path].items()):
+            leaves: defaultdict[str, list[str]] = defaultdict(list)
+            nodes: list[tuple[str, str]] = []
+            for name in names:
+                child = join_path(path, mark, name)
+                span = _span_text(history.masks.get(child, 0), inherited, versions)
+                if child in below or child in history.shared:
+                    nodes.append((child, f"{' ' * depth}{mark}{span} {_quoted(name)}"))
+                else:
+                    leaves[span].append(_quoted(name))
+            for span, tokens in sorted(leaves.items()):
+                yield from _wrapped(f"{' ' * depth}{mark}{span}", tokens)
+            for child, line in nodes:
+                shared = history.shared.get(child)
+                yield f"{line} ={shared}" if shared else line
+                if child in below:
+                    yield from lines(child, history.masks.get(child, 0) or inherited, depth + 1)
+
+    return lines("", everywhere, 0)
+
+
+def _wrapped(head: str, tokens: Iterable[str]) -> Iterator[str]:
+    line = head
+    for token in tokens:
+        if len(line) + len(token) >= _WIDTH and line != head:
+            yield line
+            line = head
+        line = f"{line} {token}"
+    yield line
+
+
+def parse_history(text: str) -> History:
+    """The inverse of :meth:`History.text`. Raises ValueError, KeyError, IndexError or KBBuildError."""
+    head, _, body = text.partition("\n\n")
+    kind, *rows = head.splitlines()
+    if kind != f"format {FORMAT}":
+        raise ValueError(f"its first line is {kind[:40]!r}, not 'format {FORMAT}'")
+    patches = tuple(row.removeprefix("version ") for row in rows)
+    versions = tuple(map(minor_of, patches))
+    masks: dict[str, int] = {}
+    shared: dict[str, str] = {}
+    spans: dict[str, int] = {}
+    everywhere = (1 << len(versions)) - 1
+    stack: list[tuple[str, int]] = [("", everywhere)]
+    for line in body.splitlines():
+        content = line.lstrip(" ")
+        depth = len(line) - len(content)
+        above, inherited = stack[depth]
+        marked, _, rest = content.partition(" ")
+        span = marked[1:]
+        if span and span not in spans:
+            spans[span] = 0 if span == "!" else _span_mask(span, versions)
+        mask = spans[span] if span else inherited
+        path = above
+        for token in _TOKEN.findall(rest) if '"' in rest else rest.split(" "):
+            if token[0] == "=":
+                shared[path] = token[1:]
+                continue
+            path = join_path(above, marked[0], json.loads(token) if token[0] == '"' else token)
+            if mask:
+                masks[path] = mask
+        stack[depth + 1 :] = [(path, mask or inherited)]
+    return History(versions, patches, masks, shared)

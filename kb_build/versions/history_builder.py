@@ -1,0 +1,166 @@
+"""Makes the history file: asks every Blender that can be had, keeps from the old file what cannot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kb_build.blender.extract_reader import read_extract
+from kb_build.blender.extractor import extract_api
+from kb_build.errors import ExtractError, KBBuildError, StoreError
+from kb_build.versions.history import History, history_paths, version_key
+from simworlds.files import staged_file
+from simworlds.progress import silent
+from simworlds.releases import minor_of
+from simworlds.sandbox.runtime import find_runtime
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from simworlds.progress import Progress
+    from simworlds.sandbox.runtime import Runtime
+
+# A version that lost more than this share of its symbols lost them to a fault, not to a new patch release.
+_KEPT_SHARE = 0.98
+
+
+@dataclass(frozen=True, slots=True)
+class HistoryReport:
+    """What a run came to.
+
+    ``asked`` are the full versions that were extracted, ``kept`` those taken over from the old file,
+    ``missing`` what was asked for and could not be had → why (a kept version may be among them); ``faults``
+    are steps that failed inside Blender. ``written`` is False when the file already said all this.
+    """
+
+    path: Path
+    written: bool
+    asked: tuple[str, ...]
+    kept: tuple[str, ...]
+    symbols: int
+    size: int
+    missing: Mapping[str, str] = field(default_factory=dict[str, str])
+    faults: tuple[str, ...] = ()
+
+
+def build_history(  # noqa: PLR0913 - all but the first are named
+    versions: Sequence[str],
+    *,
+    home: Path,
+    output: Path,
+    blender_exes: Sequence[Path] = (),
+    force: bool = False,
+    progress: Progress = silent,
+) -> HistoryReport:
+    """Extracts ``versions`` (and whatever the executables are) and writes their history to ``output``.
+
+    Extracts lie in ``home``: a run that was stopped goes on where it was. Versions that only the old file
+    knows are kept; so are those that cannot be had now. Raises StoreError rather than replacing an old file
+    that cannot be read, or says more of a version, unless ``force``; and KBBuildError when no version could
+    be had.
+    """
+    old = _old(output, force)
+    found, missing, faults = _collect(versions, blender_exes, home, progress)
+    if not found:
+        reasons = "; ".join(f"{version}: {reason}" for version, reason in missing.items())
+        raise KBBuildError(f"not one Blender could be asked, {output} stays as it is. {reasons}")
+    kept: tuple[str, ...] = ()
+    if old is not None:
+        kept = _keep(old, found)
+        if not force:
+            _refuse_poorer(old, found, output)
+    progress("Writing the history", 0, None)
+    history = History.of(found)
+    text = history.text()
+    written = old is None or old.text() != text
+    if written:
+        _write(output, text)
+    return HistoryReport(
+        path=output,
+        written=written,
+        asked=tuple(sorted(set(found) - set(kept), key=version_key)),
+        kept=kept,
+        symbols=len(set().union(*found.values())),
+        size=len(text.encode()),
+        missing=missing,
+        faults=tuple(faults),
+    )
+
+
+def _old(output: Path, force: bool) -> History | None:
+    if not output.is_file():
+        return None
+    try:
+        return History.load(output)
+    except StoreError:
+        if force:
+            return None
+        raise
+
+
+def _collect(
+    versions: Sequence[str], blender_exes: Sequence[Path], home: Path, progress: Progress
+) -> tuple[dict[str, set[str]], dict[str, str], list[str]]:
+    """(full version → paths, what is missing → why, faults), each Blender asked in turn."""
+    wanted: list[tuple[str, str | None, Path | None]] = [(version, version, None) for version in versions]
+    wanted += [(str(executable), None, executable) for executable in blender_exes]
+    found: dict[str, set[str]] = {}
+    missing: dict[str, str] = {}
+    faults: list[str] = []
+    for number, (name, version, executable) in enumerate(wanted):
+        progress(f"Blender {name}", number, len(wanted))
+        try:
+            runtime = find_runtime(version, home=home, blender_exe=executable, progress=progress)
+            paths, failed = _paths(runtime, home, progress)
+        except KBBuildError as error:
+            missing[name] = str(error)
+            continue
+        if failed:
+            faults += failed
+            missing[name] = f"{len(failed)} step(s) of the extraction failed: what it lacks may well exist"
+            continue
+        same = next((known for known in found if minor_of(known) == minor_of(runtime.version)), None)
+        if same is None or version_key(same) < version_key(runtime.version):
+            found.pop(same or "", None)
+            found[runtime.version] = paths
+    return found, missing, faults
+
+
+def _paths(runtime: Runtime, home: Path, progress: Progress) -> tuple[set[str], list[str]]:
+    """(paths, faults) of one Blender; a file that turns out unreadable is made once more."""
+    file = extract_api(runtime, home=home, progress=progress)
+    try:
+        extract = read_extract(file)
+    except ExtractError:
+        extract = read_extract(extract_api(runtime, home=home, again=True, progress=progress))
+    return set(history_paths(extract)), [f"Blender {extract.version}: {fault}" for fault in extract.faults]
+
+
+def _keep(old: History, found: dict[str, set[str]]) -> tuple[str, ...]:
+    """Adds to ``found`` what only the old file knows; returns those full versions."""
+    known = {minor_of(version) for version in found}
+    kept = tuple(patch for patch in old.patches if minor_of(patch) not in known)
+    for patch in kept:
+        found[patch] = set(old.paths(patch))
+    return kept
+
+
+def _refuse_poorer(old: History, found: Mapping[str, set[str]], output: Path) -> None:
+    for version, paths in found.items():
+        before = set(old.paths(version))
+        if len(paths) < _KEPT_SHARE * len(before):
+            lost = ", ".join(sorted(before - paths)[:5])
+            raise StoreError(
+                f"{output} knows {len(before)} symbols of Blender {minor_of(version)}, the new extract only "
+                f"{len(paths)} (lost: {lost}, …). The file stays as it is; --force replaces it"
+            )
+
+
+def _write(output: Path, text: str) -> None:
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        with staged_file(output) as part:
+            part.write_text(text, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise StoreError(f"{output} cannot be written: {error}. The old one, if any, stands.") from error

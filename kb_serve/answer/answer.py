@@ -1,0 +1,197 @@
+"""A query → an answer within a token budget, in parts."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal
+
+from kb_build.records import PAGE_SOURCES
+from kb_serve.answer.budget import Block, clip, paginate, tokens
+from kb_serve.answer.render import Renderer, first_sentence
+from kb_serve.errors import BadQuery
+from kb_serve.rank.ranking import Ranked, Ranker, Ranking
+from kb_serve.rank.topics import Topics
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_serve.reader import Reader
+
+AnswerKind = Literal["schema", "page", "candidates", "none"]
+LIMIT = 8
+MAX_LIMIT = 50
+MAX_TOKENS = 1_500
+LEAST_TOKENS = 150
+_FOOTER_TOKENS = 70
+_ASKED_TOKENS = 20
+_LINE_TOKENS = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """One thing the answer is about. ``id`` is a symbol path or a page slug."""
+
+    id: str
+    kind: str
+    title: str
+    score: float
+    url: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What ``blender_docs`` returns. ``text`` is Markdown within the budget; ``parts`` of it exist in all."""
+
+    kind: AnswerKind
+    text: str
+    hits: tuple[Hit, ...] = ()
+    notes: tuple[str, ...] = ()
+    part: int = 1
+    parts: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class _Draft:
+    """Everything an answer could say, before it is cut into parts."""
+
+    kind: AnswerKind
+    hits: tuple[Hit, ...]
+    notes: tuple[str, ...]
+    blocks: tuple[Block, ...]
+
+
+class Answerer:
+    """Answers queries from one base."""
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+        self._ranker = Ranker(reader)
+        self._renderer = Renderer(reader)
+        self._topics = Topics(reader)
+        self._draft = lru_cache(maxsize=256)(self._make_draft)
+
+    def answer(self, query: str, limit: int, max_tokens: int, part: int) -> Answer:
+        """Answers a query. Raises BadQuery for an empty one, or a part that does not exist."""
+        # Half a character (a lone surrogate) can be part of nothing that a base holds.
+        text = " ".join(query.encode(errors="ignore").decode().replace("\0", " ").split())
+        if not text:
+            raise BadQuery(
+                "The query is empty. Ask for a name (ClothSettings.quality) or say what you want to do."
+            )
+        if limit < 1 or part < 1:
+            raise BadQuery(f"limit and part count from 1 (given: limit={limit}, part={part}).")
+        if max_tokens < LEAST_TOKENS:
+            raise BadQuery(
+                f"max_tokens={max_tokens} is too little to say anything; give at least {LEAST_TOKENS}."
+            )
+        draft = self._draft(text, min(limit, MAX_LIMIT))
+        return _paged(text, draft, max_tokens, part)
+
+    def _make_draft(self, text: str, limit: int) -> _Draft:
+        ranking = self._ranker.rank(text, limit)
+        topic = "" if self._reader.entry(text) else self._topics.find(text)
+        if topic:
+            return self._overview(topic, ranking, limit)
+        hits = tuple(self._hit(row) for row in ranking.ranked[:limit])
+        notes = (*ranking.notes, *self._source_notes(ranking, hits))
+        if not hits:
+            text = "Nothing in this knowledge base fits the query. Try other words, or a name as Blender writes it."
+            return _Draft("none", (), notes, (Block(text),))
+        if ranking.named:
+            blocks = tuple(self._whole(hits[0], ranking.ranked[0])) + self._others(hits[1:])
+            return _Draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
+        blocks = (*self._excerpt(ranking, hits[0]), *self._others(hits[1:]))
+        return _Draft("candidates", hits, notes, blocks)
+
+    def _source_notes(self, ranking: Ranking, hits: Sequence[Hit]) -> Iterator[str]:
+        """What the caller should know of the documentation behind the answer."""
+        meta = self._reader.meta
+        minor = meta.get("minor", "")
+        pages = [page for hit in hits if _is_page(hit) and (page := self._reader.page_entry(hit.id))]
+        for version in sorted({page.version for page in pages} - {minor, ""}):
+            yield f"These pages are of the documentation for Blender {version}, not {minor}."
+        missing = [row["role"] for row in json.loads(meta.get("missing", "[]"))]
+        if missing and not ranking.named:
+            yield f"This base lacks the {' and the '.join(missing)}; `simworlds kb info` says why."
+
+    def _hit(self, row: Ranked) -> Hit:
+        score = round(row.score, 3)
+        page = self._reader.page_entry(row.id)
+        if page:
+            url = page.url + (f"#{row.anchor}" if row.anchor else "")
+            return Hit(row.id, page.source, page.title, score, url)
+        entry = self._reader.entry(row.id)
+        if entry is None:
+            return Hit(row.id, "unknown", row.id, score)
+        return Hit(row.id, entry.kind, entry.label or entry.name, score, self._renderer.manual_page(row.id))
+
+    # What is said
+
+    def _whole(self, hit: Hit, row: Ranked) -> Iterator[Block]:
+        symbol = self._reader.symbol(hit.id)
+        if symbol is not None:
+            yield from self._renderer.symbol(symbol)
+        else:
+            yield from self._renderer.page(hit.id, row.anchor)
+
+    def _excerpt(self, ranking: Ranking, hit: Hit) -> Iterator[Block]:
+        """The best hit as far as a part of the budget reaches: its description, or the section that fits."""
+        first = ranking.ranked[0]
+        yield from list(self._whole(hit, first))[:2]
+
+    def _others(self, hits: Sequence[Hit]) -> tuple[Block, ...]:
+        if not hits:
+            return ()
+        lines = [f"- {self._line(hit)}" for hit in hits]
+        return (Block("**Also**\n" + "\n".join(lines), "further candidates"),)
+
+    def _line(self, hit: Hit) -> str:
+        entry = None if _is_page(hit) else self._reader.entry(hit.id)
+        if entry is not None:
+            owner = f"{entry.owner}." if entry.kind != "socket" else ""
+            told = (
+                entry.line.partition(" — ")[2]
+                if entry.kind in {"operator", "function", "class"}
+                else entry.line
+            )
+            told = told.removeprefix(f"`{entry.name}`").strip()
+            return clip(f"`{owner + entry.name if owner else hit.id}` {told}", _LINE_TOKENS)
+        page = self._reader.page_entry(hit.id)
+        told = first_sentence(page.summary) if page else ""
+        return clip(f"`{hit.id}` ({hit.title}) {told}", _LINE_TOKENS)
+
+    def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:
+        overview = self._topics.overview(topic)
+        ids = dict.fromkeys((topic, *overview.members, *(row.id for row in ranking.ranked)))
+        hits = tuple(self._hit(Ranked(i, 1.0 - 0.02 * n, "topic")) for n, i in enumerate(list(ids)[:limit]))
+        return _Draft("page", hits, tuple(self._source_notes(ranking, hits)), overview.blocks)
+
+
+def _is_page(hit: Hit) -> bool:
+    return hit.kind in PAGE_SOURCES
+
+
+def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> Answer:
+    """Cuts a draft into parts and adds to each what is missing from it and how to get it."""
+    notes = clip("\n".join(f"> {note}" for note in draft.notes), max_tokens // 3)
+    room = max_tokens - _FOOTER_TOKENS - (tokens(notes) + 1 if notes else 0)
+    pages = paginate(draft.blocks, room)
+    if part > len(pages):
+        raise BadQuery(
+            f"part={part} does not exist: this answer has {len(pages)} part(s) of {max_tokens} tokens."
+        )
+    text, left = pages[part - 1]
+    pieces = [notes, text] if notes and part == 1 else [text]
+    if part < len(pages):
+        pieces.append(_footer(query, part, len(pages), left))
+    return Answer(draft.kind, "\n\n".join(pieces), draft.hits, draft.notes, part, len(pages))
+
+
+def _footer(query: str, part: int, parts: int, left: Sequence[str]) -> str:
+    """What is left, and the call that fetches it; with the blank line above it, within ``_FOOTER_TOKENS``."""
+    head = f"_Part {part} of {parts}. Left: "
+    tail = f'. Next: blender_docs("{clip(query, _ASKED_TOKENS)}", part={part + 1})_'
+    names = clip(", ".join(dict.fromkeys(left)), _FOOTER_TOKENS - 1 - tokens(head + tail))
+    return head + names + tail

@@ -1,0 +1,162 @@
+"""The inverted index of a base, as numpy arrays: its documents, what they are asked for by, the postings of stems.
+
+All is numbered through: first the units, then the topics around them, then the phrases that ask for either. Lists that
+queries touch are kept, the least used forgotten first; those that a query needs are read together, since a look-up
+costs more than what it finds.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kb_build.index.analysis import idf
+from kb_build.schema import POSTING_BYTES, TOPICS, UNITS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from kb_serve.reader import Reader
+
+Scores = NDArray[np.float32]
+
+K1 = 2.2
+_KEPT = 600  # stems; a query has a dozen, with their near ones
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """The documents of one level, by number: their topics, chapters, weights, and which are about code."""
+
+    count: int
+    topics: NDArray[np.int32]
+    chapters: NDArray[np.int32]
+    weights: Scores
+    code: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Postings:
+    """The documents and phrases that have a stem, and for each how much it says of it: of documents, BM25's saturated
+    frequency; of phrases, the share that a unit of idf is of all that the phrase tells.
+
+    ``units``: how many of them are units; ``idf``: how much the stem tells, 0 if no unit has it.
+    """
+
+    numbers: NDArray[np.uint32]
+    saturated: Scores
+    units: int
+    idf: float
+
+
+_NOWHERE = Postings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0.0)
+
+
+class InvertedIndex:
+    """What one base's index tells of stems."""
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+        self._kept: OrderedDict[str, Postings] = OrderedDict()
+
+    @cached_property
+    def levels(self) -> tuple[Level, Level]:
+        """Units and topics. Raises BaseUnreadable."""
+        units, topics = self._read_level(UNITS), self._read_level(TOPICS)
+        if not _within(units.topics, -1, topics.count):
+            raise self._reader.damaged("its index points at topics that it has not")
+        return units, topics
+
+    @cached_property
+    def asked(self) -> NDArray[np.int32]:
+        """For each phrase the number of the document that it asks for. Raises BaseUnreadable."""
+        try:
+            ((targets,),) = self._reader.rows("SELECT targets FROM phrases")
+            asked = np.frombuffer(targets, np.int32)
+        except (ValueError, TypeError) as error:
+            raise self._reader.damaged(error) from error
+        if not _within(asked, 0, sum(level.count for level in self.levels)):
+            raise self._reader.damaged("its phrases ask for what it has not")
+        return asked
+
+    @cached_property
+    def ends(self) -> tuple[int, int, int]:
+        """The numbers at which units, topics and phrases end."""
+        units, topics = (level.count for level in self.levels)
+        return units, units + topics, units + topics + len(self.asked)
+
+    def load(self, stems: Iterable[str]) -> None:
+        """Reads the postings of stems that are not known yet, all at once."""
+        wanted = [stem for stem in dict.fromkeys(stems) if stem not in self._kept]
+        if not wanted:
+            return
+        self._kept.update(dict.fromkeys(wanted, _NOWHERE))
+        rows = self._reader.rows_of("SELECT stem, units, data FROM postings WHERE stem", wanted)
+        self._kept.update(self._postings(rows))
+        while len(self._kept) > max(_KEPT, len(wanted)):
+            self._kept.popitem(last=False)
+
+    def postings(self, stem: str) -> Postings:
+        """Where a stem stands; nowhere, if it is unknown."""
+        if stem not in self._kept:
+            self.load((stem,))
+        self._kept.move_to_end(stem)
+        return self._kept[stem]
+
+    def idf(self, stem: str) -> float:
+        """How much a stem tells, by the units that have it; 0 for an unknown one."""
+        return self.postings(stem).idf
+
+    def _read_level(self, level: int) -> Level:
+        sql = "SELECT count, topics, chapters, weights, code FROM levels WHERE level = ?"
+        try:
+            ((count, topics, chapters, weights, code),) = self._reader.rows(sql, level)
+            read = Level(
+                count,
+                np.frombuffer(topics, np.int32),
+                np.frombuffer(chapters, np.int32),
+                np.frombuffer(weights, np.float32),
+                np.frombuffer(code, np.bool_),
+            )
+        except (ValueError, TypeError) as error:
+            raise self._reader.damaged(error) from error
+        arrays = (read.topics, read.chapters, read.weights, read.code)
+        sound = all(len(array) == count for array in arrays) and np.isfinite(read.weights).all()
+        if not (sound and _within(read.chapters, 0, count)):
+            raise self._reader.damaged(f"level {level} of its index")
+        return read
+
+    def _postings(self, rows: Sequence[tuple[str, int, bytes]]) -> Iterator[tuple[str, Postings]]:
+        """Of (stem, units, data): checked and weighed all at once, which costs less than one by one."""
+        if not rows:
+            return
+        lengths = [len(data) // POSTING_BYTES for *_, data in rows]
+        try:
+            numbers = [
+                np.frombuffer(data, np.uint32, count) for (*_, data), count in zip(rows, lengths, strict=True)
+            ]
+            weights = [
+                np.frombuffer(data, np.float16, offset=array.nbytes)
+                for (*_, data), array in zip(rows, numbers, strict=True)
+            ]
+        except (ValueError, TypeError) as error:
+            raise self._reader.damaged(error) from error
+        listed, weight = np.concatenate(numbers), np.concatenate(weights).astype(np.float32)
+        units, documents, end = self.ends
+        if not (len(listed) == len(weight) and _within(listed, 0, end) and np.isfinite(weight).all()):
+            raise self._reader.damaged(f"the postings of {', '.join(stem for stem, *_ in rows)}")
+        saturated = np.where(listed < documents, weight * (K1 + 1) / (weight + K1), weight).astype(np.float32)
+        last = 0
+        for (stem, having, _), array in zip(rows, numbers, strict=True):
+            first, last = last, last + len(array)
+            # Copies, not to keep the lists of all for one, nor what was read for a part of it.
+            yield stem, Postings(array.copy(), saturated[first:last].copy(), having, idf(units, having))
+
+
+def _within(numbers: NDArray[Any], low: int, high: int) -> bool:
+    return not len(numbers) or (int(numbers.min()) >= low and int(numbers.max()) < high)

@@ -1,0 +1,125 @@
+"""Topic words (``cloth``, ``rigid body``, ``uv``): an overview of what belongs together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, terms, topic_key
+from kb_serve.answer.budget import Block
+from kb_serve.answer.render import first_sentence
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.reader import Entry, PageEntry, Reader
+
+ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
+_MAX_WORDS = 4
+_MOST = 200  # of one list: an overview has parts, but must end
+
+
+@dataclass(frozen=True, slots=True)
+class Overview:
+    """What is said of a topic, and the ids it names in the order of their use."""
+
+    blocks: tuple[Block, ...]
+    members: tuple[str, ...]
+
+
+class Topics:
+    """Finds the manual's page for a topic and what Blender's own table ties to it."""
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+
+    def find(self, text: str) -> str:
+        """The slug of the part of the manual that a few plain words name; empty when they name none.
+
+        Of several pages with the title, whatever its grammatical number, the one that most hangs on; a page that
+        nothing hangs on is no topic.
+        """
+        plain = text.strip().strip("`'\"?!.")
+        if len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
+            return ""
+        if plain != plain.lower() and self._is_class(plain):
+            return ""
+        slugs = {slug for _, slug in self._reader.by_key(topic_key(plain))}
+        slugs |= {slug for _, slug in self._reader.by_key(key(plain)) if self._children(slug)}
+        sizes = {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}
+        return max(sizes, key=lambda slug: (sizes[slug], slug)) if sizes else ""
+
+    def _is_class(self, text: str) -> bool:
+        """Whether a capital may mean a class: ``Camera``, ``Particle System``, unlike ``Rigid Body``."""
+        entries = (self._reader.entry(identifier) for _, identifier in self._reader.by_key(key(text)))
+        return any(entry is not None and entry.kind == "class" for entry in entries)
+
+    def _is_topic(self, slug: str) -> bool:
+        page = self._reader.page_entry(slug)
+        if page is None or page.source != "manual" or slug.startswith(ASIDE_PAGES):
+            return False
+        return bool(self._children(slug) or self._reader.symbols_of_page(slug))
+
+    def _children(self, slug: str) -> list[PageEntry]:
+        return self._reader.page_children(slug)
+
+    def _size(self, slug: str) -> int:
+        """How many symbols and pages hang on a chapter: what people mean is rarely the smaller one."""
+        below = self._subtree(slug)
+        return len(below) + sum(len(self._reader.symbols_of_page(child)) for child in below)
+
+    def _subtree(self, slug: str, depth: int = 3) -> list[str]:
+        slugs = [slug]
+        for child in self._children(slug) if depth else ():
+            slugs += self._subtree(child.slug, depth - 1)
+        return slugs
+
+    def overview(self, slug: str) -> Overview:
+        """The page, those below it, and the classes and operators that belong to it."""
+        page = self._reader.page_entry(slug)
+        assert page is not None
+        words = set(terms(page.title))
+        names = {key(page.title), key(slug.removesuffix("/index").rpartition("/")[2])}
+        explained = [path for below in self._subtree(slug) for path in self._reader.symbols_of_page(below)]
+        named = [path for name in sorted(names) for path in self._reader.classes_named(name)]
+        named += [path for name in sorted(names) for path in self._reader.operators_of(name)]
+        entries = [
+            entry for path in dict.fromkeys((*explained, *named)) if (entry := self._reader.entry(path))
+        ]
+        classes = [entry for entry in entries if entry.kind == "class" and entry.group == "data"]
+        classes.sort(key=lambda entry: self._order(entry, words))
+        operators = [entry for entry in entries if entry.kind == "operator"]
+        operators.sort(key=lambda entry: key(entry.owner.rpartition(".")[2]) not in names)
+        blocks = [Block(f"## {page.title}\n\n{page.summary}\n\n{page.url}", "summary")]
+        blocks += _listed("Classes", [_told(entry) for entry in classes])
+        blocks += _listed("Operators", [_told(entry) for entry in operators])
+        blocks += _listed("Pages", list(self._page_lines(slug)))
+        return Overview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
+
+    def _order(self, entry: Entry, words: set[str]) -> tuple[bool, bool, int]:
+        """Classes that bear the topic's name come first, modifiers before the settings they lead to."""
+        return (
+            not words <= set(terms(entry.name)),
+            not entry.name.endswith("Modifier"),
+            -len(self._reader.members(entry.path)),
+        )
+
+    def _page_lines(self, slug: str, depth: int = 2) -> Iterator[str]:
+        for child in self._children(slug):
+            yield f"`{child.slug}` ({child.title}) {first_sentence(child.summary)}"
+            if depth > 1:
+                yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
+
+
+def _told(entry: Entry) -> str:
+    return f"`{entry.path}` — {first_sentence(entry.line.partition(' — ')[2]) or entry.label}"
+
+
+def _listed(title: str, lines: list[str]) -> list[Block]:
+    if not lines:
+        return []
+    shown = "\n".join(
+        f"- {line}" if not line.startswith("  ") else f"  - {line.strip()}" for line in lines[:_MOST]
+    )
+    more = f"\n- … {len(lines) - _MOST} more" if len(lines) > _MOST else ""
+    return [Block(f"**{title}**\n{shown}{more}", title.lower())]

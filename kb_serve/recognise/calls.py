@@ -1,0 +1,56 @@
+"""Arguments of a call that a symbol does not take."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_serve.recognise.corrections import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_build.records import Symbol
+    from kb_serve.recognise.chains import Chain
+
+OVERRIDE = "bpy.types.Context.temp_override"
+NO_OVERRIDE = (
+    f"Operators take keyword arguments, after the execution context at most: a context is no argument of theirs, "
+    f"`{OVERRIDE}` gives one."
+)
+_FEW = 3
+_NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
+_KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
+_DEPTH = 5
+
+
+def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
+    """A sentence for each of ``names`` that is no parameter of ``symbol``, with the parameters most like it."""
+    known = [parameter.name for parameter in symbol.parameters]
+    for name in names:
+        if not known or name in known or any(other.startswith("*") for other in known):
+            continue
+        similar = [other for other, _ in nearest(name, known)]
+        similar = similar or [other for other in known if other.startswith(name[:3])]
+        closest = f"; closest: {', '.join(f'`{other}`' for other in similar[:_FEW])}" if similar else ""
+        yield f"`{symbol.path}` takes no `{name}`{closest}."
+
+
+def wrong_arguments(chain: Chain, symbol: Symbol) -> Iterator[str]:
+    """What is wrong with the arguments of a call, as far as its text tells."""
+    last = chain.steps[-1] if chain.steps else None
+    if last is None or last.kind != "call" or symbol.kind not in {"operator", "function"}:
+        return
+    text = last.text
+    if symbol.kind == "operator" and _gives_context(text):
+        yield NO_OVERRIDE
+    for _ in range(_DEPTH):
+        text = _NESTED.sub("0", text)
+    if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops."):
+        yield from unknown_keywords(symbol, _KEYWORD.findall(text))
+
+
+def _gives_context(arguments: str) -> bool:
+    """Whether the first argument is a dictionary, or a variable called like one that overrides the context."""
+    first = arguments.strip()
+    return bool(re.match(r"\{|dict\(|\w*(?:override|context|ctx)\w*(?:\.copy\(\))?\s*(?:,|$)", first))

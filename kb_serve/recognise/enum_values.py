@@ -1,0 +1,82 @@
+"""Enum values in a query (``'EMITTER'``, ``view_transform 'AgX'``) → the properties that take them."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, terms
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_serve.reader import Reader
+    from kb_serve.recognise.identified import Identified
+
+_QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
+_CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
+_ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
+_FITTING = 0.5  # how far the words around a bare value must fit the property that takes it
+
+
+class EnumValues:
+    """Recognises enum values against one base."""
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+
+    def recognise(self, query: str, found: Identified) -> None:
+        """Adds the properties and parameters that take the values in a query, and classes that are quoted."""
+        text = _ERROR.sub(" ", query)
+        quoted = [a or b for a, b in _QUOTED.findall(text)]
+        values = self.values(query)
+        if not values:
+            return
+        for value in quoted:
+            for entry in self._reader.by_name(value):
+                if entry.kind == "class":
+                    found.add(entry.path, 0.82, "quoted name")
+        rest = text
+        for value in values:
+            rest = rest.replace(value, " ")
+        around = set(terms(rest))
+        alone = not around
+        for rank, (owner, share) in enumerate(self.owners(values, around)):
+            if rank >= 5:
+                break
+            fits = alone or quoted or self._owner_fit(owner, around) >= _FITTING
+            sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
+            found.add(owner.partition("(")[0], sure, "enum item")
+
+    @staticmethod
+    def values(query: str) -> list[str]:
+        """What may be a value: what is quoted, and words in capitals."""
+        text = _ERROR.sub(" ", query)
+        return list(dict.fromkeys([*(a or b for a, b in _QUOTED.findall(text)), *_CAPITALS.findall(text)]))
+
+    def owners(self, values: Iterable[str], around: set[str] | None = None) -> Iterator[tuple[str, float]]:
+        """(owner, share of the values it has), the fullest first, then the one the other words fit."""
+        wanted = list(values)
+        held: dict[str, set[str]] = defaultdict(set)
+        for value in wanted:
+            for owner, identifier, name in self._reader.enum_owners(key(value)):
+                if value == identifier or (value == name and not self._is_class(value)):
+                    held[owner].add(value)
+        for owner in sorted(
+            held, key=lambda o: (-len(held[o]), -self._owner_fit(o, around or set()), len(o), o)
+        ):
+            yield owner, len(held[owner]) / max(1, len(wanted))
+
+    def _is_class(self, value: str) -> bool:
+        """Whether a label, ``Matrix``, is a class's own name: then it was hardly meant as an item."""
+        return any(entry.kind == "class" for entry in self._reader.by_name(value))
+
+    def _owner_fit(self, owner: str, around: set[str]) -> float:
+        path, _, parameter = owner.partition("(")
+        entry = self._reader.entry(path)
+        if entry is None:
+            return -1.0
+        about = set(terms(f"{entry.name} {entry.label} {parameter}"))
+        beyond = set(terms(entry.owner.replace("bpy.types.", "").replace("bpy.ops", "")))
+        return len(about & around) + 0.6 * len(beyond & around) - (0.3 if parameter else 0.0)

@@ -1,0 +1,222 @@
+"""Code in a query → the symbols that its expressions lead to, and what its bare names may be."""
+
+from __future__ import annotations
+
+import builtins
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
+from kb_build.schema import FORM_NAME, FORM_SHORT
+from kb_serve.reader import TYPES
+from kb_serve.recognise.identified import Missing
+
+if TYPE_CHECKING:
+    from kb_serve.reader import Entry, Reader
+    from kb_serve.recognise.chains import Chain
+    from kb_serve.recognise.corrections import Corrector, Drift, Drifts
+    from kb_serve.recognise.identified import Identified
+    from kb_serve.recognise.resolver import Walked, Walker
+
+_FEW = 3
+_SHORTEST_NAME = 4
+_NEARLY = 0.9  # how alike a class must be for a name to be its misspelling, not a variable's
+_CLEAR = 0.85  # a variable's name that hardly means another class
+_LIKELY = 0.5  # readings that fit less well than this share of the best are no readings
+_OWN_CLASS = 0.2  # from this fit on, a variable's name speaks for the class at all
+
+# Python's own names, which are nobody's API.
+_NOT_API = frozenset({*dir(builtins), "NoneType"})
+
+
+def _is_api(chain: Chain) -> bool:
+    """Whether a chain may be Blender's; ``object.location`` is, though Python has an ``object`` too."""
+    return chain.root not in _NOT_API or bool(chain.attributes)
+
+
+class Expressions:
+    """Recognises code against one base."""
+
+    def __init__(self, reader: Reader, walker: Walker, corrector: Corrector, drifts: Drifts) -> None:
+        self._reader = reader
+        self._walker = walker
+        self._corrector = corrector
+        self._drifts = drifts
+
+    def recognise(self, chains: list[Chain], found: Identified) -> None:
+        """Adds what the expressions among ``chains`` lead to, and what bare words of them name."""
+        self._expressions(chains, found)
+        self._class_with_member(chains, found)
+        self._api_words(chains, found)
+
+    def _expressions(self, chains: list[Chain], found: Identified) -> None:
+        code = [chain for chain in chains if chain.is_code and _is_api(chain)]
+        prose = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
+        for position, chain in enumerate(code):
+            later = 0.02 * min(position, 5)
+            readings = self._walker.walk(chain)
+            if self._former(chain, readings, found):
+                continue
+            broken = max((walked for walked in readings if walked.missing), key=lambda w: w.fit, default=None)
+            if (
+                readings
+                and self._trusted(chain, readings[0], broken)
+                and not self._misspelt(chain, readings[0])
+            ):
+                self._reading(chain, readings, later, found)
+            elif not self._corrected(chain, later, found):
+                if broken:
+                    self._broken_off(chain, broken, later, found)
+                self._loose_name(chain, prose, found)
+
+    @staticmethod
+    def _trusted(chain: Chain, walked: Walked, broken: Walked | None) -> bool:
+        """Whether a reading stands on more than a guess at what a variable or a bare word is.
+
+        A variable that clearly bears a class' name, and lacks the one attribute, is believed before a class that
+        merely has it.
+        """
+        if not walked.complete:
+            return False
+        if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and walked.fit < 0.5:
+            return False
+        return walked.fit >= 1.0 or len(chain.attributes) >= (1 if walked.fit >= _OWN_CLASS else 2)
+
+    def _misspelt(self, chain: Chain, walked: Walked) -> bool:
+        """Whether what looks like a class is nearly one: ``PoimtLight`` is no variable that holds a light."""
+        if walked.fit >= 1.0 or not chain.root[:1].isupper():
+            return False
+        meant = self._corrector.root(chain.root)
+        return meant is not None and _NEARLY <= meant.similarity < 1.0
+
+    def _former(self, chain: Chain, readings: list[Walked], found: Identified) -> bool:
+        """Whether the chain names what another version had: on the likeliest class, or under its own path."""
+        if not (readings and readings[0].complete and readings[0].fit >= 0.85):
+            if drift := self._drifts.of_variables_socket(chain):
+                found.drifts.append(drift)  # beside what else has a socket of the name
+            if whole := self._drifts.of_path(chain.dotted) if chain.steps else None:
+                found.drifts.append(whole)
+                return True
+            for walked in readings:
+                if drift := self._drift(chain, walked):
+                    found.drifts.append(drift)
+                    return True
+            for drift in self._drifts.spelled(chain.dotted) if chain.is_code else ():
+                found.drifts.append(drift)
+                return True
+        return False
+
+    def _drift(self, chain: Chain, walked: Walked) -> Drift | None:
+        """The former symbol that a broken reading stops at."""
+        if "puts[" in walked.missing:
+            former = self._drifts.of_member(walked.owner, walked.missing)
+            return former or self._drifts.of_socket(walked.owner, walked.missing, chain.root)
+        return (
+            self._drifts.of_member(walked.owner, walked.missing)
+            if walked.missing and walked.fit >= 0.6
+            else None
+        )
+
+    def _reading(self, chain: Chain, readings: list[Walked], later: float, found: Identified) -> None:
+        """The best reading of one chain, and what lies on the way to it."""
+        bare = not chain.attributes  # a class with a call or an index behind it
+        likely = [
+            walked for walked in readings[:4] if walked.complete and walked.fit >= _LIKELY * readings[0].fit
+        ]
+        for rank, walked in enumerate(likely):
+            sure = 0.78 if bare and chain.steps else 0.97
+            found.add(walked.symbols[-1], sure - 0.04 * rank - later, "expression")
+        for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
+            found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
+
+    def _corrected(self, chain: Chain, later: float, found: Identified) -> bool:
+        """Reads a chain with its misspelt names mended."""
+        if not chain.steps and not chain.root[:1].isupper():
+            return False
+        mended = self._corrector.corrected(chain)
+        if mended is None:
+            return False
+        walked, corrections = mended
+        found.corrections += corrections
+        found.add(
+            walked.symbols[-1], 0.93 * min(c.similarity for c in corrections) ** 0.25 - later, "correction"
+        )
+        for step, symbol in enumerate(reversed(walked.symbols[:-1])):
+            found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
+        return True
+
+    @staticmethod
+    def _broken_off(chain: Chain, walked: Walked, later: float, found: Identified) -> None:
+        """As far as a chain could be followed."""
+        assigned = chain.assigned and walked.steps_left == 1
+        found.missing.append(Missing(walked.missing, walked.owner, assigned))
+        for step, symbol in enumerate(reversed(walked.symbols)):
+            socket = step == 0 and symbol.endswith(
+                '"]'
+            )  # one that takes no value of its own is still what was meant
+            found.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
+
+    def _loose_name(self, chain: Chain, prose: set[str], found: Identified) -> None:
+        """A name of code without its owner (``thickness_outer``): its owners, by the words around it."""
+        name = chain.attributes[-1] if chain.attributes else chain.root
+        rows = [
+            entry
+            for form, identifier in self._reader.by_key(key(name))
+            if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
+        ]
+        rows = [entry for entry in rows if entry.name == name] or rows  # before the same letters
+        if not rows and not name.isupper() and (mended := self._corrector.member(name)):
+            found.corrections.append(mended)
+            rows = [entry for entry in self._reader.by_name(mended.meant) if entry.group != "ui"]
+        if chain.attributes and len(rows) > _FEW:
+            return  # a common name whose owner was given, and does not have it
+        for rank, entry in enumerate(sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]):
+            sure = 0.9 if len(rows) == 1 else 0.84
+            if chain.attributes and (len(rows) > 1 or "_" not in name):
+                sure = 0.55
+            elif entry.kind == "class" and chain.steps:
+                sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
+            found.add(entry.path, sure - 0.03 * rank, "name")
+
+    def _api_words(self, chains: list[Chain], found: Identified) -> None:
+        """Words among prose that are names and no English (``fcurves``, ``depsgraph``): likely what it is about."""
+        prose = {stem(word) for chain in chains for word in words(chain.root)}
+        names = [chain.root for chain in chains if not chain.is_code]
+        names = [name for name in names if len(name) >= _SHORTEST_NAME and name.islower()]
+        for name in self._no_english(names):
+            rows = [
+                entry
+                for entry in self._reader.by_name(name)
+                if entry.group != "ui" and entry.kind != "module"
+            ]
+            ranked = sorted(rows, key=lambda entry: -self._affinity(entry, prose))
+            for rank, entry in enumerate(ranked[:_FEW]):
+                found.add(entry.path, 0.79 - 0.03 * rank, "name")
+
+    def _no_english(self, names: list[str]) -> list[str]:
+        """Those of some lower-case words that no dictionary has, in either number."""
+        names = [name for name in names if name not in STOP_WORDS]
+        known = self._reader.near({form for name in names for form in (name, name.removesuffix("s"))})
+        return [name for name in names if name not in known and name.removesuffix("s") not in known]
+
+    def _affinity(self, entry: Entry, prose: set[str]) -> float:
+        """How many of the words around a name belong to its owner, and how usual the owner is."""
+        owner = self._reader.entry(entry.owner)
+        about = set(terms(entry.owner.replace("bpy.types.", "") + " " + (owner.label if owner else "")))
+        about |= set(terms(entry.label))
+        usual = 0.2 if entry.group != "ui" and entry.kind in {"property", "function", "operator"} else 0.0
+        return len(about & prose) - 0.05 * len(about) + usual
+
+    def _class_with_member(self, chains: list[Chain], found: Identified) -> None:
+        """``SoftBodySettings goal_spring``: a class and one of its members, side by side."""
+        classes = [
+            entry
+            for chain in chains
+            if not chain.steps and (entry := self._reader.entry(TYPES + chain.root)) and entry.kind == "class"
+        ]
+        for cls in classes:
+            for chain in chains:
+                if chain.steps or chain.root == cls.name:
+                    continue
+                member = self._walker.member(cls.path, chain.root)
+                if member and ("_" in chain.root or chain.root not in STOP_WORDS):
+                    found.add(member.path, 0.96, "class and member")

@@ -1,0 +1,112 @@
+"""The whole query as one spelling of one thing: a path, a label, a slug, a title, in any case and punctuation."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
+from kb_serve.reader import TYPES
+from kb_serve.recognise.addresses import page_named
+
+if TYPE_CHECKING:
+    from kb_serve.reader import Reader
+    from kb_serve.recognise.corrections import Drifts
+    from kb_serve.recognise.identified import Identified
+
+_MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
+_FEW = 3
+_OTHERWISE = 0.85  # how sure a name is that shares only its key with what was typed
+
+
+def _strangeness(text: str, identifier: str) -> int:
+    """How far an identifier is from what was typed, of those that share its key (see analysis.key)."""
+    if "_OT_" in text.upper():  # its class says nothing that the operator does not
+        return 0 if identifier.startswith("bpy.ops.") else 1
+    if identifier == f"bpy.ops.{text}":  # a module of operators is rarely what a bare word means
+        return 2
+    if f".{identifier}".endswith(f".{text}"):
+        return 0
+    if f".{identifier}".lower().endswith(f".{text.lower()}"):
+        return 1
+    return 2 if identifier.removeprefix(TYPES).count(".") == text.removeprefix(TYPES).count(".") else 3
+
+
+def _called(text: str) -> str:
+    """``f`` of ``f(a, b)``; the text itself where it is no call, or more follows upon it."""
+    start, depth = text.find("("), 0
+    if start < 0 or not text.endswith(")"):
+        return text
+    for position, char in enumerate(text[start:], start):
+        depth += (char == "(") - (char == ")")
+        if depth == 0 and position + 1 < len(text):
+            return text
+    return text[:start]
+
+
+class Spellings:
+    """Recognises whole spellings against one base."""
+
+    def __init__(self, reader: Reader, drifts: Drifts) -> None:
+        self._reader = reader
+        self._drifts = drifts
+
+    def recognise(self, query: str, found: Identified) -> None:
+        """Adds what the query as a whole is a spelling of."""
+        text = query.strip().strip("`'\"").rstrip(".:;,?!")
+        for path in (text, f"bpy.{text}"):
+            if self._reader.entry(path):
+                found.add(path, 1.0, "exact")
+                return
+        if slug := page_named(text, self._reader):
+            found.add(slug, 1.0, "exact")
+            return
+        called = _MEMBER.sub(".", _called(text))
+        if " " in text:
+            self._labelled(text, found)
+        rows = self._reader.by_key(key(called))
+        if rows:
+            self._spelled(called, rows, found)
+        if found.best is None or found.best.sure < 1:
+            found.drifts.extend(self._drifts.spelled(called))
+
+    def _spelled(self, text: str, rows: list[tuple[int, str]], found: Identified) -> None:
+        """Symbols and pages that share the key of what was typed; the fuller the spelling, the surer."""
+        dotted = "." in text
+        plain = " " not in text.strip()
+        strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
+        typed = 0 in strange.values() or self._is_enum_item(text) or self._is_former(text)
+        for form, identifier in sorted(rows, key=lambda row: strange[row[1]]):
+            if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
+                # ``view_layers`` and ``ViewLayers`` share a key: what is written otherwise was hardly meant.
+                found.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")
+            elif form in {FORM_NAME, FORM_LABEL} and not dotted:
+                same = self._last_part(identifier) == text
+                found.add(identifier, 0.9 if same and plain and "_" in text else 0.7, "name")
+            else:
+                found.add(identifier, 0.75, "title")
+
+    def _labelled(self, text: str, found: Identified) -> None:
+        """The classes and operators that the interface calls just so; of modifiers, what Blender names new ones."""
+        entries = [
+            entry
+            for label in (f"{text} Modifier", f"{text} Constraint", text)
+            for form, identifier in self._reader.by_key(key(label))
+            if form == FORM_LABEL and (entry := self._reader.entry(identifier)) and entry.label == label
+        ]
+        named = [entry for entry in entries if entry.kind in {"class", "operator"}]
+        for rank, entry in enumerate(named[:_FEW]):
+            found.add(entry.path, 0.9 if len(named) == 1 else 0.83 - 0.01 * rank, "label")
+
+    def _is_enum_item(self, text: str) -> bool:
+        if not (text.isupper() and "_" in text):
+            return False
+        return any(text == identifier for _, identifier, _ in self._reader.enum_owners(key(text)))
+
+    def _is_former(self, text: str) -> bool:
+        return any(self._reader.removed(path) for path in (text, TYPES + text))
+
+    @staticmethod
+    def _last_part(identifier: str) -> str:
+        return identifier.rpartition(".")[2]

@@ -1,0 +1,106 @@
+"""The audit, through the command that anybody has: what a scene costs, with its caches, and all of them together.
+
+Looked at are the reference scenes, which are built first where they are not there; that is not measured.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+from bench.markdown_tables import Table
+from bench.references.reference_scenes import build, has_reference
+from bench.scenes.spec import specs
+from bench.setting import environment, percentile, say, simworlds
+from measurements.report import Figure, Part, in_steps
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from bench.setting import Setting
+
+_JOBS = 2  # cores of the machine that the targets were set for
+_MEMORY = "1.86"  # GiB
+
+
+@dataclass(frozen=True, slots=True)
+class _Audited:
+    """One run of the command: wall seconds; ``size``: MB (10⁶ bytes) with caches."""
+
+    scene: str
+    seconds: float
+    mpr: float | None
+    spr: float | None
+    size: float
+
+
+class _Failed(Exception):  # noqa: N818 - reads as the state it names
+    """The command did not score a scene."""
+
+
+def measure(setting: Setting) -> Part:
+    """One scene after the other, then all on two cores."""
+    return in_steps("audits", {"reference scenes": partial(_measured, setting)})
+
+
+def _measured(setting: Setting) -> Part:
+    scenes = [spec.id for spec in specs() if has_reference(spec.id)]
+    if setting.quick:
+        scenes = [scene for scene in scenes if scene.endswith("_01")]
+    blends = {scene: _built(scene, setting) for scene in scenes}
+    say(f"audits: {len(scenes)} scenes, one after the other")
+    alone = [_audited(scene, blends[scene], setting) for scene in scenes]
+    say(f"audits: {len(scenes)} scenes, {_JOBS} at once")
+    began = time.perf_counter()
+    with ThreadPoolExecutor(_JOBS) as pool:
+        list(pool.map(_audited, scenes, blends.values(), [setting] * len(scenes)))
+    together = time.perf_counter() - began
+    slowest = max(alone, key=lambda one: one.seconds)
+    times = [one.seconds for one in alone]
+    figures = (
+        Figure("audit", slowest.seconds, f"{slowest.scene}; median {percentile(times, 0.5):.2f} s"),
+        Figure("audit_all", together, f"{len(scenes)} scenes, {_JOBS} at once"),
+    )
+    rows = tuple(
+        (
+            one.scene,
+            f"{one.size:.1f}",
+            f"{one.seconds:.2f}",
+            _share(one.mpr),
+            _share(one.spr),
+        )
+        for one in alone
+    )
+    header = ("scene", "MB with caches", "s", "MPR", "SPR")
+    note = (
+        "The whole command, with Blender's start: simworlds bench audit. "
+        f"Blender may take {_MEMORY} GiB, which is 2 GB: a scene that takes more is not scored."
+    )
+    return Part("audits", figures, (Table("Auditing the reference scenes", header, rows, note),))
+
+
+def _built(scene: str, setting: Setting) -> Path:
+    folder = setting.home / "references"
+    say(f"audits: {scene}")
+    return build(scene, folder)
+
+
+def _audited(scene: str, blend: Path, setting: Setting) -> _Audited:
+    began = time.perf_counter()
+    command = [*simworlds(), "bench", "audit", str(blend), "--scene", scene, "--json", "--memory", _MEMORY]
+    process = subprocess.run(command, capture_output=True, env=environment(setting.home), check=False)
+    seconds = time.perf_counter() - began
+    if process.returncode != 0:
+        raise _Failed(f"{scene} was not scored (exit code {process.returncode})")
+    found = json.loads(process.stdout)
+    files = sum(path.stat().st_size for path in blend.parent.rglob("*") if path.is_file())
+    return _Audited(scene, seconds, found["mpr"], found["spr"], files / 1e6)
+
+
+def _share(value: float | None) -> str:
+    return "–" if value is None else f"{value:.3f}"

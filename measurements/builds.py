@@ -1,0 +1,158 @@
+"""How long builds take: from nothing with all pages, without pages, and when nothing has changed.
+
+Every build is a process of ``simworlds kb build`` in a home folder that was empty before.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from bench.markdown_tables import Table
+from bench.setting import BLENDER, REPO, corpora, environment, say, simworlds
+from kb_build.errors import KBBuildError
+from kb_build.pages.readers.html import read_html
+from kb_build.pages.sources import find_sources
+from measurements.report import Figure, Part
+from simworlds.settings import base_path
+
+if TYPE_CHECKING:
+    from bench.setting import Setting
+
+HTML = "manual-4.4-html"
+_HTML_VERSION = "4.4"
+_JOBS = 2
+_LONGEST = 1_800
+_HEADER = ("what", "seconds", "CPU seconds", "gives")
+
+
+class BuildFailed(Exception):  # noqa: N818 - reads as the state it names
+    """A build ended with an error, or not as it must; the message says how."""
+
+
+@dataclass(frozen=True, slots=True)
+class Took:
+    """Wall time, and the processors' time of all processes, in seconds."""
+
+    wall: float
+    cpu: float
+
+
+def run_build(home: Path, *arguments: str) -> Took:
+    """Builds in ``home``. Raises BuildFailed."""
+    command = [*simworlds(), "kb", "build", BLENDER, "--offline", *arguments]
+    began, used = time.perf_counter(), _children_cpu()
+    try:
+        done = subprocess.run(
+            command,
+            env=environment(home),
+            cwd=REPO,
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=_LONGEST,
+        )
+    except (OSError, subprocess.SubprocessError) as error:
+        raise BuildFailed(f"{' '.join(command[-5:])}: {error}") from error
+    took = Took(time.perf_counter() - began, _children_cpu() - used)
+    if done.returncode != 0:
+        said = (done.stderr or done.stdout).strip().splitlines()
+        raise BuildFailed(f"exit code {done.returncode}: {said[-1] if said else 'it said nothing'}")
+    return took
+
+
+def _children_cpu() -> float:
+    times = os.times()
+    return times.children_user + times.children_system
+
+
+def measure(setting: Setting) -> Part:
+    """Builds in temporary folders; with ``quick`` neither the whole one nor the manual's HTML form."""
+    figures: list[Figure] = []
+    rows: list[tuple[str, ...]] = []
+    skipped: list[str] = []
+    with tempfile.TemporaryDirectory(prefix="simworlds-bench-") as folder:
+        steps = [(_api, "build without pages"), (_whole, "build with pages")]
+        for step, name in steps[:1] if setting.quick else steps:
+            try:
+                step(Path(folder), figures, rows)
+            except BuildFailed as error:
+                skipped.append(f"{name}: {error}")
+        if not setting.quick:
+            try:
+                _html(Path(folder), figures, rows)
+            except (KBBuildError, FileNotFoundError) as error:
+                skipped.append(f"manual from HTML: {error}")
+    if not any(figure.key == "size" for figure in figures):
+        figures.append(Figure("size", setting.base.stat().st_size / 1e6, "the base that is measured"))
+    tables = (Table("Builds", _HEADER, tuple(rows)),) if rows else ()
+    data: dict[str, Any] = {"builds": [dict(zip(_HEADER, row, strict=True)) for row in rows]}
+    return Part("builds", tuple(figures), tables, tuple(skipped), data)
+
+
+def _again(home: Path, *arguments: str) -> Took:
+    """The median of three builds that have nothing to do."""
+    base = base_path(home, BLENDER)
+    before = base.stat()
+    took = sorted((run_build(home, *arguments) for _ in range(3)), key=lambda one: one.wall)[1]
+    after = base.stat()
+    if (before.st_ino, before.st_mtime_ns) != (after.st_ino, after.st_mtime_ns):
+        raise BuildFailed("it was built again, though nothing but perhaps SimWorlds itself had changed")
+    return took
+
+
+def _row(what: str, took: Took, gives: str) -> tuple[str, ...]:
+    return what, f"{took.wall:.2f}", f"{took.cpu:.2f}", gives
+
+
+def _api(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> None:
+    say(f"builds: {BLENDER} without pages")
+    home = folder / "api"
+    took = run_build(home, "--no-pages")
+    figures.append(Figure("build_api", took.wall, "empty home"))
+    rows.append(_row("without pages, empty home", took, _size(home)))
+    rows.append(_row("without pages, nothing changed", _again(home, "--no-pages"), "the same base"))
+
+
+def _whole(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> None:
+    if corpora() is None:
+        raise BuildFailed("no documentation sources here; set SIMWORLDS_CORPORA to a folder that has them")
+    say(f"builds: {BLENDER} with manual and guides")
+    home = folder / "whole"
+    took = run_build(home, "--require", "manual,guides")
+    figures.append(Figure("build", took.wall, "empty home"))
+    figures.append(Figure("size", base_path(home, BLENDER).stat().st_size / 1e6, "just built"))
+    rows.append(_row("with manual and guides, empty home", took, _size(home)))
+    again = _again(home)
+    figures.append(Figure("build_again", again.wall, "median of 3"))
+    rows.append(_row("with manual and guides, nothing changed", again, "the same base"))
+    rows.append(_row("with manual and guides, forced", run_build(home, "--force"), _size(home)))
+
+
+def _size(home: Path) -> str:
+    return f"{base_path(home, BLENDER).stat().st_size / 1e6:.1f} MB"
+
+
+def _html(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> None:
+    sources = corpora()
+    archive = next(iter(sorted(sources.glob(f"{HTML}*"))), None) if sources else None
+    if archive is None:
+        raise FileNotFoundError(f"no {HTML}.tar.xz among the documentation sources")
+    say(f"builds: unpacking {archive.name}")
+    began, used = time.perf_counter(), time.process_time()
+    found, _ = find_sources(_HTML_VERSION, cache=folder / "cache", manual=archive, allow_download=False)
+    unpacked = Took(time.perf_counter() - began, time.process_time() - used)
+    html = next(source for source in found if source.role == "manual")
+    size = sum(path.stat().st_size for path in html.path.rglob("*") if path.is_file()) / 1e6
+    say("builds: reading the manual's HTML form")
+    between, used = time.perf_counter(), time.process_time() + _children_cpu()
+    pages = read_html(html.path, source="manual", version=_HTML_VERSION, jobs=_JOBS)
+    took = Took(time.perf_counter() - between, time.process_time() + _children_cpu() - used)
+    figures.append(Figure("html", took.wall, f"{size:,.0f} MB, {_JOBS} processes"))
+    rows.append(_row(f"{archive.name}: unpacking", unpacked, f"{size:,.0f} MB"))
+    rows.append(_row(f"{archive.name}: reading", took, f"{len(pages):,} pages"))

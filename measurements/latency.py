@@ -1,0 +1,92 @@
+"""How long an answer takes in process.
+
+Every pass opens the base anew, warms it with queries of each sort that are in no set, and then asks every dev query
+once: no answer was given before, so none can be repeated from memory. The whole answer counts, text included.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from bench.markdown_tables import Table
+from bench.setting import percentile, say
+from kb_serve.knowledge_base import KnowledgeBase
+from measurements.report import Figure, Part
+from measurements.retrieval import NAMED, Query, read_queries
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from bench.setting import Setting
+
+WARMING = (
+    "bpy.types.Scene.frame_end",
+    "bpy.ops.mesh.primitive_cube_add(size=2)",
+    "bpy.context.scene.render.resolution_x",
+    "AttributeError: 'Scene' object has no attribute 'foo'",
+    "sculpting",
+    "where are the render settings of a scene",
+    "SUBSURF",
+    "subdivison surfce",
+)
+PASSES = 5
+EXACT = frozenset({"exact", "member"})
+
+
+def measure(setting: Setting) -> Part:
+    """Percentiles over the first set of queries."""
+    queries = read_queries(setting.queries[0])
+    fresh: dict[str, list[float]] = {}
+    again: dict[str, list[float]] = {}
+    opening: list[float] = []
+    passes = 1 if setting.quick else PASSES
+    for number in range(passes):
+        say(f"latency: pass {number + 1} of {passes}")
+        began = time.perf_counter()
+        with KnowledgeBase(setting.base) as knowledge:
+            knowledge.query(WARMING[0])
+            opening.append((time.perf_counter() - began) * 1e3)
+            for text in WARMING:
+                knowledge.query(text)
+            _ask(knowledge, queries, fresh)
+            _ask(knowledge, queries, again)
+    groups = {name: (fresh[name], again[name]) for name in ("exact", "expression", "ranked") if name in fresh}
+    rows = [
+        (
+            name,
+            str(len(times) // passes),
+            *(f"{percentile(times, share):.2f}" for share in (0.5, 0.95, 1.0)),
+            f"{percentile(repeated, 0.5):.3f}",
+        )
+        for name, (times, repeated) in groups.items()
+    ]
+    note = (
+        "Milliseconds. Asked the first time in a warm base; “again” is the same query once more. exact: full names "
+        f"and members; ranked: all that is neither that nor an expression. Opening a base and its first answer: "
+        f"{percentile(opening, 0.5):.0f} ms."
+    )
+    header = ("queries", "n", "p50", "p95", "slowest", "again p50")
+    figures = [
+        Figure(f"{name}_p{round(100 * share)}", percentile(groups[name][0], share), f"{passes} passes")
+        for name, share in (("exact", 0.5), ("ranked", 0.5), ("ranked", 0.95))
+        if name in groups
+    ]
+    data = {name: {"fresh_ms": times, "again_ms": repeated} for name, (times, repeated) in groups.items()}
+    return Part(
+        "latency", tuple(figures), (Table("Latency in process", header, tuple(rows), note),), (), data
+    )
+
+
+def _ask(knowledge: KnowledgeBase, queries: Sequence[Query], times: dict[str, list[float]]) -> None:
+    for query in queries:
+        began = time.perf_counter()
+        knowledge.query(query.query)
+        took = (time.perf_counter() - began) * 1e3
+        times.setdefault(_group(query), []).append(took)
+
+
+def _group(query: Query) -> str:
+    if query.kind in EXACT:
+        return "exact"
+    return "expression" if query.kind in NAMED else "ranked"

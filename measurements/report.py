@@ -1,0 +1,214 @@
+"""What was measured, as Markdown for people and as JSON for later comparison."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import sqlite3
+import subprocess
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from bench.markdown_tables import Table, table
+from bench.setting import REPO, brief
+from measurements.targets import TARGETS, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+_PACKAGES = (
+    "simworlds", "bpy", "mcp", "rank-bm25", "numpy", "rapidfuzz", "sphinx", "beautifulsoup4", "sqlite-utils",
+)  # fmt: skip
+_BUSY = "busy"
+_REACHED = {True: "reached", False: "NOT reached", None: ""}
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A measured value of the target ``key``, in the target's unit; ``note`` says how it came about."""
+
+    key: str
+    value: float
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What one part of the benchmark found. ``skipped`` names what could not be measured, and why."""
+
+    name: str
+    figures: tuple[Figure, ...] = ()
+    tables: tuple[Table, ...] = ()
+    skipped: tuple[str, ...] = ()
+    data: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+
+def in_steps(name: str, steps: Mapping[str, Callable[[], Part]]) -> Part:
+    """A part that is measured step by step. A step that does not work is skipped, and named with the reason."""
+    parts = [_tried(each, step) for each, step in steps.items()]
+    return Part(
+        name,
+        tuple(figure for part in parts for figure in part.figures),
+        tuple(table for part in parts for table in part.tables),
+        tuple(f"{part.name}: {reason}" for part in parts for reason in part.skipped),
+        {part.name: part.data for part in parts},
+    )
+
+
+def _tried(name: str, step: Callable[[], Part]) -> Part:
+    try:
+        return step()
+    except Exception as error:  # whatever a broken server, Blender or command leads to
+        return Part(name, skipped=(brief(error),))
+
+
+def markdown(parts: Sequence[Part], facts: Mapping[str, str]) -> str:
+    """The whole report."""
+    blocks = ["# SimWorlds, measured", _facts(facts)]
+    figures = [figure for part in parts for figure in part.figures]
+    if figures:
+        blocks.append(table(targets_table(figures)))
+        if _BUSY in facts.get("machine", ""):
+            blocks.append("**The machine had other work when this began: times are more than they need be.**")
+    for part in parts:
+        blocks += [table(one) for one in part.tables]
+    skipped = [f"- {part.name}: {reason}" for part in parts for reason in part.skipped]
+    if skipped:
+        blocks.append("## Not measured\n\n" + "\n".join(skipped))
+    return "\n\n".join(blocks) + "\n"
+
+
+def targets_table(figures: Iterable[Figure]) -> Table:
+    """Each figure beside its target and the peers' figures, in the order of the targets."""
+    order = list(TARGETS)
+    rows: list[tuple[str, ...]] = []
+    for figure in sorted(figures, key=lambda one: order.index(one.key)):
+        target = TARGETS[figure.key]
+        verdict = _REACHED[target.reached(figure.value)]
+        rows.append(
+            (target.what, shown(figure.value, target.unit), target.goal, verdict, target.peers, figure.note)
+        )
+    counted = sum(row[3] != "" for row in rows)
+    reached = sum(row[3] == _REACHED[True] for row in rows)
+    note = (
+        f"{reached} of {counted} targets reached. Peers as measured elsewhere, on 240 queries of which the dev set "
+        "is a third (see measurements/targets.py); their machine had 2 cores."
+    )
+    header = ("what", "here", "target", "", "peers", "how")
+    return Table("Targets", header, tuple(rows), note)
+
+
+def _facts(facts: Mapping[str, str]) -> str:
+    return "\n".join(f"- {name}: {value}" for name, value in facts.items())
+
+
+# The machine and the versions
+
+
+def machine_facts(base_meta: Mapping[str, str], base: Path) -> dict[str, str]:
+    """What a figure depends on: date, commit, machine, versions, the base."""
+    versions = [f"CPython {platform.python_version()}", f"SQLite {sqlite3.sqlite_version}"]
+    versions += [f"{name} {_version(name)}" for name in _PACKAGES]
+    blender = base_meta.get("blender") or base_meta.get("version", "unknown")
+    pages = "with" if any(row.get("role") == "manual" for row in _sources(base_meta)) else "without"
+    return {
+        "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        "commit": _commit(),
+        "machine": f"{_processor()}, {os.cpu_count()} cores, {_memory()}{_busy()}",
+        "system": platform.platform(terse=True),
+        "versions": ", ".join(versions),
+        "base": f"Blender {blender}, {pages} manual, {base.stat().st_size / 1e6:.1f} MB",
+    }
+
+
+def _sources(meta: Mapping[str, str]) -> list[dict[str, Any]]:
+    return json.loads(meta.get("sources") or "[]")
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "(from source)" if name == "simworlds" else "(absent)"
+
+
+def _git(*arguments: str) -> str:
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(REPO), *arguments], capture_output=True, text=True, check=False, timeout=20
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return done.stdout.strip() if done.returncode == 0 else ""
+
+
+def _commit() -> str:
+    commit = _git("rev-parse", "--short=12", "HEAD") or "unknown"
+    return f"{commit} with changes" if _git("status", "--porcelain", "--untracked-files=no") else commit
+
+
+def _processor() -> str:
+    for line in _lines(Path("/proc/cpuinfo")):
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
+
+
+def _memory() -> str:
+    for line in _lines(Path("/proc/meminfo")):
+        if line.startswith("MemTotal:"):
+            return f"{int(line.split()[1]) / 2**20:.0f} GiB"
+    return "memory unknown"
+
+
+def _busy() -> str:
+    """A warning where others keep the machine busy: the times then say little."""
+    if not hasattr(os, "getloadavg"):
+        return ""
+    load = os.getloadavg()[0]
+    return f"; {_BUSY}: load {load:.1f}" if load > 0.7 * (os.cpu_count() or 1) else f"; load {load:.1f}"
+
+
+def _lines(path: Path) -> Iterator[str]:
+    try:
+        yield from path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return
+
+
+# Files
+
+
+def as_json(parts: Sequence[Part], facts: Mapping[str, str]) -> dict[str, Any]:
+    """The report as data: every figure with its target, and what lies behind it."""
+    figures = [
+        {
+            "key": figure.key,
+            "what": TARGETS[figure.key].what,
+            "value": figure.value,
+            "unit": TARGETS[figure.key].unit,
+            "target": TARGETS[figure.key].goal,
+            "reached": TARGETS[figure.key].reached(figure.value),
+            "peers": TARGETS[figure.key].peers,
+            "how": figure.note,
+        }
+        for part in parts
+        for figure in part.figures
+    ]
+    skipped = [f"{part.name}: {reason}" for part in parts for reason in part.skipped]
+    data = {part.name: dict(part.data) for part in parts}
+    return {"facts": dict(facts), "figures": figures, "skipped": skipped, "parts": data}
+
+
+def write(folder: Path, parts: Sequence[Part], facts: Mapping[str, str]) -> str:
+    """Writes ``bench.md`` and ``bench.json`` into ``folder``; returns the Markdown."""
+    folder.mkdir(parents=True, exist_ok=True)
+    text = markdown(parts, facts)
+    (folder / "bench.md").write_text(text, encoding="utf-8")
+    data = json.dumps(as_json(parts, facts), indent=2, ensure_ascii=False)
+    (folder / "bench.json").write_text(data + "\n", encoding="utf-8")
+    return text

@@ -1,0 +1,198 @@
+"""The verifier, through the command that anybody has: what a check costs, how that grows, and what it finds.
+
+Scenes are built in a Blender of their own, saved, and checked by ``simworlds verify --json``. How many of two hundred
+random breaches are found is measured by the tests' own script.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from agents.blender.launch import make_launch
+from agents.blender.run_folder import RunFolder
+from agents.blender.supervisor import Supervisor
+from bench.markdown_tables import Table
+from bench.setting import REPO, environment, percentile, say, simworlds
+from measurements import verifier_scenes
+from measurements.report import Figure, Part, in_steps
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from bench.setting import Setting
+
+_SECONDS = 900.0
+_SIZES = (50, 100, 200, 500, 1000, 2000)
+_JUDGED, _TRIANGLES = 500, 2000  # objects of the scene that has a target, triangles of each
+_ACTORS, _FRAMES = 12, 250
+_STILL = ("C", "G", "V", "W")
+_MUTATING = REPO / "tests" / "agents" / "protocol" / "mutating.py"
+_MUTATIONS, _FEW = 200, 30
+
+
+class _Failed(Exception):  # noqa: N818 - reads as the state it names
+    """A check did not come out as the scene was made to."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Check:
+    """One run of the command: ``seconds`` by its own clock, of facts and rules; ``whole`` by ours, with Blender."""
+
+    report: dict[str, Any]
+    whole: float
+
+    @property
+    def seconds(self) -> float:
+        return float(self.report["seconds"])
+
+    @property
+    def found(self) -> list[str]:
+        return [f"{one['rule']}: {one['message']}" for one in self.report["findings"]]
+
+
+def measure(setting: Setting) -> Part:
+    """Everything that is measured of the verifier; each step in a folder of its own."""
+    steps = {"growth": _growth, "motion": _motion, "loose": _loose, "mutations": _mutations}
+    return in_steps("verifier", {name: partial(_in_a_folder, step, setting) for name, step in steps.items()})
+
+
+def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Part:
+    with tempfile.TemporaryDirectory(prefix="bench-verify-", ignore_cleanup_errors=True) as place:
+        return step(setting, Path(place).resolve())
+
+
+# What a check costs
+
+
+def _growth(setting: Setting, place: Path) -> Part:
+    rows: list[tuple[str, ...]] = []
+    costs: dict[int, list[float]] = {}
+    judged = ""
+    for count in _SIZES:
+        say(f"verifier: {count} objects")
+        scene = place / f"{count}.blend"
+        told = _built(place, verifier_scenes.furniture(count, _TRIANGLES), scene)
+        checks = [
+            _checked(setting, scene, "--rules", ",".join(_STILL))
+            for _ in range(1 if setting.quick or count > _JUDGED else 3)
+        ]
+        _expect(checks[0].found, [])
+        costs[count] = [check.seconds for check in checks]
+        took, whole = percentile(costs[count], 0.5), percentile([check.whole for check in checks], 0.5)
+        rows.append(
+            (
+                f"{count:,}",
+                f"{told['meshes']:,}",
+                f"{told['triangles']:,}",
+                f"{took:.2f}",
+                f"{took / count * 1000:.1f}",
+                f"{whole:.1f}",
+            )
+        )
+        if count == _JUDGED:
+            judged = f"{told['triangles']:,} triangles; median of {len(checks)}"
+        scene.unlink()
+    each = {count: percentile(times, 0.5) / count for count, times in costs.items()}
+    growth = each[_SIZES[-1]] / each[_SIZES[0]]
+    header = ("objects", "meshes", "triangles", "check s", "ms an object", "whole command s")
+    note = (
+        "Boxes with a ball on each, in rows on one floor, so near each other that the boxes around neighbours overlap; "
+        "every contact is declared. All of C, G, V and W, none of which finds anything. The whole command also starts "
+        "Blender and opens the file."
+    )
+    figures = (
+        Figure("verify", percentile(costs[_JUDGED], 0.5), judged),
+        Figure("verify_growth", growth, f"{_SIZES[0]} to {_SIZES[-1]:,} objects of {_TRIANGLES:,} triangles"),
+    )
+    table = Table("Verifying scenes of many objects", header, tuple(rows), note)
+    return Part("growth", figures, (table,), data={"seconds": costs})
+
+
+def _motion(setting: Setting, place: Path) -> Part:
+    say("verifier: a baked motion")
+    scene, plan = place / "motion.blend", place / "plan.json"
+    told = _built(place, verifier_scenes.motion(_ACTORS, _FRAMES), scene)
+    plan.write_text(json.dumps(verifier_scenes.motion_plan(_FRAMES, told)))
+    checks = [_checked(setting, scene, "--plan", str(plan), "--rules", "T") for _ in range(3)]
+    _expect(checks[0].found, [])
+    idle = [one["id"] for one in checks[0].report["rules"] if one["state"] != "holds"]
+    _expect(idle, [])
+    times = [check.seconds for check in checks]
+    note = f"rigid bodies; {sum(one['state'] == 'holds' for one in checks[0].report['rules'])} rules hold"
+    return Part("motion", (Figure("verify_motion", percentile(times, 0.5), note),), data={"seconds": times})
+
+
+def _loose(setting: Setting, place: Path) -> Part:
+    say("verifier: primitives that nobody tagged")
+    scene = place / "loose.blend"
+    _built(place, verifier_scenes.LOOSE, scene)
+    check = _checked(setting, scene)
+    rules = sorted({one["rule"] for one in check.report["findings"]})
+    note = f"{len(check.found)} findings of {', '.join(rules)}, in {len(rules)} rows"
+    return Part("loose", (Figure("verify_loose", check.whole, note),), data={"seconds": check.seconds})
+
+
+def _built(place: Path, script: str, target: Path) -> dict[str, Any]:
+    """Builds a scene by a script in a Blender of its own and saves it; gives what the script's last value tells."""
+    folder = RunFolder.make(place / f"{target.stem} run")
+    with Supervisor(make_launch(folder.workspace), folder) as blender:
+        saved = folder.workspace / "scene.blend"
+        code = f"{script}\nbpy.ops.wm.save_as_mainfile(filepath={str(saved)!r}, copy=True)\ntold"
+        reply = blender.call("execute", {"code": code}, timeout=_SECONDS)
+        if reply.value["error"] is not None:
+            raise _Failed(reply.value["error"]["message"])
+        saved.replace(target)
+    return ast.literal_eval(reply.value["value"])
+
+
+def _checked(setting: Setting, scene: Path, *options: str) -> _Check:
+    began = time.perf_counter()
+    done = _ran([*simworlds(), "verify", str(scene), "--json", *options], setting, good=(0, 1))
+    return _Check(json.loads(done), time.perf_counter() - began)
+
+
+def _ran(command: Sequence[str], setting: Setting, good: Sequence[int] = (0,)) -> str:
+    done = subprocess.run(
+        command, cwd=REPO, env=environment(setting.home), capture_output=True, text=True, check=False,
+        timeout=_SECONDS,
+    )  # fmt: skip
+    if done.returncode not in good:
+        raise _Failed((done.stderr.strip() or f"exit code {done.returncode}").splitlines()[-1])
+    return done.stdout
+
+
+def _expect(found: list[str], wanted: list[str]) -> None:
+    if found != wanted:
+        raise _Failed(f"{len(found)} that were not expected, as: {found[0] if found else ''}")
+
+
+# What it finds
+
+
+def _mutations(setting: Setting, _place: Path) -> Part:
+    count = _FEW if setting.quick else _MUTATIONS
+    say(f"verifier: {count} random breaches of valid scenes")
+    told = json.loads(_ran([sys.executable, str(_MUTATING), str(count)], setting))
+    rows = [(kind, str(made), str(found), by) for kind, made, found, by in told["kinds"]]
+    rows.append(("all", str(told["made"]), str(told["found"]), ""))
+    note = (
+        f"One breach at a time, at random, of three valid scenes: a furnished room of 20 objects, a table of dominoes, "
+        f"a cloth over a table. The valid scenes were looked at {told['looks']} times by all {told['rules']} rules: "
+        f"{len(told['alarms'])} findings. A breach counts as found if a rule that owns its kind names what was broken; "
+        "two rules may find one."
+    )
+    figures = (
+        Figure("mutations", told["found"] / told["made"], f"{told['found']} of {told['made']}"),
+        Figure("false_alarms", float(len(told["alarms"])), f"{told['looks']} looks by {told['rules']} rules"),
+    )
+    table = Table("Breaches of valid scenes", ("breach", "made", "found", "by"), tuple(rows), note)
+    return Part("mutations", figures, (table,), data=told)

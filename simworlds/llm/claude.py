@@ -1,0 +1,199 @@
+"""Claude, or whatever speaks Anthropic's Messages API at another address.
+
+Answers are streamed. What passes (no connection, an overloaded server, a stream that breaks anywhere) is waited out
+and asked again; what does not is a ModelError at once. Ctrl-C leaves at once, whatever is being waited for.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import random
+import time
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, TypeVar
+
+import httpx2
+from anthropic import Anthropic, APIStatusError
+
+from simworlds.llm import stream
+from simworlds.llm.errors import ModelError, Rejected, TooLong, Unreachable
+from simworlds.llm.messages import Usage, whole
+from simworlds.llm.prices import Prices
+from simworlds.llm.request import params_of
+from simworlds.llm.retries import FAULTS, Patience, Retry, asked_pause, in_words, lasting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+
+    from simworlds.llm.messages import Ask, Turn
+
+_CONNECT_SECONDS = 10.0
+_ADVICE = {
+    401: " Check the key (ANTHROPIC_API_KEY).",
+    402: " Check the account's credit.",
+    403: " Check that the key may use this model.",
+    404: " Check the model's name.",
+}
+_TOO_LONG = ("prompt is too long", "exceed context limit", "too many tokens")
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How Claude is reached.
+
+    ``api_key`` and ``base_url`` default to the environment's ANTHROPIC_API_KEY (or ANTHROPIC_AUTH_TOKEN) and
+    ANTHROPIC_BASE_URL. An answer may pause for ``silence`` seconds and take ``longest`` in all.
+    """
+
+    api_key: str | None = None
+    base_url: str | None = None
+    silence: float = 180.0
+    longest: float = 1800.0
+    patience: Patience = field(default_factory=Patience)
+    prices: Prices = field(default_factory=Prices)
+
+
+class _Fault(Exception):  # noqa: N818 - carries what a server did past what a caller's own code may raise
+    def __init__(self, error: Exception) -> None:
+        self.error = error
+        super().__init__(str(error))
+
+
+class Claude:
+    """A Model. May be asked from several threads at once."""
+
+    def __init__(
+        self,
+        settings: Settings | None = None,
+        tell: Callable[[Retry], object] | None = None,
+        *,
+        pause: Callable[[float], object] = time.sleep,
+        clock: Callable[[], float] = time.monotonic,
+        chance: random.Random | None = None,
+    ) -> None:
+        """``tell`` hears of every Retry before it; what it raises ends the call. Raises Rejected without a key."""
+        self._settings = settings or Settings()
+        self._tell = tell
+        self._pause = pause
+        self._clock = clock
+        self._chance = chance or random.Random()  # noqa: S311 - spreads pauses
+        self._client = _client(self._settings)
+        self._heard = False
+
+    @property
+    def address(self) -> str:
+        """Where requests go."""
+        return str(self._client.base_url)
+
+    def close(self) -> None:
+        """Closes the connections."""
+        self._client.close()
+
+    def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
+        """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Refused, CutShort."""
+        lost: list[Usage] = []
+        for failed in itertools.count(1):
+            answer = stream.Answer()
+            try:
+                with closing(self._said(ask, answer)) as said:
+                    for text in said:
+                        if text and on_text:
+                            on_text(text)
+            except _Fault as fault:
+                lost.append(answer.usage())
+                self._wait(ask, failed, fault.error, lost)
+            else:
+                return whole(self._priced(answer.turn(), ask, lost))
+        raise AssertionError("unreachable")
+
+    def _said(self, ask: Ask, answer: stream.Answer) -> Generator[str]:
+        """Reads a whole answer, and yields what of it is for people. Raises _Fault for all that a server can do."""
+        try:
+            with self._client.messages.create(**params_of(ask)) as reply:
+                self._heard = True
+                for event in stream.events(self._in_time(reply.response.iter_bytes())):
+                    yield answer.take(event)
+                    if answer.done:
+                        break
+            answer.turn()
+        except FAULTS as error:
+            raise _Fault(error) from error
+
+    def _in_time(self, chunks: Iterable[bytes]) -> Iterator[bytes]:
+        end = self._clock() + self._settings.longest
+        for chunk in chunks:
+            yield chunk
+            if self._clock() > end:
+                raise stream.Broken(f"it takes more than {self._settings.longest:.0f} s")
+
+    def _wait(self, ask: Ask, failed: int, error: Exception, lost: list[Usage]) -> None:
+        """Returns when the request may be sent again. Raises Rejected, TooLong, Unreachable."""
+        used = sum(lost, Usage())
+        if lasting(error):
+            raise _with(used, self._rejected(error)) from error
+        patience = self._settings.patience
+        self._heard = self._heard or isinstance(error, APIStatusError)
+        tries = patience.tries if self._heard else min(patience.unheard, patience.tries)
+        asked = asked_pause(error)
+        if failed >= tries or asked > patience.most_asked:
+            why = (
+                f"{failed} times in a row"
+                if failed >= tries
+                else f"it wants to be left alone for {asked:.0f} s"
+            )
+            message = f"No answer from {self.address}: {in_words(error)} ({why})."
+            raise _with(used, Unreachable(message)) from error
+        retry = Retry(ask, failed, in_words(error), patience.pause(failed, asked, self._chance), used)
+        if self._tell:
+            self._tell(retry)
+        self._pause(retry.pause)
+
+    def _rejected(self, error: Exception) -> Rejected:
+        status = error.status_code if isinstance(error, APIStatusError) else 0
+        words = in_words(error)
+        if status == 413 or any(sign in words for sign in _TOO_LONG):
+            return TooLong(f"The conversation is too long for the model: {words}.", status)
+        advice = _ADVICE.get(status, "")
+        return Rejected(f"{self.address} does not take the request: {words}.{advice}", status)
+
+    def _priced(self, turn: Turn, ask: Ask, lost: list[Usage]) -> Turn:
+        costs = [self._settings.prices.cost(ask.model, usage) for usage in (turn.usage, *lost)]
+        known = [cost for cost in costs if cost is not None]
+        cost = sum(known) if len(known) == len(costs) else None
+        return replace(turn, cost=cost, lost=sum(lost, Usage()))
+
+
+_E = TypeVar("_E", bound=ModelError)
+
+
+def _with(lost: Usage, error: _E) -> _E:
+    error.lost = lost
+    return error
+
+
+def _client(settings: Settings) -> Anthropic:
+    """The package's client, without its own retries: they could not be told, nor mend a stream."""
+    key = (settings.api_key or os.environ.get("ANTHROPIC_API_KEY") or "").strip()
+    token = "" if key else os.environ.get("ANTHROPIC_AUTH_TOKEN", "").strip()
+    if not key and not token:
+        raise Rejected(
+            "There is no key for the model: set ANTHROPIC_API_KEY (to any word for a server that needs none)."
+        )
+    if not (key + token).isascii() or not (key + token).isprintable():
+        raise Rejected("ANTHROPIC_API_KEY holds characters that no key has. Copy the key again.")
+    timeout = httpx2.Timeout(settings.silence, connect=min(settings.silence, _CONNECT_SECONDS))
+    try:
+        client = Anthropic(
+            api_key=key or None,
+            auth_token=token or None,
+            base_url=settings.base_url,
+            timeout=timeout,
+            max_retries=0,
+        )
+    except (httpx2.InvalidURL, ValueError) as error:
+        raise Rejected(f"The model's address (ANTHROPIC_BASE_URL) or a proxy's is none: {error}.") from error
+    if client.base_url.scheme not in ("http", "https") or not client.base_url.host:
+        raise Rejected(f"The model's address (ANTHROPIC_BASE_URL), {client.base_url}, is no web address.")
+    return client

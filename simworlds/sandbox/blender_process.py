@@ -1,0 +1,392 @@
+"""One Blender process: started confined, spoken to over a socket, killed with all it has started.
+
+What the channel is worth. Nothing that is printed, by whomever, comes near it, and bytes that code writes to it by
+chance or in good faith are known by their missing signature: the process is then killed and nothing of it believed.
+Code that means harm runs in the same process as the worker, though, and can find the key in its memory: it can answer
+in the worker's name, with whatever value it likes. It gains little. Tickets are random, so that it cannot answer calls
+that have not been made; what it leaves running ends with the call; and to the supervisor a reply is data from outside
+the trust, checked for its shape, never a path to follow or a leave to do anything.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import secrets
+import selectors
+import signal
+import socket
+import subprocess
+import time
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from simworlds.sandbox.captured_output import Printed
+from simworlds.sandbox.errors import (
+    BlenderError,
+    CannotStart,
+    Died,
+    Interrupted,
+    Lost,
+    MissingModule,
+    NeverBegan,
+    OutOfBounds,
+    Refusal,
+    TookTooLong,
+    ToolBroke,
+    Untrustworthy,
+)
+from simworlds.sandbox.inside import channel
+from simworlds.sandbox.usage import innermost
+from simworlds.spawner import started_for_good
+
+if TYPE_CHECKING:
+    import threading
+    from collections.abc import Callable, Iterator
+
+    from simworlds.sandbox.launch import Launch
+
+    Progress = Callable[[float, float | None, str], None]
+
+_LOG = logging.getLogger(__name__)
+
+START_SECONDS = 60.0
+_LOOK_SECONDS = 0.25  # between two looks at whether the call was given up, and at the limits
+_END_SECONDS = 5.0
+_EXIT_SECONDS = 1.0  # in which a process that has closed its channel is expected to end
+_CHUNK = 1 << 18
+_LONGEST_WORDS = 20_000
+_NO_MEMORY = (
+    "bad_alloc",
+    "returns null",
+    "ut of memory",
+    "MemoryError",
+    "annot allocate",
+    "failed to map segment",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """What a tool returned, what was printed meanwhile, how many seconds it ran.
+
+    ``left``: in words, what it left behind that cannot be put back.
+    """
+
+    value: Any
+    stdout: str
+    stderr: str
+    seconds: float
+    left: tuple[str, ...] = ()
+
+
+class BlenderProcess:
+    """A running Blender. Not for several threads at once. Raises CannotStart when it does not come up."""
+
+    def __init__(self, launch: Launch) -> None:
+        launch.prepare()
+        self._launch = launch
+        self._closed = False
+        self._stdout, self._stderr = Printed(), Printed()
+        self._bounds = launch.bounds
+        ours, theirs = socket.socketpair()
+        try:
+            command = launch.command(theirs.fileno())
+            self._process = started_for_good(
+                lambda: subprocess.Popen(
+                    command,
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    env=launch.environment,
+                    cwd=launch.workspace,
+                    pass_fds=(theirs.fileno(),),
+                    start_new_session=True,
+                )
+            )
+        except OSError as error:
+            ours.close()
+            raise CannotStart(f"{launch.runtime.executable} cannot be started: {error}") from error
+        except BlenderError:
+            ours.close()
+            raise
+        finally:
+            theirs.close()
+        self._socket = ours
+        key = secrets.token_bytes(channel.KEY_BYTES)
+        self._encode = channel.Encoder(key, channel.SUPERVISOR)
+        self._decode = channel.Decoder(key, channel.WORKER)
+        self._arrived: deque[dict[str, Any]] = deque()
+        self._selector = selectors.DefaultSelector()
+        self._selector.register(ours, selectors.EVENT_READ, None)
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        for source, printed in ((self._process.stdout, self._stdout), (self._process.stderr, self._stderr)):
+            os.set_blocking(source.fileno(), False)
+            self._selector.register(source, selectors.EVENT_READ, printed)
+        try:
+            ours.sendall(key)
+            next(self._messages("its start", START_SECONDS, bounded=False))
+        except (Lost, OSError) as error:
+            why = self._ending() if isinstance(error, Died) else error
+            self.kill()
+            said = f"{self._stderr.text}{self._stdout.text}".rstrip()
+            raise CannotStart(f"Blender did not come up: {why}" + (f"\n{said}" if said else "")) from error
+        except BaseException:
+            self.kill()
+            raise
+        self.inner = innermost(self._process.pid)
+        self._bounds.watch(self.inner)
+
+    @property
+    def started(self) -> int:
+        """The process that was started: Blender's, or bubblewrap's around it. ``inner`` is always Blender's."""
+        return self._process.pid
+
+    @property
+    def alive(self) -> bool:
+        """Whether the process still runs."""
+        return not self._closed and self._process.poll() is None
+
+    def call(  # noqa: PLR0913 - what a caller may want to say of a call
+        self,
+        tool: str,
+        arguments: dict[str, Any],
+        *,
+        timeout: float,
+        what: str = "",
+        bounded: bool = True,
+        progress: Progress | None = None,
+        given_up: threading.Event | None = None,
+    ) -> Reply:
+        """Runs one tool; ``timeout`` in seconds, ``what`` in words for errors. ``progress`` gets (done, total, text).
+
+        ``bounded``: it is ended when it goes past the limits of disk and threads.
+
+        Raises Refusal and ToolBroke, after which Blender is well, and Lost, after which it has been killed; so it
+        has after any other exception (as of ``progress``).
+        """
+        what = what or tool
+        if self._closed:
+            raise NeverBegan(f"Blender had ended before {what} began", ending="it had been stopped")
+        ticket = secrets.token_hex(8)
+        self._drain()
+        self._stdout.clear()
+        self._stderr.clear()
+        try:
+            request = self._encode({"ticket": ticket, "tool": tool, "arguments": arguments})
+        except channel.TooLarge as error:
+            raise Refusal(f"The arguments of {what} are too large: {error}.") from error
+        try:
+            self._send(request, what, timeout)
+            for message in self._messages(what, timeout, given_up, bounded=bounded):
+                try:
+                    if message["ticket"] != ticket:
+                        # Somebody has answered the call before this one in the worker's name: its own answer is late.
+                        raise NeverBegan(
+                            f"Something had answered in Blender's name before {what} began; nothing of it is believed, "
+                            "and Blender was stopped"
+                        )
+                    if "progress" not in message:
+                        self._drain()
+                        return self._reply(message)
+                    done, total, text = message["progress"]
+                    told = (float(done), None if total is None else float(total), str(text)[:_LONGEST_WORDS])
+                except (LookupError, TypeError, ValueError) as error:
+                    raise self._untrustworthy(what, error) from error
+                if progress is not None:
+                    progress(*told)
+        except (Refusal, ToolBroke):
+            raise
+        except BaseException:
+            self.kill()
+            raise
+        raise AssertionError("messages end with an exception")
+
+    def _reply(self, message: dict[str, Any]) -> Reply:
+        """Raises Refusal, ToolBroke, and LookupError, TypeError or ValueError for what is no reply."""
+        if "missing" in message:
+            raise MissingModule(str(message["missing"])[:_LONGEST_WORDS])
+        if "refused" in message:
+            raise Refusal(str(message["refused"])[:_LONGEST_WORDS])
+        if "failed" in message:
+            raise ToolBroke(
+                str(message["failed"])[:_LONGEST_WORDS], str(message["traceback"])[:_LONGEST_WORDS]
+            )
+        left = tuple(str(one)[:_LONGEST_WORDS] for one in message["left"])
+        return Reply(message["value"], self._stdout.text, self._stderr.text, float(message["seconds"]), left)
+
+    def _send(self, request: bytes, what: str, timeout: float) -> None:
+        try:
+            self._socket.settimeout(timeout)
+            self._socket.sendall(request)
+        except TimeoutError:
+            raise self._too_long(what, timeout) from None
+        except OSError:
+            ending = self._ending()
+            raise NeverBegan(f"Blender had ended before {what} began: {ending}", ending=ending) from None
+
+    def _messages(
+        self, what: str, timeout: float, given_up: threading.Event | None = None, *, bounded: bool = True
+    ) -> Iterator[dict[str, Any]]:
+        """What the worker says, until the deadline; what is printed is read meanwhile: Blender never waits for us.
+
+        Raises Lost. After each message the limits are looked at.
+        """
+        started = time.monotonic()
+        deadline = started + timeout
+        while True:
+            now = time.monotonic()
+            self._look(what, now - started, given_up, bounded=bounded)
+            if now > deadline:
+                raise self._too_long(what, timeout)
+            for key, _ in self._selector.select(min(_LOOK_SECONDS, max(0.0, deadline - now))):
+                if key.data is not None:
+                    self._read_printed(key)
+                    continue
+                self._arrived += self._receive(what, now - started)
+            while self._arrived:
+                message = self._arrived.popleft()
+                if bounded and "progress" not in message:
+                    self._check_bounds(what, over=True)
+                yield message
+
+    def _look(self, what: str, seconds: float, given_up: threading.Event | None, *, bounded: bool) -> None:
+        if given_up is not None and given_up.is_set():
+            raise Interrupted(
+                f"{_capital(what)} was given up after {seconds:.1f} s, and Blender was stopped", self._said()
+            )
+        if bounded:
+            self._check_bounds(what)
+
+    def _check_bounds(self, what: str, *, over: bool = False) -> None:
+        if (fault := self._bounds.fault(over=over)) is not None:
+            raise OutOfBounds(f"{_capital(what)} {fault}. Blender was stopped", self._said())
+
+    def _receive(self, what: str, seconds: float) -> list[dict[str, Any]]:
+        unread = False
+        try:
+            data = self._socket.recv(_CHUNK)
+        except ConnectionResetError:
+            data, unread = b"", True
+        except OSError:
+            data = b""
+        if data:
+            try:
+                return self._decode.feed(data)
+            except channel.ForgedFrame as error:
+                raise self._untrustworthy(what, error) from error
+        self._drain()
+        ending = self._ending()
+        if unread:  # what was sent to it last
+            raise NeverBegan(f"Blender had ended before {what} began: {ending}", self._said(), ending)
+        raise Died(f"Blender ended {seconds:.1f} s into {what}: {ending}", self._said(), ending)
+
+    def _too_long(self, what: str, timeout: float) -> TookTooLong:
+        return TookTooLong(
+            f"{_capital(what)} ran past its deadline of {timeout:g} s, and Blender was stopped", self._said()
+        )
+
+    def _untrustworthy(self, what: str, fault: Exception) -> Untrustworthy:
+        return Untrustworthy(
+            f"During {what} something wrote to SimWorlds' channel that is no answer ({fault}); nothing of it is "
+            "believed, and Blender was stopped",
+            self._said(),
+        )
+
+    def _read_printed(self, key: selectors.SelectorKey) -> bool:
+        try:
+            data = os.read(key.fd, _CHUNK)
+        except BlockingIOError:
+            return False
+        except OSError:
+            data = b""
+        if not data:
+            with contextlib.suppress(KeyError):
+                self._selector.unregister(key.fileobj)
+            return False
+        assert isinstance(key.data, Printed)
+        key.data.add(data)
+        return True
+
+    def _drain(self) -> None:
+        """Takes in what has been printed so far."""
+        for key in [key for key in self._selector.get_map().values() if key.data is not None]:
+            deadline = time.monotonic() + 1.0
+            while self._read_printed(key) and time.monotonic() < deadline:
+                pass
+
+    def _said(self) -> str:
+        return (self._stdout.text + self._stderr.text)[-2000:]
+
+    def _ending(self) -> str:
+        """In words, how the process ended."""
+        try:
+            code = self._process.wait(_EXIT_SECONDS)
+        except subprocess.TimeoutExpired:
+            return "its channel was closed from inside, or it became another program"
+        if code > 128:  # bubblewrap tells a signal like a shell
+            code = 128 - code
+        if code == channel.CHANNEL_LOST:
+            return "its channel was closed from inside"
+        if code >= 0:
+            hint = ", as after bpy.ops.wm.quit_blender or os._exit" if code == 0 else ""
+            return f"it was ended from inside, with exit code {code}{hint}"
+        try:
+            name = signal.Signals(-code).name
+        except ValueError:
+            name = f"signal {-code}"
+        if any(word in self._said() for word in _NO_MEMORY):
+            allowed = self._launch.sandbox.limits.memory / 1e9
+            return f"it ran out of memory, of which it may have {allowed:.1f} GB ({name})"
+        if name == "SIGKILL":
+            return "it was killed (SIGKILL), by the system when memory ran out or by somebody's hand"
+        return f"it crashed ({name})"
+
+    def stop(self) -> None:
+        """From any thread: kills the process. Whoever is in a call finds it gone."""
+        if not self._closed and self._process.returncode is None:
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+
+    def kill(self) -> None:
+        """Ends the process and whatever it has started; waits until they are gone. Does nothing the second time."""
+        if self._closed:
+            return
+        self.stop()
+        self._closed = True
+        try:
+            self._process.wait(_END_SECONDS)
+        except (
+            subprocess.TimeoutExpired
+        ):  # it waits for a device or a file server, and ends when that answers
+            _LOG.warning("Process %d was killed, but has not ended yet", self._process.pid)
+        self._await_silence()
+        self._selector.close()
+        self._socket.close()
+        for pipe in (self._process.stdout, self._process.stderr):
+            assert pipe is not None
+            pipe.close()
+
+    def close(self) -> None:
+        """Lets Blender end by itself, or kills it."""
+        if not self._closed:
+            with contextlib.suppress(OSError):
+                self._socket.shutdown(socket.SHUT_RDWR)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(_END_SECONDS)
+        self.kill()
+
+    def _await_silence(self) -> None:
+        """Until the last holder of the pipes is gone: behind bubblewrap that is not our child, but its."""
+        self._selector.unregister(self._socket)
+        deadline = time.monotonic() + _END_SECONDS
+        while self._selector.get_map() and (left := deadline - time.monotonic()) > 0:
+            for key, _ in self._selector.select(left):
+                self._read_printed(key)
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]

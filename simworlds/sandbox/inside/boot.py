@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Starts a module in Blender: ``boot.py -- MODULE NAME=FOLDER … -- ARGUMENT …``.
+
+Each NAME becomes a package that holds the modules of FOLDER; then MODULE is imported and its ``main`` is called with
+the list of arguments. The packages that stand above a NAME are empty, so nothing else of SimWorlds can be imported, and
+``sys.path`` stays as Blender made it.
+"""
+
+import importlib
+import importlib.util
+import os
+import sys
+import types
+
+
+def add_package(name, folder):
+    """Makes ``folder`` the package ``name`` (dotted), below empty packages where there are none yet."""
+    above = None
+    parts = name.split(".")
+    for count in range(1, len(parts)):
+        full = ".".join(parts[:count])
+        if full not in sys.modules:
+            package = types.ModuleType(full)
+            package.__path__ = []
+            sys.modules[full] = package
+            if above is not None:
+                setattr(above, parts[count - 1], package)
+        above = sys.modules[full]
+    place = os.path.join(folder, "__init__.py")
+    spec = importlib.util.spec_from_file_location(name, place, submodule_search_locations=[folder])
+    package = importlib.util.module_from_spec(spec)
+    sys.modules[name] = package
+    spec.loader.exec_module(package)
+    if above is not None:
+        setattr(above, parts[-1], package)
+
+
+def main(words):
+    """``words``: the module, its packages, ``--``, and what its ``main`` is to be given."""
+    middle = words.index("--")
+    module, *packages = words[:middle]
+    for package in packages:
+        add_package(*package.split("=", 1))
+    importlib.import_module(module).main(words[middle + 1 :])
+
+
+if __name__ == "__main__":
+    main(sys.argv[sys.argv.index("--") + 1 :])

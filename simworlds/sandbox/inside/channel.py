@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The wire between the supervisor and its Blender: signed, numbered JSON messages on a socket of their own.
+
+A frame is a head and a body (UTF-8 JSON). The head holds the body's length (4 bytes, big-endian), a tag of sender,
+frame number and length (16 bytes), and an HMAC-SHA256 of sender, frame number and body. Bytes that anybody else writes
+to the socket are known for what they are as soon as a head has come in: a made-up length keeps nobody waiting.
+"""
+
+import hashlib
+import hmac
+import json
+import struct
+
+KEY_BYTES = 32
+LARGEST_BODY = 16 * 1024 * 1024
+SUPERVISOR, WORKER = b"supervisor", b"worker"
+CHANNEL_LOST = 97  # the worker's exit code when its end of the socket was taken from it
+_LENGTH = struct.Struct(">I")
+_TAG_BYTES, _SIGNATURE_BYTES = 16, 32
+_TAGGED = _LENGTH.size + _TAG_BYTES
+_HEAD = _TAGGED + _SIGNATURE_BYTES
+
+
+class ForgedFrame(Exception):  # noqa: N818 - reads as the state it names
+    """Bytes arrived that the other side has not written, or a body that is no message."""
+
+
+class TooLarge(Exception):  # noqa: N818 - reads as the state it names
+    """A message is larger than a frame may be."""
+
+
+class Encoder:
+    """Turns messages of one side into frames."""
+
+    def __init__(self, key, sender, largest=LARGEST_BODY):
+        self._key = key
+        self._sender = sender
+        self._largest = largest
+        self._number = 0
+
+    def __call__(self, message):
+        """A message (a dictionary of anything that JSON can say) as bytes. Raises TooLarge."""
+        body = json.dumps(message, ensure_ascii=False, separators=(",", ":"), default=repr)
+        body = body.encode("utf-8", "replace")
+        if len(body) > self._largest:
+            raise TooLarge(f"{len(body):,} bytes; {self._largest:,} at most")
+        length = _LENGTH.pack(len(body))
+        tag = _sign(self._key, self._sender, self._number, b"head", length)[:_TAG_BYTES]
+        signature = _sign(self._key, self._sender, self._number, b"body", body)
+        self._number += 1
+        return length + tag + signature + body
+
+
+class Decoder:
+    """Puts the frames of one side together again."""
+
+    def __init__(self, key, sender):
+        self._key = key
+        self._sender = sender
+        self._number = 0
+        self._buffer = bytearray()
+
+    def feed(self, data):
+        """The messages that ``data`` completes, as a list of dictionaries. Raises ForgedFrame."""
+        self._buffer += data
+        messages = []
+        while len(self._buffer) >= _TAGGED:
+            length = bytes(self._buffer[: _LENGTH.size])
+            self._check(b"head", length, self._buffer[_LENGTH.size : _TAGGED])
+            end = _HEAD + _LENGTH.unpack(length)[0]
+            if len(self._buffer) < end:
+                break
+            body = bytes(self._buffer[_HEAD:end])
+            self._check(b"body", body, self._buffer[_TAGGED:_HEAD])
+            del self._buffer[:end]
+            self._number += 1
+            messages.append(_message(body))
+        return messages
+
+    def _check(self, part, data, found):
+        signature = _sign(self._key, self._sender, self._number, part, data)
+        if not hmac.compare_digest(bytes(found), signature[: len(found)]):
+            raise ForgedFrame(f"the {part.decode()} of a frame does not carry the right signature")
+
+
+def _message(body):
+    try:
+        message = json.loads(body)
+    except (ValueError, RecursionError) as error:
+        raise ForgedFrame(f"a frame does not hold JSON ({type(error).__name__})") from None
+    if not isinstance(message, dict):
+        raise ForgedFrame("a frame does not hold a message")
+    return message
+
+
+def _sign(key, sender, number, part, data):
+    signer = hmac.new(key, b"/".join((sender, part, number.to_bytes(8, "big"), b"")), hashlib.sha256)
+    signer.update(data)
+    return signer.digest()

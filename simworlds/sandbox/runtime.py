@@ -1,0 +1,231 @@
+"""Which interpreter runs a script with Blender: a named executable, this environment, or a made one."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Literal
+
+from kb_build.errors import ExtractError, RuntimeMissing
+from simworlds.files import staged_folder
+from simworlds.process_groups import CommandFailed, run_group
+from simworlds.releases import Release, minor_of, release, releases, same_version
+from simworlds.sandbox.program import BOOT, Program
+
+Kind = Literal["executable", "environment", "managed"]
+Report = Callable[[str, int, int | None], None]
+
+_NAME_ONE = "name its executable with BLENDER_EXE=PATH (--blender-exe PATH)"
+_INSTALL_SECONDS = 1800.0
+_VERSION_SECONDS = 60.0
+_PASSED_ON = frozenset(
+    {"HOME", "PATH", "TMPDIR", "TEMP", "TMP", "TZ", "USER", "LD_LIBRARY_PATH", "SYSTEMROOT"}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Runtime:
+    """An interpreter with a Blender of ``version`` (full, as ``"5.1.2"``) in it."""
+
+    executable: Path
+    kind: Kind
+    version: str
+
+    def command(self, script: Path, args: list[str]) -> list[str]:
+        """The words that run ``script``. Its own arguments are those behind the first ``"--"`` of sys.argv."""
+        if self.kind == "executable":
+            flags = ["--background", "--factory-startup", "--python-exit-code", "3", "--python", str(script)]
+        else:
+            flags = ["-P" if self.kind == "environment" else "-I", str(script)]
+        return [str(self.executable), *flags, "--", *args]
+
+
+def find_runtime(
+    version: str | None,
+    *,
+    home: Path,
+    blender_exe: Path | None = None,
+    progress: Report | None = None,
+) -> Runtime:
+    """The runtime of a Blender version (``"5.1"``: its newest wheel, ``"5.1.2"``: exactly that one).
+
+    ``blender_exe`` is an executable or its folder, named by the user; with ``version`` None it decides which
+    version. ``home`` keeps the environments that are made. Raises RuntimeMissing, saying what was tried.
+    """
+    if blender_exe is not None:
+        return _named_executable(blender_exe.expanduser(), version)
+    installed = installed_bpy()
+    asked = version or installed or releases()[-1].bpy
+    if installed is not None and same_version(asked, installed):
+        return Runtime(Path(sys.executable), "environment", installed)
+    return _managed(asked, home / "runtimes", progress)
+
+
+def installed_bpy() -> str | None:
+    """The version of this environment's bpy, found out without importing it; None when there is none."""
+    try:
+        return metadata.version("bpy")
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def run_program(runtime: Runtime, program: Program, args: list[str], *, timeout: float, log: Path) -> None:
+    """Run a program of modules with ``args`` in Blender's interpreter. Otherwise as ``run_script``."""
+    run_script(runtime, BOOT, program.arguments(*args), timeout=timeout, log=log, name=program.module)
+
+
+def run_script(  # noqa: PLR0913 - what is run, and how
+    runtime: Runtime, script: Path, args: list[str], *, timeout: float, log: Path, name: str = ""
+) -> None:
+    """Run ``script`` with ``args`` in Blender's interpreter; all that it prints goes to the file ``log``.
+
+    The process gets none of the environment's secrets and no settings of the user's Blender, and dies with
+    its children after ``timeout`` seconds or on Ctrl-C. Raises ExtractError with the end of its output.
+    """
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="simworlds-") as settings:
+        command = runtime.command(script.absolute(), args)
+        try:
+            run_group(command, environment=clean_environment(Path(settings)), timeout=timeout, log=log)
+        except CommandFailed as error:
+            raise ExtractError(
+                f"Blender {runtime.version} ({runtime.executable}) did not finish {name or script.name}: {error}. "
+                f"Its whole output is in {log}{_advice(error.tail)}"
+            ) from error
+
+
+def clean_environment(settings: Path) -> dict[str, str]:
+    """Variables for a Blender: none of the user's secrets, and ``settings`` (a folder) in place of their Blender's."""
+    passed = {name: value for name, value in os.environ.items() if name in _PASSED_ON}
+    own = {
+        f"BLENDER_USER_{name}": str(settings)
+        for name in ("RESOURCES", "CONFIG", "SCRIPTS", "EXTENSIONS", "DATAFILES")
+    }
+    return passed | own | {"LANG": "C.UTF-8", "PYTHONUTF8": "1", "PYTHONUNBUFFERED": "1"}
+
+
+def _advice(output: str) -> str:
+    if library := re.search(r"(\S+\.so[.\d]*): cannot open shared object file", output):
+        return f". The system library {library[1]} is missing: see the list of packages in the README"
+    return ""
+
+
+def _named_executable(path: Path, version: str | None) -> Runtime:
+    executable = _executable_at(path)
+    real = executable_version(executable)
+    if version is not None and not same_version(version, real):
+        raise RuntimeMissing(
+            f"{executable} is Blender {real}, not {version}; ask for {minor_of(real)} or name another"
+        )
+    return Runtime(executable, "executable", real)
+
+
+def _executable_at(path: Path) -> Path:
+    inside = [path / name for name in ("blender", "Contents/MacOS/Blender", "blender.exe")]
+    for candidate in (path, *inside):
+        if found := shutil.which(candidate):
+            return Path(found).absolute()
+    raise RuntimeMissing(f"there is no Blender executable at {path}; give the path of the program itself")
+
+
+def executable_version(executable: Path) -> str:
+    """The full version of a Blender executable, as it says itself. RuntimeMissing if it is none."""
+    try:
+        done = subprocess.run(
+            [str(executable), "--version"],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_VERSION_SECONDS,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise RuntimeMissing(f"{executable} cannot be run: {error}") from error
+    output = (done.stdout + done.stderr).decode(errors="replace")
+    match = re.search(r"^Blender (\d+\.\d+\.\d+)", output, re.MULTILINE)
+    if match is None:
+        raise RuntimeMissing(f"{executable} does not say that it is Blender, but: {output.strip()[:300]!r}")
+    return match[1]
+
+
+def _managed(asked: str, runtimes: Path, progress: Report | None) -> Runtime:
+    entry = release(asked)
+    if entry is None:
+        known = ", ".join(row.minor for row in releases())
+        raise RuntimeMissing(
+            f"no bpy package is known for Blender {asked} (there is one for {known}); install that one and "
+            f"{_NAME_ONE}"
+        )
+    version = entry.bpy if asked.count(".") == 1 else asked
+    folder = runtimes / version
+    if not folder.is_dir():
+        _install(version, entry, folder, progress)
+    return Runtime(_python_in(folder), "managed", version)
+
+
+def _python_in(folder: Path) -> Path:
+    return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+
+def _install(version: str, entry: Release, folder: Path, progress: Report | None) -> None:
+    """Make an environment with bpy in it. It gets its name when it is whole: a killed one is redone."""
+    uv = _find_uv()
+    log = folder.parent / f"{version}.log"
+    environment = _install_environment(entry.python)
+    if progress:
+        progress(f"installing bpy {version} (about 350 MB)", 0, None)
+    try:
+        with staged_folder(folder) as staging:
+            for command in (
+                [uv, "venv", "--quiet", "--allow-existing", "--python", entry.python, str(staging)],
+                [
+                    uv,
+                    "pip",
+                    "install",
+                    "--python",
+                    str(_python_in(staging)),
+                    "--only-binary",
+                    ":all:",
+                    f"bpy=={version}",
+                    *entry.companions,
+                ],
+            ):
+                run_group(command, environment=environment, timeout=_INSTALL_SECONDS, log=log)
+    except CommandFailed as error:
+        raise RuntimeMissing(
+            f"bpy {version} for CPython {entry.python} could not be installed: {error}. The whole output is "
+            f"in {log}. Run again with a network, or install that Blender and {_NAME_ONE}"
+        ) from error
+    except OSError as error:
+        raise RuntimeMissing(
+            f"{folder} cannot be made: {error}; make room there, or set SIMWORLDS_HOME"
+        ) from error
+
+
+def _find_uv() -> str:
+    try:
+        import uv  # noqa: PLC0415 - an environment without it may still have uv on PATH
+
+        return uv.find_uv_bin()
+    except (ImportError, FileNotFoundError):
+        found = shutil.which("uv")
+    if found is None:
+        raise RuntimeMissing("uv is neither installed nor on PATH; install it with: python -m pip install uv")
+    return found
+
+
+def _install_environment(python: str) -> dict[str, str]:
+    """uv passes over pyenv's shims, but takes a version that stands in pyenv's folder when it is on PATH."""
+    dropped = {"VIRTUAL_ENV", "CONDA_PREFIX", "PYTHONPATH", "PYTHONHOME", "ANTHROPIC_API_KEY"}
+    environment = {name: value for name, value in os.environ.items() if name not in dropped}
+    pyenv = Path(environment.get("PYENV_ROOT") or Path.home() / ".pyenv")
+    versions = sorted(str(folder / "bin") for folder in (pyenv / "versions").glob(f"{python}.*"))
+    environment["PATH"] = os.pathsep.join([environment.get("PATH", os.defpath), *reversed(versions)])
+    return environment

@@ -1,0 +1,59 @@
+"""Where things lie on this machine: one folder, moved by SIMWORLDS_HOME, and the user's own sources."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+from simworlds.releases import minor_of
+
+HOME_VARIABLE = "SIMWORLDS_HOME"
+CORPORA_VARIABLE = "SIMWORLDS_CORPORA"
+
+_BASE = re.compile(r"blender-(\d+)\.(\d+)\.sqlite")
+
+
+def home_folder() -> Path:
+    """The folder that everything is kept in: what SIMWORLDS_HOME names, else the user's data folder."""
+    if named := os.environ.get(HOME_VARIABLE):
+        return Path(named).expanduser().absolute()
+    import platformdirs  # noqa: PLC0415 - most callers name their folder
+
+    return platformdirs.user_data_path("simworlds", appauthor=False)
+
+
+def corpora_folder() -> Path | None:
+    """The folder of documentation sources that SIMWORLDS_CORPORA names, if it does."""
+    named = os.environ.get(CORPORA_VARIABLE)
+    return Path(named).expanduser().absolute() if named else None
+
+
+def base_path(home: Path, version: str) -> Path:
+    """The knowledge base of a Blender version (its patch does not matter), whether it exists or not."""
+    return home / "kb" / f"blender-{minor_of(version)}.sqlite"
+
+
+def built_bases(home: Path) -> dict[str, Path]:
+    """Minor version → file of every knowledge base that was built, oldest Blender first."""
+    found = [
+        (int(match[1]), int(match[2]), path)
+        for path in (home / "kb").glob("blender-*.sqlite")
+        if (match := _BASE.fullmatch(path.name)) and path.is_file()
+    ]
+    return {f"{major}.{minor}": path for major, minor, path in sorted(found)}
+
+
+def cache_folder(home: Path) -> Path:
+    """What can be made or fetched again: downloads, unpacked archives, pages that were read, digests."""
+    return home / "cache"
+
+
+def extracts_folder(home: Path) -> Path:
+    """What Blender said of itself, one file a version."""
+    return home / "extracts"
+
+
+def summaries_path(home: Path) -> Path:
+    """The summaries that were paid for; shared by all bases."""
+    return home / "summaries.sqlite"
