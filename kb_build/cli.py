@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 import click
 
 from kb_build.errors import KBBuildError
+from simworlds.errors import UserError
 from simworlds.settings import base_path, built_bases, corpora_folder, home_folder, summaries_path
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from kb_build.blender.extract_reader import Extract
     from kb_build.pipeline import BuildReport
-    from simworlds.progress import Progress
+    from simworlds.terminal.progress import Progress
 
 _ROLES = ("manual", "guides")
 _INTERRUPTED = 130
@@ -35,7 +36,7 @@ def reports_errors(command: Callable[_P, _T]) -> Callable[_P, _T]:
     def run(*args: _P.args, **kwargs: _P.kwargs) -> _T:
         try:
             return command(*args, **kwargs)
-        except KBBuildError as error:
+        except UserError as error:
             click.echo(f"Error: {error}", err=True)
             sys.exit(2)
         except KeyboardInterrupt:
@@ -87,7 +88,7 @@ def build(version: str | None, **given: Any) -> None:
     done when nothing has changed.
     """
     from kb_build import pipeline  # noqa: PLC0415 - other commands do without
-    from simworlds.progress import shown_progress  # noqa: PLC0415
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
     options = pipeline.BuildOptions(
@@ -191,7 +192,7 @@ def diff_command(old: str, new: str, **given: Any) -> None:
     executable. A bpy package that is not at hand is installed, 350 MB.
     """
     from kb_build.versions.diff import diff, format_diff  # noqa: PLC0415 - only here
-    from simworlds.progress import shown_progress  # noqa: PLC0415
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
     with shown_progress() as progress:
@@ -230,7 +231,7 @@ def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path
     from kb_build.base_report import history_lines  # noqa: PLC0415
     from kb_build.versions.history import HISTORY_FILE  # noqa: PLC0415 - only here
     from kb_build.versions.history_builder import build_history  # noqa: PLC0415
-    from simworlds.progress import shown_progress  # noqa: PLC0415
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
     from simworlds.releases import releases  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tempfile
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
+
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -51,12 +52,7 @@ class Digests:
         if not self._changed:
             return
         try:
-            self._memory.parent.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile(
-                "w", dir=self._memory.parent, prefix=".digests-", delete=False, encoding="utf-8"
-            ) as file:
-                json.dump(self._known, file)
-            Path(file.name).replace(self._memory)
+            write_whole(self._memory, json.dumps(self._known), durable=False)
         except OSError:
             return
         self._changed = False

@@ -2,7 +2,6 @@
 
 KBBuildError
 ├── SourceError      a documentation source is missing, unreadable, hostile or of the wrong version
-├── RuntimeMissing   no interpreter with the Blender version asked for, and none could be made
 ├── ExtractError     Blender started, but the extraction did not finish
 ├── SummaryError     summaries were asked for and could not be had
 └── StoreError       the knowledge-base file cannot be written or read
@@ -12,17 +11,15 @@ Every message says what was wrong, where, and what to do.
 
 from __future__ import annotations
 
+from simworlds.errors import UserError
 
-class KBBuildError(Exception):
+
+class KBBuildError(UserError):
     """Base of everything that a build reports to its user instead of a traceback."""
 
 
 class SourceError(KBBuildError):
     """A documentation source is missing, unreadable, hostile or of the wrong version."""
-
-
-class RuntimeMissing(KBBuildError):  # noqa: N818 - reads as the state it names
-    """No interpreter with the Blender version asked for was found or could be made."""
 
 
 class ExtractError(KBBuildError):

@@ -23,7 +23,7 @@ from kb_build.fingerprint import base_fingerprint, own_version, runtime_digest
 from kb_build.pages.sources import Origin, find_sources
 from simworlds.files import remove_unfinished_files
 from simworlds.forked import beside
-from simworlds.progress import silent
+from simworlds.terminal.progress import silent
 from simworlds.releases import ROLES, minor_of
 from simworlds.sandbox.runtime import find_runtime
 from simworlds.settings import base_path, cache_folder, summaries_path
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from kb_build.store import Contents
     from kb_build.summaries import SummaryReport, SummaryRun
     from kb_build.versions.removed_symbols import Former
-    from simworlds.progress import Progress
+    from simworlds.terminal.progress import Progress
     from simworlds.sandbox.runtime import Runtime
 
 SummaryMethod = Literal["extractive", "claude", "none"]

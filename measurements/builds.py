@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
 from bench.setting import BLENDER, REPO, corpora, environment, say, simworlds
-from kb_build.errors import KBBuildError
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.sources import find_sources
 from measurements.report import Figure, Part
+from simworlds.errors import UserError
 from simworlds.settings import base_path
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def measure(setting: Setting) -> Part:
         if not setting.quick:
             try:
                 _html(Path(folder), figures, rows)
-            except (KBBuildError, FileNotFoundError) as error:
+            except (UserError, FileNotFoundError) as error:
                 skipped.append(f"manual from HTML: {error}")
     if not any(figure.key == "size" for figure in figures):
         figures.append(Figure("size", setting.base.stat().st_size / 1e6, "the base that is measured"))

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 from bench.setting import BLENDER, QUERIES, REPO, Setting, say
 from kb_build.base_file import read_meta
-from kb_build.errors import KBBuildError
 from kb_serve.errors import KBServeError
 from measurements import report
 from measurements.builds import BuildFailed, run_build
 from measurements.retrieval import BadQueries, misses
+from simworlds.errors import UserError
 from simworlds.settings import base_path, home_folder
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def main(given: Sequence[str] | None = None) -> int:
         setting = Setting(base, home, queries, options.quick, options.load_seconds)
         facts = report.machine_facts(read_meta(base), base)
         parts = [measure(name, setting) for name in PARTS if name in options.only]
-    except (BadQueries, BuildFailed, KBBuildError, KBServeError) as error:
+    except (BadQueries, BuildFailed, UserError, KBServeError) as error:
         print(f"Error: {error}", file=sys.stderr)
         return 2
     text = report.write(options.output, parts, facts)

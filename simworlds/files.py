@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import tempfile
+import threading
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
 _PREFIX = ".unfinished-"
-_PART = re.compile(r"\..+\.(\d+)\.part")
+_PART = re.compile(r"\..+\.(\d+)(-\d+)?\.part")
 
 
 @contextmanager
@@ -62,13 +63,26 @@ def staged_file(target: Path) -> Generator[Path]:
     Raises OSError when the disk refuses.
     """
     target.parent.mkdir(parents=True, exist_ok=True)
-    part = target.with_name(f".{target.name}.{os.getpid()}.part")
+    part = target.with_name(f".{target.name}.{os.getpid()}-{threading.get_ident()}.part")
     part.unlink(missing_ok=True)
     try:
         yield part
         part.replace(target)
     finally:
         part.unlink(missing_ok=True)
+
+
+def write_whole(path: Path, content: bytes | str, *, durable: bool = True) -> None:
+    """Writes a file so that whoever reads it, whenever this ends, finds the old one or the new one.
+
+    Text is written as UTF-8. ``durable`` waits for the disk. Raises OSError.
+    """
+    data = content.encode() if isinstance(content, str) else content
+    with staged_file(path) as part, part.open("wb") as file:
+        file.write(data)
+        if durable:
+            file.flush()
+            os.fsync(file.fileno())
 
 
 def remove_unfinished_files(folder: Path) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
-import signal
-import sys
 import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from kb_build.errors import KBBuildError
+from simworlds.end_with_parent import end_with_parent
+from simworlds.errors import UserError
+from simworlds.processes import kill_group
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 Work = Callable[["Connection"], None]
-_PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of <linux/prctl.h>
 
 
 def can_fork() -> bool:
@@ -43,30 +42,18 @@ def forked(work: Work) -> Generator[Connection]:
     finally:
         process.kill()
         if process.pid is not None:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(process.pid, signal.SIGKILL)
+            kill_group(process.pid)
         process.join()
         ours.close()
 
 
 def _run(work: Work, messages: Connection, theirs: Connection, parent: int) -> None:
     os.setsid()  # Ctrl-C reaches the parent alone, which ends the whole group
-    os.register_at_fork(after_in_child=_die_with_parent)
-    _die_with_parent()
+    os.register_at_fork(after_in_child=lambda: end_with_parent(os.getppid()))
+    end_with_parent(parent)
     theirs.close()
     with contextlib.suppress(BrokenPipeError):
-        if os.getppid() == parent:
-            work(messages)
-
-
-def _die_with_parent() -> None:
-    """Where the system offers it, end this process when the one that started it is killed."""
-    if sys.platform != "linux":
-        return
-    import ctypes  # noqa: PLC0415 - in the other process only
-
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+        work(messages)
 
 
 @contextlib.contextmanager
@@ -74,14 +61,14 @@ def beside(function: Callable[[], _T]) -> Generator[Callable[[], _T]]:
     """Computes ``function()`` in another process meanwhile; gives a function that waits for the result.
 
     What cannot be computed there (no fork, not enough memory, …) is computed here when it is asked for. A
-    KBBuildError is raised here, too.
+    UserError is raised here, too.
     """
 
     def work(messages: Connection) -> None:
         outcome: Any
         try:
             outcome = ("result", function())
-        except KBBuildError as error:
+        except UserError as error:
             outcome = ("error", error)
         messages.send(outcome)
 

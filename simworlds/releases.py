@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
-from kb_build.errors import KBBuildError
+from simworlds.errors import UserError
 
 Role = Literal["manual", "guides"]
 ROLES: tuple[Role, ...] = ("manual", "guides")
@@ -37,10 +37,10 @@ def _table() -> dict[str, Any]:
 
 
 def minor_of(version: str) -> str:
-    """``"5.1.2"`` or ``"5.1"`` → ``"5.1"``. Raises KBBuildError for what is not a Blender version."""
+    """``"5.1.2"`` or ``"5.1"`` → ``"5.1"``. Raises UserError for what is not a Blender version."""
     match = _VERSION.fullmatch(version.strip())
     if match is None:
-        raise KBBuildError(f"{version[:40]!r} is not a Blender version; write it as 5.1 or 5.1.2")
+        raise UserError(f"{version[:40]!r} is not a Blender version; write it as 5.1 or 5.1.2")
     return f"{int(match[1])}.{int(match[2])}"
 
 

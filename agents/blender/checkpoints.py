@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
 
-from agents.blender.run_folder import take_beneath
+from simworlds.sandbox.untrusted_files import take_beneath
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -20,6 +20,7 @@ from agents.loop.errors import NoRun, RunError, Stopping
 from agents.loop.toolbox import Outcome
 from agents.roles import coder, reviewer
 from agents.roles.base import Desk
+from simworlds.files import write_whole
 from simworlds.llm.messages import Picture, Text, ToolResult
 
 if TYPE_CHECKING:
@@ -151,11 +152,8 @@ class Run:
         name = f"pictures/{hashlib.sha256(picture.data).hexdigest()[:16]}.png"
         path = self.root / name
         try:
-            path.parent.mkdir(exist_ok=True)
             if not path.exists():
-                part = path.with_suffix(f".{threading.get_ident()}.part")
-                part.write_bytes(picture.data)
-                part.replace(path)
+                write_whole(path, picture.data, durable=False)
         except OSError as error:
             raise RunError(f"{path} cannot be written: {error.strerror or error}.") from error
         return name
@@ -223,10 +221,8 @@ class Run:
     def write(self, name: str, text: str) -> Path:
         """Writes a file into the run's folder, whole or not at all. Raises RunError."""
         path = self.root / name
-        part = path.with_name(f".{name}.part")
         try:
-            part.write_text(text, "utf-8")
-            part.replace(path)
+            write_whole(path, text, durable=False)
         except OSError as error:
             raise RunError(f"{path} cannot be written: {error.strerror or error}.") from error
         return path

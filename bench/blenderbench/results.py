@@ -20,8 +20,8 @@ from bench.blenderbench.photometric import Convention
 from bench.blenderbench.task_scenes import Rendered
 from bench.blenderbench.task_set import LEVELS, in_order
 from bench.blenderbench.vlm import Judged
-from bench.sweep.content_hash import write_whole
 from bench.sweep.records import Provenance
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

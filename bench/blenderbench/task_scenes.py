@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict
 
 from agents.blender.launch import make_launch
-from agents.blender.run_folder import take_beneath
+from simworlds.sandbox.untrusted_files import take_beneath
 from bench.blenderbench.errors import BadPicture, NotDone
 from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess

@@ -130,7 +130,7 @@ def _write_page(place: Path, found: Results, told: Any, said: Sequence[str]) -> 
 
 
 def _write(path: Path, text: str) -> None:
-    from bench.sweep.content_hash import write_whole  # noqa: PLC0415 - not for --help
+    from simworlds.files import write_whole  # noqa: PLC0415 - not for --help
 
     write_whole(path.expanduser(), text.encode("utf-8", "replace"))
 

@@ -21,6 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from bench.audit.untrusted_blend import Means, NotScored, Untrusted
 from bench.frames import video
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -145,9 +146,7 @@ def _kept(folder: Path, shares: Sequence[float], contents: Sequence[bytes]) -> l
     for path in {*folder.glob("*.png")} - {*paths}:
         path.unlink()
     for path, content in zip(paths, pictures, strict=True):
-        part = path.with_suffix(".part")
-        part.write_bytes(content)
-        part.replace(path)
+        write_whole(path, content, durable=False)
     return paths
 
 

@@ -8,20 +8,16 @@ limits of memory and time.
 from __future__ import annotations
 
 import json
-import os
-import signal
-import subprocess
 import sys
 import tempfile
-from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.audit.untrusted_blend import NotScored
+from simworlds.processes import CommandFailed, CommandTimedOut, run_group
 from simworlds.sandbox.confinement import GIB, Limits, best_sandbox, own_python
 from simworlds.sandbox.runtime import clean_environment
-from simworlds.spawner import started_for_good
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,35 +47,15 @@ def _decode(path: Path, shares: Sequence[float], folder: Path) -> None:
     words = [sys.executable, "-I", str(_SCRIPT), str(path), str(folder), json.dumps(list(shares))]
     readable = [_SCRIPT, path, *map(Path, own_python())]
     command = best_sandbox(limits=_LIMITS).command(words, read=readable, write=[folder])
-    log = folder / "log"
-    with log.open("wb") as said:
-        process = started_for_good(
-            lambda: subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=said,
-                stderr=subprocess.STDOUT,
-                env=clean_environment(folder),
-                cwd=folder,
-                start_new_session=True,
-            )
-        )
     try:
-        code = process.wait(SECONDS)
-    except subprocess.TimeoutExpired:
+        run_group(
+            command, environment=clean_environment(folder), timeout=SECONDS, log=folder / "log", folder=folder
+        )
+    except CommandTimedOut:
         raise NotScored(f"{path.name} was still being decoded when its {SECONDS:g} s were over") from None
-    finally:
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-    if code != 0:
-        raise NotScored(f"{path.name} cannot be decoded: {_last_line(log) or f'exit code {code}'}")
-
-
-def _last_line(log: Path) -> str:
-    with log.open("rb") as file:
-        lines = file.read(100_000).decode(errors="replace").strip().splitlines()
-    return lines[-1][:200] if lines else ""
+    except CommandFailed as error:
+        reason = error.tail.splitlines()[-1][:200] if error.tail else str(error)
+        raise NotScored(f"{path.name} cannot be decoded: {reason}") from error
 
 
 def _read(path: Path) -> bytes:

@@ -9,13 +9,13 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
-import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from bench.judge.errors import NotJudged
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping
@@ -85,14 +85,8 @@ class Store:
         plain = value.model_dump(mode="json")
         written = json.dumps(plain, sort_keys=True)
         text = json.dumps({"sha256": _sha256(written), "value": plain}, indent=1, ensure_ascii=False)
-        part = path.with_suffix(".part")
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with part.open("w", encoding="utf-8") as file:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-            part.replace(path)
+            write_whole(path, text)
         except OSError as error:
             _LOG.warning("%s cannot be written, so this will be asked again: %s", path, error.strerror)
 

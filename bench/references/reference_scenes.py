@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kb_build.errors import ExtractError
+from simworlds.sandbox.errors import ProgramFailed
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.program import SHARED, Program
 from simworlds.sandbox.runtime import run_program
@@ -76,7 +76,7 @@ def _build(scene: str, blend: Path, runtime: Runtime) -> None:
         log = Path(made) / "blender.log"
         try:
             run_program(runtime, _MAKER, [scene, str(Path(made, blend.name))], timeout=_SECONDS, log=log)
-        except ExtractError as error:
+        except ProgramFailed as error:
             kept = parent / f"{scene}.log"
             shutil.copy(log, kept)
             raise CannotBuild(f"{scene} could not be built: {error} (kept as {kept})") from error

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from bench.sweep.content_hash import digest_of_bytes, digest_of_file, files_below, write_whole
+from bench.sweep.content_hash import digest_of_bytes, digest_of_file, files_below
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

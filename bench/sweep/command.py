@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 from contextlib import suppress
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from bench.setting import simworlds
 from simworlds.end_with_parent import ending_with_this
+from simworlds.processes import end_group, spawn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,13 +26,7 @@ def called(words: Sequence[str], log: Path) -> int:
     What it says is added to ``log``.
     """
     with log.open("ab") as said:
-        process = subprocess.Popen(
-            ending_with_this([*simworlds(), *words]),
-            stdin=subprocess.DEVNULL,
-            stdout=said,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
+        process = spawn(ending_with_this([*simworlds(), *words]), stdout=said, stderr=subprocess.STDOUT)
     try:
         return process.wait()
     except KeyboardInterrupt:
@@ -43,9 +37,7 @@ def called(words: Sequence[str], log: Path) -> int:
                 break
         raise
     finally:
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
+        end_group(process)
 
 
 def last_words(log: Path) -> str:

@@ -1,10 +1,9 @@
-"""Content is what things are known by: digests of files and of data, and files that are written whole or not at all."""
+"""Digests of files and of data, which are what steps and results are known by."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -49,17 +48,3 @@ def _digest(path: Path, size: int, changed: int) -> str:
 def files_below(folder: Path) -> list[Path]:
     """The plain files below a folder, sorted; links to folders are not followed."""
     return sorted(path for path in folder.rglob("*") if path.is_file())
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Writes a file so that whoever reads it, whenever this ends, finds the old one or the new one. Raises OSError."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with part.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)

@@ -16,11 +16,12 @@ from bench.judge.errors import NotJudged
 from bench.judge.judge import judge
 from bench.judge.providers import Provider, provider_of
 from bench.judge.questions import prompt_version
-from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file, write_whole
+from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file
 from bench.sweep.provenance import code_of
 from bench.sweep.records import JUDGEMENT, File, Judged, Record, read_record, write_record
 from bench.sweep.scene_task import stamp
 from bench.sweep.steps import Due
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

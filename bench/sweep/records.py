@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from bench.sweep.content_hash import write_whole
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path

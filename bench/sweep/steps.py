@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 from bench.audit.audit import audit
 from bench.audit.untrusted_blend import NotScored
 from bench.frames.clip_frames import SECONDS, kind_of, take_frames
-from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file, write_whole
+from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file
 from bench.sweep.provenance import code_of, code_of_audit, code_of_frames
 from bench.sweep.records import AUDIT, FINAL, FRAMES, WORK, Audited, File, Framed, Produced
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable

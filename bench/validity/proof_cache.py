@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING
 from pydantic import BaseModel, ValidationError
 
 from bench.validity.proof import Proof
+from simworlds.files import write_whole
 from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
@@ -55,11 +55,7 @@ def kept_proof(scene: str, about: Property, key: str) -> Proof | None:
 
 def keep(proof: Proof, key: str) -> None:
     """Keeps a proof in the place of an older one. Raises OSError."""
-    path = _path(proof.scene, proof.about)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as file:
-        file.write(_Kept(key=key, proof=proof).model_dump_json())
-    Path(file.name).replace(path)
+    write_whole(_path(proof.scene, proof.about), _Kept(key=key, proof=proof).model_dump_json(), durable=False)
 
 
 def _path(scene: str, about: Property) -> Path:

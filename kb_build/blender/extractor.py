@@ -9,14 +9,15 @@ from kb_build.digests import Digests
 from kb_build.errors import ExtractError
 from kb_build.fingerprint import extractor_digest, runtime_digest
 from simworlds.files import remove_unfinished_files, staged_file
-from simworlds.progress import silent
+from simworlds.terminal.progress import silent
 from simworlds.releases import minor_of
+from simworlds.sandbox.errors import ProgramFailed
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import run_program
 from simworlds.settings import cache_folder, extracts_folder
 
 if TYPE_CHECKING:
-    from simworlds.progress import Progress
+    from simworlds.terminal.progress import Progress
     from simworlds.sandbox.runtime import Runtime
 
 _EXTRACTOR = Program(
@@ -54,7 +55,10 @@ def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: 
 
 
 def _run(runtime: Runtime, part: Path, log: Path) -> None:
-    run_program(runtime, _EXTRACTOR, [str(part)], timeout=_SECONDS, log=log)
+    try:
+        run_program(runtime, _EXTRACTOR, [str(part)], timeout=_SECONDS, log=log)
+    except ProgramFailed as error:
+        raise ExtractError(str(error)) from error
     if not _is_whole(part):
         raise ExtractError(
             f"Blender {runtime.version} ended well, but what it wrote is not whole. Its output is in {log}; "

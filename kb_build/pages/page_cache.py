@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kb_build.pages.sources import Source
     from kb_build.records import Page, PageSource
-    from simworlds.progress import Progress
+    from simworlds.terminal.progress import Progress
 
 _KEPT = 12
 _LEVEL = 1  # a tenth of a second for a manual; better ones take a whole one

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from kb_build.errors import KBBuildError, SourceError
+from kb_build.errors import SourceError
 from kb_build.pages.page_cache import kept_pages, read_pages
+from simworlds.errors import UserError
 from simworlds.files import scratch_folder
 from simworlds.forked import can_fork, forked
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from kb_build.pages.sources import Source
     from kb_build.records import Page
-    from simworlds.progress import Progress
+    from simworlds.terminal.progress import Progress
 
 _REPORT_SECONDS = 0.1
 
@@ -123,7 +124,7 @@ def _work(job: _Job, messages: Connection) -> None:
     try:
         for source in job.sources:
             read_pages(source, job.cache, jobs=job.processes, progress=report)
-    except KBBuildError as error:
+    except UserError as error:
         outcome = ("failed", str(error))
     except Exception as error:
         outcome = ("failed", f"pages could not be read: {type(error).__name__}: {error}")

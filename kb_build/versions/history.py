@@ -17,7 +17,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kb_build.errors import KBBuildError, StoreError
+from kb_build.errors import StoreError
+from simworlds.errors import UserError
 from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ class History:
         source = path or HISTORY_FILE
         try:
             return parse_history(source.read_text(encoding="utf-8"))
-        except (OSError, KBBuildError, UnicodeError, ValueError, KeyError, IndexError) as error:
+        except (OSError, UserError, UnicodeError, ValueError, KeyError, IndexError) as error:
             raise StoreError(
                 f"{source} is not a readable history ({error}); make it again: simworlds kb history"
             ) from error
@@ -339,7 +340,7 @@ def _wrapped(head: str, tokens: Iterable[str]) -> Iterator[str]:
 
 
 def parse_history(text: str) -> History:
-    """The inverse of :meth:`History.text`. Raises ValueError, KeyError, IndexError or KBBuildError."""
+    """The inverse of :meth:`History.text`. Raises ValueError, KeyError, IndexError or UserError."""
     head, _, body = text.partition("\n\n")
     kind, *rows = head.splitlines()
     if kind != f"format {FORMAT}":

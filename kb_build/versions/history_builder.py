@@ -9,8 +9,9 @@ from kb_build.blender.extract_reader import read_extract
 from kb_build.blender.extractor import extract_api
 from kb_build.errors import ExtractError, KBBuildError, StoreError
 from kb_build.versions.history import History, history_paths, version_key
+from simworlds.errors import UserError
 from simworlds.files import staged_file
-from simworlds.progress import silent
+from simworlds.terminal.progress import silent
 from simworlds.releases import minor_of
 from simworlds.sandbox.runtime import find_runtime
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from simworlds.progress import Progress
+    from simworlds.terminal.progress import Progress
     from simworlds.sandbox.runtime import Runtime
 
 # A version that lost more than this share of its symbols lost them to a fault, not to a new patch release.
@@ -113,7 +114,7 @@ def _collect(
         try:
             runtime = find_runtime(version, home=home, blender_exe=executable, progress=progress)
             paths, failed = _paths(runtime, home, progress)
-        except KBBuildError as error:
+        except UserError as error:
             missing[name] = str(error)
             continue
         if failed:

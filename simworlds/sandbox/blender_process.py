@@ -15,7 +15,6 @@ import logging
 import os
 import secrets
 import selectors
-import signal
 import socket
 import subprocess
 import time
@@ -23,6 +22,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from simworlds.processes import kill_group, signal_name, spawn
 from simworlds.sandbox.captured_output import Printed
 from simworlds.sandbox.errors import (
     BlenderError,
@@ -40,7 +40,6 @@ from simworlds.sandbox.errors import (
 )
 from simworlds.sandbox.inside import channel
 from simworlds.sandbox.usage import innermost
-from simworlds.spawner import started_for_good
 
 if TYPE_CHECKING:
     import threading
@@ -93,18 +92,13 @@ class BlenderProcess:
         self._bounds = launch.bounds
         ours, theirs = socket.socketpair()
         try:
-            command = launch.command(theirs.fileno())
-            self._process = started_for_good(
-                lambda: subprocess.Popen(
-                    command,
-                    stdin=subprocess.DEVNULL,
-                    stdout=subprocess.PIPE,
-                    stderr=subprocess.PIPE,
-                    env=launch.environment,
-                    cwd=launch.workspace,
-                    pass_fds=(theirs.fileno(),),
-                    start_new_session=True,
-                )
+            self._process = spawn(
+                launch.command(theirs.fileno()),
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                env=launch.environment,
+                cwd=launch.workspace,
+                pass_fds=(theirs.fileno(),),
             )
         except OSError as error:
             ours.close()
@@ -334,10 +328,7 @@ class BlenderProcess:
         if code >= 0:
             hint = ", as after bpy.ops.wm.quit_blender or os._exit" if code == 0 else ""
             return f"it was ended from inside, with exit code {code}{hint}"
-        try:
-            name = signal.Signals(-code).name
-        except ValueError:
-            name = f"signal {-code}"
+        name = signal_name(code)
         if any(word in self._said() for word in _NO_MEMORY):
             allowed = self._launch.sandbox.limits.memory / 1e9
             return f"it ran out of memory, of which it may have {allowed:.1f} GB ({name})"
@@ -348,8 +339,7 @@ class BlenderProcess:
     def stop(self) -> None:
         """From any thread: kills the process. Whoever is in a call finds it gone."""
         if not self._closed and self._process.returncode is None:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, signal.SIGKILL)
+            kill_group(self._process.pid)
 
     def kill(self) -> None:
         """Ends the process and whatever it has started; waits until they are gone. Does nothing the second time."""

@@ -1,6 +1,8 @@
-"""What can go wrong between an agent and its Blender.
+"""What can go wrong between SimWorlds and a Blender.
 
 BlenderError
+├── RuntimeMissing     no interpreter with the Blender version asked for, and none could be made
+├── ProgramFailed      a program that ran in Blender did not finish
 ├── CannotStart        no Blender to be had, or it does not come up
 ├── Refusal            the tool cannot do as asked; Blender is well
 │   └── MissingModule  this Blender's Python lacks a module that the tool needs
@@ -17,9 +19,19 @@ BlenderError
 
 from __future__ import annotations
 
+from simworlds.errors import UserError
 
-class BlenderError(Exception):
+
+class BlenderError(UserError):
     """Anything below."""
+
+
+class RuntimeMissing(BlenderError):  # noqa: N818
+    """No interpreter with the Blender version asked for was found or could be made."""
+
+
+class ProgramFailed(BlenderError):  # noqa: N818
+    """A program that ran in Blender did not finish; carries the end of its output."""
 
 
 class CannotStart(BlenderError):  # noqa: N818 - these read as the states they name

@@ -9,8 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kb_build.errors import KBBuildError
-from simworlds.sandbox.errors import CannotStart
+from simworlds.sandbox.errors import CannotStart, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
 from simworlds.sandbox.usage import Bounds, remove_named, sweep
@@ -88,7 +87,7 @@ def find_blender(version: str | None = None, blender_exe: Path | None = None) ->
     """The Blender to work in; one that is not there yet is made, which takes minutes. Raises CannotStart."""
     try:
         return find_runtime(version, home=home_folder(), blender_exe=blender_exe)
-    except KBBuildError as error:
+    except RuntimeMissing as error:
         raise CannotStart(f"No Blender to work in: {error}") from error
 
 

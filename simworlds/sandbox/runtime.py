@@ -14,10 +14,10 @@ from importlib import metadata
 from pathlib import Path
 from typing import Literal
 
-from kb_build.errors import ExtractError, RuntimeMissing
 from simworlds.files import staged_folder
-from simworlds.process_groups import CommandFailed, run_group
+from simworlds.processes import CommandFailed, run_group
 from simworlds.releases import Release, minor_of, release, releases, same_version
+from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 
 Kind = Literal["executable", "environment", "managed"]
@@ -88,7 +88,7 @@ def run_script(  # noqa: PLR0913 - what is run, and how
     """Run ``script`` with ``args`` in Blender's interpreter; all that it prints goes to the file ``log``.
 
     The process gets none of the environment's secrets and no settings of the user's Blender, and dies with
-    its children after ``timeout`` seconds or on Ctrl-C. Raises ExtractError with the end of its output.
+    its children after ``timeout`` seconds or on Ctrl-C. Raises ProgramFailed with the end of its output.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="simworlds-") as settings:
@@ -96,7 +96,7 @@ def run_script(  # noqa: PLR0913 - what is run, and how
         try:
             run_group(command, environment=clean_environment(Path(settings)), timeout=timeout, log=log)
         except CommandFailed as error:
-            raise ExtractError(
+            raise ProgramFailed(
                 f"Blender {runtime.version} ({runtime.executable}) did not finish {name or script.name}: {error}. "
                 f"Its whole output is in {log}{_advice(error.tail)}"
             ) from error

@@ -14,8 +14,9 @@ from pathlib import Path
 
 import pytest
 
-from kb_build.errors import ExtractError, KBBuildError, RuntimeMissing
+from simworlds.errors import UserError
 from simworlds.releases import release, releases
+from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
 from simworlds.sandbox.runtime import Runtime, executable_version, find_runtime, installed_bpy, run_script
 
 REPO = Path(__file__).resolve().parents[2]
@@ -99,7 +100,7 @@ def test_a_script_runs_in_a_named_executable(tmp_path: Path, blender: Path) -> N
 
 def test_a_script_that_fails_in_a_named_executable_is_an_error(tmp_path: Path, blender: Path) -> None:
     runtime = find_runtime(None, home=tmp_path, blender_exe=blender)
-    with pytest.raises(ExtractError, match="no such luck"):
+    with pytest.raises(ProgramFailed, match="no such luck"):
         run_script(
             runtime,
             script(tmp_path, "raise ValueError('no such luck')"),
@@ -140,7 +141,7 @@ def test_a_version_without_a_package_is_answered_with_those_that_have_one(tmp_pa
 
 
 def test_what_is_no_version_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(KBBuildError, match="is not a Blender version"):
+    with pytest.raises(UserError, match="is not a Blender version"):
         find_runtime("latest; rm -rf", home=tmp_path)
 
 
@@ -161,7 +162,7 @@ def test_an_environment_that_was_made_is_used_again(tmp_path: Path) -> None:
 def test_a_wheel_that_cannot_be_installed_is_named_with_uvs_words(tmp_path: Path) -> None:
     code = f"""
         import pathlib
-        from kb_build.errors import RuntimeMissing
+        from simworlds.sandbox.errors import RuntimeMissing
         from simworlds.sandbox.runtime import find_runtime
         try:
             find_runtime("4.2.999", home=pathlib.Path({str(tmp_path)!r}))
@@ -212,7 +213,7 @@ def test_secrets_and_python_settings_stay_outside(tmp_path: Path) -> None:
 def test_a_failing_script_is_an_error_with_the_end_of_its_output(tmp_path: Path) -> None:
     log = tmp_path / "run.log"
     text = "print('first of many'); print('x\\n' * 5000); raise SystemExit('the last word')"
-    with pytest.raises(ExtractError, match=r"(?s)exit code 1.*the last word") as caught:
+    with pytest.raises(ProgramFailed, match=r"(?s)exit code 1.*the last word") as caught:
         run_script(HERE, script(tmp_path, text), [], timeout=60, log=log)
     assert str(log) in str(caught.value)
     assert "first of many" not in str(caught.value)
@@ -222,19 +223,19 @@ def test_a_failing_script_is_an_error_with_the_end_of_its_output(tmp_path: Path)
 
 def test_a_crash_is_named_by_its_signal(tmp_path: Path) -> None:
     text = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
-    with pytest.raises(ExtractError, match="SIGSEGV"):
+    with pytest.raises(ProgramFailed, match="SIGSEGV"):
         run_script(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
 
 
 def test_a_missing_system_library_is_explained(tmp_path: Path) -> None:
     text = "raise ImportError('libXi.so.6: cannot open shared object file: No such file or directory')"
-    with pytest.raises(ExtractError, match=r"libXi\.so\.6 is missing.*README"):
+    with pytest.raises(ProgramFailed, match=r"libXi\.so\.6 is missing.*README"):
         run_script(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
 
 
 def test_output_that_is_no_text_does_no_harm(tmp_path: Path) -> None:
     text = "import os, sys; os.write(1, bytes(range(256))); sys.exit(5)"
-    with pytest.raises(ExtractError, match="exit code 5"):
+    with pytest.raises(ProgramFailed, match="exit code 5"):
         run_script(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
 
 
@@ -267,7 +268,7 @@ def wait_for(condition, seconds: float = 30.0) -> bool:
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes through /proc")
 def test_a_script_that_hangs_is_stopped_with_its_children(tmp_path: Path) -> None:
-    with pytest.raises(ExtractError, match="stopped after 3 s"):
+    with pytest.raises(ProgramFailed, match="stopped after 3 s"):
         run_script(HERE, script(tmp_path, FAMILY), [str(tmp_path)], timeout=3, log=tmp_path / "run.log")
     pids = [int(pid) for pid in (tmp_path / "pids").read_text().split()]
     assert len(pids) == 2

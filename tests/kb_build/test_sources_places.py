@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.errors import KBBuildError, SourceError
+from kb_build.errors import SourceError
 from kb_build.pages.sources import Missing, Origin, Source, find_sources
+from simworlds.errors import UserError
 from simworlds.releases import releases, source_names
 
 if TYPE_CHECKING:
@@ -278,7 +279,7 @@ def test_a_damaged_memory_of_digests_does_no_harm(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("version", ["", "five", "5", "5.1.2.3", "5.1; rm", "../5.1", "5.1\n6"])
 def test_what_is_no_version_is_refused(tmp_path: Path, version: str) -> None:
-    with pytest.raises(KBBuildError, match="is not a Blender version"):
+    with pytest.raises(UserError, match="is not a Blender version"):
         look(version, tmp_path)
 
 

@@ -7,6 +7,8 @@ import re
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
+from simworlds.files import write_whole
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
@@ -89,9 +91,7 @@ class Reel:
             "frames": {str(frame): asdict(made) for frame, made in sorted(self._made.items())},
             "scene": self._scene,
         }
-        part = self.folder / f".{NOTES}.part"
-        part.write_text(json.dumps(notes, indent=0))
-        part.replace(self.folder / NOTES)
+        write_whole(self.folder / NOTES, json.dumps(notes, indent=0), durable=False)
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from pydantic import Field
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import told_length
 from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -116,7 +117,7 @@ def _preview(session: Session, kind: str, name: str | None, asked: View, call: C
     panels = [_panel(folder, view, size) for view in data["views"]]
     png = contact_sheet.to_png(_sheet(kind, data, panels))
     path = _place(folder, kind, data)
-    _write(path, png)
+    write_whole(path, png, durable=False)
     for view in data["views"]:
         del view["file"]
     data |= {"file": str(path.relative_to(folder.root)), "seconds": round(reply.seconds, 3)}
@@ -195,12 +196,6 @@ def _place(folder: RunFolder, kind: str, data: dict[str, Any]) -> Path:
     plain = re.sub(r"\W+", "-", data["title"]).strip("-")[:40] or "unnamed"
     number = 1 + max((int(path.name[:4]) for path in previews.glob("[0-9][0-9][0-9][0-9]-*.png")), default=0)
     return previews / f"{number:04d}-{kind}-{plain}-frame-{data['frame']}.png"
-
-
-def _write(path: Path, png: bytes) -> None:
-    part = path.with_name(f".{path.name}.part")
-    part.write_bytes(png)
-    part.replace(path)
 
 
 SINGLE_MESH = Tool(

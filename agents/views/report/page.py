@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import os
 import re
 from dataclasses import dataclass, field
 from functools import cache
@@ -27,6 +26,7 @@ from agents.views.report.media import Media, Shown
 from agents.views.report.relation_graph import draw_graph
 from agents.views.report.tables import objects_of, relations_of
 from agents.views.report.timeline import draw_timeline
+from simworlds.files import write_whole
 from simworlds.llm.spending import Row as Spent
 
 if TYPE_CHECKING:
@@ -104,13 +104,8 @@ class ShownStage:
 def write_report(run: Path) -> Path:
     """Writes report.html into the run's folder, from its journal; the file. Raises NoRun, OSError."""
     text = make_report(read_history(run), run)
-    path, part = run / NAME, run / f".{NAME}.{os.getpid()}"
-    try:
-        part.write_bytes(text.encode())
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-    return path
+    write_whole(run / NAME, text, durable=False)
+    return run / NAME
 
 
 def make_report(history: History, run: Path) -> str:

@@ -11,13 +11,14 @@ from rich.console import Console
 
 from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep import provenance as origin
-from bench.sweep.content_hash import digest_of, write_whole
+from bench.sweep.content_hash import digest_of
 from bench.sweep.executor import Done
 from bench.sweep.records import BadRecord, File, SystemInfo, read_record
 from bench.sweep.scene_selection import chosen
 from bench.sweep.scene_task import Task
 from bench.sweep.sweep_view import Lines, Screen
 from bench.sweep.systems.folder import Folder
+from simworlds.files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -135,7 +136,7 @@ def test_a_digest_is_of_what_data_says_not_of_its_order() -> None:
 def test_a_file_that_cannot_be_written_whole_leaves_the_old_one(tmp_path: Path) -> None:
     write_whole(tmp_path / "file", b"old")
     with pytest.raises(TypeError):
-        write_whole(tmp_path / "file", "no bytes")  # type: ignore[arg-type]
+        write_whole(tmp_path / "file", 5)  # type: ignore[arg-type]
     assert (tmp_path / "file").read_bytes() == b"old"
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 

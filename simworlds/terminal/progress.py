@@ -67,7 +67,7 @@ class TerminalProgress:
             self._label, self._drawn = label, now
 
     def _start(self) -> Bars:
-        from simworlds.progress_columns import make_bars  # noqa: PLC0415 - a build that does nothing draws nothing
+        from simworlds.terminal.progress_columns import make_bars  # noqa: PLC0415 - a build that does nothing draws nothing
 
         self._bars = make_bars()
         self._bars.start()
