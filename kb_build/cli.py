@@ -231,8 +231,8 @@ def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path
     from kb_build.base_report import history_lines  # noqa: PLC0415
     from kb_build.versions.history import HISTORY_FILE  # noqa: PLC0415 - only here
     from kb_build.versions.history_builder import build_history  # noqa: PLC0415
-    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
     from simworlds.releases import releases  # noqa: PLC0415
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
     asked = versions or tuple(release.minor for release in releases())

@@ -23,10 +23,10 @@ from kb_build.fingerprint import base_fingerprint, own_version, runtime_digest
 from kb_build.pages.sources import Origin, find_sources
 from simworlds.files import remove_unfinished_files
 from simworlds.forked import beside
-from simworlds.terminal.progress import silent
 from simworlds.releases import ROLES, minor_of
 from simworlds.sandbox.runtime import find_runtime
 from simworlds.settings import base_path, cache_folder, summaries_path
+from simworlds.terminal.progress import silent
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping, Sequence
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from kb_build.store import Contents
     from kb_build.summaries import SummaryReport, SummaryRun
     from kb_build.versions.removed_symbols import Former
-    from simworlds.terminal.progress import Progress
     from simworlds.sandbox.runtime import Runtime
+    from simworlds.terminal.progress import Progress
 
 SummaryMethod = Literal["extractive", "claude", "none"]
 _LOADED_AHEAD = ("kb_build.blender.extract_reader", "kb_build.summaries")

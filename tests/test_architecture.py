@@ -6,11 +6,14 @@ import ast
 import subprocess
 import sys
 from dataclasses import dataclass
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+from places import REPO
 
-REPO = Path(__file__).resolve().parent.parent
+if TYPE_CHECKING:
+    from pathlib import Path
+
 PACKAGES = ("kb_build", "kb_serve", "agents", "bench")
 BLENDERS_OWN = {
     *(

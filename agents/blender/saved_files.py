@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from simworlds.sandbox.untrusted_files import copy_file, open_beneath
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.errors import BlenderError, Refusal, ToolBroke
+from simworlds.sandbox.untrusted_files import copy_file, open_beneath
 from simworlds.sandbox.usage import sweep
 
 if TYPE_CHECKING:

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict
 
 from agents.blender.launch import make_launch
-from simworlds.sandbox.untrusted_files import take_beneath
 from bench.blenderbench.errors import BadPicture, NotDone
 from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confinement import Limits, best_sandbox, default_limits
 from simworlds.sandbox.errors import BlenderError, CannotStart
+from simworlds.sandbox.untrusted_files import take_beneath
 from simworlds.sandbox.usage import sweep
 
 if TYPE_CHECKING:

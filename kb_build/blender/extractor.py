@@ -9,16 +9,16 @@ from kb_build.digests import Digests
 from kb_build.errors import ExtractError
 from kb_build.fingerprint import extractor_digest, runtime_digest
 from simworlds.files import remove_unfinished_files, staged_file
-from simworlds.terminal.progress import silent
 from simworlds.releases import minor_of
 from simworlds.sandbox.errors import ProgramFailed
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import run_program
 from simworlds.settings import cache_folder, extracts_folder
+from simworlds.terminal.progress import silent
 
 if TYPE_CHECKING:
-    from simworlds.terminal.progress import Progress
     from simworlds.sandbox.runtime import Runtime
+    from simworlds.terminal.progress import Progress
 
 _EXTRACTOR = Program(
     "kb_build.blender.inside.extract_api", {"kb_build.blender.inside": Path(__file__).parent / "inside"}

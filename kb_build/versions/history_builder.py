@@ -11,16 +11,16 @@ from kb_build.errors import ExtractError, KBBuildError, StoreError
 from kb_build.versions.history import History, history_paths, version_key
 from simworlds.errors import UserError
 from simworlds.files import staged_file
-from simworlds.terminal.progress import silent
 from simworlds.releases import minor_of
 from simworlds.sandbox.runtime import find_runtime
+from simworlds.terminal.progress import silent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from simworlds.terminal.progress import Progress
     from simworlds.sandbox.runtime import Runtime
+    from simworlds.terminal.progress import Progress
 
 # A version that lost more than this share of its symbols lost them to a fault, not to a new patch release.
 _KEPT_SHARE = 0.98

@@ -92,5 +92,3 @@ def copy_file(source: BinaryIO, target: BinaryIO) -> None:
     target.seek(0)
     target.truncate()
     shutil.copyfileobj(source, target, 1 << 20)
-
-

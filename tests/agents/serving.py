@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mcp import StdioServerParameters
+from places import REPO
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-REPO = Path(__file__).resolve().parent.parent.parent
 COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')", "mcp"]
 
 

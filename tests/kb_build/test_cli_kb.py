@@ -7,17 +7,18 @@ import os
 import pty
 import subprocess
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from places import REPO
 
 from kb_build.summaries import Summary, SummaryStore, summary_key
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from built_base import Built
 
-REPO = Path(__file__).resolve().parent.parent.parent
 COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main()"]
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from places import REPO
 
 from kb_build.base_file import read_meta
 from kb_build.errors import ExtractError, KBBuildError, SourceError
@@ -20,7 +21,6 @@ from kb_build.pipeline import BuildOptions, build
 if TYPE_CHECKING:
     from built_base import Built
 
-REPO = Path(__file__).resolve().parent.parent.parent
 COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main()", "kb", "build", "--offline"]
 
 pytestmark = [

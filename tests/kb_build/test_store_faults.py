@@ -12,10 +12,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from places import REPO
 
 from kb_serve.knowledge_base import KnowledgeBase
 
-REPO = Path(__file__).resolve().parent.parent.parent
 QUERY = "ClothSettings.quality"
 
 # Reads everything that a base of Blender needs, says so, then writes it.

@@ -6,10 +6,13 @@ import json
 import os
 import subprocess
 import sys
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-REPO = Path(__file__).resolve().parent.parent.parent
+from places import REPO
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
 COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
 
 

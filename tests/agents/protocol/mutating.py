@@ -14,7 +14,8 @@ from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-REPO = Path(__file__).resolve().parents[3]
+from places import REPO
+
 sys.path[:0] = [str(REPO), str(REPO / "tests" / "agents")]
 
 from mutation import TOOLS, Mutation  # noqa: E402

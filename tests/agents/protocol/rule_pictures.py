@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-REPO = Path(__file__).resolve().parents[3]
+from places import REPO
+
 sys.path[:0] = [str(REPO), str(REPO / "tests" / "agents")]
 
 from PIL import Image, ImageDraw  # noqa: E402

@@ -17,7 +17,7 @@ from simworlds.sandbox.runtime import clean_environment, installed_bpy
 
 HERE = Path(__file__).parent
 # The team that answers for all roles of an edit, and a second provider's server.
-sys.path += [str(HERE.parent.parent / "agents" / "pipeline"), str(HERE.parent / "judge")]
+sys.path += [str(HERE.parent.parent / "agents" / "loop"), str(HERE.parent / "judge")]
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import clip_sample
@@ -17,6 +16,7 @@ import team
 from click.testing import CliRunner
 from fake_messages_api import FakeMessagesAPI
 from PIL import Image
+from places import REPO
 
 from bench.blenderbench.errors import BadResults
 from bench.blenderbench.n_clip import Tower, clip_distance
@@ -31,12 +31,12 @@ from simworlds.cli import main
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from bench.blenderbench.task_scenes import Look
     from bench.blenderbench.task_set import Task, TaskSet
 
 pytestmark = pytest.mark.blender
-REPO = Path(__file__).resolve().parents[3]
 
 
 def loss(first: Path, second: Path) -> float:

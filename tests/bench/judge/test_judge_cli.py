@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 from fake_messages_api import Status
 from judge_apis import LISTS, PROMPT, STILL, STILL_LISTS
+from places import REPO
 
 from bench.scenes.spec import FOLDER, spec_of
 from simworlds.cli import main
 
-DOCS = Path(__file__).parents[3] / "docs" / "judge.md"
+DOCS = REPO / "docs" / "judge.md"
 TABLECLOTH = {
     "objects": [
         {"words": "red tablecloth", "text": "a red tablecloth"},

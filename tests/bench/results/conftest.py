@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-
-sys.path.append(str(Path(__file__).parent))
-
 from written_results import Written
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 @pytest.fixture

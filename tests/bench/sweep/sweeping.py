@@ -8,12 +8,15 @@ import signal
 import subprocess
 import sys
 import threading
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from places import REPO
 
 from bench.sweep.content_hash import digest_of_file
 
-REPO = Path(__file__).resolve().parents[3]
+if TYPE_CHECKING:
+    from pathlib import Path
+
 # Small frames, nobody who judges.
 CHEAP = ("--frame-size", "32x18", "--frame-samples", "1", "--judge", "none")
 SCENES = "cloth_D1,rigid_D1_01,static_D1_01"

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
+from pathlib import Path  # noqa: TC003
 
 import pytest
-
-sys.path.append(str(Path(__file__).parent.parent))
-
 from in_blender import run
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from in_blender import facts_of
+from places import REPO
 
 from bench.audit.predicates.catalogue import PREDICATES, by_name
 from bench.audit.predicates.predicate import GROUPS, Predicate, Stage, Unit, Verdict, judged
@@ -239,4 +239,4 @@ def test_the_reference_lists_every_definition_and_is_up_to_date() -> None:
 
     text = reference()
     assert all(f"### `{name}`" in text for name in PREDICATES)
-    assert (Path(__file__).parents[2] / "docs" / NAME).read_text(encoding="utf-8") == text
+    assert (REPO / "docs" / NAME).read_text(encoding="utf-8") == text

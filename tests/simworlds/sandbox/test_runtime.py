@@ -13,13 +13,13 @@ import time
 from pathlib import Path
 
 import pytest
+from places import REPO
 
 from simworlds.errors import UserError
 from simworlds.releases import release, releases
 from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
 from simworlds.sandbox.runtime import Runtime, executable_version, find_runtime, installed_bpy, run_script
 
-REPO = Path(__file__).resolve().parents[2]
 HERE = Runtime(Path(sys.executable), "environment", "0.0.0")
 
 

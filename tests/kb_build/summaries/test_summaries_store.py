@@ -7,13 +7,17 @@ import subprocess
 import sys
 import threading
 from contextlib import closing
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+from places import REPO
 
 from kb_build.errors import SummaryError
 from kb_build.summaries import Summary, SummaryStore, summary_key
 from kb_build.summaries.store import BadAnswer, SentBatch
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 API = "http://127.0.0.1/"
 
@@ -179,7 +183,7 @@ for n in itertools.count():
     store.add([Summary(key, "text " * 50, "claude", "m", "p") for key in keys])
     print(n, flush=True)
 """
-    repo = Path(__file__).resolve().parents[2]
+    repo = REPO
     process = subprocess.Popen(
         [sys.executable, "-c", code, str(store.path)], stdout=subprocess.PIPE, text=True, cwd=repo
     )
@@ -205,7 +209,7 @@ with SummaryStore(Path(sys.argv[1])).exclusive():
     print("locked", flush=True)
     sys.stdin.read()
 """
-    repo = Path(__file__).resolve().parents[2]
+    repo = REPO
     process = subprocess.Popen(
         [sys.executable, "-c", code, str(store.path)],
         stdin=subprocess.PIPE,

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from PIL import Image
+from places import REPO
 from rule_cases import CASES, judge
 
 from agents.protocol.rules.catalogue import RULES
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from studio import Studio
 
 
-PICTURES = Path(__file__).resolve().parents[3] / "docs" / "rules"
+PICTURES = REPO / "docs" / "rules"
 IDS = [rule.id for rule in RULES]
 
 

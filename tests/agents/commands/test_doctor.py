@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from places import REPO
 from studio import Studio
 from test_escapes import works
 
@@ -162,7 +163,7 @@ def test_all_missing_libraries_are_listed_not_just_the_first(tmp_path: Path) -> 
 
 
 def test_the_packages_are_those_that_the_readme_installs() -> None:
-    listed = (Path(__file__).parents[2] / ".ci" / "debian-packages").read_text().split()
+    listed = (REPO / ".ci" / "debian-packages").read_text().split()
     assert set(listed) <= set(doctor_checks.PACKAGES.values())
 
 

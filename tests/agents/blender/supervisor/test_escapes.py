@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from places import REPO
 from studio import Studio
 
 from agents.blender.tools.execute import TOOL
@@ -30,7 +31,6 @@ pytestmark = [
     pytest.mark.skipif(not confine.has_seccomp(), reason="system calls cannot be closed on this machine"),
 ]
 
-REPO = Path(__file__).resolve().parents[2]
 SECRET = "sk-ant-this-is-no-key-but-must-not-be-seen"
 MIB = 1 << 20
 LIMITS = Limits(memory=1600 * MIB, file_size=16 * MIB, disk=64 * MIB, files=400, threads=300)

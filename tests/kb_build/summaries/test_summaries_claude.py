@@ -21,6 +21,7 @@ from fake_messages_api import (
     Status,
     Truncate,
 )
+from places import REPO
 
 from kb_build.errors import SummaryError
 from kb_build.records import Page, Section
@@ -445,7 +446,7 @@ except KeyboardInterrupt:
 
 def start_build(api: FakeMessagesAPI, store: SummaryStore) -> subprocess.Popen[bytes]:
     here = Path(__file__).resolve()
-    paths = [str(here.parents[2]), str(here.parents[1])]
+    paths = [str(REPO), str(REPO / "tests")]
     code = f"import sys; sys.path[:0] = {paths!r}\n{BUILD}"
     arguments = [sys.executable, "-c", code, api.base_url, str(store.path), str(here.parent)]
     return subprocess.Popen(arguments)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from PIL import Image
+from places import REPO
 from processes import becomes
 from scenes import build
 from test_verify_tool import PLAN, SCENE
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-REPO = Path(__file__).resolve().parents[3]
 COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')", "verify"]
 SOUND = """
 thing("Room", box("Slab", (-2, -2, -0.1), (2, 2, 0)), system_name="ground")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-from pathlib import Path
+
+from places import REPO
 
 from kb_build.index.documents import make_units
 from kb_build.index.query_expansions import load_uses
 from kb_build.records import Link, Page, Section, Symbol
 
-QUERIES = Path(__file__).resolve().parents[2] / "corpora" / "queries"
+QUERIES = REPO / "corpora" / "queries"
 
 
 def test_the_table_that_comes_along_is_sound() -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from places import REPO
 from processes import becomes, of_run
 from studio import Studio
 
@@ -396,7 +397,7 @@ def test_blender_ends_with_its_supervisor_whatever_it_is_doing(tmp_path: Path, k
         works(kind)
     script = f"""
 import sys
-sys.path[:0] = [{str(Path(__file__).parent)!r}]
+sys.path[:0] = [{str(REPO / "tests" / "agents")!r}]
 from pathlib import Path
 from studio import Studio
 from simworlds.sandbox.confinement import best_sandbox
@@ -453,7 +454,7 @@ def test_the_last_of_a_disk_is_left_to_others(tmp_path: Path) -> None:
     probe = [*mount, f"mount -t tmpfs -o size=1m tmpfs {place}"]
     if subprocess.run(probe, capture_output=True, check=False).returncode:
         pytest.skip("a disk of the test's own cannot be mounted here")
-    script = _TINY_DISK.format(tests=str(Path(__file__).parent), place=str(place))
+    script = _TINY_DISK.format(tests=str(REPO / "tests" / "agents"), place=str(place))
     words = [*mount, f'mount -t tmpfs -o size=64m tmpfs {place} && exec "$0" -c "$1"', sys.executable, script]
     done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
     assert re.search(r"left \d+ MB free on the disk, where \d+ MB are to stay free", done.stdout), (

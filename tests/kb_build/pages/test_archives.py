@@ -13,6 +13,7 @@ import zipfile
 from pathlib import Path, PurePosixPath
 
 import pytest
+from places import REPO
 
 from kb_build.errors import SourceError
 from kb_build.pages.archives import Limits, safe_path, unpack
@@ -22,7 +23,6 @@ FILES = {
     "manual/physics/cloth.rst": b"Cloth\n",
     "manual/logo.png": b"\x89PNG",
 }
-REPO = Path(__file__).resolve().parents[2]
 
 
 def make_tar(path: Path, mode: str = "w:xz", files: dict[str, bytes] | None = None) -> Path:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from io import StringIO
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from places import REPO
 from sphinx.application import Sphinx
 from sphinx.util.docutils import docutils_namespace, patch_docutils
 
@@ -16,9 +16,11 @@ from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_build.records import Page
 
-MINI = Path(__file__).resolve().parent.parent / "corpora_mini"
+MINI = REPO / "tests" / "corpora_mini"
 FAULTY = {"troubleshooting/malformed", "troubleshooting/unknown"}
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from in_blender import run
+from places import REPO
 
 from bench.audit.actors import find_actors
 from bench.audit.audit import audit, read_scene
@@ -16,6 +16,9 @@ from bench.audit.relations import KINDS
 from bench.audit.spr import judge_relations
 from bench.audit.untrusted_blend import Untrusted
 from bench.scenes.spec import RelationType, Spec
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 Case = tuple[str, str, str, bool]
 SIDES = ("LeftOf", "RightOf", "InFrontOf", "Behind")
@@ -172,7 +175,7 @@ def test_the_reference_of_relations_is_up_to_date() -> None:
     from docs.generate.benchmark_pages import RELATIONS
     from docs.generate.benchmark_pages import relations as reference
 
-    assert (Path(__file__).parents[2] / "docs" / RELATIONS).read_text(encoding="utf-8") == reference()
+    assert (REPO / "docs" / RELATIONS).read_text(encoding="utf-8") == reference()
 
 
 def test_every_type_is_defined_and_tried_both_ways() -> None:

@@ -9,6 +9,8 @@ from dataclasses import fields
 from os.path import normpath
 from pathlib import Path
 
+from places import REPO
+
 from agents.blender import plan_check
 from agents.blender.team import PROMPTS
 from agents.blender.tool_catalogue import TOOLS
@@ -16,8 +18,6 @@ from agents.protocol.rules.catalogue import RULES
 from agents.protocol.tolerances import TOLERANCES
 from docs.generate.references import outdated, references, write
 from kb_serve.tool import DESCRIPTION, tool
-
-REPO = Path(__file__).resolve().parents[2]
 
 
 def run(*options: str) -> subprocess.CompletedProcess[str]:

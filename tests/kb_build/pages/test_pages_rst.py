@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from places import REPO
 
 from kb_build.errors import SourceError
 from kb_build.pages.readers.rst import read_rst
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_build.records import Page
 
-MINI = Path(__file__).resolve().parent.parent / "corpora_mini"
+MINI = REPO / "tests" / "corpora_mini"
 
 
 @pytest.fixture(scope="module")
