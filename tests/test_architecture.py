@@ -1,4 +1,4 @@
-"""Who may import whom. The rules are one table; each is shown to bite on a tree that breaks it."""
+"""Who may import whom, directly and through others. The rules are tables; each is shown to bite on a broken tree."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ import pytest
 from places import REPO
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-PACKAGES = ("kb_build", "kb_serve", "agents", "bench")
-BLENDERS_OWN = {
-    *(
+PARTS = ("simworlds", "kb_build", "kb_serve", "agents", "bench", "measurements", "docs")
+BLENDERS_OWN = frozenset(
+    [
         "_bpy",
         "_bpy_types",
         "_rna_manual_reference",
@@ -25,8 +26,6 @@ BLENDERS_OWN = {
         "bl_math",
         "bl_operators",
         "bl_ui",
-    ),
-    *(
         "blf",
         "bmesh",
         "bpy",
@@ -36,58 +35,77 @@ BLENDERS_OWN = {
         "freestyle",
         "gpu",
         "gpu_extras",
-    ),
-    *("idprop", "imbuf", "manta", "mathutils", "nodeitems_utils", "rna_manual_reference"),
-}
+        "idprop",
+        "imbuf",
+        "manta",
+        "mathutils",
+        "nodeitems_utils",
+        "rna_manual_reference",
+    ]
+)
+# What every Blender that scenes are built or judged in brings, besides the standard library.
+BLENDERS_PACKAGES = frozenset({"numpy", "zstandard"})
+SHARED_INSIDE = ("simworlds.sandbox.inside",)
+
+Graph = dict[str, frozenset[str]]
 
 
 @dataclass(frozen=True)
 class Rule:
-    """Modules below ``who`` must not import what is below ``what``, unless it is below one of ``unless``."""
+    """Modules below ``who`` must not import (``through`` others, too) what is below ``what``.
+
+    ``unless``: a module that may be imported, or ``importer:imported`` for one importer alone.
+    """
 
     who: str
     what: tuple[str, ...]
     unless: tuple[str, ...] = ()
+    through: bool = False
+
+
+def others(*names: str) -> tuple[str, ...]:
+    return tuple(part for part in PARTS if part not in names)
 
 
 RULES = (
-    Rule("kb_build.records", PACKAGES),
+    Rule("simworlds", others("simworlds"), through=True),
+    Rule("kb_build", others("simworlds", "kb_build"), through=True),
+    Rule("kb_build.records", ("kb_build",)),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
-    Rule("kb_build.index.analysis", PACKAGES),
-    Rule("kb_build", ("kb_serve", "agents", "bench")),
+    Rule("kb_build.index.analysis", ("kb_build",)),
+    Rule("kb_serve", others("simworlds", "kb_build", "kb_serve"), through=True),
     Rule(
         "kb_serve",
-        ("kb_build", "agents", "bench"),
-        # What a base holds (records, schema, analysis, lines), where it lies (settings), and one way to make it.
+        ("kb_build",),
+        # What a base holds, and one way to make it.
         (
             "kb_build.records",
             "kb_build.schema",
             "kb_build.index.analysis",
             "kb_build.symbol_lines",
-            "simworlds.settings",
             "kb_build.pipeline",
         ),
     ),
+    # The knowledge base is reached over MCP, as any other client reaches it.
+    Rule("agents", others("simworlds", "agents"), through=True),
     Rule(
-        "agents",
-        ("kb_build", "kb_serve", "bench"),
-        # The command mounts theirs, the references describe them; which Blender to start is known in one place.
-        (
-            "simworlds.cli:kb_build",
-            "simworlds.cli:kb_serve",
-            "docs.generate.references:kb_serve",
-            "simworlds.sandbox.launch:kb_build",
-            # How any MCP server is carried over stdio and HTTP, who is let in, and how it tells its tools' arguments:
-            # nothing of the base.
-            "simworlds.schema_notation:simworlds.mcp_transport.schemas",
-            "agents.blender.server:simworlds.mcp_transport.schemas",
-            "agents.commands.mcp:simworlds.mcp_transport.http",
-            "agents.commands.mcp:simworlds.mcp_transport.stdio",
-        ),
+        "agents.plan", ("simworlds.llm", "simworlds.sandbox", "agents.blender", "agents.roles", "agents.loop")
     ),
-    Rule("agents.plan", ("simworlds.llm", "agents.blender", "agents.roles", "agents.loop")),
-    Rule("agents.protocol", ("simworlds.llm", "agents.blender", "agents.roles", "agents.loop")),
-    Rule("bench", ("agents.protocol",)),
+    Rule(
+        "agents.protocol",
+        ("simworlds.llm", "simworlds.sandbox", "agents.blender", "agents.roles", "agents.loop"),
+    ),
+    *(
+        # What scores results shares no code with the systems that it scores.
+        Rule(f"bench.{part}", others("simworlds", "bench"), through=True)
+        for part in ("audit", "judge", "validity", "scenes", "references", "frames", "results")
+    ),
+    Rule("bench", ("kb_build", "kb_serve", "measurements", "docs"), through=True),
+    Rule(
+        "bench",
+        ("agents",),
+        ("bench.sweep.systems:agents", "bench.blenderbench:agents", "bench.commands:agents"),
+    ),
 )
 
 
@@ -102,124 +120,214 @@ def module_name(path: Path, repo: Path) -> str:
 
 def imports_of(tree: ast.AST, module: str, *, is_package: bool) -> set[str]:
     """Every module that ``tree`` names in an import, wherever it stands; relative ones in full."""
-    found: set[str] = set()
+    names: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            found.update(alias.name for alias in node.names)
+            names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if node.level:
                 parts = module.split(".") if is_package else module.split(".")[:-1]
                 base = ".".join([*parts[: len(parts) - node.level + 1], *filter(None, [base])])
-            found.update([base, *(f"{base}.{alias.name}" for alias in node.names)])
-    return found
+            names.update([base, *(f"{base}.{alias.name}" for alias in node.names)])
+    return names
 
 
 def modules(repo: Path) -> dict[str, tuple[Path, ast.Module]]:
-    paths = [path for package in PACKAGES for path in sorted((repo / package).rglob("*.py"))]
+    paths = [path for part in PARTS for path in sorted((repo / part).rglob("*.py"))]
     return {module_name(path, repo): (path, ast.parse(path.read_bytes())) for path in paths}
 
 
-def breaches_of_rules(module: str, imported: set[str]) -> list[str]:
-    found: list[str] = []
-    for rule in RULES:
-        if not below(module, rule.who):
-            continue
-        for name in sorted(imported):
-            forbidden = any(below(name, what) for what in rule.what)
-            excused = any(below(f"{module}:{name}", item) or below(name, item) for item in rule.unless)
-            excused = excused or any(item.startswith(f"{name}.") for item in rule.unless)
-            if forbidden and not excused:
-                found.append(f"{module} imports {name}")
+def imports(repo: Path) -> Graph:
+    """Module → everything that it names in imports, those under TYPE_CHECKING included."""
+    return {
+        module: frozenset(imports_of(tree, module, is_package=path.name == "__init__.py"))
+        for module, (path, tree) in modules(repo).items()
+    }
+
+
+def between_modules(graph: Graph) -> Graph:
+    """The same, of the tree's own modules alone; a name that a package holds counts for the package."""
+    return {
+        module: frozenset(
+            name
+            for name in named
+            if name in graph
+            and name != module
+            # ``from a.b import c`` names a.b as well; where c is a module, a.b is only the way to it.
+            and not (any(below(other, name) and other in graph for other in named - {name}))
+        )
+        for module, named in graph.items()
+    }
+
+
+def reached(graph: Graph, module: str) -> dict[str, str]:
+    """Every module that is imported by way of ``module`` → the one that imports it."""
+    found: dict[str, str] = {}
+    waiting = [module]
+    while waiting:
+        importer = waiting.pop()
+        for name in sorted(graph.get(importer, frozenset())):
+            if name not in found:
+                found[name] = importer
+                waiting.append(name)
     return found
 
 
-def inside_folders(path: Path) -> list[Path]:
-    """Its own, and those of the packages around it: the parts of one package share what they know of Blender."""
-    around = [parent / "inside" for parent in path.parent.parent.parents if parent.name in PACKAGES]
-    return [path.parent, *(folder for folder in around if folder.is_dir())]
+def is_excused(rule: Rule, module: str, name: str) -> bool:
+    for item in rule.unless:
+        importer, colon, imported = item.rpartition(":")
+        if colon and not below(module, importer):
+            continue
+        if below(name, imported) or imported.startswith(f"{name}."):
+            return True
+    return False
 
 
-def breaches_inside(module: str, path: Path, imported: set[str]) -> list[str]:
-    """What runs in Blender knows Blender, the standard library and its neighbours; nobody else knows bpy."""
-    if "inside" not in module.split("."):
-        return [f"{module} imports {name}" for name in sorted(imported) if name.split(".")[0] in BLENDERS_OWN]
-    siblings = {neighbour.stem for folder in inside_folders(path) for neighbour in folder.glob("*.py")}
-    allowed = BLENDERS_OWN | siblings | set(sys.stdlib_module_names) | {""}
-    if not below(module, "kb_build"):  # every Blender that scenes are built or judged in brings it
-        allowed |= {"numpy", "zstandard"}
-    return [f"{module} imports {name}" for name in sorted(imported) if name.split(".")[0] not in allowed]
+def breaches_of_rules(graph: Graph) -> Iterator[str]:
+    own = between_modules(graph)
+    for rule in RULES:
+        for module in (name for name in graph if below(name, rule.who)):
+            for name in sorted(graph[module]):
+                if any(below(name, what) for what in rule.what) and not is_excused(rule, module, name):
+                    yield f"{module} imports {name}"
+            if rule.through:
+                for name, importer in reached(own, module).items():
+                    if any(below(name, what) for what in rule.what) and importer != module:
+                        yield f"{module} reaches {name} through {importer}"
 
 
-def breaches_between_roles(module: str, imported: set[str]) -> list[str]:
-    parts = module.split(".")
-    if parts[:2] != ["agents", "roles"] or len(parts) < 3:
-        return []
-    others = (
-        name for name in sorted(imported) if name.startswith("agents.roles.") and not below(name, module)
-    )
+def breaches_inside(graph: Graph) -> Iterator[str]:
+    """What runs in Blender knows Blender, the standard library and the packages beside it; nobody else knows bpy."""
+    for module, named in graph.items():
+        parts = module.split(".")
+        if "inside" not in parts:
+            yield from (
+                f"{module} imports {name}" for name in sorted(named) if name.split(".")[0] in BLENDERS_OWN
+            )
+            continue
+        own = ".".join(parts[: parts.index("inside") + 1])
+        packages = {own, *SHARED_INSIDE}
+        if below(module, "bench"):
+            packages |= {name for name in graph if below(name, "bench") and name.endswith(".inside")}
+        allowed = BLENDERS_OWN | set(sys.stdlib_module_names)
+        if not below(module, "kb_build"):
+            allowed |= BLENDERS_PACKAGES
+        for name in sorted(named):
+            ours = any(below(name, package) or package.startswith(f"{name}.") for package in packages)
+            if not ours and name.split(".")[0] not in allowed:
+                yield f"{module} imports {name}"
+
+
+def breaches_between_roles(graph: Graph) -> Iterator[str]:
     shared = ("agents.roles.base", "agents.roles.prompts")
-    return [f"{module} imports {name}" for name in others if not any(below(name, item) for item in shared)]
+    for module, named in graph.items():
+        if not module.startswith("agents.roles."):
+            continue
+        for name in sorted(named):
+            if name.startswith("agents.roles.") and not any(below(name, item) for item in (module, *shared)):
+                yield f"{module} imports {name}"
+
+
+def circles(graph: Graph) -> list[list[str]]:
+    """Groups of modules that import each other, directly or through others (Tarjan's strongly connected components)."""
+    own = between_modules(graph)
+    order: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    groups: list[list[str]] = []
+
+    def visit(module: str) -> None:
+        order[module] = low[module] = len(order)
+        stack.append(module)
+        for name in sorted(own[module]):
+            if name not in order:
+                visit(name)
+                low[module] = min(low[module], low[name])
+            elif name in stack:
+                low[module] = min(low[module], order[name])
+        if low[module] == order[module]:
+            at = stack.index(module)
+            group = stack[at:]
+            del stack[at:]
+            if len(group) > 1:
+                groups.append(sorted(group))
+
+    for module in own:
+        if module not in order:
+            visit(module)
+    return groups
+
+
+def package_circles(graph: Graph) -> list[list[str]]:
+    """Circles of the top level's parts, as ``kb_build`` and ``kb_serve``."""
+    own = between_modules(graph)
+    parts = {
+        part: frozenset(name.split(".")[0] for module in own if below(module, part) for name in own[module])
+        - {part}
+        for part in PARTS
+    }
+    return circles({part: names | {part} for part, names in parts.items()})
 
 
 def breaches(repo: Path) -> list[str]:
-    found: list[str] = []
-    for module, (path, tree) in modules(repo).items():
-        imported = imports_of(tree, module, is_package=path.name == "__init__.py")
-        found += breaches_of_rules(module, imported)
-        found += breaches_inside(module, path, imported)
-        found += breaches_between_roles(module, imported)
-    return found
+    graph = imports(repo)
+    return [*breaches_of_rules(graph), *breaches_inside(graph), *breaches_between_roles(graph)]
 
 
 def rebuilders(repo: Path) -> list[str]:
     """The server's functions that import the build: ``module.function``, or the module if outside of any."""
-    found: list[str] = []
+    names: list[str] = []
     for module, (_, tree) in modules(repo).items():
         if not below(module, "kb_serve"):
             continue
         scopes = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
-        whole = imports_of(tree, module, is_package=False)
         named = [s.name for s in scopes if "kb_build.pipeline" in imports_of(s, module, is_package=False)]
-        if "kb_build.pipeline" in whole:
-            found += [f"{module}.{name}" for name in named] or [module]
-    return found
+        if "kb_build.pipeline" in imports_of(tree, module, is_package=False):
+            names += [f"{module}.{name}" for name in named] or [module]
+    return names
 
 
-def test_nobody_imports_what_is_not_theirs() -> None:
+def write(repo: Path, files: Mapping[str, str]) -> None:
+    for name, code in files.items():
+        path = repo / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(code)
+
+
+def test_no_module_imports_or_reaches_what_it_must_not() -> None:
     assert breaches(REPO) == []
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    graph = imports(REPO)
+    assert circles(graph) == []
+    assert package_circles(graph) == []
 
 
 def test_the_tree_that_is_checked_is_the_real_one() -> None:
     names = set(modules(REPO))
-    assert {"kb_build.records", "kb_serve", "agents", "bench", "kb_build.inside.extract"} <= names
+    assert {"kb_build.records", "kb_serve", "agents", "bench", "kb_build.blender.inside.extract_api"} <= names
 
 
 def test_the_server_reaches_the_build_through_one_function_at_most() -> None:
-    found = rebuilders(REPO)
-    assert len(found) <= 1, found
-    assert not [name for name in found if name in modules(REPO)], "the import belongs into the function"
+    names = rebuilders(REPO)
+    assert len(names) <= 1, names
+    assert not [name for name in names if name in modules(REPO)], "the import belongs into the function"
 
 
 @pytest.mark.parametrize(
     ("path", "code", "breach"),
     [
+        ("simworlds/files.py", "import kb_build.errors", "simworlds.files imports kb_build.errors"),
         ("kb_build/records.py", "import kb_build.errors", "kb_build.records imports kb_build.errors"),
         ("kb_build/store.py", "from kb_serve.reader import read", "kb_build.store imports kb_serve.reader"),
         ("kb_build/store.py", "def f():\n    import bpy", "kb_build.store imports bpy"),
-        (
-            "kb_serve/rank/search.py",
-            "from kb_build.store import write",
-            "kb_serve.rank.search imports kb_build.store",
-        ),
-        (
-            "kb_serve/rank/search.py",
-            "from kb_build import store",
-            "kb_serve.rank.search imports kb_build.store",
-        ),
+        ("kb_serve/search.py", "from kb_build.store import write", "kb_serve.search imports kb_build.store"),
+        ("kb_serve/search.py", "from kb_build import store", "kb_serve.search imports kb_build.store"),
         ("kb_serve/deep/a.py", "from ..x import y\nimport agents", "kb_serve.deep.a imports agents"),
         ("agents/loop.py", "from kb_serve import knowledge_base", "agents.loop imports kb_serve"),
-        ("agents/plan/scene.py", "from ..models import claude", "agents.plan.scene imports simworlds.llm"),
+        ("agents/plan/scene.py", "from ..loop import run", "agents.plan.scene imports agents.loop"),
         (
             "agents/protocol/a.py",
             "import agents.blender.wire",
@@ -230,42 +338,78 @@ def test_the_server_reaches_the_build_through_one_function_at_most() -> None:
             "from .planner import plan",
             "agents.roles.coder imports agents.roles.planner",
         ),
+        ("bench/audit/audit.py", "import agents.protocol", "bench.audit.audit imports agents.protocol"),
         (
-            "bench/audit/audit.py",
-            "import agents.protocol.facts",
-            "bench.audit.audit imports agents.protocol.facts",
+            "bench/judge/items.py",
+            "if TYPE_CHECKING:\n    import kb_build.x",
+            "bench.judge.items imports kb_build.x",
         ),
-        ("simworlds/cli.py", "import bench", "simworlds.cli imports bench"),
-        ("kb_build/inside/a.py", "import numpy", "kb_build.inside.a imports numpy"),
+        ("bench/sweep/steps.py", "import agents.loop", "bench.sweep.steps imports agents.loop"),
+        ("agents/views.py", "import bench", "agents.views imports bench"),
+        ("kb_build/blender/inside/a.py", "import numpy", "kb_build.blender.inside.a imports numpy"),
         ("agents/blender/inside/a.py", "import kb_build", "agents.blender.inside.a imports kb_build"),
+        (
+            "agents/blender/inside/a.py",
+            "from .. import b",
+            "agents.blender.inside.a imports agents.blender.b",
+        ),
+        ("bench/audit/inside/a.py", "import agents.blender.inside", "bench.audit.inside.a imports agents"),
     ],
 )
 def test_a_breach_is_seen(tmp_path: Path, path: str, code: str, breach: str) -> None:
-    (tmp_path / path).parent.mkdir(parents=True)
-    (tmp_path / path).write_text(code)
-    assert breach in breaches(tmp_path)
+    write(tmp_path, {path: code})
+    assert [found for found in breaches(tmp_path) if found.startswith(breach)]
+
+
+def test_a_breach_through_other_modules_is_seen(tmp_path: Path) -> None:
+    files = {
+        "bench/audit/a.py": "import bench.sweep.b",
+        "bench/sweep/b.py": "from bench.sweep.systems import c",
+        "bench/sweep/systems/c.py": "from agents.loop import d",
+        "agents/loop/d.py": "",
+    }
+    write(tmp_path, files)
+    assert breaches(tmp_path) == ["bench.audit.a reaches agents.loop.d through bench.sweep.systems.c"]
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("import kb_build.b", "import kb_build.a"),
+        ("from kb_build import b", "def f():\n    from kb_build.a import x"),
+        ("from .b import x", "if TYPE_CHECKING:\n    from kb_build.a import Y"),
+    ],
+)
+def test_a_circle_is_seen(tmp_path: Path, first: str, second: str) -> None:
+    write(tmp_path, {"kb_build/a.py": first, "kb_build/b.py": second, "kb_build/c.py": "import kb_build.a"})
+    assert circles(imports(tmp_path)) == [["kb_build.a", "kb_build.b"]]
 
 
 @pytest.mark.parametrize(
     ("path", "code"),
     [
-        ("kb_serve/rank/search.py", "from kb_build.records import Symbol\nfrom kb_build import schema"),
-        ("simworlds/cli.py", "from kb_build.cli import kb\nfrom kb_serve.cli import docs"),
-        ("kb_build/inside/a.py", "import bpy, json, wire\nfrom mathutils import Vector"),
-        ("measurements/report.py", "import agents.plan"),
+        ("kb_serve/search.py", "from kb_build.records import Symbol\nfrom kb_build import schema"),
+        ("kb_build/blender/inside/a.py", "import bpy, json\nfrom . import b\nfrom mathutils import Vector"),
+        (
+            "agents/blender/inside/x/a.py",
+            "from simworlds.sandbox.inside import c\nfrom ..y import b\nimport numpy",
+        ),
+        ("bench/validity/inside/a.py", "from bench.audit.inside import b"),
+        ("bench/sweep/systems/a.py", "import agents.loop"),
+        ("measurements/report.py", "import agents.plan, kb_serve, bench"),
     ],
 )
 def test_what_is_allowed_is_let_through(tmp_path: Path, path: str, code: str) -> None:
-    (tmp_path / path).parent.mkdir(parents=True)
-    (tmp_path / path).write_text(code)
-    (tmp_path / path).with_name("wire.py").write_text("")
+    write(tmp_path, {"bench/audit/inside/b.py": "", "bench/audit/inside/__init__.py": "", path: code})
     assert breaches(tmp_path) == []
 
 
 def test_a_second_way_into_the_build_is_seen(tmp_path: Path) -> None:
-    (tmp_path / "kb_serve").mkdir()
-    (tmp_path / "kb_serve" / "a.py").write_text("def f():\n    from kb_build.pipeline import build\n" * 1)
-    (tmp_path / "kb_serve" / "b.py").write_text("from kb_build import pipeline\n")
+    files = {
+        "kb_serve/a.py": "def f():\n    from kb_build.pipeline import build\n",
+        "kb_serve/b.py": "from kb_build import pipeline\n",
+    }
+    write(tmp_path, files)
     assert rebuilders(tmp_path) == ["kb_serve.a.f", "kb_serve.b"]
 
 
