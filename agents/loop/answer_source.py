@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from simworlds.llm.spending import Spending
 
 _MODEL = ("model.asked", "model.answered")
-SESSIONS = Path(str(files("agents") / "sessions"))
+SESSIONS = Path(str(files("agents") / "transcripts"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -158,7 +158,7 @@ def test_a_step_stands_on_the_code_that_it_imports_and_on_no_other(
 
     def code() -> str:
         origin.code_of.cache_clear()
-        return origin.code_of("bench.audit.audit", "inside/*.py")
+        return origin.code_of("bench.audit", "inside/*.py")
 
     before = code()
     (bench / "other.py").write_text("changed = True")

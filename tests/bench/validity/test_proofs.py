@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -263,7 +264,9 @@ def test_nothing_that_is_done_touches_the_scene_or_its_caches(small_scenes: Path
 
 def test_a_blender_that_crashes_is_started_again(room: Desk) -> None:
     shop = room._workshop.opened(room.original)
-    os.killpg(shop._process.pid, signal.SIGKILL)
+    os.kill(shop._process.inner, signal.SIGKILL)
+    while shop._process.alive:
+        time.sleep(0.01)
     with pytest.raises(Crashed):
         shop.ask("save", doing="saving", path=str(room.folder / "dead.blend"))
     assert room.make("again", "sabotage", change="hide", objects=["Floor"], options={})[1] == ["Floor"]

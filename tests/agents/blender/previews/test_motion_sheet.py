@@ -50,13 +50,13 @@ o.keyframe_insert('rotation_euler', frame=1)
 o.location.x, o.rotation_euler.z = 10, 6.283185307
 o.keyframe_insert('location', frame=49)
 o.keyframe_insert('rotation_euler', frame=49)
-from snapshot import curves_of
+from simworlds_worker.measure.scene_facts import curves_of
 for curve in curves_of(o):
     for key in curve.keyframe_points:
         key.interpolation = 'LINEAR'
 """
 STATE = """
-from fingerprint import fingerprint
+from simworlds_worker.state.fingerprint import fingerprint
 s = bpy.context.scene
 w = s.rigidbody_world
 blocks = {name: len(getattr(bpy.data, name)) for name in dir(bpy.data)
@@ -394,6 +394,6 @@ def test_what_is_not_in_the_view_layer_is_refused(studio: Studio) -> None:
 
 def test_an_answer_that_executed_code_forged_is_not_believed(own_studio: Studio) -> None:
     own_studio.run(FALL)
-    own_studio.run("import motion_sheet\nmotion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}")
+    own_studio.run("from simworlds_worker.motion import motion_sheet\nmotion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}")
     with pytest.raises(ToolBroke, match="cannot be understood"):
         own_studio.use(TOOL, actors=["Crate"])

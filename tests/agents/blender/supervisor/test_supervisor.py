@@ -243,9 +243,16 @@ def test_arguments_too_large_are_refused_before_they_are_sent(hardy: Studio) -> 
     assert hardy.blender.inner_pid == blender
 
 
+SHORT_ANSWERS = """
+import gc
+[encoder] = [thing for thing in gc.get_objects() if type(thing).__name__ == "Encoder"]
+encoder._largest = 1000
+"""
+
+
 def test_an_answer_too_large_is_told(own_studio: Studio) -> None:
     with pytest.raises(Refusal, match=r"The answer cannot be sent: .* at most"):
-        own_studio.use(TOOL, code="import frames\nframes.LARGEST_BODY = 1000\n'x' * 3000")
+        own_studio.use(TOOL, code=SHORT_ANSWERS + "'x' * 3000")
 
 
 # Between calls
