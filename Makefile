@@ -22,7 +22,7 @@ export UV_SYSTEM_CERTS ?= 1
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help setup kb test serve bench bench-validate lint docs docs-check rule-pictures lock clean
+.PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures lock clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-15s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -39,6 +39,9 @@ kb: $(STAMP) ## Build the knowledge base of BLENDER=5.1 [MANUAL= GUIDES= BLENDER
 
 test: $(STAMP) ## Run the tests, a file at a time on each core [PYTEST_ARGS=]
 	@$(PY) -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile $(PYTEST_ARGS)
+
+test-fast: $(STAMP) ## Run the tests that need no Blender, in under a minute [PYTEST_ARGS=]
+	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow" $(PYTEST_ARGS)
 
 serve: $(STAMP) ## Serve blender_docs over MCP on stdio [SERVE_ARGS=]
 	@.venv/bin/simworlds serve $(SERVE_ARGS)

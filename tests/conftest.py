@@ -18,6 +18,20 @@ if TYPE_CHECKING:
     from kb_serve.reader import Reader
 
 
+# What tests get from a Blender, or from the documentation sources, by asking for a fixture.
+_OF_BLENDER = frozenset({"base", "extract", "kb", "reader"})
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks tests by the fixtures that they ask for, by way of others too: `make test-fast` leaves them out."""
+    for item in items:
+        names = frozenset(getattr(item, "fixturenames", ()))
+        if names & _OF_BLENDER:
+            item.add_marker(pytest.mark.blender)
+        if "corpora" in names:
+            item.add_marker(pytest.mark.corpora)
+
+
 @pytest.fixture(scope="session")
 def corpora() -> Path:
     """The folder with the real documentation sources; the test is skipped where it is absent."""

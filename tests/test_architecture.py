@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import pytest
@@ -17,31 +18,11 @@ if TYPE_CHECKING:
 
 PARTS = ("simworlds", "kb_build", "kb_serve", "agents", "bench", "measurements", "docs")
 BLENDERS_OWN = frozenset(
-    [
-        "_bpy",
-        "_bpy_types",
-        "_rna_manual_reference",
-        "addon_utils",
-        "aud",
-        "bl_math",
-        "bl_operators",
-        "bl_ui",
-        "blf",
-        "bmesh",
-        "bpy",
-        "bpy_extras",
-        "bpy_restrict_state",
-        "bpy_types",
-        "freestyle",
-        "gpu",
-        "gpu_extras",
-        "idprop",
-        "imbuf",
-        "manta",
-        "mathutils",
-        "nodeitems_utils",
-        "rna_manual_reference",
-    ]
+    (
+        "_bpy _bpy_types _rna_manual_reference addon_utils aud bl_math bl_operators bl_ui blf bmesh bpy bpy_extras "
+        "bpy_restrict_state bpy_types freestyle gpu gpu_extras idprop imbuf manta mathutils nodeitems_utils "
+        "rna_manual_reference"
+    ).split()  # noqa: SIM905
 )
 # What every Blender that scenes are built or judged in brings, besides the standard library.
 BLENDERS_PACKAGES = frozenset({"numpy", "zstandard"})
@@ -133,11 +114,13 @@ def imports_of(tree: ast.AST, module: str, *, is_package: bool) -> set[str]:
     return names
 
 
+@cache
 def modules(repo: Path) -> dict[str, tuple[Path, ast.Module]]:
     paths = [path for part in PARTS for path in sorted((repo / part).rglob("*.py"))]
     return {module_name(path, repo): (path, ast.parse(path.read_bytes())) for path in paths}
 
 
+@cache
 def imports(repo: Path) -> Graph:
     """Module → everything that it names in imports, those under TYPE_CHECKING included."""
     return {
