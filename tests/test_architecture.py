@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 PARTS = ("simworlds", "kb_build", "kb_serve", "agents", "bench", "measurements", "docs")
 BLENDERS_OWN = frozenset(
-    (
+    (  # noqa: SIM905
         "_bpy _bpy_types _rna_manual_reference addon_utils aud bl_math bl_operators bl_ui blf bmesh bpy bpy_extras "
         "bpy_restrict_state bpy_types freestyle gpu gpu_extras idprop imbuf manta mathutils nodeitems_utils "
         "rna_manual_reference"
-    ).split()  # noqa: SIM905
+    ).split()
 )
 # What every Blender that scenes are built or judged in brings, besides the standard library.
 BLENDERS_PACKAGES = frozenset({"numpy", "zstandard"})
