@@ -15,9 +15,9 @@ from simworlds.sandbox.errors import (
     CannotStart,
     Died,
     LeftBehind,
+    LimitExceeded,
     Lost,
     NeverBegan,
-    OutOfBounds,
     Refusal,
     ToolBroke,
 )
@@ -125,7 +125,7 @@ class Supervisor:
         after: str = "",
         always_keep: bool = False,
         progress: Progress | None = None,
-        given_up: threading.Event | None = None,
+        cancelled: threading.Event | None = None,
     ) -> Reply:
         """Runs a tool in Blender; ``what`` is how errors speak of it.
 
@@ -133,11 +133,11 @@ class Supervisor:
         ``always_keep``: one is taken in any case. Raises BlenderError.
         """
         with self._lock:
-            since = self.launch.bounds.fine
+            since = self.launch.usage.last_within_limits
 
             def attempt() -> Reply:
                 return self._running().call(
-                    tool, arguments, timeout=timeout, what=what, progress=progress, given_up=given_up
+                    tool, arguments, timeout=timeout, what=what, progress=progress, cancelled=cancelled
                 )
 
             try:
@@ -149,7 +149,7 @@ class Supervisor:
                 self._check_left(reply, what or tool)
             except Lost as error:
                 recovered = self._recovered(error, since)
-                if given_up is not None and given_up.is_set():
+                if cancelled is not None and cancelled.is_set():
                     self._add_note(str(recovered))  # nobody hears the error
                 raise recovered from error
             except (Refusal, ToolBroke):
@@ -217,7 +217,7 @@ class Supervisor:
         try:
             # A disk that runs full is an error of the writing, and costs nothing but this checkpoint.
             reply = process.call(
-                "write", arguments, timeout=WRITE_SECONDS, what="writing the scene out", bounded=False
+                "write", arguments, timeout=WRITE_SECONDS, what="writing the scene out", limited=False
             )
         except ToolBroke as error:
             raise Refusal(f"The scene cannot be written out: {error}.") from error
@@ -301,7 +301,7 @@ class Supervisor:
         if checkpoint is not None:
             arguments["path"] = str(self.folder.put(checkpoint.path, SCENE_FILE))
         what = f"opening {checkpoint or 'an empty scene'}"
-        process.call("open", arguments, timeout=OPEN_SECONDS, what=what, bounded=False)
+        process.call("open", arguments, timeout=OPEN_SECONDS, what=what, limited=False)
 
     def _check_left(self, reply: Reply, what: str) -> None:
         """Raises LeftBehind for a call that returned, but not whole."""
@@ -320,7 +320,7 @@ class Supervisor:
         ``since``: when the limits were last kept; past them, what was written since then is removed.
         """
         undone = ""
-        if isinstance(error, OutOfBounds) and since is not None:
+        if isinstance(error, LimitExceeded) and since is not None:
             for folder in self.launch.folders:
                 remove_since(folder, since)
             undone = " The files that it wrote were removed."

@@ -23,23 +23,23 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from simworlds.processes import kill_group, signal_name, spawn
-from simworlds.sandbox.captured_output import Printed
+from simworlds.sandbox.captured_output import CapturedOutput
 from simworlds.sandbox.errors import (
     BlenderError,
     CannotStart,
     Died,
     Interrupted,
+    LimitExceeded,
     Lost,
     MissingModule,
     NeverBegan,
-    OutOfBounds,
     Refusal,
     TookTooLong,
     ToolBroke,
     Untrustworthy,
 )
 from simworlds.sandbox.inside import channel
-from simworlds.sandbox.usage import innermost
+from simworlds.sandbox.usage import innermost_process
 
 if TYPE_CHECKING:
     import threading
@@ -88,8 +88,8 @@ class BlenderProcess:
         launch.prepare()
         self._launch = launch
         self._closed = False
-        self._stdout, self._stderr = Printed(), Printed()
-        self._bounds = launch.bounds
+        self._stdout, self._stderr = CapturedOutput(), CapturedOutput()
+        self._usage = launch.usage
         ours, theirs = socket.socketpair()
         try:
             self._process = spawn(
@@ -122,7 +122,7 @@ class BlenderProcess:
             self._selector.register(source, selectors.EVENT_READ, printed)
         try:
             ours.sendall(key)
-            next(self._messages("its start", START_SECONDS, bounded=False))
+            next(self._messages("its start", START_SECONDS, limited=False))
         except (Lost, OSError) as error:
             why = self._ending() if isinstance(error, Died) else error
             self.kill()
@@ -131,8 +131,8 @@ class BlenderProcess:
         except BaseException:
             self.kill()
             raise
-        self.inner = innermost(self._process.pid)
-        self._bounds.watch(self.inner)
+        self.inner = innermost_process(self._process.pid)
+        self._usage.watch(self.inner)
 
     @property
     def started(self) -> int:
@@ -151,13 +151,13 @@ class BlenderProcess:
         *,
         timeout: float,
         what: str = "",
-        bounded: bool = True,
+        limited: bool = True,
         progress: Progress | None = None,
-        given_up: threading.Event | None = None,
+        cancelled: threading.Event | None = None,
     ) -> Reply:
         """Runs one tool; ``timeout`` in seconds, ``what`` in words for errors. ``progress`` gets (done, total, text).
 
-        ``bounded``: it is ended when it goes past the limits of disk and threads.
+        ``limited``: it is ended when it goes past the limits of disk and threads.
 
         Raises Refusal and ToolBroke, after which Blender is well, and Lost, after which it has been killed; so it
         has after any other exception (as of ``progress``).
@@ -175,7 +175,7 @@ class BlenderProcess:
             raise Refusal(f"The arguments of {what} are too large: {error}.") from error
         try:
             self._send(request, what, timeout)
-            for message in self._messages(what, timeout, given_up, bounded=bounded):
+            for message in self._messages(what, timeout, cancelled, limited=limited):
                 try:
                     if message["ticket"] != ticket:
                         # Somebody has answered the call before this one in the worker's name: its own answer is late.
@@ -223,7 +223,7 @@ class BlenderProcess:
             raise NeverBegan(f"Blender had ended before {what} began: {ending}", ending=ending) from None
 
     def _messages(
-        self, what: str, timeout: float, given_up: threading.Event | None = None, *, bounded: bool = True
+        self, what: str, timeout: float, cancelled: threading.Event | None = None, *, limited: bool = True
     ) -> Iterator[dict[str, Any]]:
         """What the worker says, until the deadline; what is printed is read meanwhile: Blender never waits for us.
 
@@ -233,7 +233,7 @@ class BlenderProcess:
         deadline = started + timeout
         while True:
             now = time.monotonic()
-            self._look(what, now - started, given_up, bounded=bounded)
+            self._look(what, now - started, cancelled, limited=limited)
             if now > deadline:
                 raise self._too_long(what, timeout)
             for key, _ in self._selector.select(min(_LOOK_SECONDS, max(0.0, deadline - now))):
@@ -243,21 +243,21 @@ class BlenderProcess:
                 self._arrived += self._receive(what, now - started)
             while self._arrived:
                 message = self._arrived.popleft()
-                if bounded and "progress" not in message:
-                    self._check_bounds(what, over=True)
+                if limited and "progress" not in message:
+                    self._check_usage(what, at_end=True)
                 yield message
 
-    def _look(self, what: str, seconds: float, given_up: threading.Event | None, *, bounded: bool) -> None:
-        if given_up is not None and given_up.is_set():
+    def _look(self, what: str, seconds: float, cancelled: threading.Event | None, *, limited: bool) -> None:
+        if cancelled is not None and cancelled.is_set():
             raise Interrupted(
                 f"{_capital(what)} was given up after {seconds:.1f} s, and Blender was stopped", self._said()
             )
-        if bounded:
-            self._check_bounds(what)
+        if limited:
+            self._check_usage(what)
 
-    def _check_bounds(self, what: str, *, over: bool = False) -> None:
-        if (fault := self._bounds.fault(over=over)) is not None:
-            raise OutOfBounds(f"{_capital(what)} {fault}. Blender was stopped", self._said())
+    def _check_usage(self, what: str, *, at_end: bool = False) -> None:
+        if (fault := self._usage.excess(at_end=at_end)) is not None:
+            raise LimitExceeded(f"{_capital(what)} {fault}. Blender was stopped", self._said())
 
     def _receive(self, what: str, seconds: float) -> list[dict[str, Any]]:
         unread = False
@@ -301,7 +301,7 @@ class BlenderProcess:
             with contextlib.suppress(KeyError):
                 self._selector.unregister(key.fileobj)
             return False
-        assert isinstance(key.data, Printed)
+        assert isinstance(key.data, CapturedOutput)
         key.data.add(data)
         return True
 

@@ -6,7 +6,7 @@ HEAD_BYTES = 12_000
 TAIL_BYTES = 12_000
 
 
-class Printed:
+class CapturedOutput:
     """Takes any amount of bytes, keeps the first and the last of them."""
 
     def __init__(self) -> None:

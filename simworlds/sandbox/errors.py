@@ -86,7 +86,7 @@ class Interrupted(Lost):
     """The caller gave the call up."""
 
 
-class OutOfBounds(Lost):
+class LimitExceeded(Lost):
     """More was written to disk, or started, than may be."""
 
 

@@ -174,7 +174,7 @@ def below(pid: int) -> dict[int, str]:
 
 def blenders(pid: int) -> set[int]:
     """The processes of Blenders (and of what confines them) that a server has started."""
-    return {one for one, words in below(pid).items() if "worker.py" in words}
+    return {one for one, words in below(pid).items() if "simworlds_worker" in words}
 
 
 def have_ended(pids: Iterable[int], seconds: float = 10.0) -> bool:

@@ -187,7 +187,7 @@ def test_a_wheel_that_cannot_be_installed_is_named_with_uvs_words(tmp_path: Path
 def test_secrets_and_python_settings_stay_outside(tmp_path: Path) -> None:
     code = f"""
         import pathlib, sys
-        from simworlds.sandbox.runtime import Runtime, run_inside
+        from simworlds.sandbox.runtime import Runtime, run_script
         runtime = Runtime(pathlib.Path(sys.executable), "environment", "0.0.0")
         folder = pathlib.Path({str(tmp_path)!r})
         run_script(runtime, folder / "a script.py", [], timeout=60, log=folder / "run.log")
@@ -280,7 +280,7 @@ def test_an_interrupt_stops_the_script_and_its_children(tmp_path: Path) -> None:
     script(tmp_path, FAMILY)
     code = f"""
         import pathlib, sys
-        from simworlds.sandbox.runtime import Runtime, run_inside
+        from simworlds.sandbox.runtime import Runtime, run_script
         runtime = Runtime(pathlib.Path(sys.executable), "environment", "0.0.0")
         folder = pathlib.Path({str(tmp_path)!r})
         run_script(runtime, folder / "a script.py", [str(folder)], timeout=600, log=folder / "run.log")

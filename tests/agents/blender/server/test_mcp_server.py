@@ -22,11 +22,11 @@ from PIL import Image
 from serving import COMMAND, REPO, ByHand, below, blenders, environment, have_ended, over_stdio
 
 from agents.blender import server as served
-from agents.blender.blender_sessions import Setup, Studios
+from agents.blender.blender_sessions import BlenderSessions, SessionSetup
 from agents.blender.docs_client import DocsClient
 from agents.blender.tool_catalogue import TOOLS
 from agents.blender.tools import execute
-from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -274,8 +274,8 @@ async def test_an_unforeseen_error_shows_no_traceback(
         return {}["a secret of ours"]
 
     monkeypatch.setitem(served.BY_NAME, "blender_execute", replace(execute.TOOL, run=broken))
-    studios = Studios(Setup(best_sandbox(), run=tmp_path / "run"))
-    async with Client(served.make_server(studios, DocsClient())) as connected:
+    blender_sessions = BlenderSessions(SessionSetup(best_sandbox(), run=tmp_path / "run"))
+    async with Client(served.make_server(blender_sessions, DocsClient())) as connected:
         answer = await run(connected, "1")
     assert answer.is_error
     assert "KeyError" in said(answer)
