@@ -472,7 +472,7 @@ def test_memory_has_an_end(confined: LiveSession) -> None:
         "MemoryError",
     }
     assert tried(confined, "import numpy\nnumpy.ones(10**9)")[0] in {"MemoryError", "_ArrayMemoryError"}
-    with pytest.raises(Died, match=r"ran out of memory, of which it may have 1\.7 GB"):
+    with pytest.raises(Died, match=r"ran out of memory; the limit is 1\.7 GB"):
         confined.use(TOOL, code="bpy.ops.mesh.primitive_grid_add(x_subdivisions=15000, y_subdivisions=15000)")
     with pytest.raises(LimitExceeded, match=r"used [\d.]+ GB of memory; the limit is 1\.7 GB"):
         confined.use(
@@ -556,7 +556,7 @@ for number in range(100, 400):
 """
     with pytest.raises(Untrustworthy, match="right signature") as caught:
         channelled.use(TOOL, code=code)
-    assert "A new Blender stands at checkpoint" in str(caught.value)
+    assert "A new Blender was started from checkpoint" in str(caught.value)
     assert channelled.run("[o.name for o in bpy.data.objects]") == ["Kept"]
 
 
@@ -572,7 +572,7 @@ for number in range(100, 400):
     ],
 )
 def test_a_signed_answer_that_is_none_is_not_believed(channelled: LiveSession, answer: str) -> None:
-    with pytest.raises(Untrustworthy, match=r"no answer.*A new Blender stands at checkpoint"):
+    with pytest.raises(Untrustworthy, match=r"not a valid reply.*A new Blender was started from checkpoint"):
         channelled.use(TOOL, code=f"{WIRE}wire.send({answer})\nimport time; time.sleep(10)", timeout=15)
     assert channelled.run("1 + 1") == 2
 
@@ -595,4 +595,4 @@ def test_answering_in_the_workers_name_does_not_touch_the_next_call(channelled: 
         channelled.use(TOOL, code=code)
     started = time.monotonic()
     assert channelled.run("1 + 1") == 2
-    assert time.monotonic() - started < 10
+    assert time.monotonic() - started < 60

@@ -112,7 +112,8 @@ def test_kills_at_random_moments_cost_at_most_the_call(killed: LiveSession, vict
     takes = time.monotonic() - started
     blender.keep("before the kills")
     survived = 0
-    mark = -1
+    # Under load a scene takes long to write, and not every call leaves a checkpoint: a kill goes back to the last one.
+    mark = kept = -1
     for number in range(KILLS):
         hit, before = blender.pid if number % 2 else blender.inner_pid, family(blender.pid)
         killer = threading.Timer(chance.uniform(0, 1.1 * takes), os.kill, (hit, signal.SIGKILL))
@@ -130,19 +131,21 @@ def test_kills_at_random_moments_cost_at_most_the_call(killed: LiveSession, vict
             survived += 1
             assert found == number
         else:
-            assert "A new Blender stands at checkpoint" in fault
-            # What is to be kept had been, if it was the second checkpoint of the round that was killed.
-            assert found in ({mark, number} if victim == "checkpoint" else {mark}), (
+            assert "A new Blender was started from checkpoint" in fault
+            # The round was kept already if it was its second checkpoint that was killed.
+            assert found in ({kept, number} if victim == "checkpoint" else {kept}), (
                 f"{victim} {number}: {fault}"
             )
+            assert kept == mark or "lost too" in fault
         mark = found
+        kept = kept if blender.checkpoints.unkept else found
         assert becomes(lambda: set(of_run(root)) == family(blender.pid)), (
             "a process of an earlier Blender is left"
         )
     assert survived < KILLS, "no kill came in time"
     blender.keep("after the kills")
-    kept = [one.path for one in blender.checkpoints.newest_first()]
-    assert opens_elsewhere(kept, "round")[0] == mark
+    files = [checkpoint.path for checkpoint in blender.checkpoints.newest_first()]
+    assert opens_elsewhere(files, "round")[0] == mark
 
 
 def test_kills_while_another_blender_is_being_started(killed: LiveSession) -> None:
@@ -174,7 +177,7 @@ def test_kills_while_another_blender_is_being_started(killed: LiveSession) -> No
         except BlenderError as error:
             fault = str(error)
         killer.join()
-        assert fault is None or "stands at checkpoint" in fault
+        assert fault is None or "started from checkpoint" in fault
         assert session.run("bpy.context.scene['round']") == before
 
 

@@ -301,7 +301,7 @@ def test_the_oldest_checkpoint_can_be_gone_back_to(session: LiveSession) -> None
 
 def test_no_such_checkpoint_is_refused_with_those_that_are_kept(session: LiveSession) -> None:
     kept = session.use(LOAD).data["checkpoints"]
-    assert f"kept are {kept[-1]}, " in refusal(session, LOAD, checkpoint=9999)
+    assert f"Available: {kept[-1]}, " in refusal(session, LOAD, checkpoint=9999)
     assert "not both" in refusal(session, LOAD, checkpoint=1, path="tower")
 
 
@@ -322,7 +322,7 @@ def test_a_name_that_leads_elsewhere_is_refused(session: LiveSession, name: str)
 def test_a_folders_name_is_refused(session: LiveSession) -> None:
     (session.blender.folder.root / "folder.blend").mkdir()
     assert "is a folder" in refusal(session, SAVE, name="folder")
-    assert "no plain file" in refusal(session, LOAD, path="folder.blend")
+    assert "not a regular file" in refusal(session, LOAD, path="folder.blend")
 
 
 def test_a_link_out_of_the_runs_folder_is_not_followed(session: LiveSession, tmp_path: Path) -> None:
@@ -346,7 +346,7 @@ os.symlink({str(victim / "kept")!r}, "caches/Sheet/data/stolen.vdb")
 os.symlink({str(victim / "kept")!r}, ".saved.blend")
 os.symlink({str(victim)!r}, ".loading")
 """)
-    assert "not a plain file" in refusal(session, SAVE, name="tower")
+    assert "not a regular file" in refusal(session, SAVE, name="tower")
     assert not (session.blender.folder.root / "tower.blend").exists()
     session.run("import os\nfor link in ('data/stolen.vdb', 'mesh'): os.remove(f'caches/Sheet/{link}')")
     session.use(SAVE, name="tower", verify=False)

@@ -34,9 +34,7 @@ pytestmark = pytest.mark.blender
 
 DEBIANS = Path("/usr/bin/blender")
 NAMES = "sorted(o.name for o in bpy.data.objects)"
-STANDS = (
-    r"A new Blender stands at checkpoint \d+ \([^\n]*, \d\d:\d\d:\d\d\), which is how the scene was before\."
-)
+STANDS = r"A new Blender was started from checkpoint \d+ \([^\n]*, \d\d:\d\d:\d\d\), which is the scene as it was before\."
 
 
 def adding(name: str) -> str:
@@ -193,11 +191,11 @@ def test_blender_survives(hardy: LiveSession, code: str) -> None:
 def test_a_deadline_is_kept_whatever_runs(hardy: LiveSession, code: str) -> None:
     started = time.monotonic()
     error = lost(hardy, code, timeout=0.7)
-    assert (
-        time.monotonic() - started < 15
-    )  # the deadline, another Blender, and a machine that does other things too
+    assert time.monotonic() - started < 60  # a new Blender takes long to start on a busy machine
     assert isinstance(error, TookTooLong)
-    assert "ran past its deadline of 0.7 s, and Blender was stopped. A new Blender stands at" in str(error)
+    assert "ran past its deadline of 0.7 s, and Blender was stopped. A new Blender was started from" in str(
+        error
+    )
     assert len(error.printed) <= 2000
 
 
@@ -209,8 +207,8 @@ def test_what_an_error_says_can_be_read_aloud(hardy: LiveSession) -> None:
     kept = hardy.blender.checkpoints.last
     assert kept is not None
     assert str(caught.value) == (
-        "The code 'while True: pass' ran past its deadline of 0.3 s, and Blender was stopped. A new Blender stands at "
-        f"{kept}, which is how the scene was before."
+        "The code 'while True: pass' ran past its deadline of 0.3 s, and Blender was stopped. A new Blender was "
+        f"started from {kept}, which is the scene as it was before."
     )
 
 
@@ -225,9 +223,9 @@ def test_a_call_that_nobody_waits_for_any_more_is_ended(hardy: LiveSession) -> N
     call = Call()
     threading.Timer(0.2, call.cancelled.set).start()
     started = time.monotonic()
-    with pytest.raises(Interrupted, match=r"was given up after \d\.\d s, and Blender was stopped"):
+    with pytest.raises(Interrupted, match=r"was cancelled after \d\.\d s, and Blender was stopped"):
         hardy.use(TOOL, call, code="while True: pass", timeout=100)
-    assert time.monotonic() - started < 15
+    assert time.monotonic() - started < 60
     assert hardy.run(NAMES) == ["Kept"]
 
 
@@ -279,7 +277,7 @@ def test_what_is_lost_between_two_calls_is_told(hardy: LiveSession) -> None:
     hardy.blender.kill()
     found = hardy.use(TOOL, code="1")
     assert "Blender had ended" in found.text
-    assert "what the last 2 calls before had changed since then is lost, too" in found.text
+    assert "the changes of the last 2 calls before it are lost too" in found.text
     assert "lost" not in hardy.use(TOOL, code="1").text
 
 
@@ -384,16 +382,14 @@ def test_a_blender_that_does_not_come_up_says_why(tmp_path: Path) -> None:
         '#!/bin/sh\n[ "$1" = --version ] && echo "Blender 5.9.9" && exit\necho "no libX.so" >&2\nexit 7\n'
     )
     fake.chmod(0o755)
-    with pytest.raises(CannotStart, match=r"(?s)did not come up.*exit code 7.*no libX\.so"):
+    with pytest.raises(CannotStart, match=r"(?s)did not start.*exit code 7.*no libX\.so"):
         LiveSession(tmp_path / "run", blender_exe=fake)
     assert of_run(tmp_path / "run") == []
 
 
 def test_a_session_that_is_being_ended_starts_no_blender(own_session: LiveSession) -> None:
     own_session.blender.end()
-    with pytest.raises(
-        TookTooLong, match="Another Blender could not be started: this session is being ended"
-    ):
+    with pytest.raises(TookTooLong, match="A new Blender could not be started: this session is being ended"):
         own_session.use(TOOL, code="while True: pass", timeout=0.2)
 
 
@@ -436,7 +432,7 @@ sys.path[:0] = [{tests!r}]
 from pathlib import Path
 from live_session import LiveSession
 from simworlds.sandbox.confined_command import best_sandbox
-from simworlds.sandbox.errors import OutOfBounds
+from simworlds.sandbox.errors import LimitExceeded
 from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
@@ -445,7 +441,7 @@ try:
     session.use(TOOL, code=(
         "import os, time\\nfile = os.open('hidden', os.O_CREAT | os.O_RDWR)\\nos.unlink('hidden')\\n"
         "while True: os.write(file, bytes(1 << 20)); time.sleep(0.02)"), timeout=60)
-except OutOfBounds as error:
+except LimitExceeded as error:
     print(error)
 print(session.run("time = __import__('time'); time.sleep(0.6); 1 + 1"))
 session.blender.close()
@@ -497,7 +493,7 @@ def test_an_installed_blender_works_the_same_way(debians: LiveSession) -> None:
         ("while True: pass", TookTooLong),
         ("import threading, time; threading.Thread(target=time.sleep, args=(600,)).start()", LeftBehind),
     ):
-        with pytest.raises(error, match=r"stands at checkpoint \d+ .*how the scene was before"):
+        with pytest.raises(error, match=r"started from checkpoint \d+ .*as it was before"):
             debians.use(
                 TOOL,
                 code=f"bpy.ops.mesh.primitive_cube_add()\n{code}",
