@@ -18,15 +18,15 @@ import anyio.to_thread
 from agents.blender.launch import make_launch, runs_folder
 from agents.blender.run_folder import RunFolder, new_run
 from agents.blender.supervisor import Supervisor
-from agents.blender.tools.base import Session, parse, perform
+from agents.blender.tools.base import ToolContext, parse, perform
 from simworlds.sandbox.errors import BlenderError, CannotStart, Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from agents.blender.tools.base import Call, Docs, Result, Tool
-    from simworlds.sandbox.confinement import Sandbox
+    from agents.blender.tools.base import BlenderTool, Call, Docs, Result
+    from simworlds.sandbox.confined_command import Sandbox
 
 CLOSE_SECONDS = 5.0
 _LEAVE_SECONDS = 60.0  # for who leaves while the server goes on: a large scene takes long to write
@@ -41,7 +41,7 @@ def _on_stderr(line: str) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Setup:
+class SessionSetup:
     """What every studio is set up with.
 
     ``run`` is the folder to work in; None: a fresh one for each client. ``read``: folders that Blender may read.
@@ -56,20 +56,20 @@ class Setup:
     tell: Callable[[str], object] = _on_stderr
 
 
-class Studio:
+class BlenderSession:
     """One client's Blender, and the thread that works with it: calls are run one by one, in the order they come in.
 
     ``folder`` is the run to go on with; None: a new one, or the one of the set-up.
     """
 
-    def __init__(self, setup: Setup, folder: RunFolder | None = None) -> None:
+    def __init__(self, setup: SessionSetup, folder: RunFolder | None = None) -> None:
         self.folder = folder
         self._setup = setup
         self._blender: Supervisor | None = None
-        self._over = False
-        self._new = False
+        self._ended = False
+        self._unused = False
         self._closing: Future[None] | None = None
-        self._door = threading.Lock()
+        self._lock = threading.Lock()
         self._waiting: set[threading.Event] = set()
         self._used = time.monotonic()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="blender")
@@ -84,13 +84,13 @@ class Studio:
         self._thread.submit(self._started)
 
     async def use(
-        self, tool: Tool, arguments: dict[str, Any] | None, call: Call, about: Callable[[str], Docs]
+        self, tool: BlenderTool, arguments: dict[str, Any] | None, call: Call, about: Callable[[str], Docs]
     ) -> Result:
         """Calls a tool, to which ``about`` gives a way to look up things of this Blender's version.
 
         Cancelled, it gives the call up: Blender is killed and put back. Raises BlenderError.
         """
-        self._waiting.add(call.given_up)
+        self._waiting.add(call.cancelled)
         try:
             try:
                 future = self._thread.submit(self._use, tool, arguments, call, about)
@@ -98,24 +98,24 @@ class Studio:
                 raise Refusal("This session has been ended.") from error
             return await asyncio.wrap_future(future)
         except asyncio.CancelledError:
-            call.given_up.set()
+            call.cancelled.set()
             raise
         finally:
-            self._waiting.discard(call.given_up)
+            self._waiting.discard(call.cancelled)
             self._used = time.monotonic()
 
     def give_up(self) -> None:
         """From any thread: whatever runs is to end, and nothing is begun any more."""
-        self._over = True
-        for given_up in tuple(self._waiting):
-            given_up.set()
+        self._ended = True
+        for cancelled in tuple(self._waiting):
+            cancelled.set()
         if self._blender is not None:
             self._blender.end()
 
     def close(self, seconds: float = CLOSE_SECONDS) -> None:
         """From any thread but its own: gives up what runs, keeps the scene, ends Blender, within ``seconds``."""
         self.give_up()
-        with self._door:
+        with self._lock:
             if self._closing is None:
                 self._closing = self._thread.submit(self._close)
                 self._thread.shutdown(wait=False)
@@ -138,17 +138,17 @@ class Studio:
             _LOG.exception("Blender could not be started")
 
     def _use(
-        self, tool: Tool, arguments: dict[str, Any] | None, call: Call, about: Callable[[str], Docs]
+        self, tool: BlenderTool, arguments: dict[str, Any] | None, call: Call, about: Callable[[str], Docs]
     ) -> Result:
         asked = parse(tool, arguments)
         blender = self._running()
-        if call.given_up.is_set():
+        if call.cancelled.is_set():
             raise Refusal(f"{tool.name} was given up before it began.")
-        self._new = False
-        return perform(tool, Session(blender, about(blender.launch.runtime.version)), asked, call)
+        self._unused = False
+        return perform(tool, ToolContext(blender, about(blender.launch.runtime.version)), asked, call)
 
     def _running(self) -> Supervisor:
-        if self._over:
+        if self._ended:
             raise Refusal("This session has been ended.")
         if self._blender is None:
             self._blender = self._begin()
@@ -159,7 +159,7 @@ class Studio:
         setup = self._setup
         try:
             if self.folder is None:
-                self._new = setup.run is None
+                self._unused = setup.run is None
                 self.folder = RunFolder.make(setup.run) if setup.run else new_run(runs_folder())
             launch = make_launch(
                 self.folder.workspace,
@@ -181,44 +181,44 @@ class Studio:
     def _close(self) -> None:
         if self._blender is not None:
             self._blender.close()
-        if self._new and self.folder is not None:  # nobody has asked anything of it
+        if self._unused and self.folder is not None:  # nobody has asked anything of it
             shutil.rmtree(self.folder.root, ignore_errors=True)
 
 
-class Studios:
+class BlenderSessions:
     """The studios of a server, by client: at most so many at once, each closed after ``idle`` seconds without a call.
 
     A client whose studio was closed that way finds its run as it was left.
     """
 
-    def __init__(self, setup: Setup, *, at_most: int = 1, idle: float | None = None) -> None:
+    def __init__(self, setup: SessionSetup, *, at_most: int = 1, idle: float | None = None) -> None:
         self._setup = setup
         self._at_most = 1 if setup.run else at_most
         self._idle = idle
-        self._open: dict[str, Studio] = {}
+        self._open: dict[str, BlenderSession] = {}
         self._left: dict[str, RunFolder] = {}
-        self._over = False
-        self._door = anyio.Lock()
+        self._ended = False
+        self._lock = anyio.Lock()
 
     def start(self, client: str) -> None:
         """Starts a client's Blender in the background, before anybody asks. Raises Refusal."""
         self._admit()
-        studio = self._open[client] = Studio(self._setup)
-        studio.start()
+        session = self._open[client] = BlenderSession(self._setup)
+        session.start()
 
-    async def of(self, client: str) -> Studio:
+    async def get(self, client: str) -> BlenderSession:
         """The client's studio. Raises Refusal when it has none and there are too many."""
         if (found := self._open.get(client)) is not None:
             return found
         # Who is just leaving is waited for.
-        async with self._door:
+        async with self._lock:
             if client not in self._open:
                 self._admit()
-                self._open[client] = Studio(self._setup, self._left.pop(client, None))
+                self._open[client] = BlenderSession(self._setup, self._left.pop(client, None))
             return self._open[client]
 
     def _admit(self) -> None:
-        if self._over:
+        if self._ended:
             raise Refusal("This server is ending.")
         if len(self._open) < self._at_most:
             return
@@ -243,26 +243,26 @@ class Studios:
             return
         while True:
             await anyio.sleep(min(self._idle / 4, _LOOK_SECONDS))
-            for client in [client for client, studio in self._open.items() if studio.idle > self._idle]:
+            for client in [client for client, session in self._open.items() if session.idle > self._idle]:
                 await self._close(client, self._idle)
 
     async def _close(self, client: str, idle: float = 0.0) -> None:
-        async with self._door:
-            studio = self._open.get(client)
-            if studio is None or studio.idle < idle:
+        async with self._lock:
+            session = self._open.get(client)
+            if session is None or session.idle < idle:
                 return
             del self._open[client]
             with anyio.CancelScope(shield=True):
-                await anyio.to_thread.run_sync(studio.close, _LEAVE_SECONDS)
-            if studio.folder is not None:
-                self._left[client] = studio.folder
+                await anyio.to_thread.run_sync(session.close, _LEAVE_SECONDS)
+            if session.folder is not None:
+                self._left[client] = session.folder
 
     def close(self, seconds: float = CLOSE_SECONDS) -> None:
         """Closes all studios for good, within ``seconds``."""
-        self._over = True
+        self._ended = True
         deadline = time.monotonic() + seconds
-        studios = tuple(self._open.values())
-        for studio in studios:
-            studio.give_up()
-        for studio in studios:
-            studio.close(max(0.1, deadline - time.monotonic()))
+        sessions = tuple(self._open.values())
+        for session in sessions:
+            session.give_up()
+        for session in sessions:
+            session.close(max(0.1, deadline - time.monotonic()))

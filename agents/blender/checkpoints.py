@@ -1,11 +1,10 @@
-"""The states of a run that Blender can be put back to.
+"""Checkpoints: states of a run that Blender can go back to.
 
-Policy. A small scene is written out after every call that may have changed it: a few milliseconds. Where writing
-takes longer than ``CHEAP_SECONDS``, it waits until the calls since the last checkpoint have run ``PATIENCE`` times as
-long as writing takes, so that at most a fifth of the time goes into checkpoints; what was done since is then lost with
-a crash, and the error says how many calls. Saving, loading, baking, and code that asks to be undone when it fails,
-always leave or find a fresh checkpoint. The newest ``KEPT`` stay; where they come to more than ``KEPT_BYTES``, fewer
-do, but never fewer than ``KEPT_LEAST``.
+A small scene is written after every call that may have changed it, which takes milliseconds. If writing takes longer
+than ``CHEAP_SECONDS``, it waits until the calls since the last checkpoint have run ``PATIENCE`` times as long as
+writing takes, so that checkpoints cost at most a fifth of the time. A crash then loses the calls since, and the error
+says how many. Saving, loading, baking, and code that is to be undone on failure, always have a fresh checkpoint. The
+newest ``KEPT`` stay; fewer if they exceed ``KEPT_BYTES``, but at least ``KEPT_LEAST``.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ _FILE = re.compile(r"(\d{6})\.blend")
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """A state that was written out: ``number`` counts from 1, ``after`` tells what had been done."""
+    """A state that was written to ``path``: ``number`` counts from 1, ``after`` says what was done before."""
 
     number: int
     path: Path
@@ -54,7 +53,7 @@ class Checkpoints:
         for half in folder.checkpoints.glob(".*.part"):
             half.unlink(missing_ok=True)
         self._all = [
-            _found(int(match[1]), path, "kept from before")
+            _checkpoint(int(match[1]), path, "kept from before")
             for path in sorted(folder.checkpoints.glob("*.blend"))
             if (match := _FILE.fullmatch(path.name))
         ]
@@ -64,49 +63,51 @@ class Checkpoints:
 
     @property
     def last(self) -> Checkpoint | None:
-        """The newest."""
+        """The newest checkpoint."""
         return self._all[-1] if self._all else None
 
     def newest_first(self) -> list[Checkpoint]:
-        """All of them."""
+        """All checkpoints, newest first."""
         return self._all[::-1]
 
     def find(self, number: int) -> Checkpoint | None:
-        """The one of that number, if it is still kept."""
-        return next((one for one in self._all if one.number == number), None)
+        """The checkpoint of that number; None if it is no longer kept."""
+        return next((checkpoint for checkpoint in self._all if checkpoint.number == number), None)
 
     def changed(self, seconds: float) -> None:
-        """A call that may have changed the scene has run for ``seconds``."""
+        """Notes that a call of ``seconds`` may have changed the scene."""
         self._worked += seconds
         self.unkept += 1
 
     @property
     def due(self) -> bool:
-        """Whether the changes since the last one are worth another."""
+        """Whether the changes since the last checkpoint are worth a new one."""
         return self.unkept > 0 and (self._cost <= CHEAP_SECONDS or self._worked >= PATIENCE * self._cost)
 
     def keep(self, after: str, seconds: float) -> Checkpoint:
-        """Takes in the state that Blender wrote to WRITTEN within ``seconds``. Raises Refusal."""
+        """Adds the state that Blender wrote to WRITTEN in ``seconds``. Raises Refusal."""
         started = time.monotonic()
         number = self._all[-1].number + 1 if self._all else 1
         path = self._folder.checkpoints / f"{number:06d}.blend"
         take_beneath(self._folder.private, WRITTEN, path, durable=False)
-        self._all.append(_found(number, path, after))
+        self._all.append(_checkpoint(number, path, after))
         self._cost, self._worked, self.unkept = seconds + time.monotonic() - started, 0.0, 0
         self._drop_oldest()
         return self._all[-1]
 
     def _drop_oldest(self) -> None:
         while len(self._all) > KEPT or (
-            len(self._all) > KEPT_LEAST and sum(one.bytes for one in self._all) > KEPT_BYTES
+            len(self._all) > KEPT_LEAST and sum(checkpoint.bytes for checkpoint in self._all) > KEPT_BYTES
         ):
             self._all.pop(0).path.unlink(missing_ok=True)
 
     def returned(self) -> None:
-        """Blender stands where the last checkpoint does."""
+        """Notes that the scene is that of the last checkpoint."""
         self._worked, self.unkept = 0.0, 0
 
 
-def _found(number: int, path: Path, after: str) -> Checkpoint:
-    there = path.stat()
-    return Checkpoint(number, path, after, datetime.fromtimestamp(there.st_mtime).astimezone(), there.st_size)
+def _checkpoint(number: int, path: Path, after: str) -> Checkpoint:
+    status = path.stat()
+    return Checkpoint(
+        number, path, after, datetime.fromtimestamp(status.st_mtime).astimezone(), status.st_size
+    )

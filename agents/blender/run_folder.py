@@ -1,11 +1,10 @@
-"""The folder of a run: what Blender may write to, and what only the supervisor does."""
+"""The folder of a run: what Blender may write to, and what only the supervisor may."""
 
 from __future__ import annotations
 
 import os
 import re
 import secrets
-import stat
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
@@ -15,26 +14,21 @@ from typing import TYPE_CHECKING, BinaryIO
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.launch import PRIVATE
 from simworlds.sandbox.untrusted_files import copy_file, open_beneath, take_beneath
-from simworlds.sandbox.usage import sweep
+from simworlds.sandbox.usage import remove
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
 _NAME = re.compile(r"[\w .()+-]{1,100}")
 SCENE_FILE = "scene.blend"  # in the workspace: the run's own file, as Blender has it open
-_RESERVED = {
-    "workspace": "Blender's own",
-    "checkpoints": "the checkpoints' own",
-    PRIVATE: "Blender's own",
-}
+_RESERVED = {"workspace": "Blender", "checkpoints": "checkpoints", PRIVATE: "Blender"}
 
 
 @dataclass(frozen=True, slots=True)
 class RunFolder:
-    """``root`` holds ``workspace`` (Blender's own, where its relative paths begin), ``checkpoints`` and what was saved.
+    """``root`` holds ``workspace`` (for Blender, the base of relative paths), ``checkpoints`` and saved files.
 
-    What executed code puts into the workspace is not trusted: it is read, taken out and written over without following
-    links.
+    What executed code puts into the workspace is not trusted: links in it are never followed.
     """
 
     root: Path
@@ -59,11 +53,11 @@ class RunFolder:
 
     @property
     def checkpoints(self) -> Path:
-        """The folder of checkpoints, out of executed code's reach."""
+        """The folder of checkpoints, which executed code cannot reach."""
         return self.root / "checkpoints"
 
     def place_for(self, name: str, suffix: str) -> Path:
-        """A path in the run's folder for a file that a caller names. Raises Refusal for one that leads elsewhere."""
+        """The path of a file in the run's folder, by the name a caller gives. Raises Refusal if it leads elsewhere."""
         parts = list(PurePosixPath(name.replace("\\", "/")).parts)
         if (
             not parts
@@ -71,16 +65,18 @@ class RunFolder:
             or not all(_NAME.fullmatch(part) and part.strip(". ") for part in parts)
         ):
             raise Refusal(
-                f"{name[:120]!r} cannot be a file of this run: give a relative path of plain names, as "
+                f"{name[:120]!r} cannot be used as a file name: give a relative path such as "
                 f"'tower{suffix}' or 'saves/tower{suffix}'."
             )
         if parts[0].lower() in _RESERVED:
-            raise Refusal(f"{parts[0]}/ is {_RESERVED[parts[0].lower()]}; save beside it.")
+            raise Refusal(
+                f"{parts[0]}/ is reserved for {_RESERVED[parts[0].lower()]}; choose another folder."
+            )
         path = self.root.joinpath(*parts)
         if path.suffix.lower() != suffix:
             path = path.with_name(path.name + suffix)
         if not path.parent.resolve().is_relative_to(self.root.resolve()):
-            raise Refusal(f"{name[:120]!r} leads out of the run's folder.")
+            raise Refusal(f"{name[:120]!r} leads out of the run's folder; choose a path inside it.")
         return path
 
     def open_made(self, relative: str) -> BinaryIO:
@@ -90,12 +86,12 @@ class RunFolder:
     def take(self, relative: str, target: Path, *, durable: bool = True) -> None:
         """Moves a file that Blender made to ``target``, whole or not at all. Raises Refusal.
 
-        It is copied: executed code may still hold the one that it made. ``durable`` waits for the disk.
+        It is copied, since executed code may still have it open. ``durable`` waits for the disk.
         """
         take_beneath(self.workspace, relative, target, durable=durable)
 
     def put(self, source: Path, name: str) -> Path:
-        """Copies a file to the workspace as ``name``, in place of whatever is there. Raises Refusal."""
+        """Copies a file to the workspace as ``name``, replacing whatever is there. Raises Refusal."""
         target = self.workspace / name
         part = f".{name}.{secrets.token_hex(8)}.part"
         workspace = os.open(self.workspace, os.O_RDONLY | os.O_DIRECTORY)
@@ -106,7 +102,8 @@ class RunFolder:
                 os.fdopen(os.open(part, flags, 0o644, dir_fd=workspace), "wb") as copy,
             ):
                 copy_file(read, copy)
-            _make_way(target)
+            if target.is_dir() and not target.is_symlink():
+                remove(target)
             os.replace(part, name, src_dir_fd=workspace, dst_dir_fd=workspace)
         except OSError as error:
             with suppress(OSError):
@@ -117,39 +114,31 @@ class RunFolder:
         return target
 
 
-def _make_way(target: Path) -> None:
-    """Removes a folder that stands where a file is to be."""
-    with suppress(OSError):
-        if stat.S_ISDIR(target.lstat().st_mode):
-            sweep(target)
-            target.rmdir()
-
-
 def roots(runs: Path) -> Iterator[Path]:
-    """Folders below ``runs`` that a run may be in, named after the time; each may be taken."""
+    """Paths below ``runs`` for a new run, named after the time; each may already exist."""
     stamp = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
     return (runs / (stamp if number == 1 else f"{stamp}-{number}") for number in range(1, 1000))
 
 
 def new_run(runs: Path) -> RunFolder:
-    """A fresh folder below ``runs``, named after the time."""
+    """A new folder below ``runs``, named after the time."""
     for root in roots(runs):
         try:
             root.mkdir(parents=True)
         except FileExistsError:
             continue
         return RunFolder.make(root)
-    raise Refusal(f"{runs} takes no further folder.")
+    raise Refusal(f"No folder could be made in {runs}: 999 runs were started in one second.")
 
 
 @contextmanager
 def locked(root: Path) -> Generator[None]:
-    """Holds a run's folder for one worker. Raises Refusal while another one has it."""
+    """Locks a run's folder for one process. Raises Refusal while another one holds it."""
     import fcntl  # noqa: PLC0415 - not on Windows
 
     with (root / ".lock").open("w") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
-            raise Refusal(f"{root} is in use by another SimWorlds. Choose another folder.") from error
+            raise Refusal(f"{root} is in use by another SimWorlds process. Choose another folder.") from error
         yield

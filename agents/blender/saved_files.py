@@ -1,22 +1,22 @@
-"""Saved files: a .blend in the run's folder, and beside it the folder of what cannot be packed into it."""
+"""Saved .blend files of a run, each with a folder beside it for the caches that cannot be packed."""
 
 from __future__ import annotations
 
 import re
 import shutil
-import stat
 import tempfile
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from agents.blender.formatting import format_list
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.errors import BlenderError, Refusal, ToolBroke
 from simworlds.sandbox.untrusted_files import copy_file, open_beneath
-from simworlds.sandbox.usage import sweep
+from simworlds.sandbox.usage import remove
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
@@ -24,22 +24,22 @@ if TYPE_CHECKING:
     from agents.blender.run_folder import RunFolder
     from simworlds.sandbox.launch import Launch
 
-WRITTEN = ".saved.blend"  # in the workspace, while it is taken out
+COPY_NAME = ".saved.blend"  # in the workspace, until it is taken out
 _STAGED = ".saving-"  # in the run's folder
-_LENT = ".loading"  # in the workspace: what is to be opened
+_LOAD_FOLDER = ".loading"  # in the workspace: a copy of what is to be opened
 _MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, zstd (since 3.0), gzip (before)
 _BLEND = re.compile(r"\.blend\d*$", re.IGNORECASE)
 _LISTED = 12
 
 
-class _Told(BaseModel):
-    """What Blender tells: data from outside, checked for its shape."""
+class _FromBlender(BaseModel):
+    """Data from Blender, which is not trusted: its shape is checked."""
 
     model_config = ConfigDict(frozen=True)
 
 
-class Cache(_Told):
-    """A physics cache: frames that it is for, that it has, and how many that a bake would fill are missing."""
+class CacheReport(_FromBlender):
+    """A physics cache: the frames it is for, how many it has, and how many of a bake's frames are missing."""
 
     label: str
     baked: bool
@@ -50,52 +50,52 @@ class Cache(_Told):
     missing: int
 
 
-class External(_Told):
-    """A file that is used and not packed."""
+class ExternalFile(_FromBlender):
+    """A file that is used and not packed; ``missing``: Blender cannot read it."""
 
     what: str
     path: str
     missing: bool
 
 
-class Seen(_Told):
-    """An open file."""
+class FileContents(_FromBlender):
+    """What an open file has."""
 
     objects: int
-    caches: list[Cache]
+    caches: list[CacheReport]
 
 
-class Written(Seen):
+class SavedCopy(FileContents):
     """A file that was written; ``files`` are (path in the workspace, path in the folder beside the .blend)."""
 
     bytes: int
     packed: list[str]
     rescued: list[str]
     files: list[tuple[str, str]]
-    external: list[External]
+    external: list[ExternalFile]
 
 
-class Loaded(Seen):
-    """A file that was opened as the run's own; ``scripts``: it has some, which were not run."""
+class LoadedFile(FileContents):
+    """A file that was opened as the run's own; ``scripts``: it has scripts, which were not run."""
 
     version: str
     scripts: bool
-    external: list[External]
+    external: list[ExternalFile]
 
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
-def checked(model: type[_Model], value: Any) -> _Model:
-    """A reply as data. Raises ToolBroke if it is something else."""
+def validated(model: type[_Model], value: Any) -> _Model:
+    """A reply of Blender as data. Raises ToolBroke if it does not fit ``model``."""
     try:
         return model.model_validate(value)
     except ValidationError as error:
-        raise ToolBroke("Blender's answer is not of the form that it should be", str(error)[:4000]) from error
+        raise ToolBroke("Blender's reply does not have the expected form", str(error)[:4000]) from error
 
 
-def beside(blend: Path) -> Path:
-    """The folder of a .blend's caches, called as Blender calls it."""
+def caches_folder(blend: Path) -> Path:
+    """The folder of a .blend's caches, named as Blender names it."""
     return blend.with_name(f"blendcache_{blend.stem}")
 
 
@@ -104,33 +104,33 @@ def beside(blend: Path) -> Path:
 
 @contextmanager
 def staging(folder: RunFolder) -> Generator[Path]:
-    """A folder of the run in which a saved file is put together, out of executed code's reach. Raises Refusal."""
+    """A folder in which a saved file is put together, out of executed code's reach. Raises Refusal."""
     try:
-        for left in folder.root.glob(f"{_STAGED}*"):
-            shutil.rmtree(left, ignore_errors=True)
-        place = Path(tempfile.mkdtemp(prefix=_STAGED, dir=folder.root))
+        for leftover in folder.root.glob(f"{_STAGED}*"):
+            shutil.rmtree(leftover, ignore_errors=True)
+        staged = Path(tempfile.mkdtemp(prefix=_STAGED, dir=folder.root))
     except OSError as error:
         raise Refusal(f"{folder.root} cannot be written to: {error.strerror or error}.") from error
     try:
-        yield place
+        yield staged
     finally:
-        shutil.rmtree(place, ignore_errors=True)
+        shutil.rmtree(staged, ignore_errors=True)
 
 
-def take_all(folder: RunFolder, files: Iterable[tuple[str, str]], target: Path) -> tuple[int, int]:
-    """Copies (path in the workspace, path below ``target``); returns how many and how many bytes. Raises Refusal."""
+def copy_from_workspace(folder: RunFolder, files: Iterable[tuple[str, str]], target: Path) -> tuple[int, int]:
+    """Copies (path in the workspace, path below ``target``); returns how many files and bytes. Raises Refusal."""
     count = total = 0
     for source, below in files:
         parts = PurePosixPath(below).parts
         if not parts or ".." in parts or below.startswith("/") or "\0" in source + below:
-            raise Refusal(f"{below[:120]!r} cannot be a file of a cache.")
-        with folder.open_made(source) as made:
-            copied = target.joinpath(*parts)
+            raise Refusal(f"{below[:120]!r} is not a valid path for a cache file.")
+        with folder.open_made(source) as file:
+            path = target.joinpath(*parts)
             try:
-                copied.parent.mkdir(parents=True, exist_ok=True)
-                with copied.open("wb") as copy:
-                    copy_file(made, copy)
-                total += copied.stat().st_size
+                path.parent.mkdir(parents=True, exist_ok=True)
+                with path.open("wb") as copy:
+                    copy_file(file, copy)
+                total += path.stat().st_size
             except OSError as error:
                 raise Refusal(f"a copy of {source} cannot be written: {error.strerror or error}") from error
         count += 1
@@ -138,118 +138,117 @@ def take_all(folder: RunFolder, files: Iterable[tuple[str, str]], target: Path) 
 
 
 def put_in_place(staged: Path, target: Path) -> None:
-    """Moves a .blend and its caches to where they belong, or leaves whole what is there. Raises Refusal."""
+    """Moves a .blend and its caches to their place; on failure the old ones stay. Raises Refusal."""
     before = staged.with_name("before")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        if beside(target).exists():
-            beside(target).rename(before)
-        if beside(staged).exists():
-            beside(staged).rename(beside(target))
+        if caches_folder(target).exists():
+            caches_folder(target).rename(before)
+        if caches_folder(staged).exists():
+            caches_folder(staged).rename(caches_folder(target))
         staged.replace(target)
     except OSError as error:
         if before.exists():
-            shutil.rmtree(beside(target), ignore_errors=True)
-            before.rename(beside(target))
+            shutil.rmtree(caches_folder(target), ignore_errors=True)
+            before.rename(caches_folder(target))
         raise Refusal(f"{target} cannot be written: {error.strerror or error}.") from error
 
 
-def look_afresh(launch: Launch, blend: Path, *, timeout: float) -> Seen:
-    """What another Blender finds that has nothing but this .blend and the folder beside it.
-
-    Raises Refusal if it does not open there.
-    """
-    with tempfile.TemporaryDirectory(prefix="simworlds-look-", ignore_cleanup_errors=True) as place:
-        room = Path(place).resolve()
-        read = [one for one in (blend, beside(blend)) if one.exists()]
-        fresh = replace(
-            launch, workspace=room / "workspace", private=room / "private", read=(*launch.read, *read)
+def open_elsewhere(launch: Launch, blend: Path, *, timeout: float) -> FileContents:
+    """Opens a .blend in a second Blender, which has nothing but the file and its caches. Raises Refusal."""
+    with tempfile.TemporaryDirectory(prefix="simworlds-look-", ignore_cleanup_errors=True) as folder:
+        root = Path(folder).resolve()
+        read = [path for path in (blend, caches_folder(blend)) if path.exists()]
+        second = replace(
+            launch, workspace=root / "workspace", private=root / "private", read=(*launch.read, *read)
         )
-        for made in (fresh.workspace, fresh.private):
-            made.mkdir()
+        for path in second.folders:
+            path.mkdir()
         try:
-            process = BlenderProcess(fresh)
+            process = BlenderProcess(second)
             try:
-                return checked(Seen, process.call("look", {"path": str(blend)}, timeout=timeout).value)
+                reply = process.call("look", {"path": str(blend)}, timeout=timeout)
+                return validated(FileContents, reply.value)
             finally:
                 process.kill()
         except BlenderError as error:
-            raise Refusal(f"the copy does not open in another Blender: {error}") from error
+            raise Refusal(f"the copy does not open in a second Blender: {error}") from error
 
 
-def faults(scene: Seen, copy: Seen | None) -> list[str]:
-    """In words, which caches that pass for baked are not whole, in the scene or in a copy of it."""
-    there = {cache.label: cache for cache in copy.caches} if copy is not None else {}
-    told: list[str] = []
+def cache_faults(scene: FileContents, copy: FileContents | None) -> list[str]:
+    """Sentences on caches that are marked as baked but incomplete, in the scene or in a copy of it."""
+    copied = {cache.label: cache for cache in copy.caches} if copy is not None else {}
+    faults: list[str] = []
     for cache in scene.caches:
         if not cache.baked:
             continue
-        found = there.get(cache.label)
+        other = copied.get(cache.label)
         if cache.missing:
-            told.append(
-                f"the cache of {cache.label} passes for baked, but {cache.missing} of its frames are missing: "
+            faults.append(
+                f"the cache of {cache.label} is marked as baked, but {cache.missing} of its frames are missing: "
                 "bake it again"
             )
-        elif copy is not None and (found is None or not found.baked or found.frames < cache.frames):
-            told.append(
+        elif copy is not None and (other is None or not other.baked or other.frames < cache.frames):
+            faults.append(
                 f"the cache of {cache.label} has {cache.frames} frames here, "
-                f"but {found.frames if found else 0} in the copy"
+                f"but {other.frames if other else 0} in the copy"
             )
-    return told
+    return faults
 
 
 # Loading
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """A .blend that may be opened: below ``root``, one of the folders that it may come from."""
+class BlendFile:
+    """A .blend that may be opened: ``relative`` below ``root``, one of the folders that files may come from."""
 
     root: Path
     relative: str
 
     @property
     def path(self) -> Path:
-        """Where it lies."""
+        """The whole path."""
         return self.root / self.relative
 
 
-def find(asked: str, folder: RunFolder, read: tuple[Path, ...]) -> Found:
-    """The file that a caller names, relative to the run's folder or absolute. Raises Refusal if it is no .blend."""
-    if "\0" in asked or len(asked) > 4096:
-        raise Refusal(f"{asked[:120]!r} is no path.")
-    name = asked if _BLEND.search(asked) else f"{asked}.blend"
-    path = folder.root / name
-    if ".." in Path(name).parts:
-        raise Refusal(f"{asked[:120]!r} is no plain path: leave out '..'.")
+def find_blend_file(name: str, folder: RunFolder, read: tuple[Path, ...]) -> BlendFile:
+    """The file of that name, relative to the run's folder or absolute. Raises Refusal if it is not a .blend."""
+    if "\0" in name or len(name) > 4096:
+        raise Refusal(f"{name[:120]!r} is not a valid path.")
+    spelled = name if _BLEND.search(name) else f"{name}.blend"
+    path = folder.root / spelled
+    if ".." in Path(spelled).parts:
+        raise Refusal(f"{name[:120]!r} is not allowed: give a path without '..'.")
     for root in (folder.root, *read):
-        for spelled in {root, root.resolve()}:
-            if path.is_relative_to(spelled) and path != spelled:
-                found = Found(root, path.relative_to(spelled).as_posix())
-                _check(found, name, folder)
-                return found
+        for base in {root, root.resolve()}:
+            if path.is_relative_to(base) and path != base:
+                blend_file = BlendFile(root, path.relative_to(base).as_posix())
+                _check(blend_file, spelled, folder)
+                return blend_file
     allowed = ", ".join(str(root) for root in (folder.root, *read))
-    raise Refusal(f"{asked[:300]} may not be opened; what can be lies below {allowed}.")
+    raise Refusal(f"{name[:300]} may not be opened. Files can be opened from {allowed}.")
 
 
-def _check(found: Found, name: str, folder: RunFolder) -> None:
-    if found.path.parent == folder.checkpoints:
-        raise Refusal(f"{name} is a checkpoint; go back to it with checkpoint={found.path.stem.lstrip('0')}.")
-    if not found.path.exists() and not found.path.is_symlink():
-        raise Refusal(f"There is no {name}. {saved_files(folder)}")
+def _check(blend_file: BlendFile, name: str, folder: RunFolder) -> None:
+    path = blend_file.path
+    if path.parent == folder.checkpoints:
+        raise Refusal(f"{name} is a checkpoint; go back to it with checkpoint={path.stem.lstrip('0')}.")
+    if not path.exists() and not path.is_symlink():
+        raise Refusal(f"There is no {name}. {describe_saved_files(folder)}")
     try:
-        with open_beneath(found.root, found.relative) as file:
+        with open_beneath(blend_file.root, blend_file.relative) as file:
             head = file.read(7)
     except Refusal as error:
-        raise Refusal(f"{name} cannot be opened: it is a link, or no plain file.") from error
+        raise Refusal(f"{name} cannot be opened: it is a link or not a regular file.") from error
     if not head:
         raise Refusal(f"{name} is empty.")
     if not head.startswith(_MAGIC):
-        raise Refusal(f"{name} is no .blend file.")
+        raise Refusal(f"{name} is not a .blend file.")
 
 
-def saved_files(folder: RunFolder) -> str:
-    """In words, what was saved in the run's folder."""
+def describe_saved_files(folder: RunFolder) -> str:
+    """A sentence that lists what was saved in the run's folder."""
     names = sorted(
         path.relative_to(folder.root).as_posix()
         for path in folder.root.rglob("*.blend")
@@ -259,40 +258,29 @@ def saved_files(folder: RunFolder) -> str:
     )
     if not names:
         return "Nothing has been saved in this run."
-    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-    return f"Saved in this run: {', '.join(names[:_LISTED])}{more}."
+    return f"Saved in this run: {format_list(names, _LISTED)}."
 
 
 @contextmanager
-def lent(found: Found, folder: RunFolder) -> Generator[tuple[Path, bool]]:
-    """(where Blender can read the file, whether that is a copy made for it). No call may run meanwhile but the load."""
-    readable = found.root != folder.root or found.path.is_relative_to(folder.workspace)
-    if readable:
-        yield found.path, False
+def readable_by_blender(blend_file: BlendFile, folder: RunFolder) -> Generator[tuple[Path, bool]]:
+    """(a path that Blender can read, whether it is a temporary copy). Only the load may be called meanwhile."""
+    path = blend_file.path
+    if blend_file.root != folder.root or path.is_relative_to(folder.workspace):
+        yield path, False
         return
-    room = folder.workspace / _LENT
+    load_folder = folder.workspace / _LOAD_FOLDER
     try:
-        clear(room)
-        room.mkdir()
-        copy = room / found.path.name
-        with open_beneath(found.root, found.relative) as source, copy.open("wb") as target:
+        remove(load_folder)
+        load_folder.mkdir()
+        copy = load_folder / path.name
+        with open_beneath(blend_file.root, blend_file.relative) as source, copy.open("wb") as target:
             copy_file(source, target)
-        if beside(found.path).is_dir() and not beside(found.path).is_symlink():
-            shutil.copytree(beside(found.path), beside(copy), symlinks=True)
+        if caches_folder(path).is_dir() and not caches_folder(path).is_symlink():
+            shutil.copytree(caches_folder(path), caches_folder(copy), symlinks=True)
     except (OSError, shutil.Error) as error:
-        clear(room)
-        raise Refusal(f"{found.path} cannot be copied into the workspace: {error}.") from error
+        remove(load_folder)
+        raise Refusal(f"{path} cannot be copied into the workspace: {error}.") from error
     try:
         yield copy, True
     finally:
-        clear(room)
-
-
-def clear(place: Path) -> None:
-    """Removes a file, link or folder of the workspace, whatever code has made of it."""
-    with suppress(OSError):
-        if stat.S_ISDIR(place.lstat().st_mode):
-            sweep(place)
-            place.rmdir()
-        else:
-            place.unlink()
+        remove(load_folder)

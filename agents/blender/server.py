@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from mcp.server.transport_security import TransportSecuritySettings
     from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-    from agents.blender.blender_sessions import Studios
+    from agents.blender.blender_sessions import BlenderSessions
     from agents.blender.docs_client import DocsClient
     from agents.blender.team import Team
-    from agents.blender.tools.base import Result, Tool
+    from agents.blender.tools.base import BlenderTool, Result
 
     _Context = ServerRequestContext[None]
     _Listing = types.PaginatedRequestParams | None
@@ -76,7 +76,7 @@ def instructions(more: Iterable[str] = ()) -> str:
     )
 
 
-def make_server(studios: Studios, docs: DocsClient, team: Team | None = None) -> Server[None]:
+def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None = None) -> Server[None]:
     """The server, without a transport. Closes the studios when it ends.
 
     ``team`` offers what a model needs to plan and review too; a caller with roles of its own does without.
@@ -86,14 +86,14 @@ def make_server(studios: Studios, docs: DocsClient, team: Team | None = None) ->
     async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
         try:
             async with docs.running(), anyio.create_task_group() as tasks:
-                tasks.start_soon(studios.watch)
+                tasks.start_soon(sessions.watch)
                 try:
                     yield
                 finally:
                     tasks.cancel_scope.cancel()
         finally:
             with anyio.CancelScope(shield=True):
-                await anyio.to_thread.run_sync(studios.close)
+                await anyio.to_thread.run_sync(sessions.close)
 
     async def call_tool(context: _Context, asked: types.CallToolRequestParams) -> types.CallToolResult:
         if asked.name == docs_client.NAME:
@@ -105,10 +105,10 @@ def make_server(studios: Studios, docs: DocsClient, team: Team | None = None) ->
             names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), docs_client.NAME])
             raise MCPError(types.INVALID_PARAMS, f"There is no tool {asked.name[:80]!r}; there are {names}.")
         try:
-            studio = await studios.of(_client(context))
+            session = await sessions.get(_client(context))
         except BlenderError as error:
             return _failed(str(error))
-        use = partial(studio.use, tool, asked.arguments, about=docs.about)
+        use = partial(session.use, tool, asked.arguments, about=docs.about)
         return await _watched(context, tool.name, use)
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
@@ -181,7 +181,7 @@ def _client(context: _Context) -> str:
 # Tools
 
 
-def entry(tool: Tool) -> types.Tool:
+def entry(tool: BlenderTool) -> types.Tool:
     """A tool's entry in the list of tools."""
     schema = schema_of(tool.arguments)
     schema.pop("description", None)  # the tool's own says it
@@ -303,7 +303,11 @@ async def _or_none(listed: Callable[[], Any]) -> list[Any]:
 
 
 def make_app(
-    server: Server[None], studios: Studios, idle: float, path: str, security: TransportSecuritySettings
+    server: Server[None],
+    sessions: BlenderSessions,
+    idle: float,
+    path: str,
+    security: TransportSecuritySettings,
 ) -> ASGIApp:
     """The server as an ASGI application that keeps a session for every client; ``idle`` in seconds."""
     server.middleware.append(_only_with_sessions)
@@ -313,7 +317,7 @@ def make_app(
         max_sessions=_MANY_CLIENTS,
         transport_security=security,
     )
-    return _Leaving(app, studios)
+    return _Leaving(app, sessions)
 
 
 async def _only_with_sessions(ctx: ServerRequestContext[Any, Any], call_next: CallNext) -> HandlerResult:
@@ -333,9 +337,9 @@ async def _only_with_sessions(ctx: ServerRequestContext[Any, Any], call_next: Ca
 class _Leaving:
     """Closes the studio of a client that ends its session."""
 
-    def __init__(self, app: ASGIApp, studios: Studios) -> None:
+    def __init__(self, app: ASGIApp, sessions: BlenderSessions) -> None:
         self._app = app
-        self._studios = studios
+        self._sessions = sessions
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """ASGI."""
@@ -351,4 +355,4 @@ class _Leaving:
 
         await self._app(scope, receive, watched)
         if ended:
-            await self._studios.end(Headers(scope=scope).get(_SESSION, ""))
+            await self._sessions.end(Headers(scope=scope).get(_SESSION, ""))

@@ -1,4 +1,4 @@
-"""Blender as its callers know it: every call is answered, whatever becomes of the process behind it."""
+"""One Blender for a run that survives crashes: a lost process is replaced, from the last checkpoint."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from simworlds.sandbox.errors import (
     CannotStart,
     Died,
     LeftBehind,
+    LimitExceeded,
     Lost,
     NeverBegan,
-    OutOfBounds,
     Refusal,
     ToolBroke,
 )
@@ -36,10 +36,10 @@ _LOG = logging.getLogger(__name__)
 
 
 class Supervisor:
-    """One Blender for one run, started with ``start`` and ended with ``close``. Calls from several threads wait.
+    """One Blender for one run, started with ``start`` and ended with ``close``. Calls from several threads take turns.
 
-    ``timeout`` is in seconds everywhere. A call that costs Blender its life raises Lost; by then another Blender
-    stands where the last checkpoint does, and the message says so. Raises Refusal while another one has the run.
+    ``timeout`` is in seconds everywhere. A call during which Blender is lost raises Lost; by then a new Blender has
+    been started from the last checkpoint, as the message says. Raises Refusal if the run is in use.
     """
 
     def __init__(self, launch: Launch, folder: RunFolder) -> None:
@@ -50,7 +50,7 @@ class Supervisor:
             self.checkpoints = Checkpoints(folder)
             self._held = held.pop_all()
         self._process: BlenderProcess | None = None
-        self._stands: Checkpoint | None = None
+        self._current: Checkpoint | None = None
         self._note = ""
         self._ending = threading.Event()
         self._lock = threading.RLock()
@@ -67,17 +67,17 @@ class Supervisor:
         self.close()
 
     def start(self) -> None:
-        """Starts Blender where the run stood, or with an empty scene. Raises CannotStart."""
+        """Starts Blender from the last checkpoint, or with an empty scene. Raises CannotStart."""
         with self._lock:
             if self._process is None:
                 self._start()
 
     def end(self) -> None:
-        """From any thread: from here on no Blender is started any more, whatever becomes of this one."""
+        """From any thread: no further Blender is started from here on."""
         self._ending.set()
 
     def close(self) -> None:
-        """Keeps what has not been kept, and ends Blender. Nothing can be called afterwards."""
+        """Takes a checkpoint of changes not kept yet, and ends Blender. Nothing can be called afterwards."""
         with self._lock:
             self.end()
             process, self._process = self._process, None
@@ -85,7 +85,7 @@ class Supervisor:
                 if process is not None and process.alive and self.checkpoints.unkept:
                     self._write(process, "at the end")
             except BlenderError as error:
-                _LOG.warning("What was done since %s is lost: %s", self.checkpoints.last, error)
+                _LOG.warning("The changes since %s are lost: %s", self.checkpoints.last, error)
             finally:
                 if process is not None:
                     process.close()
@@ -93,12 +93,12 @@ class Supervisor:
                 self._held.close()
 
     def kill(self) -> None:
-        """From any thread: ends Blender at once; what has not been kept is lost. The next call starts another."""
+        """From any thread: ends Blender at once; unkept changes are lost. The next call starts a new one."""
         process = self._process
         if process is None:
             return
         process.stop()
-        if self._lock.acquire(blocking=False):  # otherwise the call that it is in notices
+        if self._lock.acquire(blocking=False):  # otherwise the running call notices
             try:
                 process.kill()
             finally:
@@ -106,12 +106,12 @@ class Supervisor:
 
     @property
     def pid(self) -> int | None:
-        """The process that was started (behind bubblewrap: bubblewrap's), None when none runs."""
+        """The process that was started (with bubblewrap: bubblewrap's); None when none runs."""
         return self._process.started if self._process is not None else None
 
     @property
     def inner_pid(self) -> int | None:
-        """Blender's process itself, None when none runs."""
+        """Blender's own process; None when none runs."""
         return self._process.inner if self._process is not None else None
 
     def call(  # noqa: PLR0913 - what a caller may want to say of a call
@@ -125,32 +125,32 @@ class Supervisor:
         after: str = "",
         always_keep: bool = False,
         progress: Progress | None = None,
-        given_up: threading.Event | None = None,
+        cancelled: threading.Event | None = None,
     ) -> Reply:
-        """Runs a tool in Blender; ``what`` is how errors speak of it.
+        """Runs a tool in Blender; ``what`` names it in errors.
 
-        ``changes``: it may change the scene, so that a checkpoint may be due afterwards, which is called ``after``;
-        ``always_keep``: one is taken in any case. Raises BlenderError.
+        ``changes``: it may change the scene, so a checkpoint may be due, described by ``after``; ``always_keep``: take
+        one in any case. Raises BlenderError.
         """
         with self._lock:
-            since = self.launch.bounds.fine
+            since = self.launch.usage.last_within_limits
 
             def attempt() -> Reply:
                 return self._running().call(
-                    tool, arguments, timeout=timeout, what=what, progress=progress, given_up=given_up
+                    tool, arguments, timeout=timeout, what=what, progress=progress, cancelled=cancelled
                 )
 
             try:
                 try:
                     reply = attempt()
-                except NeverBegan as error:  # nothing of the call was done: it can be made again
+                except NeverBegan as error:  # nothing of the call was done, so it can be repeated
                     self._start_again(str(error))
                     reply = attempt()
                 self._check_left(reply, what or tool)
             except Lost as error:
-                recovered = self._recovered(error, since)
-                if given_up is not None and given_up.is_set():
-                    self._add_note(str(recovered))  # nobody hears the error
+                recovered = self._recover(error, since)
+                if cancelled is not None and cancelled.is_set():
+                    self._add_note(str(recovered))  # nobody receives the error
                 raise recovered from error
             except (Refusal, ToolBroke):
                 if changes:
@@ -165,19 +165,19 @@ class Supervisor:
             return reply
 
     def take_note(self) -> str:
-        """In words, what has happened to Blender since this was asked last, and no call has told; "" for nothing."""
+        """What happened to Blender that no reply has mentioned yet, in words; "" for nothing."""
         with self._lock:
             note, self._note = self._note, ""
             return note
 
     @contextmanager
     def alone(self) -> Generator[None]:
-        """Keeps other threads' calls out from between several of one's own."""
+        """Keeps calls of other threads out until the body has ended."""
         with self._lock:
             yield
 
     def keep(self, after: str) -> Checkpoint:
-        """A checkpoint of the state as it is now. Raises BlenderError."""
+        """The checkpoint of the current state, taken if there is none yet. Raises BlenderError."""
         with self._lock:
             self._running()
             last = self.checkpoints.last
@@ -186,23 +186,25 @@ class Supervisor:
             return self._keep(after)
 
     def restore(self, number: int | None = None) -> Checkpoint:
-        """Puts Blender back to a checkpoint, the last one by default. Raises Refusal if it is not kept."""
+        """Goes back to a checkpoint, the last one by default. Raises Refusal if there is no such checkpoint."""
         with self._lock:
             checkpoint = self.checkpoints.last if number is None else self.checkpoints.find(number)
             if checkpoint is None:
-                kept = ", ".join(str(one.number) for one in self.checkpoints.newest_first()[::-1])
+                kept = ", ".join(
+                    str(checkpoint.number) for checkpoint in self.checkpoints.newest_first()[::-1]
+                )
                 which = "checkpoint" if number is None else f"checkpoint {number}"
-                raise Refusal(f"There is no {which}; kept are {kept or 'none'}.")
+                raise Refusal(f"There is no {which}. Available: {kept or 'none'}.")
             process = self._running()
             try:
                 self._open(process, checkpoint)
             except (Refusal, ToolBroke) as error:
                 process.kill()
                 self.checkpoints.changed(0.0)
-                raise Refusal(f"{checkpoint} cannot be opened: {error} {self._restarted()}") from error
+                raise Refusal(f"{checkpoint} cannot be opened: {error} {self._restart()}") from error
             except Lost as error:
-                raise self._recovered(error) from error
-            self._stands = checkpoint
+                raise self._recover(error) from error
+            self._current = checkpoint
             if checkpoint == self.checkpoints.last:
                 self.checkpoints.returned()
             else:
@@ -215,9 +217,9 @@ class Supervisor:
     def _write(self, process: BlenderProcess, after: str) -> Checkpoint:
         arguments = {"path": str(self.launch.private / WRITTEN), "folder": str(self.folder.workspace)}
         try:
-            # A disk that runs full is an error of the writing, and costs nothing but this checkpoint.
+            # A full disk is an error of the writing, and costs only this checkpoint.
             reply = process.call(
-                "write", arguments, timeout=WRITE_SECONDS, what="writing the scene out", bounded=False
+                "write", arguments, timeout=WRITE_SECONDS, what="writing the scene out", limited=False
             )
         except ToolBroke as error:
             raise Refusal(f"The scene cannot be written out: {error}.") from error
@@ -226,16 +228,16 @@ class Supervisor:
     def _keep(self, after: str) -> Checkpoint:
         assert self._process is not None
         try:
-            self._stands = self._write(self._process, after)
+            self._current = self._write(self._process, after)
         except Refusal as error:
             last = self.checkpoints.last
             raise Refusal(
-                f"The state cannot be kept: {error} Blender is well and the scene as it was; "
-                f"{f'{last} is untouched' if last else 'there is no checkpoint'}."
+                f"No checkpoint could be taken: {error} Blender still runs, and the scene is unchanged; "
+                f"{f'{last} is unchanged too' if last else 'there is no earlier checkpoint'}."
             ) from error
         except Lost as error:
-            raise self._recovered(error) from error
-        return self._stands
+            raise self._recover(error) from error
+        return self._current
 
     def _try_to_keep(self, after: str) -> None:
         try:
@@ -260,13 +262,11 @@ class Supervisor:
         return self._process
 
     def _start(self) -> list[str]:
-        """A new process, at the newest checkpoint that can be opened; returns why newer ones cannot."""
+        """Starts a process at the newest checkpoint that can be opened; returns why newer ones cannot."""
         faults: list[str] = []
         for checkpoint in (*self.checkpoints.newest_first(), None):
-            for attempt in (
-                1,
-                2,
-            ):  # the first may be killed by whoever killed the one before, or for want of memory
+            # The first attempt may be killed by what killed the process before, or for lack of memory.
+            for attempt in (1, 2):
                 if self._ending.is_set():
                     raise CannotStart("this session is being ended")
                 try:
@@ -276,32 +276,32 @@ class Supervisor:
                         continue
                     if isinstance(error, CannotStart):
                         raise
-                    said = getattr(error, "printed", "")
-                    faults.append(f"{checkpoint or 'an empty scene'}: {error} {said}".strip())
+                    output = getattr(error, "printed", "")
+                    faults.append(f"{checkpoint or 'an empty scene'}: {error} {output}".strip())
                     break
                 return faults
-        raise CannotStart(f"Blender runs, but cannot open {'; '.join(faults)[:2000]}")
+        raise CannotStart(f"Blender starts, but cannot open {'; '.join(faults)[:2000]}")
 
     def _start_at(self, checkpoint: Checkpoint | None, *, newest: bool) -> None:
         process = self._process = BlenderProcess(self.launch)
         try:
             self._open(process, checkpoint)
-            self._stands = checkpoint
+            self._current = checkpoint
             self.checkpoints.returned()
-            if checkpoint is None or not newest:  # Blender stands where the newest one is, always
+            if checkpoint is None or not newest:  # the scene is always that of the newest checkpoint
                 after = "an empty scene" if checkpoint is None else f"back to checkpoint {checkpoint.number}"
-                self._stands = self._write(process, after)
+                self._current = self._write(process, after)
         except BaseException:
             process.kill()
             raise
 
     def _open(self, process: BlenderProcess, checkpoint: Checkpoint | None) -> None:
-        """Opens a checkpoint in the place of the run's own file, so that what lies beside that is found."""
+        """Opens a checkpoint at the path of the run's own file, so that files beside that are found."""
         arguments: dict[str, Any] = {"path": None, "folder": str(self.folder.workspace)}
         if checkpoint is not None:
             arguments["path"] = str(self.folder.put(checkpoint.path, SCENE_FILE))
         what = f"opening {checkpoint or 'an empty scene'}"
-        process.call("open", arguments, timeout=OPEN_SECONDS, what=what, bounded=False)
+        process.call("open", arguments, timeout=OPEN_SECONDS, what=what, limited=False)
 
     def _check_left(self, reply: Reply, what: str) -> None:
         """Raises LeftBehind for a call that returned, but not whole."""
@@ -309,44 +309,44 @@ class Supervisor:
             assert self._process is not None
             self._process.kill()
             raise LeftBehind(
-                f"When {what} returned, it left {' and '.join(reply.left)}, which would spoil the calls after it. "
+                f"When {what} returned, it left {' and '.join(reply.left)}, which would break later calls. "
                 "Blender was stopped",
                 (reply.stdout + reply.stderr)[-2000:],
             )
 
-    def _recovered(self, error: Lost, since: int | None = None) -> Lost:
-        """``error``, with where Blender stands after a new one was started.
+    def _recover(self, error: Lost, since: int | None = None) -> Lost:
+        """Starts Blender again; returns ``error`` with what the scene is now.
 
-        ``since``: when the limits were last kept; past them, what was written since then is removed.
+        ``since``: when usage was last within its limits; after LimitExceeded, files written since then are removed.
         """
         undone = ""
-        if isinstance(error, OutOfBounds) and since is not None:
+        if isinstance(error, LimitExceeded) and since is not None:
             for folder in self.launch.folders:
                 remove_since(folder, since)
             undone = " The files that it wrote were removed."
-        return type(error)(f"{error}.{undone} {self._restarted()}", error.printed, error.ending)
+        return type(error)(f"{error}.{undone} {self._restart()}", error.printed, error.ending)
 
-    def _restarted(self) -> str:
-        """Starts Blender again; tells in words where it stands."""
+    def _restart(self) -> str:
+        """Starts Blender again; says in words what the scene is now."""
         lost = self.checkpoints.unkept
         try:
-            return self._standing(lost, self._start())
+            return self._describe_scene(lost, self._start())
         except CannotStart as error:
-            return f"Another Blender could not be started: {error}."
+            return f"A new Blender could not be started: {error}."
 
     def _start_again(self, why: str) -> None:
-        """Starts Blender again between two calls, and notes it for the reply of the next. Raises CannotStart."""
+        """Starts Blender again between two calls, with a note for the next reply. Raises CannotStart."""
         lost = self.checkpoints.unkept
-        self._add_note(f"{why}. {self._standing(lost, self._start())}")
+        self._add_note(f"{why}. {self._describe_scene(lost, self._start())}")
 
     def _add_note(self, note: str) -> None:
         self._note = f"{self._note} {note}".strip()[-_LONGEST_NOTE:]
 
-    def _standing(self, lost: int, faults: list[str]) -> str:
-        where = f"A new Blender stands at {self._stands}"
+    def _describe_scene(self, lost: int, faults: list[str]) -> str:
+        where = f"A new Blender was started from {self._current}"
         if faults:
-            return f"{where}, for what came later cannot be opened: {'; '.join(faults)[:1000]}."
+            return f"{where}, because later checkpoints cannot be opened: {'; '.join(faults)[:1000]}."
         if lost:
             calls = "last call" if lost == 1 else f"last {lost} calls"
-            return f"{where}; what the {calls} before had changed since then is lost, too."
-        return f"{where}, which is how the scene was before."
+            return f"{where}; the changes of the {calls} before it are lost too."
+        return f"{where}, which is the scene as it was before."

@@ -18,9 +18,9 @@ from agents.blender.tools import (
 )
 
 if TYPE_CHECKING:
-    from agents.blender.tools.base import Tool
+    from agents.blender.tools.base import BlenderTool
 
-TOOLS: tuple[Tool, ...] = (
+TOOLS: tuple[BlenderTool, ...] = (
     scene_state.TOOL,
     *previews.TOOLS,
     motion_sheet.TOOL,

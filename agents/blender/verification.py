@@ -31,10 +31,10 @@ def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | N
                 {"requests": requests},
                 timeout=MEASURE_SECONDS,
                 progress=call.progress,
-                given_up=call.given_up,
+                cancelled=call.cancelled,
             ).value
         except (Refusal, ToolBroke) as error:
             return [{"unmeasured": str(error)}] * len(requests)
 
-    told = blender.call("snapshot", {}, timeout=SNAPSHOT_SECONDS, given_up=call.given_up)
+    told = blender.call("snapshot", {}, timeout=SNAPSHOT_SECONDS, cancelled=call.cancelled)
     return verify(Facts.read(told.value), ask, rules, plan)

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from rich.console import Console, Group
     from rich.text import Text
 
-    from agents.commands.doctor_checks import Choice, Finding, State
-    from simworlds.sandbox.confinement import Kind
+    from agents.commands.doctor_checks import BlenderChoice, CheckResult, State
+    from simworlds.sandbox.confined_command import Kind
 
 _NEEDED = ("Blender", "Start", "Sandbox")  # without these Blender cannot work, or must not
 _SIGNS: dict[State, tuple[str, str]] = {"good": ("✓", "green"), "poor": ("!", "yellow"), "bad": ("✗", "red")}
@@ -46,9 +46,9 @@ def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | Non
         raise click.ClickException("A live Blender needs Linux or macOS. On Windows, use the Linux of WSL.")
     from rich.console import Console  # noqa: PLC0415 - not for --help
 
-    from agents.commands.doctor_checks import Choice  # noqa: PLC0415
+    from agents.commands.doctor_checks import BlenderChoice  # noqa: PLC0415
 
-    found = _found(Choice(blender, blender_exe, sandbox), Console(stderr=True))
+    found = _found(BlenderChoice(blender, blender_exe, sandbox), Console(stderr=True))
     well = all(finding.state != "bad" for finding in found if finding.name in _NEEDED)
     if as_json:
         told = {"works": well, "findings": [asdict(finding) for finding in found]}
@@ -58,11 +58,11 @@ def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | Non
     sys.exit(0 if well else 1)
 
 
-def _found(choice: Choice, console: Console) -> list[Finding]:
+def _found(choice: BlenderChoice, console: Console) -> list[CheckResult]:
     """What each check came to; what is being done is shown meanwhile, where somebody looks on."""
     from agents.commands.doctor_checks import checks  # noqa: PLC0415 - not for --help
 
-    found: list[Finding] = []
+    found: list[CheckResult] = []
     with console.status("") as status, closing(checks(choice)) as each:
         for doing, check in each:
             status.update(f"[dim]{doing} …[/dim]")
@@ -70,7 +70,7 @@ def _found(choice: Choice, console: Console) -> list[Finding]:
     return found
 
 
-def _page(found: list[Finding], well: bool) -> Group:
+def _page(found: list[CheckResult], well: bool) -> Group:
     from rich.console import Group  # noqa: PLC0415 - not for --json
     from rich.table import Table  # noqa: PLC0415 - not for --json
     from rich.text import Text  # noqa: PLC0415

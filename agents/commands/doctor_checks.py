@@ -19,15 +19,15 @@ from agents.blender.fluid_support import check_fluids
 from agents.blender.launch import launch_in, runs_folder
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
-from simworlds.sandbox import confine
-from simworlds.sandbox.confinement import GIB, best_sandbox, bubblewrap_fault
+from simworlds.sandbox import confine_self
+from simworlds.sandbox.confined_command import GIB, best_sandbox, bubblewrap_fault
 from simworlds.sandbox.errors import BlenderError, CannotStart
 from simworlds.sandbox.launch import find_blender
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
-    from simworlds.sandbox.confinement import Kind, Sandbox
+    from simworlds.sandbox.confined_command import Kind, Sandbox
     from simworlds.sandbox.launch import Launch
     from simworlds.sandbox.runtime import Runtime
 
@@ -67,7 +67,7 @@ _ESCAPES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class CheckResult:
     """What a check found. ``poor``: Blender works, though something is missing; ``advice``: what would help.
 
     ``place`` is a path that it is about; ``keeps`` and ``lacks`` list what does and does not hold; ``data`` is the same
@@ -85,7 +85,7 @@ class Finding:
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class BlenderChoice:
     """Which Blender is looked at, and what confines it."""
 
     version: str | None = None
@@ -93,10 +93,10 @@ class Choice:
     sandbox: Kind | None = None
 
 
-Check = tuple[str, "Callable[[], Finding]"]
+Check = tuple[str, "Callable[[], CheckResult]"]
 
 
-def checks(choice: Choice) -> Generator[Check]:
+def checks(choice: BlenderChoice) -> Generator[Check]:
     """(what is being done, the check), in order; the generator is to be closed, which ends Blender.
 
     Where Blender does not start, those that need it are left out.
@@ -130,11 +130,11 @@ def checks(choice: Choice) -> Generator[Check]:
 # Blender
 
 
-def _find(choice: Choice, found: list[Runtime]) -> Finding:
+def _find(choice: BlenderChoice, found: list[Runtime]) -> CheckResult:
     try:
         runtime = find_blender(choice.version, choice.blender_exe)
     except CannotStart as error:
-        return Finding("Blender", "bad", str(error))
+        return CheckResult("Blender", "bad", str(error))
     found.append(runtime)
     how = {
         "executable": "named by --blender-exe or BLENDER_EXE",
@@ -142,10 +142,10 @@ def _find(choice: Choice, found: list[Runtime]) -> Finding:
         "managed": "the bpy package of an environment made for it",
     }[runtime.kind]
     data = {"version": runtime.version, "kind": runtime.kind, "executable": str(runtime.executable)}
-    return Finding("Blender", "good", f"{runtime.version}, {how}", place=data["executable"], data=data)
+    return CheckResult("Blender", "good", f"{runtime.version}, {how}", place=data["executable"], data=data)
 
 
-def _start(launch: Launch, folder: RunFolder, held: ExitStack, started: list[Supervisor]) -> Finding:
+def _start(launch: Launch, folder: RunFolder, held: ExitStack, started: list[Supervisor]) -> CheckResult:
     os.environ[_VARIABLE] = "x"
     began = time.perf_counter()
     try:
@@ -156,20 +156,20 @@ def _start(launch: Launch, folder: RunFolder, held: ExitStack, started: list[Sup
         del os.environ[_VARIABLE]
     seconds = time.perf_counter() - began
     text = f"{_time(seconds)} to the first answer"
-    return Finding("Start", "good", text, data={"seconds": round(seconds, 3)})
+    return CheckResult("Start", "good", text, data={"seconds": round(seconds, 3)})
 
 
-def _not_started(runtime: Runtime, error: str) -> Finding:
+def _not_started(runtime: Runtime, error: str) -> CheckResult:
     missing = missing_libraries(runtime, error)
     if not missing:
-        return Finding("Start", "bad", error)
+        return CheckResult("Start", "bad", error)
     packages = sorted({PACKAGES[library] for library in missing if library in PACKAGES})
     other = [library for library in missing if library not in PACKAGES]
     advice = f"apt-get install {' '.join(packages)}" if packages else ""
     if other:
         advice += f"{' and ' if advice else ''}whatever package holds {', '.join(other)}"
     text = f"system libraries are missing: {', '.join(missing)}"
-    return Finding("Start", "bad", text, advice=advice, data={"missing": missing, "packages": packages})
+    return CheckResult("Start", "bad", text, advice=advice, data={"missing": missing, "packages": packages})
 
 
 def missing_libraries(runtime: Runtime, error: str) -> list[str]:
@@ -203,7 +203,7 @@ def _output(words: list[str]) -> str:
 # The sandbox
 
 
-def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Finding:
+def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> CheckResult:
     data = {"kind": sandbox.kind, "holds": sandbox.holds, "lacks": sandbox.lacks}
     with tempfile.TemporaryDirectory(prefix=".simworlds-doctor-", dir=_outside()) as outside:
         file = Path(outside) / "file"
@@ -212,14 +212,14 @@ def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Fin
         try:
             tried: dict[str, Any] = blender.call("check_escapes", asked, timeout=_TRY_SECONDS).value
         except BlenderError as error:
-            return Finding("Sandbox", "bad", str(error), data=data)
+            return CheckResult("Sandbox", "bad", str(error), data=data)
     out = [told for name, told in _ESCAPES.items() if tried.get(name)]
     expected = {_ESCAPES["read"], _ESCAPES["write"]} if sandbox.kind == "none" else set[str]()
-    if not confine.has_seccomp():
+    if not confine_self.has_seccomp():
         expected |= {_ESCAPES["network"], _ESCAPES["process"]}
     if broken := [told for told in out if told not in expected]:
         text = f"{sandbox.kind}, but it does not hold: {'; '.join(broken)}"
-        return Finding("Sandbox", "bad", text, lacks=tuple(broken), data=data)
+        return CheckResult("Sandbox", "bad", text, lacks=tuple(broken), data=data)
     advice = _better(sandbox.kind) if wanted is None else ""
     text = {
         "bubblewrap": "bubblewrap, tried and tight",
@@ -227,7 +227,9 @@ def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Fin
         "none": "none: your files are open to what runs in Blender",
     }[sandbox.kind]
     state: State = "poor" if sandbox.kind == "none" else "good"
-    return Finding("Sandbox", state, text, advice=advice, keeps=sandbox.holds, lacks=sandbox.lacks, data=data)
+    return CheckResult(
+        "Sandbox", state, text, advice=advice, keeps=sandbox.holds, lacks=sandbox.lacks, data=data
+    )
 
 
 def _outside() -> Path | None:
@@ -249,61 +251,63 @@ def _better(kind: Kind) -> str:
 
 
 def _tried(
-    blender: Supervisor, name: str, key: str, told: Callable[[dict[str, Any]], Finding], **given: Any
-) -> Finding:
+    blender: Supervisor, name: str, key: str, told: Callable[[dict[str, Any]], CheckResult], **given: Any
+) -> CheckResult:
     try:
         found = blender.call(key, given, timeout=_TRY_SECONDS).value
         return told(found)
     except (LookupError, TypeError, BlenderError) as error:
-        return Finding(name, "poor", f"does not work: {error}".partition(" A new Blender")[0])
+        return CheckResult(name, "poor", f"does not work: {error}".partition(" A new Blender")[0])
 
 
-def _workbench(blender: Supervisor) -> Finding:
-    def told(found: dict[str, Any]) -> Finding:
+def _workbench(blender: Supervisor) -> CheckResult:
+    def told(found: dict[str, Any]) -> CheckResult:
         if found["fault"]:
             advice = "apt-get install libegl1 libgl1-mesa-dri" if "EGL" in found["fault"] else ""
             text = f"cannot draw here: {found['fault']}. Previews are rendered with Cycles, more slowly"
-            return Finding("Workbench", "poor", text, advice=advice, data=found)
+            return CheckResult("Workbench", "poor", text, advice=advice, data=found)
         where = f" on {found['renderer']}" if found["renderer"] else ""
         how = "; no graphics card, so a first frame of EEVEE takes half a minute" if found["software"] else ""
         text = f"a first picture in {_time(found['seconds'])}{where}{how}"
-        return Finding("Workbench", "good", text, data=found)
+        return CheckResult("Workbench", "good", text, data=found)
 
     return _tried(blender, "Workbench", "check_workbench", told)
 
 
-def _cycles(blender: Supervisor) -> Finding:
-    def told(found: dict[str, Any]) -> Finding:
+def _cycles(blender: Supervisor) -> CheckResult:
+    def told(found: dict[str, Any]) -> CheckResult:
         if found["fault"]:
-            return Finding("Cycles", "poor", f"cannot render here: {found['fault']}", data=found)
+            return CheckResult("Cycles", "poor", f"cannot render here: {found['fault']}", data=found)
         cards = [f"{name} ({kind})" for kind, names in found["devices"].items() for name in names]
         on = (
             f"the processor and {', '.join(cards)}"
             if cards
             else "the processor; no graphics card that it can use"
         )
-        return Finding("Cycles", "good", f"a first picture in {_time(found['seconds'])}; on {on}", data=found)
+        return CheckResult(
+            "Cycles", "good", f"a first picture in {_time(found['seconds'])}; on {on}", data=found
+        )
 
     return _tried(blender, "Cycles", "check_cycles", told)
 
 
-def _films(blender: Supervisor) -> Finding:
-    def told(found: dict[str, Any]) -> Finding:
+def _films(blender: Supervisor) -> CheckResult:
+    def told(found: dict[str, Any]) -> CheckResult:
         if not found["supported"]:
-            return Finding("Films", "poor", "this Blender writes single frames alone", data=found)
-        return Finding("Films", "good", f"through FFmpeg (libavcodec {found['version']})", data=found)
+            return CheckResult("Films", "poor", "this Blender writes single frames alone", data=found)
+        return CheckResult("Films", "good", f"through FFmpeg (libavcodec {found['version']})", data=found)
 
     return _tried(blender, "Films", "check_video", told)
 
 
-def _fluids(launch: Launch) -> Finding:
+def _fluids(launch: Launch) -> CheckResult:
     """In processes of its own: one that lacks what it needs for this ends with it."""
     try:
         found = check_fluids(launch)
     except CannotStart as error:
-        return Finding("Fluids", "poor", str(error))
+        return CheckResult("Fluids", "poor", str(error))
     state: State = "good" if found.fault is None else "poor"
-    return Finding("Fluids", state, str(found).partition(" A new Blender")[0], data=asdict(found))
+    return CheckResult("Fluids", state, str(found).partition(" A new Blender")[0], data=asdict(found))
 
 
 def _time(seconds: float) -> str:
@@ -313,7 +317,7 @@ def _time(seconds: float) -> str:
 # Around Blender
 
 
-def _knowledge(version: str | None) -> Finding:
+def _knowledge(version: str | None) -> CheckResult:
     path = os.pathsep.join(filter(None, [str(_SOURCE), os.environ.get("PYTHONPATH")]))
     try:
         done = subprocess.run(
@@ -327,16 +331,16 @@ def _knowledge(version: str | None) -> Finding:
         )
         bases: list[dict[str, Any]] = json.loads(done.stdout)
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
-        return Finding("Knowledge", "poor", f"what bases there are cannot be found out: {error}")
+        return CheckResult("Knowledge", "poor", f"what bases there are cannot be found out: {error}")
     minors = {".".join(str(base.get("blender", "")).split(".")[:2]): base for base in bases}
     minor = ".".join((version or "").split(".")[:2])
     data = {"built": sorted(minors), "wanted": minor}
     if (base := minors.get(minor)) is not None:
         text = f"of Blender {base['blender']}, {base.get('bytes', 0) / 1e6:,.0f} MB"
-        return Finding("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
+        return CheckResult("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
     have = f"; there is one of {', '.join(sorted(minors))}" if minors else ""
     advice = f"simworlds kb build {minor}".rstrip()
-    return Finding(
+    return CheckResult(
         "Knowledge",
         "poor",
         f"no base{f' of Blender {minor}' if minor else ''}{have}",
@@ -345,7 +349,7 @@ def _knowledge(version: str | None) -> Finding:
     )
 
 
-def _room(sandbox: Sandbox) -> Finding:
+def _room(sandbox: Sandbox) -> CheckResult:
     place = runs_folder()
     there = next(folder for folder in (place, *place.parents) if folder.is_dir())
     free = shutil.disk_usage(there).free
@@ -356,5 +360,5 @@ def _room(sandbox: Sandbox) -> Finding:
     data = {"memory": memory, "free": free, "runs": str(place)}
     if free < _LEAST_FREE:
         advice = "make room there, or set SIMWORLDS_HOME"
-        return Finding("Room", "poor", text, place=str(place), advice=advice, data=data)
-    return Finding("Room", "good", text, place=str(place), data=data)
+        return CheckResult("Room", "poor", text, place=str(place), advice=advice, data=data)
+    return CheckResult("Room", "good", text, place=str(place), data=data)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from agents.blender.blender_sessions import Setup
-    from simworlds.sandbox.confinement import Kind, Sandbox
+    from agents.blender.blender_sessions import SessionSetup
+    from simworlds.sandbox.confined_command import Kind, Sandbox
 
 _ERROR = 2
 _PORT = 8766
@@ -85,11 +85,11 @@ def mcp(  # noqa: PLR0913 - one for each option
         raise click.UsageError(f"--{for_http[0].replace('_', '-')} goes with --http.")
     # Nothing of what is loaded is garbage: looking for it would take part of the time to start.
     gc.disable()
-    from agents.blender.blender_sessions import Setup  # noqa: PLC0415
+    from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415 - not for --help
     from simworlds.sandbox.launch import find_blender  # noqa: PLC0415
 
-    setup_of = partial(Setup, version=blender, blender_exe=blender_exe, read=read, run=run)
+    setup_of = partial(SessionSetup, version=blender, blender_exe=blender_exe, read=read, run=run)
     try:
         if blender_exe is not None:
             find_blender(blender, blender_exe)
@@ -103,35 +103,35 @@ def mcp(  # noqa: PLR0913 - one for each option
         sys.exit(_ERROR)
 
 
-def _over_stdio(setup: Setup) -> None:
-    from agents.blender.blender_sessions import Studios  # noqa: PLC0415 - not for --help
+def _over_stdio(setup: SessionSetup) -> None:
+    from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415 - not for --help
 
-    studios = Studios(setup)
+    sessions = BlenderSessions(setup)
     # Blender comes up while the MCP package is loaded: each takes half a second.
-    studios.start("")
+    sessions.start("")
     from agents.blender.docs_client import DocsClient  # noqa: PLC0415
     from agents.blender.server import make_server  # noqa: PLC0415
     from agents.blender.team import Team  # noqa: PLC0415
     from simworlds.mcp_transport.stdio import run_stdio  # noqa: PLC0415
 
-    server = make_server(studios, DocsClient(_same_blender(setup)), Team())
+    server = make_server(sessions, DocsClient(_same_blender(setup)), Team())
     _loaded()
-    run_stdio(server, partial(studios.close, _SIGNAL_SECONDS))
+    run_stdio(server, partial(sessions.close, _SIGNAL_SECONDS))
 
 
-def _over_http(setup: Setup, sessions: int, idle: float, *address: Any) -> None:
-    from agents.blender.blender_sessions import Studios  # noqa: PLC0415
+def _over_http(setup: SessionSetup, at_most: int, idle: float, *address: Any) -> None:
+    from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415
     from agents.blender.docs_client import DocsClient  # noqa: PLC0415 - not for --help
     from agents.blender.server import make_app, make_server  # noqa: PLC0415
     from agents.blender.team import Team  # noqa: PLC0415
     from simworlds.mcp_transport.http import Address, CannotServe, run_http  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
 
-    studios = Studios(setup, at_most=sessions, idle=idle)
-    server = make_server(studios, DocsClient(_same_blender(setup)), Team())
+    sessions = BlenderSessions(setup, at_most=at_most, idle=idle)
+    server = make_server(sessions, DocsClient(_same_blender(setup)), Team())
     _loaded()
     try:
-        run_http(partial(make_app, server, studios, idle), Address(*address), "Blender")
+        run_http(partial(make_app, server, sessions, idle), Address(*address), "Blender")
     except CannotServe as error:
         raise CannotStart(str(error)) from error
 
@@ -141,7 +141,7 @@ def _loaded() -> None:
     gc.enable()
 
 
-def _same_blender(setup: Setup) -> list[str]:
+def _same_blender(setup: SessionSetup) -> list[str]:
     """The options by which ``simworlds serve`` answers for the Blender that is worked with."""
     options = {"--blender": setup.version, "--blender-exe": setup.blender_exe}
     return [word for name, value in options.items() if value is not None for word in (name, str(value))]
@@ -149,8 +149,8 @@ def _same_blender(setup: Setup) -> list[str]:
 
 def _confined(wanted: Kind | None) -> Sandbox:
     """The sandbox, said on stderr. Raises CannotStart when the one that is wanted does not work here."""
-    from simworlds.sandbox.confine import landlock_abi  # noqa: PLC0415 - not for --help
-    from simworlds.sandbox.confinement import best_sandbox, bubblewrap_fault  # noqa: PLC0415
+    from simworlds.sandbox.confine_self import landlock_abi  # noqa: PLC0415 - not for --help
+    from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
 
     if wanted == "bubblewrap" and (fault := bubblewrap_fault()) is not None:

@@ -162,7 +162,7 @@ def _opened(scene: Path, given: dict[str, Any], call: Call) -> Generator[Supervi
     """A Blender with the file open, in a run's folder that goes with it. Raises _CannotCheckError, BlenderError."""
     from agents.blender.launch import make_launch  # noqa: PLC0415 - not for --help
     from agents.blender.run_folder import RunFolder  # noqa: PLC0415
-    from agents.blender.saved_files import Loaded, beside, checked, find  # noqa: PLC0415
+    from agents.blender.saved_files import LoadedFile, caches_folder, find_blend_file, validated  # noqa: PLC0415
     from agents.blender.supervisor import Supervisor  # noqa: PLC0415
 
     real = scene.expanduser().resolve()
@@ -170,17 +170,17 @@ def _opened(scene: Path, given: dict[str, Any], call: Call) -> Generator[Supervi
         folder = RunFolder.make(Path(place).resolve() / "run")
         if not real.exists():
             raise _CannotCheckError(f"There is no file {scene}.")
-        find(str(real), folder, (real.parent,))
+        find_blend_file(str(real), folder, (real.parent,))
         launch = make_launch(
             folder.workspace,
             version=given["blender"],
             blender_exe=given["blender_exe"],
             # It may read the file and the caches beside it, but nothing else of that folder.
-            read=(*given["read"], *(one for one in (real, beside(real)) if one.exists())),
+            read=(*given["read"], *(one for one in (real, caches_folder(real)) if one.exists())),
         )
         with Supervisor(launch, folder) as blender:
-            loaded = checked(
-                Loaded,
+            loaded = validated(
+                LoadedFile,
                 blender.call(
                     "load",
                     {"path": str(real), "workspace": str(folder.workspace), "lent": False},

@@ -6,12 +6,12 @@ import logging
 import tomllib
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.blender_sessions import Setup
+from agents.blender.blender_sessions import SessionSetup
 from agents.loop.answer_source import session_folder, sessions
 from agents.loop.errors import NoRun, RunError
 from agents.loop.journal import NAME, read_rows
 from agents.loop.toolbox import Toolbox
-from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -60,7 +60,7 @@ def _told(name: str) -> Mapping[str, Any]:
 def _build(script: Path, made: Path) -> None:
     """Runs a script in a Blender of its own, confined as always, and saves the scene."""
     work = made.with_suffix("")
-    with Toolbox(Setup(best_sandbox(), run=work, tell=_LOG.info)) as toolbox:
+    with Toolbox(SessionSetup(best_sandbox(), run=work, tell=_LOG.info)) as toolbox:
         code = toolbox.call("blender_execute", {"code": script.read_text("utf-8"), "timeout": 300})
         saved = toolbox.call("blender_save", {"name": made.stem})
     for outcome in (code, saved):

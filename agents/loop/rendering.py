@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.render.image_checks import shown
+from agents.blender.render.image_checks import preview_png
 from agents.loop.errors import RunError
 from agents.loop.judging import note_verdict, verify
 from agents.loop.run import RUNNER
@@ -66,7 +66,7 @@ def render(run: Run, plan: Render | None, number: int) -> Rendering:
         frames=len(frames),
         samples=data.get("samples"),
         seconds=data.get("seconds"),
-        pictures=[run.keep(Picture(shown(path))) for path in _spread(frames)],
+        pictures=[run.keep(Picture(preview_png(path))) for path in _spread(frames)],
     )
     return Rendering(result, frames, outcome.text)
 
@@ -75,7 +75,7 @@ def reviewed(run: Run, task: Task, rendering: Rendering, number: int) -> FinalRe
     """The final reviewer's verdict. One who declines has no objection, which the verdict says."""
     content: list[Block | str] = [Text(rendering.told)]
     for place, path in enumerate(_spread(rendering.frames)):
-        content += [Text(f"Frame {path.stem} ({25 * place} %):"), Picture(shown(path))]
+        content += [Text(f"Frame {path.stem} ({25 * place} %):"), Picture(preview_png(path))]
     try:
         review = final_review(run.desk, task.told, content, edit=task.edit)
     except (Refused, Misfit) as error:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from pydantic import ValidationError
 
-from agents.blender.blender_sessions import Setup
+from agents.blender.blender_sessions import SessionSetup
 from agents.blender.run_folder import locked
 from agents.loop.algorithm import make, result_so_far
 from agents.loop.answer_source import Line, answering
@@ -24,7 +24,7 @@ from agents.loop.run import Run
 from agents.loop.toolbox import Toolbox
 from simworlds.llm.errors import ModelError, OverBudget
 from simworlds.llm.spending import Spending
-from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.confined_command import best_sandbox
 from simworlds.sandbox.errors import BlenderError, Refusal
 from simworlds.sandbox.launch import find_blender
 
@@ -167,7 +167,7 @@ def _run(root: Path, options: Options, journal: Journal, sitting: Sitting) -> En
     )
     journal.append({"type": "sitting.began", "pid": os.getpid()})
     (root / "checkpoints").mkdir(exist_ok=True)
-    setup = Setup(
+    setup = SessionSetup(
         best_sandbox(options.sandbox),
         version=options.blender,
         blender_exe=options.blender_exe,

@@ -17,7 +17,7 @@ from anyio.from_thread import start_blocking_portal
 from mcp.client import Client
 from mcp.shared.exceptions import MCPError
 
-from agents.blender.blender_sessions import Studios
+from agents.blender.blender_sessions import BlenderSessions
 from agents.blender.docs_client import NAME as DOCS
 from agents.blender.docs_client import DocsClient
 from agents.blender.server import make_server
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from anyio.from_thread import BlockingPortal
 
-    from agents.blender.blender_sessions import Setup
+    from agents.blender.blender_sessions import SessionSetup
 
 Progress = "Callable[[str, float, float | None, str], object]"
 
@@ -60,7 +60,7 @@ class Toolbox:
 
     def __init__(
         self,
-        setup: Setup,
+        setup: SessionSetup,
         docs_options: Sequence[str] = (),
         progress: Callable[[str, float, float | None, str], object] | None = None,
     ) -> None:
@@ -75,9 +75,9 @@ class Toolbox:
 
     def __enter__(self) -> Self:
         """Starts Blender and the knowledge base's server. Raises RunError where there is none to start."""
-        studios = Studios(self._setup)
-        studios.start("")
-        server = make_server(studios, DocsClient(self._docs_options))
+        sessions = BlenderSessions(self._setup)
+        sessions.start("")
+        server = make_server(sessions, DocsClient(self._docs_options))
         with ExitStack() as stack:
             self._portal = stack.enter_context(start_blocking_portal(name="tools"))
             self._client = stack.enter_context(self._portal.wrap_async_context_manager(Client(server)))

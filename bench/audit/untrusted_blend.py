@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simworlds.sandbox.blender_process import BlenderProcess
-from simworlds.sandbox.confinement import GIB, Limits, best_sandbox
+from simworlds.sandbox.confined_command import GIB, ResourceLimits, best_sandbox
 from simworlds.sandbox.errors import (
     CannotStart,
     Lost,
@@ -138,7 +138,7 @@ class Untrusted:
             self._means.runtime(),
             workspace,
             place / "private",
-            best_sandbox(limits=Limits(memory=self._means.memory, file_size=GIB)),
+            best_sandbox(limits=ResourceLimits(memory=self._means.memory, file_size=GIB)),
             self._program,
             (*readable(self._path), *self._means.read),
         )

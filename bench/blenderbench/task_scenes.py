@@ -2,7 +2,7 @@
 
 Nothing looks at a raw file before its ``start.py`` has run: that of a camera task already holds the goal's camera.
 Both the code and the files come from strangers. They are run and opened where the scenes that agents build are, which
-``simworlds/sandbox/confinement.py`` describes: no network, nothing written but into a folder that goes with the
+``simworlds/sandbox/confined_command.py`` describes: no network, nothing written but into a folder that goes with the
 process, a deadline, limits of memory and disk.
 """
 
@@ -20,10 +20,10 @@ from agents.blender.launch import make_launch
 from bench.blenderbench.errors import BadPicture, NotDone
 from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess
-from simworlds.sandbox.confinement import Limits, best_sandbox, default_limits
+from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox, default_limits
 from simworlds.sandbox.errors import BlenderError, CannotStart
 from simworlds.sandbox.untrusted_files import take_beneath
-from simworlds.sandbox.usage import sweep
+from simworlds.sandbox.usage import empty_folder
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -54,9 +54,9 @@ class Look:
     memory: int | None = None
 
     @property
-    def limits(self) -> Limits:
+    def limits(self) -> ResourceLimits:
         """Of a process."""
-        return Limits(memory=self.memory) if self.memory else default_limits()
+        return ResourceLimits(memory=self.memory) if self.memory else default_limits()
 
 
 class Rendered(BaseModel):
@@ -185,6 +185,6 @@ def _opened(blend: Path, read: tuple[Path, ...], beside: Path, look: Look) -> Ge
 
 def _remove(place: Path) -> None:
     """Whatever code has made of it."""
-    sweep(place)
+    empty_folder(place)
     with suppress(OSError):
         place.rmdir()

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from bench.audit.untrusted_blend import NotScored
 from simworlds.processes import CommandFailed, CommandTimedOut, run_group
-from simworlds.sandbox.confinement import GIB, Limits, best_sandbox, own_python
+from simworlds.sandbox.confined_command import GIB, ResourceLimits, best_sandbox, own_python
 from simworlds.sandbox.runtime import clean_environment
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ PICTURES = (".png", ".jpg", ".jpeg", ".webp")
 VIDEOS = (".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif")
 SECONDS = 120.0
 _SCRIPT = Path(__file__).with_name("decode_video.py")
-_LIMITS = Limits(memory=2 * GIB, file_size=GIB // 4)
+_LIMITS = ResourceLimits(memory=2 * GIB, file_size=GIB // 4)
 _LARGEST = 256 << 20  # bytes of a picture
 
 

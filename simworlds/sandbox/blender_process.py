@@ -1,11 +1,10 @@
-"""One Blender process: started confined, spoken to over a socket, killed with all it has started.
+"""One Blender process: started in its sandbox, spoken to over a socket, killed with everything it has started.
 
-What the channel is worth. Nothing that is printed, by whomever, comes near it, and bytes that code writes to it by
-chance or in good faith are known by their missing signature: the process is then killed and nothing of it believed.
-Code that means harm runs in the same process as the worker, though, and can find the key in its memory: it can answer
-in the worker's name, with whatever value it likes. It gains little. Tickets are random, so that it cannot answer calls
-that have not been made; what it leaves running ends with the call; and to the supervisor a reply is data from outside
-the trust, checked for its shape, never a path to follow or a leave to do anything.
+How far the channel can be trusted. Printed output never reaches it, and bytes that code writes to it by accident lack a
+signature: the process is then killed and its replies are ignored. But hostile code runs in the same process as the
+worker and can find the key in its memory, so it can reply in the worker's name. It gains little. Tickets are random, so
+it cannot answer later calls; what it leaves running ends with the call; and the supervisor treats every reply as
+untrusted data, checks its shape, and never takes a path or a permission from it.
 """
 
 from __future__ import annotations
@@ -23,23 +22,23 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from simworlds.processes import kill_group, signal_name, spawn
-from simworlds.sandbox.captured_output import Printed
+from simworlds.sandbox.captured_output import CapturedOutput
 from simworlds.sandbox.errors import (
     BlenderError,
     CannotStart,
     Died,
     Interrupted,
+    LimitExceeded,
     Lost,
     MissingModule,
     NeverBegan,
-    OutOfBounds,
     Refusal,
     TookTooLong,
     ToolBroke,
     Untrustworthy,
 )
 from simworlds.sandbox.inside import channel
-from simworlds.sandbox.usage import innermost
+from simworlds.sandbox.usage import innermost_process
 
 if TYPE_CHECKING:
     import threading
@@ -52,11 +51,11 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger(__name__)
 
 START_SECONDS = 60.0
-_LOOK_SECONDS = 0.25  # between two looks at whether the call was given up, and at the limits
+_CHECK_SECONDS = 0.25  # between two checks whether the call was cancelled or a limit exceeded
 _END_SECONDS = 5.0
 _EXIT_SECONDS = 1.0  # in which a process that has closed its channel is expected to end
 _CHUNK = 1 << 18
-_LONGEST_WORDS = 20_000
+_LONGEST_TEXT = 20_000
 _NO_MEMORY = (
     "bad_alloc",
     "returns null",
@@ -69,9 +68,9 @@ _NO_MEMORY = (
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """What a tool returned, what was printed meanwhile, how many seconds it ran.
+    """What a tool returned, what was printed meanwhile, and how many seconds it ran.
 
-    ``left``: in words, what it left behind that cannot be put back.
+    ``left``: what it left behind and cannot be undone, in words.
     """
 
     value: Any
@@ -82,14 +81,14 @@ class Reply:
 
 
 class BlenderProcess:
-    """A running Blender. Not for several threads at once. Raises CannotStart when it does not come up."""
+    """A running Blender, for one thread at a time. Raises CannotStart if it does not start."""
 
     def __init__(self, launch: Launch) -> None:
         launch.prepare()
         self._launch = launch
         self._closed = False
-        self._stdout, self._stderr = Printed(), Printed()
-        self._bounds = launch.bounds
+        self._stdout, self._stderr = CapturedOutput(), CapturedOutput()
+        self._usage = launch.usage
         ours, theirs = socket.socketpair()
         try:
             self._process = spawn(
@@ -122,21 +121,21 @@ class BlenderProcess:
             self._selector.register(source, selectors.EVENT_READ, printed)
         try:
             ours.sendall(key)
-            next(self._messages("its start", START_SECONDS, bounded=False))
+            next(self._messages("its start", START_SECONDS, limited=False))
         except (Lost, OSError) as error:
             why = self._ending() if isinstance(error, Died) else error
             self.kill()
-            said = f"{self._stderr.text}{self._stdout.text}".rstrip()
-            raise CannotStart(f"Blender did not come up: {why}" + (f"\n{said}" if said else "")) from error
+            output = f"{self._stderr.text}{self._stdout.text}".rstrip()
+            raise CannotStart(f"Blender did not start: {why}" + (f"\n{output}" if output else "")) from error
         except BaseException:
             self.kill()
             raise
-        self.inner = innermost(self._process.pid)
-        self._bounds.watch(self.inner)
+        self.inner = innermost_process(self._process.pid)
+        self._usage.watch(self.inner)
 
     @property
     def started(self) -> int:
-        """The process that was started: Blender's, or bubblewrap's around it. ``inner`` is always Blender's."""
+        """The process that was started: Blender or the bubblewrap around it. ``inner`` is always Blender."""
         return self._process.pid
 
     @property
@@ -151,16 +150,16 @@ class BlenderProcess:
         *,
         timeout: float,
         what: str = "",
-        bounded: bool = True,
+        limited: bool = True,
         progress: Progress | None = None,
-        given_up: threading.Event | None = None,
+        cancelled: threading.Event | None = None,
     ) -> Reply:
-        """Runs one tool; ``timeout`` in seconds, ``what`` in words for errors. ``progress`` gets (done, total, text).
+        """Runs one tool; ``timeout`` in seconds, ``what`` names it in errors. ``progress`` gets (done, total, text).
 
-        ``bounded``: it is ended when it goes past the limits of disk and threads.
+        ``limited``: Blender is killed if it exceeds the limits of disk, memory and threads.
 
-        Raises Refusal and ToolBroke, after which Blender is well, and Lost, after which it has been killed; so it
-        has after any other exception (as of ``progress``).
+        Raises Refusal and ToolBroke, after which Blender still runs, and Lost, after which it has been killed, as after
+        any other exception (of ``progress``, say).
         """
         what = what or tool
         if self._closed:
@@ -175,23 +174,22 @@ class BlenderProcess:
             raise Refusal(f"The arguments of {what} are too large: {error}.") from error
         try:
             self._send(request, what, timeout)
-            for message in self._messages(what, timeout, given_up, bounded=bounded):
+            for message in self._messages(what, timeout, cancelled, limited=limited):
                 try:
                     if message["ticket"] != ticket:
-                        # Somebody has answered the call before this one in the worker's name: its own answer is late.
+                        # Code has answered the call before in the worker's name, and the real answer came late.
                         raise NeverBegan(
-                            f"Something had answered in Blender's name before {what} began; nothing of it is believed, "
-                            "and Blender was stopped"
+                            f"Code had sent a false reply before {what} began; it is ignored, and Blender was stopped"
                         )
                     if "progress" not in message:
                         self._drain()
                         return self._reply(message)
                     done, total, text = message["progress"]
-                    told = (float(done), None if total is None else float(total), str(text)[:_LONGEST_WORDS])
+                    report = (float(done), None if total is None else float(total), str(text)[:_LONGEST_TEXT])
                 except (LookupError, TypeError, ValueError) as error:
                     raise self._untrustworthy(what, error) from error
                 if progress is not None:
-                    progress(*told)
+                    progress(*report)
         except (Refusal, ToolBroke):
             raise
         except BaseException:
@@ -200,16 +198,14 @@ class BlenderProcess:
         raise AssertionError("messages end with an exception")
 
     def _reply(self, message: dict[str, Any]) -> Reply:
-        """Raises Refusal, ToolBroke, and LookupError, TypeError or ValueError for what is no reply."""
+        """Raises Refusal, ToolBroke, and LookupError, TypeError or ValueError for a malformed reply."""
         if "missing" in message:
-            raise MissingModule(str(message["missing"])[:_LONGEST_WORDS])
+            raise MissingModule(str(message["missing"])[:_LONGEST_TEXT])
         if "refused" in message:
-            raise Refusal(str(message["refused"])[:_LONGEST_WORDS])
+            raise Refusal(str(message["refused"])[:_LONGEST_TEXT])
         if "failed" in message:
-            raise ToolBroke(
-                str(message["failed"])[:_LONGEST_WORDS], str(message["traceback"])[:_LONGEST_WORDS]
-            )
-        left = tuple(str(one)[:_LONGEST_WORDS] for one in message["left"])
+            raise ToolBroke(str(message["failed"])[:_LONGEST_TEXT], str(message["traceback"])[:_LONGEST_TEXT])
+        left = tuple(str(item)[:_LONGEST_TEXT] for item in message["left"])
         return Reply(message["value"], self._stdout.text, self._stderr.text, float(message["seconds"]), left)
 
     def _send(self, request: bytes, what: str, timeout: float) -> None:
@@ -223,41 +219,42 @@ class BlenderProcess:
             raise NeverBegan(f"Blender had ended before {what} began: {ending}", ending=ending) from None
 
     def _messages(
-        self, what: str, timeout: float, given_up: threading.Event | None = None, *, bounded: bool = True
+        self, what: str, timeout: float, cancelled: threading.Event | None = None, *, limited: bool = True
     ) -> Iterator[dict[str, Any]]:
-        """What the worker says, until the deadline; what is printed is read meanwhile: Blender never waits for us.
+        """The worker's messages until the deadline. Output is read meanwhile, so that Blender never waits for it.
 
-        Raises Lost. After each message the limits are looked at.
+        Raises Lost. The limits are checked now and then, and after each message.
         """
         started = time.monotonic()
         deadline = started + timeout
         while True:
             now = time.monotonic()
-            self._look(what, now - started, given_up, bounded=bounded)
+            self._check(what, now - started, cancelled, limited=limited)
             if now > deadline:
                 raise self._too_long(what, timeout)
-            for key, _ in self._selector.select(min(_LOOK_SECONDS, max(0.0, deadline - now))):
+            for key, _ in self._selector.select(min(_CHECK_SECONDS, max(0.0, deadline - now))):
                 if key.data is not None:
                     self._read_printed(key)
                     continue
                 self._arrived += self._receive(what, now - started)
             while self._arrived:
                 message = self._arrived.popleft()
-                if bounded and "progress" not in message:
-                    self._check_bounds(what, over=True)
+                if limited and "progress" not in message:
+                    self._check_usage(what, at_end=True)
                 yield message
 
-    def _look(self, what: str, seconds: float, given_up: threading.Event | None, *, bounded: bool) -> None:
-        if given_up is not None and given_up.is_set():
+    def _check(self, what: str, seconds: float, cancelled: threading.Event | None, *, limited: bool) -> None:
+        if cancelled is not None and cancelled.is_set():
             raise Interrupted(
-                f"{_capital(what)} was given up after {seconds:.1f} s, and Blender was stopped", self._said()
+                f"{_capital(what)} was cancelled after {seconds:.1f} s, and Blender was stopped",
+                self._last_output(),
             )
-        if bounded:
-            self._check_bounds(what)
+        if limited:
+            self._check_usage(what)
 
-    def _check_bounds(self, what: str, *, over: bool = False) -> None:
-        if (fault := self._bounds.fault(over=over)) is not None:
-            raise OutOfBounds(f"{_capital(what)} {fault}. Blender was stopped", self._said())
+    def _check_usage(self, what: str, *, at_end: bool = False) -> None:
+        if (excess := self._usage.excess(at_end=at_end)) is not None:
+            raise LimitExceeded(f"{_capital(what)} {excess}. Blender was stopped", self._last_output())
 
     def _receive(self, what: str, seconds: float) -> list[dict[str, Any]]:
         unread = False
@@ -274,20 +271,21 @@ class BlenderProcess:
                 raise self._untrustworthy(what, error) from error
         self._drain()
         ending = self._ending()
-        if unread:  # what was sent to it last
-            raise NeverBegan(f"Blender had ended before {what} began: {ending}", self._said(), ending)
-        raise Died(f"Blender ended {seconds:.1f} s into {what}: {ending}", self._said(), ending)
+        if unread:  # the request
+            raise NeverBegan(f"Blender had ended before {what} began: {ending}", self._last_output(), ending)
+        raise Died(f"Blender ended {seconds:.1f} s into {what}: {ending}", self._last_output(), ending)
 
     def _too_long(self, what: str, timeout: float) -> TookTooLong:
         return TookTooLong(
-            f"{_capital(what)} ran past its deadline of {timeout:g} s, and Blender was stopped", self._said()
+            f"{_capital(what)} ran past its deadline of {timeout:g} s, and Blender was stopped",
+            self._last_output(),
         )
 
     def _untrustworthy(self, what: str, fault: Exception) -> Untrustworthy:
         return Untrustworthy(
-            f"During {what} something wrote to SimWorlds' channel that is no answer ({fault}); nothing of it is "
-            "believed, and Blender was stopped",
-            self._said(),
+            f"During {what}, code wrote something to SimWorlds' channel that is not a valid reply ({fault}); it is "
+            "ignored, and Blender was stopped",
+            self._last_output(),
         )
 
     def _read_printed(self, key: selectors.SelectorKey) -> bool:
@@ -301,27 +299,27 @@ class BlenderProcess:
             with contextlib.suppress(KeyError):
                 self._selector.unregister(key.fileobj)
             return False
-        assert isinstance(key.data, Printed)
+        assert isinstance(key.data, CapturedOutput)
         key.data.add(data)
         return True
 
     def _drain(self) -> None:
-        """Takes in what has been printed so far."""
+        """Reads what has been printed so far."""
         for key in [key for key in self._selector.get_map().values() if key.data is not None]:
             deadline = time.monotonic() + 1.0
             while self._read_printed(key) and time.monotonic() < deadline:
                 pass
 
-    def _said(self) -> str:
+    def _last_output(self) -> str:
         return (self._stdout.text + self._stderr.text)[-2000:]
 
     def _ending(self) -> str:
-        """In words, how the process ended."""
+        """How the process ended, in words."""
         try:
             code = self._process.wait(_EXIT_SECONDS)
         except subprocess.TimeoutExpired:
             return "its channel was closed from inside, or it became another program"
-        if code > 128:  # bubblewrap tells a signal like a shell
+        if code > 128:  # bubblewrap reports a signal as a shell does
             code = 128 - code
         if code == channel.CHANNEL_LOST:
             return "its channel was closed from inside"
@@ -329,31 +327,30 @@ class BlenderProcess:
             hint = ", as after bpy.ops.wm.quit_blender or os._exit" if code == 0 else ""
             return f"it was ended from inside, with exit code {code}{hint}"
         name = signal_name(code)
-        if any(word in self._said() for word in _NO_MEMORY):
+        if any(word in self._last_output() for word in _NO_MEMORY):
             allowed = self._launch.sandbox.limits.memory / 1e9
-            return f"it ran out of memory, of which it may have {allowed:.1f} GB ({name})"
+            return f"it ran out of memory; the limit is {allowed:.1f} GB ({name})"
         if name == "SIGKILL":
-            return "it was killed (SIGKILL), by the system when memory ran out or by somebody's hand"
+            return "it was killed (SIGKILL), by the system because memory ran out, or by another process"
         return f"it crashed ({name})"
 
     def stop(self) -> None:
-        """From any thread: kills the process. Whoever is in a call finds it gone."""
+        """From any thread: kills the process. A running call raises Died."""
         if not self._closed and self._process.returncode is None:
             kill_group(self._process.pid)
 
     def kill(self) -> None:
-        """Ends the process and whatever it has started; waits until they are gone. Does nothing the second time."""
+        """Kills the process and everything it has started, and waits until they are gone. Later calls do nothing."""
         if self._closed:
             return
         self.stop()
         self._closed = True
         try:
             self._process.wait(_END_SECONDS)
-        except (
-            subprocess.TimeoutExpired
-        ):  # it waits for a device or a file server, and ends when that answers
+        except subprocess.TimeoutExpired:
+            # It waits for a device or a file server, and ends when that answers.
             _LOG.warning("Process %d was killed, but has not ended yet", self._process.pid)
-        self._await_silence()
+        self._await_closed_pipes()
         self._selector.close()
         self._socket.close()
         for pipe in (self._process.stdout, self._process.stderr):
@@ -369,8 +366,8 @@ class BlenderProcess:
                 self._process.wait(_END_SECONDS)
         self.kill()
 
-    def _await_silence(self) -> None:
-        """Until the last holder of the pipes is gone: behind bubblewrap that is not our child, but its."""
+    def _await_closed_pipes(self) -> None:
+        """Waits until the last process that holds the pipes is gone: with bubblewrap that is a grandchild."""
         self._selector.unregister(self._socket)
         deadline = time.monotonic() + _END_SECONDS
         while self._selector.get_map() and (left := deadline - time.monotonic()) > 0:

@@ -1,4 +1,4 @@
-"""What a process prints, kept within bounds: the beginning and the end."""
+"""The beginning and the end of what a process prints."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ HEAD_BYTES = 12_000
 TAIL_BYTES = 12_000
 
 
-class Printed:
-    """Takes any amount of bytes, keeps the first and the last of them."""
+class CapturedOutput:
+    """Takes any amount of bytes, and keeps the first and the last of them."""
 
     def __init__(self) -> None:
         self.clear()
@@ -19,7 +19,7 @@ class Printed:
         self._dropped = 0
 
     def add(self, data: bytes) -> None:
-        """Takes in more."""
+        """Adds output."""
         room = HEAD_BYTES - len(self._head)
         if room > 0:
             self._head += data[:room]
@@ -31,7 +31,7 @@ class Printed:
 
     @property
     def text(self) -> str:
-        """What is kept, as text; what is not, is counted."""
+        """The kept output as text, with the number of bytes left out."""
         gap = f"\n… {self._dropped:,} bytes left out …\n" if self._dropped else ""
         head, tail = bytes(self._head), bytes(self._tail)
         if not gap:

@@ -1,20 +1,20 @@
-"""What can go wrong between SimWorlds and a Blender.
+"""Errors between SimWorlds and a Blender.
 
 BlenderError
-├── RuntimeMissing     no interpreter with the Blender version asked for, and none could be made
+├── RuntimeMissing     no interpreter with the wanted Blender version, and none could be installed
 ├── ProgramFailed      a program that ran in Blender did not finish
-├── CannotStart        no Blender to be had, or it does not come up
-├── Refusal            the tool cannot do as asked; Blender is well
+├── CannotStart        there is no Blender, or it does not start
+├── Refusal            the tool cannot do this; Blender still runs
 │   └── MissingModule  this Blender's Python lacks a module that the tool needs
-├── ToolBroke          the tool itself failed; Blender is well
-└── Lost               this Blender is gone and its state with it
+├── ToolBroke          the tool itself failed; Blender still runs
+└── Lost               this Blender is gone, and its state with it
     ├── Died           it crashed, or code ended it
     │   └── NeverBegan it had ended before the call reached it
-    ├── TookTooLong    it was past its deadline, and was killed
-    ├── Interrupted    the caller gave the call up, and it was killed
-    ├── OutOfBounds    it wrote or started more than it may, and was killed
-    ├── LeftBehind     code returned, but left what would spoil later calls, and it was killed
-    └── Untrustworthy  what came from it was not written by our side, and it was killed
+    ├── TookTooLong    it ran past its deadline, and was killed
+    ├── Interrupted    the caller cancelled the call, and it was killed
+    ├── LimitExceeded  it used more than its limits allow, and was killed
+    ├── LeftBehind     code returned, but left what would break later calls, and it was killed
+    └── Untrustworthy  a message did not come from the worker, and it was killed
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from simworlds.errors import UserError
 
 
 class BlenderError(UserError):
-    """Anything below."""
+    """Base of all of them."""
 
 
 class RuntimeMissing(BlenderError):  # noqa: N818
-    """No interpreter with the Blender version asked for was found or could be made."""
+    """No interpreter with the wanted Blender version was found or could be installed."""
 
 
 class ProgramFailed(BlenderError):  # noqa: N818
@@ -35,11 +35,11 @@ class ProgramFailed(BlenderError):  # noqa: N818
 
 
 class CannotStart(BlenderError):  # noqa: N818 - these read as the states they name
-    """There is no Blender to be had, or it does not come up."""
+    """There is no Blender, or it does not start."""
 
 
 class Refusal(BlenderError):  # noqa: N818
-    """The tool cannot do as asked; the message says why."""
+    """The tool cannot do this; the message says why."""
 
 
 class MissingModule(Refusal):
@@ -48,8 +48,8 @@ class MissingModule(Refusal):
     def __init__(self, module: str) -> None:
         self.module = module
         super().__init__(
-            f"This Blender's Python has no {module}, which this tool needs. Blenders from blender.org bring it; for a "
-            f"system's own one, install the system's {module} (Debian: apt-get install python3-{module})."
+            f"This tool needs the Python module {module}, which this Blender lacks. Blenders from blender.org have it; "
+            f"for the system's Blender, install the system's {module} (Debian: apt-get install python3-{module})."
         )
 
 
@@ -62,7 +62,7 @@ class ToolBroke(BlenderError):  # noqa: N818
 
 
 class Lost(BlenderError):  # noqa: N818
-    """This Blender is gone. ``printed`` is the end of what it said, ``ending`` how its process ended, if by itself."""
+    """This Blender is gone. ``printed`` is the end of its output, ``ending`` how its process ended, if by itself."""
 
     def __init__(self, message: str, printed: str = "", ending: str = "") -> None:
         self.printed = printed
@@ -75,24 +75,24 @@ class Died(Lost):
 
 
 class NeverBegan(Died):
-    """Blender had ended before the call reached it: nothing of the call was done."""
+    """Blender had ended before the call reached it; nothing of the call was done."""
 
 
 class TookTooLong(Lost):
-    """The call was past its deadline."""
+    """The call ran past its deadline."""
 
 
 class Interrupted(Lost):
-    """The caller gave the call up."""
+    """The caller cancelled the call."""
 
 
-class OutOfBounds(Lost):
-    """More was written to disk, or started, than may be."""
+class LimitExceeded(Lost):
+    """Blender used more disk, memory or threads than its limits allow."""
 
 
 class LeftBehind(Lost):
-    """Code returned, but left something that would spoil the calls after it: threads, hooks."""
+    """Code returned, but left something that would break later calls: threads, hooks."""
 
 
 class Untrustworthy(Lost):
-    """Bytes came over the channel that our side of it had not written."""
+    """Bytes on the channel were not written by the worker."""

@@ -1,4 +1,4 @@
-"""What runs in Blender: a module, and the packages of modules that it may import."""
+"""A program that runs in Blender: a module, and the packages that it may import."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 INSIDE = Path(__file__).parent / "inside"
 BOOT = INSIDE / "boot.py"
 SHARED = {"simworlds.sandbox.inside": INSIDE}
-"""The package that every program may import: the channel, refusals, the repair of fluids."""
+"""The package that every program may import: the channel, refusals, the fluid repair."""
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
     """``module`` (dotted) has a function ``main`` that takes a list of arguments; ``packages``: name → folder.
 
-    The names are those under which the modules know each other in Blender, whatever lies above the folders here.
+    Modules import each other by these names in Blender, whatever their folders are called here.
     """
 
     module: str
@@ -27,9 +27,9 @@ class Program:
 
     @property
     def folders(self) -> tuple[Path, ...]:
-        """Everything that Blender must be able to read to run it."""
+        """The folders that Blender must be able to read."""
         return tuple(self.packages.values())
 
     def arguments(self, *own: str) -> list[str]:
-        """The words behind ``boot.py --``; ``own`` are those that the program's ``main`` gets."""
+        """The arguments after ``boot.py --``; ``own`` go to the program's ``main``."""
         return [self.module, *(f"{name}={folder}" for name, folder in self.packages.items()), "--", *own]

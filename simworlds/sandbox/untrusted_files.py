@@ -1,4 +1,4 @@
-"""Files below a folder that a sandboxed process writes to: opened and taken without following links."""
+"""Opens and takes files below a folder that a sandboxed process writes to, without following links."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ if TYPE_CHECKING:
 
 
 def take_beneath(root: Path, relative: str, target: Path, *, durable: bool = True) -> None:
-    """Moves a file from below ``root``, where executed code writes, to ``target``. Raises Refusal."""
-    with _beneath(root, relative) as (folder, name), _open_plain(folder, name, relative) as made:
+    """Moves a file below ``root``, where executed code writes, to ``target``. ``durable`` waits for the disk.
+
+    Raises Refusal.
+    """
+    with _beneath(root, relative) as (folder, name), _open_regular(folder, name, relative) as source:
         part = target.with_name(f".{target.name}.part")
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
             with part.open("wb") as copy:
-                copy_file(made, copy)
+                copy_file(source, copy)
                 if durable:
                     os.fsync(copy.fileno())
             part.replace(target)
@@ -34,24 +37,24 @@ def take_beneath(root: Path, relative: str, target: Path, *, durable: bool = Tru
 
 
 def open_beneath(root: Path, relative: str) -> BinaryIO:
-    """Opens a file below ``root`` step by step, so that no link on the way leads out. Raises Refusal."""
+    """Opens a regular file below ``root`` folder by folder, so that no link leads out. Raises Refusal."""
     with _beneath(root, relative) as (folder, name):
-        return _open_plain(folder, name, relative)
+        return _open_regular(folder, name, relative)
 
 
 @contextmanager
 def _beneath(root: Path, relative: str) -> Generator[tuple[int, str]]:
-    """(open folder, name in it) of a path below ``root``, reached through folders alone. Raises Refusal."""
+    """(open folder, name in it) of a path below ``root``, reached through folders only. Raises Refusal."""
     parts = PurePosixPath(relative).parts
     if not parts or ".." in parts or relative.startswith("/") or "\0" in relative:
-        raise Refusal(f"{relative!r} is no path in the workspace.")
+        raise Refusal(f"{relative!r} is not a valid path in the workspace.")
     folder = os.open(root, os.O_RDONLY | os.O_DIRECTORY)
     try:
         for part in parts[:-1]:
             try:
                 inner = os.open(part, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW, dir_fd=folder)
             except OSError as error:
-                raise _not_made(relative, error) from error
+                raise _cannot_open(relative, error) from error
             os.close(folder)
             folder = inner
         yield folder, parts[-1]
@@ -59,19 +62,19 @@ def _beneath(root: Path, relative: str) -> Generator[tuple[int, str]]:
         os.close(folder)
 
 
-def _open_plain(folder: int, name: str, relative: str) -> BinaryIO:
+def _open_regular(folder: int, name: str, relative: str) -> BinaryIO:
     try:
         number = os.open(name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder)
     except OSError as error:
-        raise _not_made(relative, error) from error
+        raise _cannot_open(relative, error) from error
     if not stat.S_ISREG(os.fstat(number).st_mode):
         os.close(number)
-        raise Refusal(f"{relative} is not a plain file.")
+        raise Refusal(f"{relative} is not a regular file.")
     return os.fdopen(number, "rb")
 
 
-def _not_made(relative: str, error: OSError) -> Refusal:
-    return Refusal(f"{relative} was not made, or is not a plain file: {error.strerror}.")
+def _cannot_open(relative: str, error: OSError) -> Refusal:
+    return Refusal(f"{relative} was not written, or is not a regular file: {error.strerror}.")
 
 
 def copy_file(source: BinaryIO, target: BinaryIO) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
-from studio import Studio
+from live_session import LiveSession
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -13,36 +13,36 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture(scope="session")
-def _one_studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
-    studio = Studio(tmp_path_factory.mktemp("run"))
-    yield studio
-    studio.blender.close()
+def _one_session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession]:
+    session = LiveSession(tmp_path_factory.mktemp("run"))
+    yield session
+    session.blender.close()
 
 
 @pytest.fixture
-def studio(_one_studio: Studio) -> Studio:
+def session(_one_session: LiveSession) -> LiveSession:
     """A Blender with an empty scene; the same process for all tests that ask for one."""
-    _one_studio.empty()
-    return _one_studio
+    _one_session.empty()
+    return _one_session
 
 
 @pytest.fixture
-def own_studio(tmp_path: Path) -> Iterator[Studio]:
+def own_session(tmp_path: Path) -> Iterator[LiveSession]:
     """A Blender of the test's own, to be treated badly."""
-    studio = Studio(tmp_path / "run")
-    yield studio
-    studio.blender.close()
+    session = LiveSession(tmp_path / "run")
+    yield session
+    session.blender.close()
 
 
 @pytest.fixture
-def make_studio(tmp_path: Path) -> Iterator[Callable[[str], Studio]]:
+def make_session(tmp_path: Path) -> Iterator[Callable[[str], LiveSession]]:
     """Makes Blenders of the test's own, by a folder's name."""
-    made: list[Studio] = []
+    made: list[LiveSession] = []
 
-    def make(name: str) -> Studio:
-        made.append(Studio(tmp_path / name))
+    def make(name: str) -> LiveSession:
+        made.append(LiveSession(tmp_path / name))
         return made[-1]
 
     yield make
-    for studio in made:
-        studio.blender.close()
+    for session in made:
+        session.blender.close()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 SIZE = 192
 SET = """
@@ -39,18 +39,18 @@ def collection(name, role, *things):
 """
 
 
-def build(studio: Studio, code: str) -> None:
-    studio.run(SET + code)
+def build(session: LiveSession, code: str) -> None:
+    session.run(SET + code)
 
 
 class Views:
     """What Blender answers, with the pictures as they are before anything is drawn on them."""
 
-    def __init__(self, studio: Studio, kind: str, name: str | None = None, **more: Any) -> None:
-        folder = studio.blender.folder
+    def __init__(self, session: LiveSession, kind: str, name: str | None = None, **more: Any) -> None:
+        folder = session.blender.folder
         given = {"kind": kind, "name": name, "frame": None, "everything": False, "size": SIZE}
         given |= {"folder": str(folder.workspace), **more}
-        self.data: dict[str, Any] = studio.blender.call("preview", given, timeout=120).value
+        self.data: dict[str, Any] = session.blender.call("preview", given, timeout=120).value
         self.by_name: dict[str, dict[str, Any]] = {}
         self.pictures: dict[str, Image.Image] = {}
         for view in self.data["views"]:

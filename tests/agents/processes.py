@@ -26,7 +26,7 @@ def of_run(root: Path) -> list[int]:
     return [number for number in found if number != os.getpid()]
 
 
-def becomes(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
+def becomes(condition: Callable[[], bool], seconds: float = 60.0) -> bool:
     """Whether a condition comes true within ``seconds``."""
     deadline = time.monotonic() + seconds
     while not condition():

@@ -150,7 +150,7 @@ class OverHttp:
     def end(self, number: signal.Signals = signal.SIGTERM) -> tuple[int, str, str]:
         """Sends a signal; the exit code, and what was printed meanwhile."""
         self.process.send_signal(number)
-        out, err = self.process.communicate(timeout=20)
+        out, err = self.process.communicate(timeout=60)
         return self.process.returncode, out, err
 
 
@@ -174,10 +174,10 @@ def below(pid: int) -> dict[int, str]:
 
 def blenders(pid: int) -> set[int]:
     """The processes of Blenders (and of what confines them) that a server has started."""
-    return {one for one, words in below(pid).items() if "simworlds_worker.worker" in words}
+    return {one for one, words in below(pid).items() if "simworlds_worker" in words}
 
 
-def have_ended(pids: Iterable[int], seconds: float = 10.0) -> bool:
+def have_ended(pids: Iterable[int], seconds: float = 60.0) -> bool:
     """Whether processes end within some time."""
     deadline = time.monotonic() + seconds
     for pid in pids:
@@ -194,7 +194,7 @@ def have_ended(pids: Iterable[int], seconds: float = 10.0) -> bool:
     return True
 
 
-def await_file(path: Path, seconds: float = 20.0) -> None:
+def await_file(path: Path, seconds: float = 60.0) -> None:
     """Waits until a file is there."""
     deadline = time.monotonic() + seconds
     while not path.exists():

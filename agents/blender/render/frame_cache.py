@@ -1,4 +1,4 @@
-"""The rendered frames of one name, and beside them what they were made of: which of them may stand for new ones."""
+"""Rendered frames of one name on disk, with what they were made of, so that later calls reuse those still valid."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _NAMED = 6
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
-    """How a frame was made: ``samples`` (None where the engine has none), ``seconds``, ``bytes`` of its file.
+class RenderedFrame:
+    """How a frame was made: ``samples`` (None if the engine has none), ``seconds``, ``bytes`` of its file.
 
-    ``trial``: only to see how long it takes.
+    ``trial``: rendered only to measure the time.
     """
 
     samples: int | None
@@ -32,52 +32,49 @@ class Made:
     trial: bool = False
 
 
-class Reel:
-    """``folder`` with frames as 0001.png. ``scene`` tells each data-block's state, ``settings`` the shot's.
+class FrameCache:
+    """Frames in ``folder`` as 0001.png. ``scene`` is a digest of each data-block, ``settings`` describes the shot.
 
-    Frames of another state or with other settings are removed at once; ``stale`` tells how many, and ``why``.
+    Frames made of another scene or with other settings are removed at once; ``removed`` counts them, ``why`` explains.
     """
 
     def __init__(self, folder: Path, scene: dict[str, str], settings: dict[str, Any]) -> None:
         self.folder = folder
-        self.stale = 0
-        self.why = ""
+        self.removed = 0
         self._scene = scene
         self._settings = settings
-        self._made: dict[int, Made] = {}
+        self._frames: dict[int, RenderedFrame] = {}
         folder.mkdir(parents=True, exist_ok=True)
-        before = _read(folder / NOTES)
-        self.why = _difference(before, scene, settings)
+        notes = _read(folder / NOTES)
+        self.why = _difference(notes, scene, settings)
         if not self.why:
-            self._made = {frame: made for frame, made in _frames(before) if self._is_whole(frame, made)}
+            self._frames = {
+                number: frame for number, frame in _frames(notes) if self._is_whole(number, frame)
+            }
         for path in folder.glob("*.png"):
-            found = _FRAME.fullmatch(path.name)
-            if found and int(found[1]) not in self._made:
+            match = _FRAME.fullmatch(path.name)
+            if match and int(match[1]) not in self._frames:
                 path.unlink(missing_ok=True)
-                self.stale += 1
+                self.removed += 1
         self._write()
 
-    def path(self, frame: int) -> Path:
-        """Where a frame lies."""
-        return self.folder / f"{frame:04d}.png"
+    def path(self, number: int) -> Path:
+        """The file of a frame."""
+        return self.folder / f"{number:04d}.png"
 
-    def made(self, frame: int) -> Made | None:
-        """How a frame was made; None if it is not there."""
-        return self._made.get(frame)
+    def get(self, number: int) -> RenderedFrame | None:
+        """How a frame was made; None if it is not here."""
+        return self._frames.get(number)
 
-    def frames(self) -> list[int]:
-        """All that are there."""
-        return sorted(self._made)
-
-    def add(self, frame: int, made: Made) -> None:
-        """A frame has been put to its place."""
-        self._made[frame] = made
+    def add(self, number: int, frame: RenderedFrame) -> None:
+        """Notes that a frame's file has been written."""
+        self._frames[number] = frame
         self._write()
 
-    def _is_whole(self, frame: int, made: Made) -> bool:
-        path = self.path(frame)
+    def _is_whole(self, number: int, frame: RenderedFrame) -> bool:
+        path = self.path(number)
         try:
-            if path.stat().st_size != made.bytes:
+            if path.stat().st_size != frame.bytes:
                 return False
             with path.open("rb") as file:
                 file.seek(-len(_PNG_END), 2)
@@ -88,7 +85,7 @@ class Reel:
     def _write(self) -> None:
         notes = {
             "settings": self._settings,
-            "frames": {str(frame): asdict(made) for frame, made in sorted(self._made.items())},
+            "frames": {str(number): asdict(frame) for number, frame in sorted(self._frames.items())},
             "scene": self._scene,
         }
         write_whole(self.folder / NOTES, json.dumps(notes, indent=0), durable=False)
@@ -96,33 +93,33 @@ class Reel:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        found = json.loads(path.read_text())
+        notes = json.loads(path.read_text())
     except (OSError, ValueError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return notes if isinstance(notes, dict) else {}
 
 
-def _frames(notes: dict[str, Any]) -> Iterator[tuple[int, Made]]:
+def _frames(notes: dict[str, Any]) -> Iterator[tuple[int, RenderedFrame]]:
     frames: dict[str, dict[str, Any]] = notes.get("frames", {})
-    for frame, made in frames.items():
+    for number, frame in frames.items():
         try:
-            yield int(frame), Made(**made)
+            yield int(number), RenderedFrame(**frame)
         except (TypeError, ValueError):
             continue
 
 
-def _difference(before: dict[str, Any], scene: dict[str, str], settings: dict[str, Any]) -> str:
-    """In words, what is not as it was; "" if all is."""
-    if not before:
-        return "nothing tells what they were made of"
-    settings_before: dict[str, Any] = before.get("settings", {})
+def _difference(notes: dict[str, Any], scene: dict[str, str], settings: dict[str, Any]) -> str:
+    """What has changed since the frames were made, in words; "" if nothing has."""
+    if not notes:
+        return "it is not recorded what they were made of"
+    settings_before: dict[str, Any] = notes.get("settings", {})
     changed = [
         f"{name} {settings_before.get(name)} → {settings.get(name)}"
         for name in sorted({*settings, *settings_before})
         if settings_before.get(name) != settings.get(name)
     ]
-    scene_before: dict[str, str] = before.get("scene", {})
-    # Other settings show in the scene's own state, too.
+    scene_before: dict[str, str] = notes.get("scene", {})
+    # Changed settings also show in the scene data-block's own digest.
     skipped = "Scene " if changed else None
     for key in sorted({*scene, *scene_before}):
         if scene_before.get(key) == scene.get(key) or (skipped and key.startswith(skipped)):

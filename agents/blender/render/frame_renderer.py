@@ -1,4 +1,4 @@
-"""Drives Blender through a rendering, a frame a call, and goes on where a lost Blender stopped."""
+"""Drives Blender through a render, one frame per call, and goes on after a Blender that was lost."""
 
 from __future__ import annotations
 
@@ -20,40 +20,40 @@ if TYPE_CHECKING:
     from agents.blender.tools.base import Call
 
 _STEP_SECONDS = 20.0  # of stepping through a simulation in one call
-_PART = 0.95  # of a frame, that is told as progress while it is made
-_LONGEST = 400  # characters of what is told of a loss that was got over
-_PATIENCE = 10.0  # seconds: a frame that takes no longer is waited for when the call is given up
+_SHARE = 0.95  # of a frame's progress that its own rendering makes up
+_LONGEST = 400  # characters of the note about a lost Blender
+_PATIENCE = 10.0  # seconds: a frame that takes no longer is finished when the call is cancelled
 
 
-class Shoot:
-    """A rendering of the scene as it stands. Use it in ``with``: the scene goes back to its frame at the end.
+class FrameRenderer:
+    """Renders the scene as it is now. Use it in ``with``: the scene goes back to its frame at the end.
 
     ``timeout`` (seconds) is for one frame, and for each other step. Raises BlenderError.
     """
 
-    def __init__(self, blender: Supervisor, call: Call, asked: dict[str, Any], timeout: float) -> None:
+    def __init__(self, blender: Supervisor, call: Call, wanted: dict[str, Any], timeout: float) -> None:
         self._blender = blender
         self._call = call
-        self._asked = asked
+        self._wanted = wanted
         self._timeout = timeout
         self._patient = True
         self._at: int | None = None
-        self._pid: int | None = None  # of the Blender that the scene's state is relied on in
-        self._moved: int | None = None  # of the one that does not stand at its own frame any more
+        self._pid: int | None = None  # of the Blender that holds the planned scene
+        self._moved: int | None = None  # of the Blender that has left the scene's own frame
         self._what, self._done, self._total = "", 0.0, 0.0
         self.notes: list[str] = []
         blender.keep("before rendering")
-        self._plan = self._planned()
+        self._plan = self._make_plan()
         self.notes += self._plan["notes"]
-        starts = [int(one["start"]) for one in self.unbaked]
+        starts = [int(cache["start"]) for cache in self.unbaked]
         self._start = min(starts) if starts else None
 
-    def __enter__(self) -> Shoot:
+    def __enter__(self) -> FrameRenderer:
         return self
 
     def __exit__(self, *error: object) -> None:
         if self._blender.pid != self._moved:
-            return  # another Blender has come, which stands where this one was before
+            return  # a new Blender stands where this one was before
         with suppress(BlenderError):
             back = {"frame": self._plan["current"], "subframe": self._plan["subframe"], "first": self._next}
             self._blender.call("render_put_back", back, timeout=self._timeout)
@@ -65,61 +65,61 @@ class Shoot:
 
     @property
     def scene(self) -> dict[str, str]:
-        """A digest for every data-block that the pictures depend on."""
+        """A digest for every data-block that the images depend on."""
         return self._plan["scene"]
 
     @property
     def unbaked(self) -> list[dict[str, Any]]:
-        """The simulations for whose sake frames are not jumped: ``label``, and ``start``, their first frame."""
+        """Unbaked simulations, because of which frames are stepped: ``label``, and ``start``, their first frame."""
         return self._plan["unbaked"]
 
-    def standing(self, name: str) -> Any:
-        """Of the scene itself: ``current``, ``frame_start``, ``frame_end``, ``fps``, ``fps_base``."""
+    def scene_value(self, name: str) -> Any:
+        """A value of the scene: ``current``, ``frame_start``, ``frame_end``, ``fps`` or ``fps_base``."""
         return self._plan[name]
 
-    def frame(self, frame: int, samples: int | None, target: Path, done: float, total: float) -> float:
-        """Renders a frame into ``target``; returns the seconds it took.
+    def render(self, frame: int, samples: int | None, target: Path, done: float, total: float) -> float:
+        """Renders a frame into ``target``; returns the seconds it took. Progress counts from ``done`` of ``total``.
 
-        When Blender is lost over it, the frame is tried once more. ``done`` of ``total`` frames are told as progress.
+        If Blender is lost meanwhile, the frame is tried once more.
         """
         self._done, self._total = done, total
         try:
-            return self._frame(frame, samples, target)
+            return self._render(frame, samples, target)
         except Interrupted:
             raise
         except Lost as error:
             self.notes.append(
-                f"Blender was lost over frame {frame}, which was tried once more: {str(error)[:_LONGEST]}"
+                f"Blender was lost during frame {frame}, which was retried: {str(error)[:_LONGEST]}"
             )
-        self._come_back()
-        return self._frame(frame, samples, target)
+        self._plan_again()
+        return self._render(frame, samples, target)
 
-    def film(self, pictures: Sequence[Path], target: Path) -> dict[str, Any]:
-        """Makes ``target`` (MP4) of pictures, one a frame; returns what is read back from it."""
-        self._what, self._pid = "the video", None  # whichever Blender makes it
-        folder = self._blender.folder.workspace
-        lent = Path(tempfile.mkdtemp(prefix=".film-", dir=folder))
-        made = f"{lent.name}/film.mp4"
+    def make_video(self, frames: Sequence[Path], target: Path) -> dict[str, Any]:
+        """Makes ``target`` (MP4) of images, one a frame; returns what is read back from it."""
+        self._what, self._pid = "the video", None  # any Blender can make it
+        workspace = self._blender.folder.workspace
+        folder = Path(tempfile.mkdtemp(prefix=".film-", dir=workspace))
+        video = f"{folder.name}/film.mp4"
         try:
-            for path in {*pictures}:
-                shutil.copyfile(path, lent / path.name)
+            for path in {*frames}:
+                shutil.copyfile(path, folder / path.name)
             arguments: dict[str, Any] = {
-                "folder": str(lent),
-                "pictures": [path.name for path in pictures],
-                "path": str(folder / made),
+                "folder": str(folder),
+                "pictures": [path.name for path in frames],
+                "path": str(workspace / video),
                 "width": self.shot["width"],
                 "height": self.shot["height"],
                 "fps": self._plan["fps"],
                 "fps_base": self._plan["fps_base"],
             }
-            found = self._ask("render_video", arguments, extra=len(pictures))
-            self._blender.folder.take(made, target)
+            facts = self._ask("render_video", arguments, extra=len(frames))
+            self._blender.folder.take(video, target)
         finally:
-            shutil.rmtree(lent, ignore_errors=True)
-        wanted = (len(pictures), self.shot["width"], self.shot["height"])
-        if (found["frames"], found["width"], found["height"]) != wanted:
-            raise Refusal(f"The video is not what it should be: {found}, for {wanted}.")
-        return found
+            shutil.rmtree(folder, ignore_errors=True)
+        wanted = (len(frames), self.shot["width"], self.shot["height"])
+        if (facts["frames"], facts["width"], facts["height"]) != wanted:
+            raise Refusal(f"The video does not match its frames: it has {facts}, expected {wanted}.")
+        return facts
 
     @property
     def _next(self) -> int | None:
@@ -130,28 +130,33 @@ class Shoot:
 
     # In Blender
 
-    def _planned(self) -> dict[str, Any]:
+    def _make_plan(self) -> dict[str, Any]:
         self._what, self._patient, self._pid = "the scene", True, None
-        found = self._ask("render_plan", self._asked)
+        plan = self._ask("render_plan", self._wanted)
         self._patient, self._pid = False, self._blender.pid
         self._moved = self._pid
-        return found
+        return plan
 
-    def _frame(self, frame: int, samples: int | None, target: Path) -> float:
+    def _plan_again(self) -> None:
+        """After Blender was lost: the scene must be the one that rendering began with."""
+        self._at = None
+        before = self.scene
+        if self._make_plan()["scene"] != before:
+            raise Refusal(
+                "The scene is no longer the one that rendering began with, since Blender was restarted from a "
+                "checkpoint. Call again to render the scene as it is now."
+            )
+
+    def _render(self, frame: int, samples: int | None, target: Path) -> float:
         self._what = f"frame {frame}"
-        self._walk(frame)
-        made = f".frame-{secrets.token_hex(6)}.png"
-        path = self._blender.folder.workspace / made
-        arguments: dict[str, Any] = {
-            "shot": self.shot,
-            "frame": frame,
-            "samples": samples,
-            "path": str(path),
-        }
+        self._step_to(frame)
+        name = f".frame-{secrets.token_hex(6)}.png"
+        path = self._blender.folder.workspace / name
+        arguments = {"shot": self.shot, "frame": frame, "samples": samples, "path": str(path)}
         started = time.monotonic()
         try:
             self._ask("render_frame", arguments)
-            self._blender.folder.take(made, target)
+            self._blender.folder.take(name, target)
         finally:
             with suppress(OSError):
                 path.unlink(missing_ok=True)
@@ -160,8 +165,8 @@ class Shoot:
         self._patient = seconds < _PATIENCE
         return seconds
 
-    def _walk(self, frame: int) -> None:
-        """Steps through what is simulated up to the frame before; what is baked can be jumped to."""
+    def _step_to(self, frame: int) -> None:
+        """Steps through simulations up to the frame before this one; baked ones are jumped to."""
         at = self._next
         if at is None:
             return
@@ -169,40 +174,30 @@ class Shoot:
             steps = {"first": at, "last": frame - 1, "seconds": _STEP_SECONDS}
             at = 1 + int(self._ask("render_step", steps))
             self._at = at - 1
-            if self._call.given_up.is_set():
-                raise Interrupted("Rendering was given up while the simulation was stepped through")
+            if self._call.cancelled.is_set():
+                raise Interrupted("Rendering was cancelled while the simulation was stepped through")
 
     def _ask(self, key: str, arguments: dict[str, Any], *, extra: float = 0.0) -> Any:
-        """Calls Blender; ``extra`` seconds are added to the deadline. What it reports is told as part of a frame."""
+        """Calls Blender; ``extra`` seconds are added to the deadline. Its progress is reported as part of a frame."""
 
-        def told(share: float, of: float | None, text: str) -> None:
+        def report(done: float, total: float | None, text: str) -> None:
             if self._call.progress is not None:
-                part = _PART * share / of if of else 0.0
-                self._call.progress(self._done + part, self._total or None, f"{self._what}: {text}")
+                share = _SHARE * done / total if total else 0.0
+                self._call.progress(self._done + share, self._total or None, f"{self._what}: {text}")
 
         reply = self._blender.call(
             key,
             arguments,
             timeout=self._timeout + extra,
             what=f"rendering {self._what}",
-            progress=told,
-            given_up=self._given_up,
+            progress=report,
+            cancelled=self._cancelled,
         )
         if self._pid not in {None, self._blender.pid}:
-            raise Died("Blender had ended, and another one was started")
+            raise Died("Blender had ended, and a new one was started")
         return reply.value
 
     @property
-    def _given_up(self) -> threading.Event | None:
+    def _cancelled(self) -> threading.Event | None:
         """Killing Blender over a frame that is nearly done would take longer than the frame."""
-        return None if self._patient else self._call.given_up
-
-    def _come_back(self) -> None:
-        """After Blender was lost: the scene must be the one that was begun with."""
-        self._at = None
-        before = self.scene
-        again = self._planned()
-        if again["scene"] != before:
-            raise Refusal(
-                "Blender came back with another scene than rendering began with; call again to render that one."
-            )
+        return None if self._patient else self._call.cancelled

@@ -1,4 +1,4 @@
-"""Rendered pictures as a model gets to see them, and what is plainly wrong with them."""
+"""Checks of rendered images, and the smaller copies that models are shown."""
 
 from __future__ import annotations
 
@@ -10,43 +10,43 @@ from PIL import Image, ImageChops
 if TYPE_CHECKING:
     from pathlib import Path
 
-LARGEST_SHOWN = 768  # pixels
+LARGEST_PREVIEW = 768  # pixels a side
 _DARK = 6  # of 255
 
 
-def shown(path: Path) -> bytes:
-    """A PNG, shrunk where it is larger than LARGEST_SHOWN."""
-    with Image.open(path) as picture:
-        if max(picture.size) <= LARGEST_SHOWN:
+def preview_png(path: Path) -> bytes:
+    """A PNG's bytes, shrunk if the image is larger than LARGEST_PREVIEW."""
+    with Image.open(path) as image:
+        if max(image.size) <= LARGEST_PREVIEW:
             return path.read_bytes()
-        smaller = picture.copy()
-    smaller.thumbnail((LARGEST_SHOWN, LARGEST_SHOWN), Image.Resampling.LANCZOS)
-    written = io.BytesIO()
-    smaller.save(written, "PNG")
-    return written.getvalue()
+        smaller = image.copy()
+    smaller.thumbnail((LARGEST_PREVIEW, LARGEST_PREVIEW), Image.Resampling.LANCZOS)
+    file = io.BytesIO()
+    smaller.save(file, "PNG")
+    return file.getvalue()
 
 
-def faults(paths: list[Path]) -> list[str]:
-    """What makes pictures of a film, or a single one, worthless; in words."""
-    pictures = [_opened(path) for path in paths]
-    found: list[str] = []
-    for path, picture in zip(paths, pictures, strict=True):
-        ranges = cast("tuple[tuple[int, int], ...]", picture.getextrema())
+def image_faults(paths: list[Path]) -> list[str]:
+    """Sentences on what makes images useless: black, of one colour, or all frames alike."""
+    images = [_read_rgb(path) for path in paths]
+    faults: list[str] = []
+    for path, image in zip(paths, images, strict=True):
+        ranges = cast("tuple[tuple[int, int], ...]", image.getextrema())
         if max(high for _, high in ranges) <= _DARK:
-            found.append(f"{path.name} is black: there is no light, or something stands before the camera.")
+            faults.append(f"{path.name} is black: there is no light, or something blocks the camera.")
         elif all(high - low <= 1 for low, high in ranges):
-            found.append(
-                f"{path.name} is of one colour: nothing is in view, or the camera is inside something."
+            faults.append(
+                f"{path.name} is one colour: nothing is in view, or the camera is inside an object."
             )
-    if not found and len(pictures) > 1 and all(_same(pictures[0], other) for other in pictures[1:]):
-        found.append("The first, middle and last frame are alike: nothing moves in view.")
-    return found
+    if not faults and len(images) > 1 and all(_same(images[0], image) for image in images[1:]):
+        faults.append("The first, middle and last frame are identical: nothing moves in view.")
+    return faults
 
 
-def _opened(path: Path) -> Image.Image:
-    with Image.open(path) as picture:
-        return picture.convert("RGB")
+def _read_rgb(path: Path) -> Image.Image:
+    with Image.open(path) as image:
+        return image.convert("RGB")
 
 
-def _same(one: Image.Image, other: Image.Image) -> bool:
-    return one.size == other.size and ImageChops.difference(one, other).getbbox() is None
+def _same(first: Image.Image, second: Image.Image) -> bool:
+    return first.size == second.size and ImageChops.difference(first, second).getbbox() is None

@@ -1,4 +1,4 @@
-"""How to render within a time: first with fewer samples, and only then fewer frames."""
+"""The time budget of a render: which samples and which frames fit into it. Samples give way first, then frames."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-LEAST = 4  # samples; with fewer, frames are worth nothing
-_TELLING, _ENOUGH = 8, 16  # samples of a second trial, at least and at most
-_TRIAL_SHARE = 0.25  # of what is left, that the second trial may take
-_SLACK = 1.05  # a little too long is no reason to change anything
+LEAST = 4  # samples; frames with fewer are useless
+_SECOND_TRIAL_LEAST, _SECOND_TRIAL_MOST = 8, 16  # samples
+_SECOND_TRIAL_SHARE = 0.25  # of the time left
+_SLACK = 1.05  # a little over the budget is not worth a change
 
 
-class Pace:
-    """``seconds`` from now on for frames of ``samples`` each (None: the engine has none to lower).
+class RenderBudget:
+    """``seconds`` from now on for frames of ``samples`` each (None: the engine has no samples to lower).
 
-    A frame takes a fixed time and one for each sample; both are measured on the first frame, and corrected by every
-    frame that follows. Samples are never raised again: a film whose grain changes flickers.
+    A frame takes a fixed time plus a time per sample; both are measured on the first frame and corrected by every
+    later one. Samples are never raised again, since a video whose grain changes flickers.
     """
 
     def __init__(
@@ -29,58 +29,60 @@ class Pace:
         self._end = clock() + seconds
         self.samples = samples
         self._fixed = 0.0
-        self._each = 0.0
+        self._per_sample = 0.0
         self._drift = 1.0
         self._trials: list[tuple[int, float]] = []
 
     @property
     def left(self) -> float:
-        """Seconds."""
+        """Seconds left."""
         return max(0.0, self._end - self._clock())
 
-    def trial(self, frames: int) -> int | None:
-        """With how many samples to try the first frame; None when enough is known. ``frames`` are to be made."""
-        asked = self.samples
-        if asked is None or asked <= LEAST:
+    def next_trial(self, frames: int) -> int | None:
+        """Samples of the next trial of the first frame; None when enough is known. ``frames`` are to be rendered."""
+        wanted = self.samples
+        if wanted is None or wanted <= LEAST:
             return None
         if not self._trials:
             return LEAST
         samples, seconds = self._trials[0]
-        if len(self._trials) > 1 or seconds * asked / samples * frames <= self.left:
+        if len(self._trials) > 1 or seconds * wanted / samples * frames <= self.left:
             return None  # it fits even if all of the time went into samples
-        second = min(_ENOUGH, asked, math.floor(samples * self.left * _TRIAL_SHARE / seconds))
-        return second if second >= _TELLING else None
+        second = min(
+            _SECOND_TRIAL_MOST, wanted, math.floor(samples * self.left * _SECOND_TRIAL_SHARE / seconds)
+        )
+        return second if second >= _SECOND_TRIAL_LEAST else None
 
-    def tried(self, samples: int, seconds: float) -> None:
-        """A trial took so long."""
+    def add_trial(self, samples: int, seconds: float) -> None:
+        """Takes in how long a trial took."""
         self._trials.append((samples, seconds))
         if len(self._trials) == 1:
-            self._fixed, self._each = 0.0, seconds / samples
+            self._fixed, self._per_sample = 0.0, seconds / samples
             return
-        # The first picture may have waited for shaders, textures or the machine: the later one is to be believed. If
-        # more samples took no longer, nothing is known of one but that they cannot have taken more than all of it.
+        # The first trial may have waited for shaders, textures or the machine, so the later one counts. If more
+        # samples took no longer, one sample can have taken at most its share of the whole.
         few, short = self._trials[0]
-        self._each = (seconds - short) / (samples - few) if seconds > short else seconds / samples
-        self._fixed = max(0.0, seconds - self._each * samples)
+        self._per_sample = (seconds - short) / (samples - few) if seconds > short else seconds / samples
+        self._fixed = max(0.0, seconds - self._per_sample * samples)
 
-    def took(self, samples: int | None, seconds: float) -> None:
-        """A frame took so long."""
+    def add_frame(self, samples: int | None, seconds: float) -> None:
+        """Takes in how long a frame took."""
         expected = self._cost(samples)
         if expected <= 0:
-            self._fixed, self._each = (seconds, 0.0) if samples is None else (0.0, seconds / samples)
+            self._fixed, self._per_sample = (seconds, 0.0) if samples is None else (0.0, seconds / samples)
         else:
             self._drift = (self._drift + seconds / (expected / self._drift)) / 2
 
-    def settle(self, frames: int) -> None:
-        """Lowers ``samples`` as far as the ``frames`` to come need it."""
+    def lower_samples(self, frames: int) -> None:
+        """Lowers ``samples`` as far as the remaining ``frames`` need it."""
         left = self.left
-        if self._fits(frames, left) or self.samples is None or self._each <= 0:
+        if self._fits(frames, left) or self.samples is None or self._per_sample <= 0:
             return
-        fitting = (left / frames / self._drift - self._fixed) / self._each
+        fitting = (left / frames / self._drift - self._fixed) / self._per_sample
         self.samples = min(self.samples, max(LEAST, math.floor(fitting)))
 
-    def every(self, frames: int) -> int:
-        """n where only every n-th of the ``frames`` to come fits, with the samples settled for; 0 if none does."""
+    def affordable_step(self, frames: int) -> int:
+        """n if only every n-th of the remaining ``frames`` fits at the current samples; 0 if none does."""
         left = self.left
         if self._fits(frames, left):
             return 1
@@ -91,4 +93,4 @@ class Pace:
         return self._cost(self.samples) * frames <= left * _SLACK
 
     def _cost(self, samples: int | None) -> float:
-        return self._drift * (self._fixed + self._each * (samples or 0))
+        return self._drift * (self._fixed + self._per_sample * (samples or 0))

@@ -1,4 +1,4 @@
-"""Makes the frames that are missing, one after the other, until they are there or something ends it."""
+"""Renders the missing frames one by one, until all are there or something ends the call."""
 
 from __future__ import annotations
 
@@ -6,62 +6,63 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol
 
-from agents.blender.render.frame_cache import Made
+from agents.blender.render.frame_cache import RenderedFrame
 from simworlds.sandbox.errors import BlenderError, Interrupted
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.blender.render.frame_renderer import Shoot
-    from agents.blender.render.render_budget import Pace
+    from agents.blender.render.frame_renderer import FrameRenderer
+    from agents.blender.render.render_budget import RenderBudget
     from agents.blender.tools.base import Call
 
 
-class Place(Protocol):
-    """Where frames go: a Reel, or a Single."""
+class FrameStore(Protocol):
+    """Where frames go: a FrameCache or a StillStore."""
 
-    def path(self, frame: int) -> Path:
+    def path(self, number: int) -> Path:
         """The file of a frame."""
         ...
 
-    def made(self, frame: int) -> Made | None:
-        """How it was made; None if it is not there."""
+    def get(self, number: int) -> RenderedFrame | None:
+        """How a frame was made; None if it is not here."""
         ...
 
-    def add(self, frame: int, made: Made) -> None:
-        """It is there now."""
+    def add(self, number: int, frame: RenderedFrame) -> None:
+        """Notes that a frame's file has been written."""
         ...
 
 
-class Single:
-    """The place of a still, which is made afresh every time."""
+class StillStore:
+    """The one file of a still, which every call renders anew."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._made: Made | None = None
+        self._frame: RenderedFrame | None = None
         path.parent.mkdir(parents=True, exist_ok=True)
 
-    def path(self, frame: int) -> Path:
-        """Always the same."""
-        del frame
+    def path(self, number: int) -> Path:
+        """The file, whatever the frame."""
+        del number
         return self._path
 
-    def made(self, frame: int) -> Made | None:
-        """How it was made; None if it is not there yet."""
-        del frame
-        return self._made
+    def get(self, number: int) -> RenderedFrame | None:
+        """How it was made; None if it is not here yet."""
+        del number
+        return self._frame
 
-    def add(self, frame: int, made: Made) -> None:
-        """It is there now."""
-        del frame
-        self._made = made
+    def add(self, number: int, frame: RenderedFrame) -> None:
+        """Notes that the file has been written."""
+        del number
+        self._frame = frame
 
 
 @dataclass(slots=True)
-class Taken:
-    """Frames: ``made`` now, ``kept`` from before, ``dropped`` for the time budget, ``missing`` because of ``stopped``.
+class RenderOutcome:
+    """Numbers of frames: ``made`` now, ``kept`` from before, ``dropped`` for the time budget, ``missing``.
 
-    ``seconds`` is what all of it took, ``each`` what a frame took that was made now (None without one).
+    ``stopped`` says why some are missing. ``seconds`` is the time of the whole loop, ``frame_seconds`` the mean of the
+    frames made now (None without one).
     """
 
     made: list[int] = field(default_factory=list[int])
@@ -70,79 +71,82 @@ class Taken:
     missing: list[int] = field(default_factory=list[int])
     stopped: str = ""
     seconds: float = 0.0
-    each: float | None = None
+    frame_seconds: float | None = None
 
     @property
-    def there(self) -> list[int]:
-        """All that can be seen."""
+    def available(self) -> list[int]:
+        """All frames that are on disk."""
         return sorted({*self.made, *self.kept})
 
 
-def take(shoot: Shoot, place: Place, frames: list[int], call: Call, pace: Pace | None) -> Taken:
-    """Makes the ``frames`` that are not there. Raises BlenderError when not a single one can be had."""
-    asked: int | None = shoot.shot["samples"]
-    taken, todo = Taken(), list[int]()
-    for frame in frames:
-        (taken.kept if _stands(place.made(frame), asked, pace is not None) else todo).append(frame)
+def render_frames(
+    renderer: FrameRenderer, store: FrameStore, frames: list[int], call: Call, budget: RenderBudget | None
+) -> RenderOutcome:
+    """Renders those of ``frames`` that are not in ``store``. Raises BlenderError when there is not a single one."""
+    wanted: int | None = renderer.shot["samples"]
+    outcome, todo = RenderOutcome(), list[int]()
+    for number in frames:
+        reusable = _is_reusable(store.get(number), wanted, budget is not None)
+        (outcome.kept if reusable else todo).append(number)
     started = time.monotonic()
 
-    def make(frame: int, samples: int | None, *, trial: bool = False) -> float:
-        done = len(frames) - len(todo) - len(taken.dropped)
-        seconds = shoot.frame(frame, samples, place.path(frame), done, len(frames))
-        size = place.path(frame).stat().st_size
-        place.add(frame, Made(samples, round(seconds, 3), size, trial))
+    def render(number: int, samples: int | None, *, trial: bool = False) -> float:
+        done = len(frames) - len(todo) - len(outcome.dropped)
+        seconds = renderer.render(number, samples, store.path(number), done, len(frames))
+        size = store.path(number).stat().st_size
+        store.add(number, RenderedFrame(samples, round(seconds, 3), size, trial))
         if call.progress is not None and not trial:
-            call.progress(done + 1, len(frames), f"frame {frame}, {seconds:.1f} s")
+            call.progress(done + 1, len(frames), f"frame {number}, {seconds:.1f} s")
         return seconds
 
     try:
-        if pace is not None and todo:
-            while (few := pace.trial(len(todo))) is not None:
-                pace.tried(few, make(todo[0], few, trial=True))
-        while todo and not call.given_up.is_set():
-            samples = asked
-            if pace is not None:
-                pace.settle(len(todo))
-                samples = pace.samples
-            frame = todo[0]
-            tried = place.made(frame)
-            if tried is not None and tried.trial and (tried.samples or 0) >= (samples or 0):
-                place.add(frame, replace(tried, trial=False))
-            elif pace is not None and _thin(pace, todo, taken):
+        if budget is not None and todo:
+            while (few := budget.next_trial(len(todo))) is not None:
+                budget.add_trial(few, render(todo[0], few, trial=True))
+        while todo and not call.cancelled.is_set():
+            samples = wanted
+            if budget is not None:
+                budget.lower_samples(len(todo))
+                samples = budget.samples
+            number = todo[0]
+            trial = store.get(number)
+            if trial is not None and trial.trial and (trial.samples or 0) >= (samples or 0):
+                store.add(number, replace(trial, trial=False))
+            elif budget is not None and _drop_frames(budget, todo, outcome):
                 continue
             else:
-                seconds = make(frame, samples)
-                if pace is not None:
-                    pace.took(samples, seconds)
-            taken.made.append(todo.pop(0))
+                seconds = render(number, samples)
+                if budget is not None:
+                    budget.add_frame(samples, seconds)
+            outcome.made.append(todo.pop(0))
         if todo:
-            taken.stopped = "it was given up"
+            outcome.stopped = "the call was cancelled"
     except BlenderError as error:
-        if not taken.there and not isinstance(error, Interrupted):
+        if not outcome.available and not isinstance(error, Interrupted):
             raise
-        taken.stopped = "it was given up" if isinstance(error, Interrupted) else str(error)
-    taken.missing = todo
-    taken.seconds = time.monotonic() - started
-    spent = [made.seconds for frame in taken.made if (made := place.made(frame))]
-    taken.each = sum(spent) / len(spent) if spent else None
-    return taken
+        outcome.stopped = "the call was cancelled" if isinstance(error, Interrupted) else str(error)
+    outcome.missing = todo
+    outcome.seconds = time.monotonic() - started
+    seconds = [frame.seconds for number in outcome.made if (frame := store.get(number))]
+    outcome.frame_seconds = sum(seconds) / len(seconds) if seconds else None
+    return outcome
 
 
-def _thin(pace: Pace, todo: list[int], taken: Taken) -> bool:
-    """Leaves out the frames for which there is no time; whether there are any. One frame is made in any case."""
-    every = pace.every(len(todo))
-    if every == 1:
+def _drop_frames(budget: RenderBudget, todo: list[int], outcome: RenderOutcome) -> bool:
+    """Drops the frames for which there is no time; whether there are any. At least one frame is rendered."""
+    step = budget.affordable_step(len(todo))
+    if step == 1:
         return False
-    begin = every - 1 if taken.there else 0
-    stay = todo[begin::every] if every else todo[: not taken.there]
+    first = step - 1 if outcome.available else 0
+    stay = todo[first::step] if step else todo[: not outcome.available]
     dropped = sorted({*todo} - {*stay})
-    taken.dropped += dropped
+    outcome.dropped += dropped
     todo[:] = stay
     return bool(dropped)
 
 
-def _stands(made: Made | None, samples: int | None, hurried: bool) -> bool:
-    """Whether a frame that is there will do: one of fewer samples only where time is short this time, too."""
-    if made is None or made.trial:
+def _is_reusable(frame: RenderedFrame | None, samples: int | None, hurried: bool) -> bool:
+    """Whether a frame from before will do; with fewer samples only if this call has a time budget too."""
+    if frame is None or frame.trial:
         return False
-    return hurried or samples is None or (made.samples or 0) >= samples
+    return hurried or samples is None or (frame.samples or 0) >= samples

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 from PIL import Image, ImageDraw
 
 from agents.blender.sheets.text_layout import (
-    broken,
     font_for,
+    format_length,
     round_length,
     shortened,
     text_width,
-    told_length,
+    wrapped,
 )
 from simworlds.sandbox.errors import Refusal
 
@@ -138,7 +138,7 @@ def _write_caption(draw: ImageDraw.ImageDraw, panel: Panel, place: tuple[int, in
 
 def paragraph(text: str, width: int, style: Style = TEXT) -> Image.Image:
     """Text, broken into lines of at most ``width`` pixels."""
-    lines = broken(text, width, style.size)
+    lines = wrapped(text, width, style.size)
     height = math.ceil(style.size * 1.35)
     block = Image.new("RGB", (width, height * len(lines)), PAPER)
     draw = ImageDraw.Draw(block)
@@ -212,7 +212,7 @@ def draw_scale_bar(picture: Image.Image, metres_per_pixel: float) -> float:
         for end in (x, x + pixels - 1):
             draw.rectangle((end - rim, y - 5 - rim, end + 1 + rim, y + 5 + rim), fill=colour)
     draw.rectangle((x, y - 1, x + pixels, y + 1), fill=INK)
-    write(draw, (x + pixels + 8, y), told_length(length), ON_PICTURE, anchor="lm")
+    write(draw, (x + pixels + 8, y), format_length(length), ON_PICTURE, anchor="lm")
     return length
 
 

@@ -35,7 +35,7 @@ _CLOSE, _CLOSE_COLUMNS, _TICK = 226, 4, 14
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class FindingMark:
     """A finding that is marked: its number on the sheet, and what is written beside it."""
 
     number: int
@@ -59,7 +59,7 @@ class Mark:
         return f"{self.number}  {told(self.finding)}: {self.finding.message}"
 
 
-def worth_marking(findings: Sequence[Finding], most: int = MOST_MARKS) -> list[Finding]:
+def findings_to_mark(findings: Sequence[Finding], most: int = MOST_MARKS) -> list[Finding]:
     """At most so many, of each kind the worst first, so that no kind crowds the others out."""
     kinds = [row.findings for row in rows(findings) if any(one.objects or one.at for one in row.findings)]
     kinds = [kind for kind in kinds if not _is_everywhere(kind)] or kinds
@@ -76,7 +76,7 @@ def _is_everywhere(kind: Sequence[Finding]) -> bool:
 
 def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -> bytes:
     """A PNG: four views of the open scene, the findings marked in them and listed below. Raises BlenderError."""
-    marks = [Mark(place + 1, one) for place, one in enumerate(worth_marking(report.findings))]
+    marks = [FindingMark(place + 1, one) for place, one in enumerate(findings_to_mark(report.findings))]
     marked = {id(mark.finding) for mark in marks}
     asked = [mark.finding for mark in marks]
     # All that is at fault is coloured, though not all of it is marked.
@@ -97,7 +97,7 @@ def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -
         },
         timeout=_SECONDS,
         progress=call.progress,
-        given_up=call.given_up,
+        cancelled=call.cancelled,
     )
     data: dict[str, Any] = reply.value
     blocks = [contact_sheet.grid([panel_of(folder, view, marks) for view in data["views"]], 2)]
@@ -128,7 +128,7 @@ def _asked(finding: Finding, marked: bool) -> dict[str, Any]:
     length = finding.measured if finding.unit == "m" and finding.outcome == "broken" else None
     return {
         "objects": finding.objects,
-        "colour": linear(Mark(0, finding).colour),
+        "colour": linear(FindingMark(0, finding).colour),
         "at": finding.at,
         "size": length,
         "frame": finding.frame,
@@ -151,7 +151,7 @@ def _taken(folder: RunFolder, file: str, size: int) -> Image.Image:
     return picture.resize((size, size), Image.Resampling.LANCZOS)
 
 
-def panel_of(folder: RunFolder, view: dict[str, Any], marks: Sequence[Mark]) -> contact_sheet.Panel:
+def panel_of(folder: RunFolder, view: dict[str, Any], marks: Sequence[FindingMark]) -> contact_sheet.Panel:
     """A view that Blender has told of, with scale, axes and ``marks``. Raises Refusal."""
     picture = _taken(folder, view["file"], view["size"][0])
     if view["ground"] is not None:
@@ -163,7 +163,7 @@ def panel_of(folder: RunFolder, view: dict[str, Any], marks: Sequence[Mark]) -> 
     return contact_sheet.Panel(picture, view["name"])
 
 
-def _close_up(folder: RunFolder, told: dict[str, Any], marks: Sequence[Mark]) -> contact_sheet.Panel:
+def _close_up(folder: RunFolder, told: dict[str, Any], marks: Sequence[FindingMark]) -> contact_sheet.Panel:
     picture = _taken(folder, told["file"], _CLOSE)
     contact_sheet.draw_scale_bar(picture, told["metres_per_pixel"])
     mark, draw, middle = marks[told["mark"]], ImageDraw.Draw(picture), _CLOSE // 2
@@ -173,7 +173,7 @@ def _close_up(folder: RunFolder, told: dict[str, Any], marks: Sequence[Mark]) ->
     return contact_sheet.Panel(picture, mark.label, told["name"], border=mark.colour)
 
 
-def _draw_marks(picture: Image.Image, marks: Sequence[tuple[Mark, tuple[float, float]]]) -> None:
+def _draw_marks(picture: Image.Image, marks: Sequence[tuple[FindingMark, tuple[float, float]]]) -> None:
     """A ring at each place, and beside it the rule and the size of the fault, where there is room."""
     draw = ImageDraw.Draw(picture)
     inside = [(mark, at) for mark, at in marks if 0 <= at[0] < picture.width and 0 <= at[1] < picture.height]
@@ -221,7 +221,7 @@ def _overlap(one: tuple[float, float, float, float], two: tuple[float, float, fl
     return one[0] < two[2] and two[0] < one[2] and one[1] < two[3] and two[1] < one[3]
 
 
-def _unmarked(report: Report, marks: Sequence[Mark], frame: int) -> list[str]:
+def _unmarked(report: Report, marks: Sequence[FindingMark], frame: int) -> list[str]:
     """What is not to be seen in the pictures, in words."""
     elsewhere = [mark for mark in marks if mark.finding.frame not in {None, frame}]
     told = [f"{mark.number} (frame {mark.finding.frame})" for mark in elsewhere]

@@ -39,7 +39,7 @@ _NUMBER = Style(12, GREY)
 
 
 @dataclass(frozen=True, slots=True)
-class Phase:
+class PhaseBand:
     """A named stretch of frames, and what the motion comes to in it, in words: of the summaries the first that fits."""
 
     name: str
@@ -49,7 +49,7 @@ class Phase:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class BarRow:
     """Something that holds over ``spans`` of frames, as bars, with ``text`` beside; ``dashed``: not for certain."""
 
     label: str
@@ -60,17 +60,17 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class MotionCourse:
     """A motion over ``frames``: ``displacements`` in m, ``speeds`` in m/s (None where unknown)."""
 
     frames: list[int]
     displacements: Curve
     speeds: Curve
     speed_label: str
-    phases: list[Phase]
+    phases: list[PhaseBand]
     sampled: list[int]
     keyframes: list[int]
-    rows: list[Row]
+    rows: list[BarRow]
     axes: list[tuple[str, float, float, float]]  # as draw_axes has them
 
 
@@ -116,7 +116,7 @@ def _layered(picture: Image.Image, draw: Callable[[ImageDraw.ImageDraw, int], No
 # Over frames
 
 
-def timeline(course: Course, width: int) -> Image.Image:
+def timeline(course: MotionCourse, width: int) -> Image.Image:
     """The course of a motion: phases, the two curves, and below them bars and keyframes."""
     rows = len(course.rows) + bool(course.keyframes)
     picture = Image.new("RGB", (width, _HEAD + _CURVES + _AXIS + _ROW * rows), PAPER)
@@ -125,7 +125,7 @@ def timeline(course: Course, width: int) -> Image.Image:
 
 
 class _Timeline:
-    def __init__(self, picture: Image.Image, course: Course) -> None:
+    def __init__(self, picture: Image.Image, course: MotionCourse) -> None:
         self._picture, self._course = picture, course
         self._draw = ImageDraw.Draw(picture)
         self._left, self._right = _LABELS, picture.width - _RIGHT
@@ -216,7 +216,7 @@ class _Timeline:
 
         _layered(self._picture, draw)
 
-    def _draw_row(self, row: Row, y: float) -> None:
+    def _draw_row(self, row: BarRow, y: float) -> None:
         draw, middle = self._draw, y + _ROW / 2
         write(draw, (8, middle), shortened(row.label, _LABELS - 20, 13), _LABEL, anchor="lm")
         draw.line((self._left, middle, self._right, middle), fill=PALE)
@@ -233,7 +233,7 @@ class _Timeline:
                 left += step
         self._write_beside(row, min(ends, default=self._left), max(ends, default=self._left), middle)
 
-    def _write_beside(self, row: Row, left: float, right: float, y: float) -> None:
+    def _write_beside(self, row: BarRow, left: float, right: float, y: float) -> None:
         """The text of a bar: after it, before it, or upon it, wherever there is room."""
         wide, style = text_width(row.text, 12), Style(12, row.colour)
         if right + 12 + wide < self._right:

@@ -17,7 +17,7 @@ class _Reply(BaseModel):
     model_config = ConfigDict(allow_inf_nan=False, extra="ignore", protected_namespaces=())
 
 
-class View(_Reply):
+class ShotView(_Reply):
     """An orthographic view: unit vectors to the right, up and towards the viewer; the centre; the scale."""
 
     axes: tuple[Vector, Vector, Vector]
@@ -37,7 +37,7 @@ class Shot(_Reply):
     """One picture: ``view`` is None where the actor is not there."""
 
     frame: Frame
-    view: View | None
+    view: ShotView | None
 
 
 class Strip(_Reply):
@@ -57,7 +57,7 @@ class CacheState(_Reply):
     on: bool
 
 
-class Touch(_Reply):
+class Contact(_Reply):
     """A contact: ``frames`` are the first and last one of each time, ``gap`` metres are between them at the first."""
 
     partner: Text = Field(alias="with")
@@ -71,7 +71,7 @@ class Touch(_Reply):
         return ", ".join(words) + (" …" if len(self.frames) > 3 else "")
 
 
-class Stretch(_Reply):
+class PhaseMotion(_Reply):
     """The motion of one actor over one phase. Metres, m/s, degrees."""
 
     phase: Text
@@ -88,7 +88,7 @@ class Stretch(_Reply):
     peak_frame: Frame | None = None
     final_speed: float | None = None
     turn: float | None = None
-    contacts: list[Touch] = Field(default_factory=list[Touch], max_length=2000)
+    contacts: list[Contact] = Field(default_factory=list[Contact], max_length=2000)
 
 
 class ActorMotion(_Reply):
@@ -103,7 +103,7 @@ class ActorMotion(_Reply):
     speed_of: Text
     caches: list[CacheState] = Field(max_length=1000)
     keyframes: list[Frame] = Field(max_length=100_000)
-    phases: list[Stretch] = Field(min_length=1)
+    phases: list[PhaseMotion] = Field(min_length=1)
     frames: list[Frame] = Field(min_length=1, max_length=_MOST_FRAMES)
     centres: list[Vector | None] = Field(max_length=_MOST_FRAMES)
     displacements: list[float | None] = Field(max_length=_MOST_FRAMES)
@@ -113,7 +113,7 @@ class ActorMotion(_Reply):
     views: list[Strip] = Field(max_length=2)
 
 
-class Motion(_Reply):
+class MotionReply(_Reply):
     """The whole answer. ``stepped_from``: the frame from which all were stepped, None if they were played."""
 
     start: Frame

@@ -22,14 +22,30 @@ from agents.blender.sheets.contact_sheet import (
     to_png,
     write,
 )
-from agents.blender.sheets.motion_plot import EDGES, Course, Phase, Row, draw_trail, state_colour, timeline
+from agents.blender.sheets.motion_plot import (
+    EDGES,
+    BarRow,
+    MotionCourse,
+    PhaseBand,
+    draw_trail,
+    state_colour,
+    timeline,
+)
 from agents.blender.sheets.text_layout import text_width
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import BinaryIO
 
-    from agents.blender.sheets.motion_reply import ActorMotion, CacheState, Motion, Shot, Stretch, Strip, View
+    from agents.blender.sheets.motion_reply import (
+        ActorMotion,
+        CacheState,
+        MotionReply,
+        PhaseMotion,
+        Shot,
+        ShotView,
+        Strip,
+    )
 
 WIDTH = 1240
 _TALLEST = 1450  # pixels of actors on one sheet, if there are several
@@ -38,13 +54,13 @@ _MOST_ROWS, _APART = 6, 28
 _SPEEDS = {"vertices": "vertex speed, m/s", "particles": "particle speed, m/s"}
 
 
-def draw_sheets(motion: Motion, open_tile: Callable[[str], BinaryIO]) -> list[bytes]:
+def draw_sheets(motion: MotionReply, open_tile: Callable[[str], BinaryIO]) -> list[bytes]:
     """The sheets as PNGs: as many actors on each as are still readable. ``open_tile`` opens a picture by its name.
 
     Raises Refusal for a picture that is missing or is none.
     """
 
-    def tile(number: int, strip: Strip, shot: Shot, view: View) -> Image.Image:
+    def tile(number: int, strip: Strip, shot: Shot, view: ShotView) -> Image.Image:
         with open_tile(f"{number}-{strip.kind}-{shot.frame}.png") as file:
             return read_png(file).resize(view.size, Image.Resampling.BOX)
 
@@ -102,7 +118,7 @@ def _state(cache: CacheState) -> str:
     return cache.state if cache.on else "switched off"
 
 
-def _panel(actor: ActorMotion, strip: Strip, shot: Shot, tile: Callable[[View], Image.Image]) -> Panel:
+def _panel(actor: ActorMotion, strip: Strip, shot: Shot, tile: Callable[[ShotView], Image.Image]) -> Panel:
     phase, colour = _phase_of(actor, shot.frame)
     caption = f"frame {shot.frame}"
     if shot.view is None:
@@ -123,13 +139,13 @@ def _phase_of(actor: ActorMotion, frame: int) -> tuple[str, tuple[int, int, int]
     return "", FRAME
 
 
-def _course(motion: Motion, actor: ActorMotion) -> Course:
-    return Course(
+def _course(motion: MotionReply, actor: ActorMotion) -> MotionCourse:
+    return MotionCourse(
         frames=actor.frames,
         displacements=actor.displacements,
         speeds=actor.speeds,
         speed_label=_SPEEDS.get(actor.speed_of, "speed, m/s"),
-        phases=[Phase(one.phase, one.start, one.end, _summaries(one)) for one in actor.phases],
+        phases=[PhaseBand(one.phase, one.start, one.end, _summaries(one)) for one in actor.phases],
         sampled=motion.sampled,
         keyframes=actor.keyframes,
         rows=_rows(actor),
@@ -146,7 +162,7 @@ def _axes(actor: ActorMotion) -> list[tuple[str, float, float, float]]:
     return [(name, right[at], up[at], towards[at]) for at, name in enumerate("XYZ")]
 
 
-def _summaries(phase: Stretch) -> tuple[str, ...]:
+def _summaries(phase: PhaseMotion) -> tuple[str, ...]:
     """What the motion comes to in a phase, at length and shorter and shorter."""
     if not phase.present:
         return ("not there",)
@@ -165,9 +181,9 @@ def _summaries(phase: Stretch) -> tuple[str, ...]:
     )
 
 
-def _rows(actor: ActorMotion) -> list[Row]:
+def _rows(actor: ActorMotion) -> list[BarRow]:
     rows = [
-        Row(
+        BarRow(
             cache.label,
             [(cache.start, cache.end)],
             state_colour(_state(cache)),
@@ -184,5 +200,5 @@ def _rows(actor: ActorMotion) -> list[Row]:
                 goes_on = spans and first <= spans[-1][1] + 1  # from the phase before
                 spans.append((spans.pop()[0] if goes_on else first, last))
     for name, spans in sorted(touched.items(), key=lambda one: one[1])[:_MOST_ROWS]:
-        rows.append(Row("touches", spans, EDGES[3], f"{name}, from {spans[0][0]}"))
+        rows.append(BarRow("touches", spans, EDGES[3], f"{name}, from {spans[0][0]}"))
     return rows

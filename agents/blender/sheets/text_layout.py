@@ -41,7 +41,7 @@ def shortened(text: str, width: float, size: int) -> str:
     return "…"
 
 
-def broken(text: str, width: float, size: int) -> list[str]:
+def wrapped(text: str, width: float, size: int) -> list[str]:
     """``text`` as lines of at most ``width`` pixels; what is too long for a line is shortened."""
     lines: list[str] = []
     for piece in text.splitlines() or [""]:
@@ -64,7 +64,7 @@ def round_length(longest: float) -> float:
     return max((factor * step for factor in (1, 2, 5) if factor * step <= longest * (1 + 1e-9)), default=step)
 
 
-def told_length(metres: float) -> str:
+def format_length(metres: float) -> str:
     """A length as readers compare it best: always in metres, four digits at most."""
     if metres == 0 or 1e-4 <= abs(metres) < 1e4:
         digits = max(0, 2 - math.floor(math.log10(abs(metres)))) if metres else 0

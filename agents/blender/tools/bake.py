@@ -1,4 +1,4 @@
-"""``blender_bake``: physics, baked and checked."""
+"""``blender_bake``: bakes physics and checks the caches."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from typing import Any
 
 from pydantic import Field
 
-from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 
 _LAST_FRAME = 1_048_574
 
 
-class Bake(Arguments):
+class BakeArguments(Arguments):
     """The arguments of ``blender_bake``."""
 
     objects: list[str] | None = Field(
         default=None,
         min_length=1,
-        description="Objects whose simulations to bake; any rigid body stands for the whole rigid-body world. "
+        description="Objects whose simulations to bake; any rigid body means the whole rigid-body world. "
         "Default: every simulation of the scene.",
     )
     frame_start: int | None = Field(
@@ -32,46 +32,37 @@ class Bake(Arguments):
 
 
 DESCRIPTION = """\
-Bake physics: cloth, soft bodies, particles, hair, rigid bodies, dynamic paint, liquid and gas; all of it or that \
-of some objects. Each cache's own range is set from `frame_start` and `frame_end`; what was baked before is baked \
-anew. Afterwards every cache is checked: that it is baked, covers the range, has all its frames, and that something \
-moved; where nothing did, the likely causes are named. Fluids bake with cache_type 'ALL' into a folder that the run \
-keeps; use this rather than bpy.ops.fluid.free_all, which goes on in a thread of its own and crashes what follows. \
-A bake that runs past `timeout` (seconds) is undone."""
+Bake physics: cloth, soft bodies, particles, hair, rigid bodies, dynamic paint, liquid and gas; of all objects or of \
+some. Each cache's range is set from `frame_start` and `frame_end`; earlier bakes are replaced. Afterwards every cache \
+is checked: that it is baked, covers the range, has all its frames, and that something moved; where nothing did, the \
+likely causes are named. Fluids bake with cache_type 'ALL' into a folder that the run keeps; use this instead of \
+bpy.ops.fluid.free_all, which goes on in a thread and crashes later calls. A bake that runs past `timeout` (seconds) \
+is undone."""
 
 
-def run(session: Session, asked: Bake, call: Call) -> Result:
-    """Bakes; tells what came of it."""
-    blender = session.blender
-    arguments: dict[str, Any] = {
-        "objects": asked.objects,
-        "frame_start": asked.frame_start,
-        "frame_end": asked.frame_end,
-        "folder": str(blender.folder.workspace),
-    }
+def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:
+    """Bakes, and checks the caches."""
+    blender = context.blender
     reply = blender.call(
         "bake",
-        arguments,
-        timeout=asked.timeout,
+        {**arguments.model_dump(exclude={"timeout"}), "folder": str(blender.folder.workspace)},
+        timeout=arguments.timeout,
         changes=True,
         always_keep=True,
         after="after baking",
         progress=call.progress,
-        given_up=call.given_up,
+        cancelled=call.cancelled,
     )
     data: dict[str, Any] = reply.value
-    return Result(_told(data), data, failed=any(cache["fault"] for cache in data["caches"]))
-
-
-def _told(data: dict[str, Any]) -> str:
     caches = data["caches"]
-    good = sum(not cache["fault"] for cache in caches)
+    baked = sum(not cache["fault"] for cache in caches)
     first, last = data["range"]
-    head = f"Baked {good} of {len(caches)} caches over frames {first}–{last} in {data['seconds']:.1f} s."
-    return "\n".join([head, *(f"- {_line(cache)}" for cache in caches), *data["notes"]])
+    head = f"Baked {baked} of {len(caches)} caches over frames {first}–{last} in {data['seconds']:.1f} s."
+    text = "\n".join([head, *(f"- {_cache(cache)}" for cache in caches), *data["notes"]])
+    return Result(text, data, failed=baked < len(caches))
 
 
-def _line(cache: dict[str, Any]) -> str:
+def _cache(cache: dict[str, Any]) -> str:
     if cache["fault"]:
         return f"**{cache['label']}: not baked**: {cache['fault']}"
     first, last = cache["range"]
@@ -83,9 +74,9 @@ def _line(cache: dict[str, Any]) -> str:
         return f"{line}**{cache['warning']}**"
     if cache["unit"] != "m":
         return f"{line}values change by up to {cache['moved']:.2f}"
-    who = f"{cache['who']!r} goes" if cache["who"] else "moves"
-    line += f"{who} up to {cache['moved']:.3g} m"
+    mover = f"{cache['who']!r} moves" if cache["who"] else "moves"
+    line += f"{mover} up to {cache['moved']:.3g} m"
     return f"{line}; {cache['bodies_moved']} of {cache['bodies']} bodies move" if "bodies" in cache else line
 
 
-TOOL = Tool("blender_bake", "Bake physics", DESCRIPTION, Bake, run, read_only=False, destructive=True)
+TOOL = BlenderTool("blender_bake", "Bake physics", DESCRIPTION, BakeArguments, run, destructive=True)

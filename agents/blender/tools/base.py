@@ -33,7 +33,7 @@ class Docs(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class SavedImage:
     """A PNG, and where it lies in the run's folder."""
 
     png: bytes
@@ -49,12 +49,12 @@ class Result:
 
     text: str
     data: dict[str, Any] = field(default_factory=dict[str, Any])
-    pictures: tuple[Picture, ...] = ()
+    pictures: tuple[SavedImage, ...] = ()
     failed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class Session:
+class ToolContext:
     """What a tool works with: one run's Blender, and the knowledge base."""
 
     blender: Supervisor
@@ -63,17 +63,17 @@ class Session:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """How a call is watched: ``progress`` gets (done, total, text); ``given_up`` is set when nobody waits any more."""
+    """How a call is watched: ``progress`` gets (done, total, text); ``cancelled`` is set when nobody waits any more."""
 
     progress: Progress | None = None
-    given_up: threading.Event = field(default_factory=threading.Event)
+    cancelled: threading.Event = field(default_factory=threading.Event)
 
 
 Given = TypeVar("Given", bound=Arguments)
 
 
 @dataclass(frozen=True, slots=True)
-class Tool:
+class BlenderTool:
     """A tool of the suite (paper, Table "Tool suite"). ``run`` raises BlenderError for what it cannot do.
 
     ``destructive``: what was there before may be gone afterwards.
@@ -83,12 +83,12 @@ class Tool:
     title: str
     description: str
     arguments: type[Arguments]
-    run: Callable[[Session, Any, Call], Result]
+    run: Callable[[ToolContext, Any, Call], Result]
     read_only: bool = False
     destructive: bool = False
 
 
-def parse(tool: Tool, given: dict[str, Any] | None) -> Arguments:
+def parse(tool: BlenderTool, given: dict[str, Any] | None) -> Arguments:
     """The arguments of a call, checked. Raises Refusal, naming each that is wrong."""
     try:
         return tool.arguments.model_validate(given or {})
@@ -100,10 +100,10 @@ def parse(tool: Tool, given: dict[str, Any] | None) -> Arguments:
         raise Refusal(f"The arguments do not fit {tool.name}: {wrong[:800]}") from error
 
 
-def perform(tool: Tool, session: Session, asked: Arguments, call: Call) -> Result:
+def perform(tool: BlenderTool, context: ToolContext, asked: Arguments, call: Call) -> Result:
     """Runs a tool; what has happened to Blender meanwhile comes before its text. Raises BlenderError."""
-    result = tool.run(session, asked, call)
-    note = session.blender.take_note()
+    result = tool.run(context, asked, call)
+    note = context.blender.take_note()
     return (
         replace(result, text=f"{note}\n\n{result.text}", data={**result.data, "note": note})
         if note

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.sandbox.errors import Untrustworthy
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ _LONGEST_PRINT = 8_000
 _LONGEST_TITLE = 40
 
 
-class Execute(Arguments):
+class ExecuteArguments(Arguments):
     """The arguments of ``blender_execute``."""
 
     code: str = Field(max_length=LONGEST_CODE, description="Python. `bpy` is there; import the rest.")
@@ -66,30 +66,30 @@ class _Outcome(BaseModel):
     unwatched: str = ""
 
 
-def run(session: Session, asked: Execute, call: Call) -> Result:
+def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result:
     """Runs the code; tells what came of it."""
-    blender = session.blender
-    if asked.on_error == "restore":
+    blender = context.blender
+    if arguments.on_error == "restore":
         blender.keep("before code that may be undone")
     before, unkept = blender.checkpoints.last, blender.checkpoints.unkept
-    title = _title(asked.code)
+    title = _title(arguments.code)
     reply = blender.call(
         "execute",
-        {"code": asked.code},
-        timeout=asked.timeout,
+        {"code": arguments.code},
+        timeout=arguments.timeout,
         what=f"the code {title!r}",
         changes=True,
         after=f"after {title!r}",
         progress=call.progress,
-        given_up=call.given_up,
+        cancelled=call.cancelled,
     )
-    data = _checked(session, reply, title, before)
+    data = _checked(context, reply, title, before)
     data.update(stdout=reply.stdout, stderr=reply.stderr, seconds=round(reply.seconds, 4))
     error = data["error"]
     if error is None:
         return Result(_told(data, reply), data)
-    error["documentation"] = session.docs(error["ask"]) if error["ask"] else ""
-    if asked.on_error == "restore":
+    error["documentation"] = context.docs(error["ask"]) if error["ask"] else ""
+    if arguments.on_error == "restore":
         data["scene"] = f"The scene was put back to {blender.restore()}."
     else:
         data["scene"] = f"The scene is as the code left it.{_way_back(before, unkept)}"
@@ -103,14 +103,14 @@ def _title(code: str) -> str:
     return first if len(lines) < 2 and len(first) <= _LONGEST_TITLE else f"{first[:_LONGEST_TITLE]} …"
 
 
-def _checked(session: Session, reply: Reply, title: str, before: Checkpoint | None) -> dict[str, Any]:
+def _checked(context: ToolContext, reply: Reply, title: str, before: Checkpoint | None) -> dict[str, Any]:
     """The outcome, if it is one; otherwise the scene is put back, for nothing is known of it."""
     try:
         return _Outcome.model_validate(reply.value, strict=True).model_dump()
     except ValidationError as error:
         raise Untrustworthy(
             f"What came back of the code {title!r} is no answer, and nothing of it is believed. The scene was put "
-            f"back to {session.blender.restore(before.number if before else None)}.",
+            f"back to {context.blender.restore(before.number if before else None)}.",
             (reply.stdout + reply.stderr)[-2000:],
         ) from error
 
@@ -160,6 +160,12 @@ def _bounded(text: str) -> str:
     return f"{text[:half]}\n… {len(text) - 2 * half:,} characters left out …\n{text[-half:]}"
 
 
-TOOL = Tool(
-    "blender_execute", "Run Python in Blender", DESCRIPTION, Execute, run, read_only=False, destructive=True
+TOOL = BlenderTool(
+    "blender_execute",
+    "Run Python in Blender",
+    DESCRIPTION,
+    ExecuteArguments,
+    run,
+    read_only=False,
+    destructive=True,
 )

@@ -7,46 +7,47 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from agents.blender.checkpoints import KEPT
+from agents.blender.formatting import format_count, format_list, format_size
 from agents.blender.saved_files import (
-    WRITTEN,
-    Cache,
-    External,
-    Loaded,
-    Seen,
-    Written,
-    beside,
-    checked,
-    clear,
-    faults,
-    find,
-    lent,
-    look_afresh,
+    COPY_NAME,
+    CacheReport,
+    ExternalFile,
+    FileContents,
+    LoadedFile,
+    SavedCopy,
+    cache_faults,
+    caches_folder,
+    copy_from_workspace,
+    describe_saved_files,
+    find_blend_file,
+    open_elsewhere,
     put_in_place,
-    saved_files,
+    readable_by_blender,
     staging,
-    take_all,
+    validated,
 )
-from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.sandbox.errors import Refusal, ToolBroke
+from simworlds.sandbox.usage import remove
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
-_LOOK_SECONDS = 60.0
+_OPEN_SECONDS = 60.0
 _LISTED = 10
 _TIMEOUT = Field(
     default=300.0, ge=1, le=3600, description="Seconds after which Blender is stopped and put back."
 )
 
 
-class Save(Arguments):
+class SaveArguments(Arguments):
     """The arguments of ``blender_save``."""
 
     name: str | None = Field(
         default=None,
         max_length=400,
-        description="File in the run's folder, as 'tower' or 'saves/tower.blend'. Without one, a checkpoint is made.",
+        description="File in the run's folder: 'tower', 'saves/tower.blend'. Without a name, a checkpoint is made.",
     )
     pack: bool = Field(default=True, description="Put images, sounds and fonts into the file.")
     verify: bool = Field(
@@ -57,13 +58,13 @@ class Save(Arguments):
 
 SAVE_DESCRIPTION = """\
 Save the scene as a .blend in the run's folder that opens elsewhere: images, sounds and fonts are packed into it, \
-caches on disk (fluids, point caches) are copied into the folder `blendcache_NAME` beside it, which belongs to it. A \
-file of that name is replaced, as a whole or not at all. The copy is opened by a second Blender, which has nothing \
-else, to see that every baked cache is baked there too. The scene goes on as it is. Without a name, a checkpoint is \
-made, to which blender_load goes back."""
+caches on disk (fluids, point caches) are copied into the folder `blendcache_NAME` beside it; keep the two together. \
+A file of that name is replaced, as a whole or not at all. A second Blender, which has nothing else, opens the copy \
+to check that every baked cache is baked there too. The open scene is not changed. Without a name, a checkpoint is \
+made; blender_load goes back to it."""
 
 
-class Load(Arguments):
+class LoadArguments(Arguments):
     """The arguments of ``blender_load``."""
 
     path: str | None = Field(
@@ -78,220 +79,194 @@ class Load(Arguments):
 
 
 LOAD_DESCRIPTION = """\
-Open a .blend, or go back to a checkpoint; the scene as it is gives way (it is kept as a checkpoint first). Files come \
-from the run's folder or from folders that the user has opened for reading; the original is never changed. Scripts in \
-the file do not run. What cannot be opened is refused, and the scene stays. Without arguments: which checkpoints and \
-saved files there are. Checkpoints do not hold caches on disk (fluids): those stay as they were last baked."""
+Open a .blend, or go back to a checkpoint; this replaces the open scene, which is kept as a checkpoint first. Files \
+come from the run's folder or from folders that the user has allowed to be read; the original is never changed. \
+Scripts in the file do not run. If a file cannot be opened, the scene stays. Without arguments: list the checkpoints \
+and saved files. Checkpoints do not hold caches on disk (fluids): those stay as they were last baked."""
 
 
 # Saving
 
 
-def save(session: Session, asked: Save, call: Call) -> Result:
-    """Saves; tells what is in the file, what lies beside it, and what is outside."""
-    blender = session.blender
-    if asked.name is None:
-        return _checkpoint(session)
-    target = blender.folder.place_for(asked.name, ".blend")
+def save(context: ToolContext, arguments: SaveArguments, call: Call) -> Result:
+    """Saves a file, or makes a checkpoint where no name is given."""
+    blender = context.blender
+    if arguments.name is None:
+        return _checkpoint(context)
+    target = blender.folder.place_for(arguments.name, ".blend")
     if target.is_dir():
         raise Refusal(f"{target.name} is a folder of this run; choose another name.")
     replaced = target.exists()
-    with blender.alone(), staging(blender.folder) as place:
+    with blender.alone(), staging(blender.folder) as folder:
         blender.keep("before saving")
-        staged = place / target.name
+        staged = folder / target.name
         try:
-            written = _written(session, asked, call, staged)
-            count, size = take_all(blender.folder, written.files, beside(staged))
-            found = None
-            if asked.verify:
-                found = look_afresh(blender.launch, staged, timeout=min(asked.timeout, _LOOK_SECONDS))
+            copy = _write(context, arguments, call, staged)
+            count, size = copy_from_workspace(blender.folder, copy.files, caches_folder(staged))
+            opened = None
+            if arguments.verify:
+                opened = open_elsewhere(blender.launch, staged, timeout=min(arguments.timeout, _OPEN_SECONDS))
             put_in_place(staged, target)
         except Refusal as error:
-            whole = " What was saved there before is untouched." if replaced else ""
-            raise Refusal(f"{target.name} was not saved: {str(error).rstrip('.')}.{whole}") from error
-        kept = blender.keep(f"saved as {target.name}")
-    wrong = faults(written, found)
+            old = " The older file of that name is unchanged." if replaced else ""
+            raise Refusal(f"{target.name} was not saved: {str(error).rstrip('.')}.{old}") from error
+        checkpoint = blender.keep(f"saved as {target.name}")
+    faults = cache_faults(copy, opened)
     data: dict[str, Any] = {
-        **written.model_dump(exclude={"files"}),
+        **copy.model_dump(exclude={"files"}),
         "path": str(target),
-        "beside": {"path": str(beside(target)), "files": count, "bytes": size} if count else None,
-        "opened": found.model_dump() if found else None,
-        "faults": wrong,
-        "checkpoint": kept.number,
+        "beside": {"path": str(caches_folder(target)), "files": count, "bytes": size} if count else None,
+        "opened": opened.model_dump() if opened else None,
+        "faults": faults,
+        "checkpoint": checkpoint.number,
     }
-    lines = _saved(written, target)
+    lines = [f"Saved {target} ({format_size(copy.bytes)}, {format_count(copy.objects, 'object')})."]
     if count:
-        lines.insert(
-            1,
-            f"- beside it, and to be kept with it: {beside(target).name}/ ({_count(count, 'file')}, {_size(size)})",
-        )
-    lines += [f"- **{one}**" for one in wrong]
-    if found and not wrong:
+        files = f"{format_count(count, 'file')}, {format_size(size)}"
+        lines.append(f"- beside it, to be kept with it: {caches_folder(target).name}/ ({files})")
+    if copy.packed:
+        lines.append(f"- packed into it: {format_list(copy.packed, _LISTED)}")
+    if copy.rescued:
         lines.append(
-            f"Another Blender, with nothing but these, opens it: {_count(found.objects, 'object')}"
-            f"{', every baked cache whole' if any(one.baked for one in found.caches) else ''}."
+            f"- images in no file, packed into it and the open scene: {format_list(copy.rescued, _LISTED)}"
         )
-    lines.append(f"The scene stands at {kept}.")
-    return Result("\n".join(lines), data, failed=bool(wrong))
+    lines += _file_lines(copy.external, copy.caches, faults)
+    if opened and not faults:
+        whole = ", every baked cache complete" if any(cache.baked for cache in opened.caches) else ""
+        lines.append(f"A second Blender opens it: {format_count(opened.objects, 'object')}{whole}.")
+    lines.append(f"The scene is at {checkpoint}.")
+    return Result("\n".join(lines), data, failed=bool(faults))
 
 
-def _written(session: Session, asked: Save, call: Call, staged: Path) -> Written:
-    """Lets Blender write the copy, and takes it out of the workspace."""
-    blender = session.blender
+def _write(context: ToolContext, arguments: SaveArguments, call: Call, staged: Path) -> SavedCopy:
+    """Lets Blender write the copy, and moves it out of the workspace to ``staged``."""
+    blender = context.blender
     workspace = blender.folder.workspace
-    arguments: dict[str, Any] = {
-        "path": str(workspace / WRITTEN),
-        "beside": beside(staged).name,
-        "workspace": str(workspace),
-        "pack": asked.pack,
-    }
-    clear(workspace / WRITTEN)
+    remove(workspace / COPY_NAME)
     try:
         reply = blender.call(
             "save",
-            arguments,
-            timeout=asked.timeout,
+            {
+                "path": str(workspace / COPY_NAME),
+                "beside": caches_folder(staged).name,
+                "workspace": str(workspace),
+                "pack": arguments.pack,
+            },
+            timeout=arguments.timeout,
             changes=True,
             after=f"after saving {staged.name}",
             progress=call.progress,
-            given_up=call.given_up,
+            cancelled=call.cancelled,
         )
-        blender.folder.take(WRITTEN, staged)
+        blender.folder.take(COPY_NAME, staged)
     finally:
-        for name in (WRITTEN, f"{WRITTEN}@"):
-            clear(workspace / name)
-    return checked(Written, reply.value)
+        for name in (COPY_NAME, f"{COPY_NAME}@"):
+            remove(workspace / name)
+    return validated(SavedCopy, reply.value)
 
 
-def _checkpoint(session: Session) -> Result:
-    last = session.blender.checkpoints.last
-    kept = session.blender.keep("asked for")
-    new = last is None or kept.number != last.number
-    text = f"The scene stands at {kept}" + ("." if new else "; nothing has changed since.")
-    text += (
-        f" Go back to it with blender_load(checkpoint={kept.number}) while it is among the newest {KEPT}; "
+def _checkpoint(context: ToolContext) -> Result:
+    last = context.blender.checkpoints.last
+    checkpoint = context.blender.keep("asked for")
+    new = last is None or checkpoint.number != last.number
+    text = (
+        f"The scene is at {checkpoint}{'' if new else '; nothing has changed since'}. Go back to it with "
+        f"blender_load(checkpoint={checkpoint.number}) while it is among the newest {KEPT}; to keep the scene for "
+        "good, save it under a name."
     )
-    text += "a file of your own that stays is made with a name."
-    return Result(text, {"checkpoint": kept.number, "new": new})
-
-
-def _saved(written: Written, target: Path) -> list[str]:
-    lines = [f"Saved {target} ({_size(written.bytes)}, {_count(written.objects, 'object')})."]
-    if written.packed:
-        lines.append(f"- packed into it: {_listed(written.packed)}")
-    if written.rescued:
-        lines.append(
-            f"- pixels that no file held, packed into it and into the open scene: {_listed(written.rescued)}"
-        )
-    return [*lines, *_outside(written.external), *(f"- {_cache(cache)}" for cache in written.caches)]
+    return Result(text, {"checkpoint": checkpoint.number, "new": new})
 
 
 # Loading
 
 
-def load(session: Session, asked: Load, call: Call) -> Result:
+def load(context: ToolContext, arguments: LoadArguments, call: Call) -> Result:
     """Opens a file or a checkpoint; lists them when none is named."""
-    if asked.path is not None and asked.checkpoint is not None:
+    if arguments.path is not None and arguments.checkpoint is not None:
         raise Refusal("Give a path or a checkpoint, not both.")
-    if asked.checkpoint is not None:
-        return _gone_back(session, asked.checkpoint)
-    if asked.path is not None:
-        return _opened(session, asked, asked.path, call)
-    kept = session.blender.checkpoints.newest_first()
-    text = "Checkpoints, newest first:\n" + "\n".join(f"- {one}" for one in kept)
-    text += f"\n\n{saved_files(session.blender.folder)}"
-    return Result(text, {"checkpoints": [one.number for one in kept]})
+    if arguments.checkpoint is not None:
+        return _go_back(context, arguments.checkpoint)
+    if arguments.path is not None:
+        return _open(context, arguments, arguments.path, call)
+    checkpoints = context.blender.checkpoints.newest_first()
+    text = "Checkpoints, newest first:\n" + "\n".join(f"- {checkpoint}" for checkpoint in checkpoints)
+    text += f"\n\n{describe_saved_files(context.blender.folder)}"
+    return Result(text, {"checkpoints": [checkpoint.number for checkpoint in checkpoints]})
 
 
-def _gone_back(session: Session, number: int) -> Result:
-    blender = session.blender
+def _go_back(context: ToolContext, number: int) -> Result:
+    blender = context.blender
     with blender.alone():
         # A checkpoint of the present would push the oldest one out.
-        if [one.number for one in blender.checkpoints.newest_first()[-1:]] != [number]:
+        if [checkpoint.number for checkpoint in blender.checkpoints.newest_first()[-1:]] != [number]:
             blender.keep("before going back")
-        went = blender.restore(number)
-        now = checked(Seen, blender.call("kept_caches", {}, timeout=_LOOK_SECONDS).value)
-    text = f"The scene is back at {went}."
-    disk = [cache for cache in now.caches if cache.where == "disk"]
-    if disk:
-        text += "\nCaches on disk are not part of a checkpoint; these are as they were last baked:\n"
-        text += "\n".join(
-            [*(f"- {_cache(cache)}" for cache in disk), *(f"- **{one}**" for one in faults(now, None))]
-        )
+        restored = blender.restore(number)
+        now = validated(FileContents, blender.call("kept_caches", {}, timeout=_OPEN_SECONDS).value)
+    lines = [f"The scene is back at {restored}."]
+    if on_disk := [cache for cache in now.caches if cache.where == "disk"]:
+        lines.append("Caches on disk are not part of a checkpoint; these are as they were last baked:")
+        lines += _file_lines([], on_disk, cache_faults(now, None))
     last = blender.checkpoints.last
-    return Result(text, {"checkpoint": last.number if last else number, **now.model_dump()})
+    return Result("\n".join(lines), {"checkpoint": last.number if last else number, **now.model_dump()})
 
 
-def _opened(session: Session, asked: Load, path: str, call: Call) -> Result:
-    blender = session.blender
-    found = find(path, blender.folder, blender.launch.read)
-    name = found.path.name
+def _open(context: ToolContext, arguments: LoadArguments, name: str, call: Call) -> Result:
+    blender = context.blender
+    blend_file = find_blend_file(name, blender.folder, blender.launch.read)
     with blender.alone():
         before = blender.keep("before loading")
         try:
-            with lent(found, blender.folder) as (readable, is_copy):
+            with readable_by_blender(blend_file, blender.folder) as (path, is_copy):
                 reply = blender.call(
                     "load",
-                    {"path": str(readable), "workspace": str(blender.folder.workspace), "lent": is_copy},
-                    timeout=asked.timeout,
+                    {"path": str(path), "workspace": str(blender.folder.workspace), "lent": is_copy},
+                    timeout=arguments.timeout,
                     changes=True,
                     always_keep=True,
-                    after=f"after loading {name[:40]}",
+                    after=f"after loading {blend_file.path.name[:40]}",
                     progress=call.progress,
-                    given_up=call.given_up,
+                    cancelled=call.cancelled,
                 )
-            loaded = checked(Loaded, reply.value)
+            loaded = validated(LoadedFile, reply.value)
         except (Refusal, ToolBroke) as error:
             blender.restore(before.number)
-            raise Refusal(f"{str(error).rstrip('.')}. The scene stands as before, at {before}.") from error
-        kept = blender.checkpoints.last
+            raise Refusal(f"{str(error).rstrip('.')}. The scene is unchanged, at {before}.") from error
+        checkpoint = blender.checkpoints.last
     data: dict[str, Any] = {
         **loaded.model_dump(),
-        "path": str(found.path),
-        "checkpoint": kept and kept.number,
+        "path": str(blend_file.path),
+        "checkpoint": checkpoint and checkpoint.number,
     }
-    lines = [f"Opened {found.path}: {_count(loaded.objects, 'object')}, saved by Blender {loaded.version}."]
+    objects = format_count(loaded.objects, "object")
+    lines = [f"Opened {blend_file.path}: {objects}, saved by Blender {loaded.version}."]
     if loaded.scripts:
         lines.append("- it has scripts or scripted drivers; they do not run")
-    lines += [*_outside(loaded.external), *(f"- {_cache(cache)}" for cache in loaded.caches)]
-    lines += [f"- **{one}**" for one in faults(loaded, None)]
-    lines.append(f"The scene stands at {kept}. Before it: blender_load(checkpoint={before.number}).")
+    lines += _file_lines(loaded.external, loaded.caches, cache_faults(loaded, None))
+    lines.append(f"The scene is at {checkpoint}. To undo: blender_load(checkpoint={before.number}).")
     return Result("\n".join(lines), data)
 
 
-# In words
+# Replies
 
 
-def _cache(cache: Cache) -> str:
+def _file_lines(external: list[ExternalFile], caches: list[CacheReport], faults: list[str]) -> list[str]:
+    lines = [
+        f"- not in the file, used by {file.what}: {file.path}{' (missing)' if file.missing else ''}"
+        for file in external
+    ]
+    if len(lines) > _LISTED:
+        lines[_LISTED:] = [f"- not in the file: {len(lines) - _LISTED} more files"]
+    return [*lines, *(f"- {_cache(cache)}" for cache in caches), *(f"- **{fault}**" for fault in faults)]
+
+
+def _cache(cache: CacheReport) -> str:
     first, last = cache.range
     state = f"{'baked' if cache.baked else 'not baked'}{', outdated' if cache.outdated else ''}"
-    where = f"{_count(cache.frames, 'frame')} {'in the file' if cache.where == 'memory' else 'on disk'}"
+    where = f"{format_count(cache.frames, 'frame')} {'in the file' if cache.where == 'memory' else 'on disk'}"
     return f"{cache.label}: {state}, frames {first}–{last}, {where}"
 
 
-def _outside(external: list[External]) -> list[str]:
-    told = [
-        f"- outside, used by {one.what}: {one.path}{' (missing)' if one.missing else ''}" for one in external
-    ]
-    return [*told[:_LISTED], f"- outside: {len(told) - _LISTED} more files"] if len(told) > _LISTED else told
-
-
-def _listed(names: list[str]) -> str:
-    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-    return ", ".join(names[:_LISTED]) + more
-
-
-def _count(number: int, word: str) -> str:
-    return f"{number:,} {word}{'' if number == 1 else 's'}"
-
-
-def _size(count: float) -> str:
-    for unit in ("bytes", "kB", "MB"):
-        if count < 1000:
-            return f"{count:.0f} {unit}" if unit == "bytes" else f"{count:.1f} {unit}"
-        count /= 1000
-    return f"{count:.1f} GB"
-
-
-SAVE = Tool("blender_save", "Save the scene", SAVE_DESCRIPTION, Save, save, destructive=True)
-LOAD = Tool("blender_load", "Open a file or a checkpoint", LOAD_DESCRIPTION, Load, load, destructive=True)
+SAVE = BlenderTool("blender_save", "Save the scene", SAVE_DESCRIPTION, SaveArguments, save, destructive=True)
+LOAD = BlenderTool(
+    "blender_load", "Open a file or a checkpoint", LOAD_DESCRIPTION, LoadArguments, load, destructive=True
+)

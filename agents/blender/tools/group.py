@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import Field
 
-from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.protocol import vocabulary
 from agents.protocol.vocabulary import DeformationKind, MotionKind, meaning_of
 
@@ -58,7 +58,7 @@ class GroupedObject(Arguments):
         default=None, description=meaning_of(vocabulary.ALLOWS_DISCONNECTED)
     )
 
-    def asked(self) -> dict[str, Any]:
+    def for_worker(self) -> dict[str, Any]:
         """It as Blender's side takes it."""
         tags = self.model_dump(include={"deformation_kind", "motion_kind", "allows_disconnected"})
         return {
@@ -67,7 +67,7 @@ class GroupedObject(Arguments):
         }
 
 
-class Group(Arguments):
+class GroupArguments(Arguments):
     """The arguments of ``blender_group``."""
 
     groups: list[GroupedObject] = Field(min_length=1, max_length=_MOST, description="The objects to make.")
@@ -83,16 +83,16 @@ and nothing is changed then. The reply tells what the protocol still misses; ble
 alone, use blender_tag_object."""
 
 
-def run(session: Session, asked: Group, call: Call) -> Result:
+def run(context: ToolContext, arguments: GroupArguments, call: Call) -> Result:
     """Groups; tells what there is now."""
-    reply = session.blender.call(
+    reply = context.blender.call(
         "group",
-        {"groups": [one.asked() for one in asked.groups]},
+        {"groups": [one.for_worker() for one in arguments.groups]},
         timeout=_SECONDS,
         changes=True,
         after="after grouping",
         progress=call.progress,
-        given_up=call.given_up,
+        cancelled=call.cancelled,
     )
     data: dict[str, Any] = reply.value
     lines = [_line(one) for one in data["groups"]]
@@ -121,4 +121,4 @@ def _names(names: list[str]) -> str:
     return ", ".join(repr(name) for name in names[:_LISTED]) + more
 
 
-TOOL = Tool("blender_group", "Group meshes into objects", DESCRIPTION, Group, run)
+TOOL = BlenderTool("blender_group", "Group meshes into objects", DESCRIPTION, GroupArguments, run)

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from agents.blender.sheets.contact_sheet import GAP
-from agents.blender.sheets.motion_reply import ActorMotion, Frame, Motion, Stretch
+from agents.blender.sheets.motion_reply import ActorMotion, Frame, MotionReply, PhaseMotion
 from agents.blender.sheets.motion_sheet_image import WIDTH, draw_sheets
-from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from simworlds.sandbox.errors import ToolBroke
-from simworlds.sandbox.usage import sweep
+from simworlds.sandbox.usage import empty_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,7 +28,7 @@ _MEASURED = {
 }
 
 
-class PhaseAsked(BaseModel):
+class PhaseArguments(BaseModel):
     """A named stretch of the motion, both frames included."""
 
     model_config = ConfigDict(extra="forbid")
@@ -38,7 +38,7 @@ class PhaseAsked(BaseModel):
     end: Frame = Field(description="Last frame; the next phase may begin on it.")
 
     @model_validator(mode="after")
-    def _in_order(self) -> PhaseAsked:
+    def _in_order(self) -> PhaseArguments:
         if self.end <= self.start:
             raise ValueError(
                 f"phase {self.name!r} ends at {self.end}, which is not after its start {self.start}"
@@ -46,7 +46,7 @@ class PhaseAsked(BaseModel):
         return self
 
 
-class MotionSheet(Arguments):
+class MotionSheetArguments(Arguments):
     """The arguments of ``blender_motion_sheet_preview``."""
 
     actors: list[str] = Field(
@@ -55,8 +55,8 @@ class MotionSheet(Arguments):
         description="Names of objects, or of collections tagged protocol_role='object' (measured as one). An emitter "
         "is followed by its particles, a fluid domain by its fluid.",
     )
-    phases: list[PhaseAsked] = Field(
-        default_factory=list[PhaseAsked],
+    phases: list[PhaseArguments] = Field(
+        default_factory=list[PhaseArguments],
         max_length=MOST_PHASES,
         description="Stretches of the motion that are measured one by one. Default: the scene's frame range as one.",
     )
@@ -71,7 +71,7 @@ class MotionSheet(Arguments):
     )
 
     @model_validator(mode="after")
-    def _consistent(self) -> MotionSheet:
+    def _consistent(self) -> MotionSheetArguments:
         if len(set(self.frames)) == 1:
             raise ValueError("frames: one frame alone shows no motion; give at least two")
         if len(set(self.actors)) != len(self.actors):
@@ -94,39 +94,39 @@ surface. Physics that is not baked is stepped frame by frame from the start of i
 The scene is left as it was, at its frame."""
 
 
-def run(session: Session, asked: MotionSheet, call: Call) -> Result:
+def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Result:
     """Measures and draws. Raises BlenderError."""
-    folder = session.blender.folder
+    folder = context.blender.folder
     tiles = f".motion-{secrets.token_hex(4)}"
     place = folder.workspace / tiles
     place.mkdir()
     try:
-        reply = session.blender.call(
+        reply = context.blender.call(
             "motion_sheet",
             {
-                "actors": asked.actors,
-                "phases": [phase.model_dump() for phase in asked.phases],
-                "frames": asked.frames,
+                "actors": arguments.actors,
+                "phases": [phase.model_dump() for phase in arguments.phases],
+                "frames": arguments.frames,
                 "folder": str(place),
                 "width": WIDTH,
                 "gap": GAP,
             },
-            timeout=asked.timeout,
+            timeout=arguments.timeout,
             progress=call.progress,
-            given_up=call.given_up,
+            cancelled=call.cancelled,
         )
         try:
-            motion = Motion.model_validate(reply.value)
+            motion = MotionReply.model_validate(reply.value)
         except ValidationError as error:
             raise ToolBroke(
                 f"Blender's answer cannot be understood: {error.error_count()} faults", str(error)
             ) from error
         sheets = draw_sheets(motion, lambda name: folder.open_made(f"{tiles}/{name}"))
     finally:
-        sweep(place)
+        empty_folder(place)
         with suppress(OSError):
             place.rmdir()
-    pictures = tuple(Picture(png, _kept(folder.root / _FOLDER, png)) for png in sheets)
+    pictures = tuple(SavedImage(png, _kept(folder.root / _FOLDER, png)) for png in sheets)
     data = _data(motion)
     data["pictures"] = [str(picture.path.relative_to(folder.root)) for picture in pictures]
     return Result(_told(motion), data, pictures)
@@ -143,7 +143,7 @@ def _kept(folder: Path, png: bytes) -> Path:
     raise AssertionError("numbers do not end")
 
 
-def _data(motion: Motion) -> dict[str, Any]:
+def _data(motion: MotionReply) -> dict[str, Any]:
     """What a caller gets as data: the numbers, and where each actor is at the sampled frames."""
     told = motion.model_dump(exclude={"actors"}, exclude_none=True)
     told["actors"] = []
@@ -174,7 +174,7 @@ def _rounded(value: float | None) -> float | None:
 # In words
 
 
-def _told(motion: Motion) -> str:
+def _told(motion: MotionReply) -> str:
     parts = [f"Frames {motion.start}–{motion.end} at {motion.fps:g} fps, {motion.how_played}."]
     parts += motion.notes
     for actor in motion.actors:
@@ -203,7 +203,7 @@ def _states(actor: ActorMotion) -> str:
     return "; ".join(words) or "no physics, no keyframes"
 
 
-def _row(phase: Stretch) -> str:
+def _row(phase: PhaseMotion) -> str:
     name = phase.phase or "all"
     if not phase.present:
         return f"| {name} | {phase.start}–{phase.end} | not there | | | | | |"
@@ -218,6 +218,11 @@ def _row(phase: Stretch) -> str:
     )
 
 
-TOOL = Tool(
-    "blender_motion_sheet_preview", "See how things move", DESCRIPTION, MotionSheet, run, read_only=True
+TOOL = BlenderTool(
+    "blender_motion_sheet_preview",
+    "See how things move",
+    DESCRIPTION,
+    MotionSheetArguments,
+    run,
+    read_only=True,
 )

@@ -10,8 +10,8 @@ from PIL import Image
 from pydantic import Field
 
 from agents.blender.sheets import contact_sheet
-from agents.blender.sheets.text_layout import told_length
-from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
+from agents.blender.sheets.text_layout import format_length
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from simworlds.files import write_whole
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _BACKGROUND: contact_sheet.Colour = (198, 202, 208)
 _LAST_FRAME = 1_048_574
 
 
-class View(Arguments):
+class PreviewArguments(Arguments):
     """What all previews take."""
 
     frame: int | None = Field(
@@ -38,13 +38,13 @@ class View(Arguments):
     )
 
 
-class SingleMesh(View):
+class SingleMeshArguments(PreviewArguments):
     """The arguments of ``blender_single_mesh_preview``."""
 
     object: str = Field(min_length=1, max_length=200, description="Name of an object with geometry.")
 
 
-class ObjectPreview(View):
+class ObjectArguments(PreviewArguments):
     """The arguments of ``blender_object_preview``."""
 
     object: str = Field(
@@ -52,7 +52,7 @@ class ObjectPreview(View):
     )
 
 
-class Layout(View):
+class LayoutArguments(PreviewArguments):
     """What the previews of several objects take."""
 
     everything: bool = Field(
@@ -61,7 +61,7 @@ class Layout(View):
     )
 
 
-class SystemLayout(Layout):
+class SystemLayoutArguments(LayoutArguments):
     """The arguments of ``blender_system_layout_preview``."""
 
     system: str = Field(
@@ -69,7 +69,7 @@ class SystemLayout(Layout):
     )
 
 
-class SceneLayout(Layout):
+class SceneLayoutArguments(LayoutArguments):
     """The arguments of ``blender_scene_layout_preview``."""
 
 
@@ -79,38 +79,40 @@ the geometry as evaluated at the frame (modifiers, simulations, instances), in t
 the scene changes."""
 
 
-def run_single_mesh(session: Session, asked: SingleMesh, call: Call) -> Result:
+def run_single_mesh(context: ToolContext, arguments: SingleMeshArguments, call: Call) -> Result:
     """One object with geometry, alone."""
-    return _preview(session, "mesh", asked.object, asked, call)
+    return _preview(context, "mesh", arguments.object, arguments, call)
 
 
-def run_object(session: Session, asked: ObjectPreview, call: Call) -> Result:
+def run_object(context: ToolContext, arguments: ObjectArguments, call: Call) -> Result:
     """One L3, alone."""
-    return _preview(session, "object", asked.object, asked, call)
+    return _preview(context, "object", arguments.object, arguments, call)
 
 
-def run_system_layout(session: Session, asked: SystemLayout, call: Call) -> Result:
+def run_system_layout(context: ToolContext, arguments: SystemLayoutArguments, call: Call) -> Result:
     """One L2, alone."""
-    return _preview(session, "system", asked.system, asked, call)
+    return _preview(context, "system", arguments.system, arguments, call)
 
 
-def run_scene_layout(session: Session, asked: SceneLayout, call: Call) -> Result:
+def run_scene_layout(context: ToolContext, arguments: SceneLayoutArguments, call: Call) -> Result:
     """All that renders show."""
-    return _preview(session, "scene", None, asked, call)
+    return _preview(context, "scene", None, arguments, call)
 
 
-def _preview(session: Session, kind: str, name: str | None, asked: View, call: Call) -> Result:
-    folder = session.blender.folder
+def _preview(
+    context: ToolContext, kind: str, name: str | None, arguments: PreviewArguments, call: Call
+) -> Result:
+    folder = context.blender.folder
     given = {
         "kind": kind,
         "name": name,
-        "frame": asked.frame,
-        "everything": isinstance(asked, Layout) and asked.everything,
+        "frame": arguments.frame,
+        "everything": isinstance(arguments, LayoutArguments) and arguments.everything,
         "folder": str(folder.workspace),
         "size": PANEL,
     }
-    reply = session.blender.call(
-        "preview", given, timeout=asked.timeout, progress=call.progress, given_up=call.given_up
+    reply = context.blender.call(
+        "preview", given, timeout=arguments.timeout, progress=call.progress, cancelled=call.cancelled
     )
     data: dict[str, Any] = reply.value
     size = [high - low for low, high in zip(data["low"], data["high"], strict=True)]
@@ -121,7 +123,7 @@ def _preview(session: Session, kind: str, name: str | None, asked: View, call: C
     for view in data["views"]:
         del view["file"]
     data |= {"file": str(path.relative_to(folder.root)), "seconds": round(reply.seconds, 3)}
-    return Result(_told(kind, data), data, (Picture(png, path),))
+    return Result(_told(kind, data), data, (SavedImage(png, path),))
 
 
 # The sheet
@@ -146,7 +148,7 @@ def _panel(folder: RunFolder, view: dict[str, Any], size: list[float]) -> contac
 def _across(view: str, size: list[float]) -> str:
     """How far what is framed reaches along the axes that a view shows unshortened."""
     shown = {"front": "XZ", "right": "YZ", "top": "XY"}.get(view, "")
-    return " · ".join(f"{letter} {told_length(size['XYZ'.index(letter)])}" for letter in shown)
+    return " · ".join(f"{letter} {format_length(size['XYZ'.index(letter)])}" for letter in shown)
 
 
 def _sheet(kind: str, data: dict[str, Any], panels: list[contact_sheet.Panel]) -> Image.Image:
@@ -164,7 +166,7 @@ def _sheet(kind: str, data: dict[str, Any], panels: list[contact_sheet.Panel]) -
 
 def _size_of(data: dict[str, Any]) -> str:
     edges = (high - low for low, high in zip(data["low"], data["high"], strict=True))
-    return " × ".join(told_length(edge) for edge in edges)
+    return " × ".join(format_length(edge) for edge in edges)
 
 
 def _cut_away(data: dict[str, Any]) -> list[str]:
@@ -198,36 +200,36 @@ def _place(folder: RunFolder, kind: str, data: dict[str, Any]) -> Path:
     return previews / f"{number:04d}-{kind}-{plain}-frame-{data['frame']}.png"
 
 
-SINGLE_MESH = Tool(
+SINGLE_MESH = BlenderTool(
     "blender_single_mesh_preview",
     "See one mesh",
     f"See one object with geometry (mesh, curve, text, …), alone. {_ALIKE}",
-    SingleMesh,
+    SingleMeshArguments,
     run_single_mesh,
     read_only=True,
 )
-OBJECT = Tool(
+OBJECT = BlenderTool(
     "blender_object_preview",
     "See one object with all its meshes",
     f"See one object of the scene protocol (L3), alone, with all its meshes. {_ALIKE}",
-    ObjectPreview,
+    ObjectArguments,
     run_object,
     read_only=True,
 )
 _ROOMS = "Closed rooms are opened: what of their shell is towards the viewer is cut away, and named."
-SYSTEM_LAYOUT = Tool(
+SYSTEM_LAYOUT = BlenderTool(
     "blender_system_layout_preview",
     "See how one system is laid out",
     f"See one system of the scene protocol (L2) with all its objects, alone. {_ALIKE} {_ROOMS}",
-    SystemLayout,
+    SystemLayoutArguments,
     run_system_layout,
     read_only=True,
 )
-SCENE_LAYOUT = Tool(
+SCENE_LAYOUT = BlenderTool(
     "blender_scene_layout_preview",
     "See how the scene is laid out",
     f"See all that renders show, and what the scene's camera sees. {_ALIKE} {_ROOMS}",
-    SceneLayout,
+    SceneLayoutArguments,
     run_scene_layout,
     read_only=True,
 )

@@ -1,4 +1,4 @@
-"""``blender_render``: pictures and films through the scene's own camera."""
+"""``blender_render``: stills and videos through the scene's camera."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from agents.blender.render.frame_cache import Reel
-from agents.blender.render.frame_renderer import Shoot
-from agents.blender.render.image_checks import faults, shown
-from agents.blender.render.render_budget import Pace
-from agents.blender.render.render_loop import Single, Taken, take
-from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
+from agents.blender.formatting import format_count, format_list
+from agents.blender.render.frame_cache import FrameCache
+from agents.blender.render.frame_renderer import FrameRenderer
+from agents.blender.render.image_checks import image_faults, preview_png
+from agents.blender.render.render_budget import RenderBudget
+from agents.blender.render.render_loop import RenderOutcome, StillStore, render_frames
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from simworlds.sandbox.errors import BlenderError, Refusal
 
 if TYPE_CHECKING:
@@ -25,26 +26,26 @@ _Frame = Annotated[int, Field(ge=-_FAR, le=_FAR)]
 _Side = Annotated[int, Field(ge=4, le=8192)]
 
 
-class Render(Arguments):
+class RenderArguments(Arguments):
     """The arguments of ``blender_render``."""
 
     kind: Literal["still", "animation"] = Field(
-        default="still", description="One picture, or frames and a video."
+        default="still", description="One image, or frames and a video."
     )
     name: str | None = Field(
         default=None,
         pattern=r"^[\w()+-][\w ().+-]{0,79}$",
-        description="What the result is called; by default 'still' or 'animation'.",
+        description="Name of the result; by default 'still' or 'animation'.",
     )
     frame: _Frame | None = Field(default=None, description="Of a still; by default the current frame.")
     frame_start: _Frame | None = Field(default=None, description="Of an animation; by default the scene's.")
     frame_end: _Frame | None = Field(default=None, description="Of an animation; by default the scene's.")
     step: int = Field(
-        default=1, ge=1, le=1000, description="Render every step-th frame; the video holds each so long."
+        default=1, ge=1, le=1000, description="Render every step-th frame; the video repeats each so often."
     )
     camera: str | None = Field(default=None, max_length=256, description="By default the scene's.")
     engine: Literal["cycles", "eevee", "workbench"] | None = Field(
-        default=None, description="By default the scene's; Cycles for EEVEE where there is no GPU."
+        default=None, description="By default the scene's; Cycles instead of EEVEE without a GPU."
     )
     samples: int | None = Field(default=None, ge=1, le=65536, description="By default the scene's.")
     denoise: bool | None = Field(default=None, description="Cycles only; by default the scene's.")
@@ -55,7 +56,7 @@ class Render(Arguments):
         default=None,
         ge=1,
         le=1e6,
-        description="Seconds for all of it: samples are lowered first, then frames left out.",
+        description="Seconds for the whole call: samples are lowered first, then frames left out.",
     )
     video: bool = Field(
         default=True, description="Make an MP4 (H.264) of an animation, at the scene's frame rate."
@@ -65,7 +66,7 @@ class Render(Arguments):
     )
 
     @model_validator(mode="after")
-    def _fit(self) -> Render:
+    def _fit(self) -> RenderArguments:
         frames = self.frame_start is not None or self.frame_end is not None or self.step != 1
         if self.kind == "still" and frames:
             raise ValueError("frame_start, frame_end and step belong to kind='animation'; a still has frame")
@@ -78,92 +79,95 @@ class Render(Arguments):
 
 DESCRIPTION = """\
 Render what the camera sees: a still (PNG), or an animation (PNG frames and an MP4 video). The scene and its settings \
-stay as they are. Frames that are there already under the same `name`, whole and made of the same scene with the same \
-settings, are kept, so a call that was broken off goes on where it stopped; frames of an earlier state are replaced. \
-Physics that is not baked is stepped through from its first frame, never jumped: bake first, it is faster. With \
-`time_budget` (seconds) fewer samples are taken, and only as a last resort frames left out; the reply tells. Begin \
-with a small still of few samples, and look at it. Returns the picture, or frames from start, middle and end."""
+stay as they are. Complete frames that already exist under the same `name`, made of the same scene with the same \
+settings, are kept, so a call that broke off continues where it stopped; frames of an earlier state are replaced. \
+Physics that is not baked is stepped from its first frame, never jumped; baking first is faster. With `time_budget` \
+(seconds) fewer samples are taken, and only as a last resort frames are left out; the reply says so. Start with a \
+small still of few samples, and look at it. Returns the image, or frames from start, middle and end."""
 
 
-def run(session: Session, asked: Render, call: Call) -> Result:
-    """Renders; tells what was made, and of what had to give way."""
-    blender = session.blender
-    name = asked.name or asked.kind
-    wanted = asked.model_dump(
+def run(context: ToolContext, arguments: RenderArguments, call: Call) -> Result:
+    """Renders a still or an animation."""
+    blender = context.blender
+    name = arguments.name or arguments.kind
+    wanted = arguments.model_dump(
         include={"engine", "samples", "denoise", "width", "height", "percentage", "camera"}
     )
-    wanted["even"] = asked.kind == "animation" and asked.video
+    wanted["even"] = arguments.kind == "animation" and arguments.video
     still = blender.folder.place_for(f"renders/{name}", ".png")
     frames = blender.folder.place_for(f"frames/{name}/0001", ".png").parent
     video = blender.folder.place_for(name, ".mp4")
-    with blender.alone(), Shoot(blender, call, wanted, asked.timeout) as shoot:
-        if asked.kind == "still":
-            return _still(shoot, asked, call, still)
-        return _animation(shoot, asked, call, frames, video if asked.video else None)
+    with blender.alone(), FrameRenderer(blender, call, wanted, arguments.timeout) as renderer:
+        if arguments.kind == "still":
+            return _still(renderer, arguments, call, still)
+        return _animation(renderer, arguments, call, frames, video if arguments.video else None)
 
 
-def _still(shoot: Shoot, asked: Render, call: Call, path: Path) -> Result:
-    pace = _pace(shoot, asked)
-    frame = shoot.standing("current") if asked.frame is None else asked.frame
-    place = Single(path)
-    taken = take(shoot, place, [frame], call, pace)
-    if not taken.made:
-        raise Refusal("Rendering was given up.")
-    made = place.made(frame)
-    data = _data(shoot, asked, taken, made.samples if made else None)
+def _still(renderer: FrameRenderer, arguments: RenderArguments, call: Call, path: Path) -> Result:
+    frame = renderer.scene_value("current") if arguments.frame is None else arguments.frame
+    store = StillStore(path)
+    outcome = render_frames(renderer, store, [frame], call, _budget(renderer, arguments))
+    if not outcome.made:
+        raise Refusal("Rendering was cancelled.")
+    rendered = store.get(frame)
+    data = _data(renderer, arguments, outcome, rendered.samples if rendered else None)
     data.update(path=str(path), frame=frame)
-    data["warnings"] = faults([path])
-    return Result(_told(shoot, data, taken), data, (Picture(shown(path), path),))
+    data["warnings"] = image_faults([path])
+    return Result(_text(renderer, data, outcome), data, (SavedImage(preview_png(path), path),))
 
 
-def _animation(shoot: Shoot, asked: Render, call: Call, folder: Path, video: Path | None) -> Result:
-    first, last = _range(shoot, asked)
-    pace = _pace(shoot, asked)
-    reel = Reel(folder, shoot.scene, shoot.shot)
-    frames = list(range(first, last + 1, asked.step))
-    taken = take(shoot, reel, frames, call, pace)
-    fewest = min((made.samples or 0 for frame in taken.there if (made := reel.made(frame))), default=0)
-    data = _data(shoot, asked, taken, fewest or None)
-    data.update(path=str(folder), frame_start=first, frame_end=last, step=asked.step, video=None)
-    data["discarded"] = {"frames": reel.stale, "why": reel.why} if reel.stale else None
-    if video is not None and not taken.stopped:
+def _animation(
+    renderer: FrameRenderer, arguments: RenderArguments, call: Call, folder: Path, video: Path | None
+) -> Result:
+    first, last = _range(renderer, arguments)
+    budget = _budget(renderer, arguments)
+    cache = FrameCache(folder, renderer.scene, renderer.shot)
+    frames = list(range(first, last + 1, arguments.step))
+    outcome = render_frames(renderer, cache, frames, call, budget)
+    rendered = [frame for number in outcome.available if (frame := cache.get(number))]
+    fewest = min((frame.samples or 0 for frame in rendered), default=0)
+    data = _data(renderer, arguments, outcome, fewest or None)
+    data.update(path=str(folder), frame_start=first, frame_end=last, step=arguments.step, video=None)
+    data["discarded"] = {"frames": cache.removed, "why": cache.why} if cache.removed else None
+    if video is not None and not outcome.stopped:
         try:
-            data["video"] = _film(shoot, reel, taken, range(first, last + 1), video)
+            data["video"] = _video(renderer, cache, outcome, range(first, last + 1), video)
         except BlenderError as error:
-            taken.stopped = f"the video could not be made: {error}"
-    seen = [reel.path(frame) for frame in _sampled(taken.there)]
-    data["warnings"] = faults(seen)
-    data["complete"] = not taken.stopped
-    pictures = tuple(Picture(shown(path), path) for path in seen)
-    return Result(_told(shoot, data, taken), data, pictures, failed=bool(taken.stopped))
+            outcome.stopped = f"the video could not be made: {error}"
+    samples = [cache.path(number) for number in _sampled(outcome.available)]
+    data["warnings"] = image_faults(samples)
+    data["complete"] = not outcome.stopped
+    images = tuple(SavedImage(preview_png(path), path) for path in samples)
+    return Result(_text(renderer, data, outcome), data, images, failed=bool(outcome.stopped))
 
 
-def _pace(shoot: Shoot, asked: Render) -> Pace | None:
-    return Pace(asked.time_budget, shoot.shot["samples"]) if asked.time_budget is not None else None
+def _budget(renderer: FrameRenderer, arguments: RenderArguments) -> RenderBudget | None:
+    if arguments.time_budget is None:
+        return None
+    return RenderBudget(arguments.time_budget, renderer.shot["samples"])
 
 
-def _range(shoot: Shoot, asked: Render) -> tuple[int, int]:
-    first = shoot.standing("frame_start") if asked.frame_start is None else asked.frame_start
-    last = shoot.standing("frame_end") if asked.frame_end is None else asked.frame_end
+def _range(renderer: FrameRenderer, arguments: RenderArguments) -> tuple[int, int]:
+    first = renderer.scene_value("frame_start") if arguments.frame_start is None else arguments.frame_start
+    last = renderer.scene_value("frame_end") if arguments.frame_end is None else arguments.frame_end
     if last < first:
-        raise Refusal(
-            f"Frames {first} to {last} are no range: frame_end must not be smaller than frame_start."
-        )
+        raise Refusal(f"frame_end ({last}) must not be smaller than frame_start ({first}).")
     if last - first >= _MOST_FRAMES:
-        raise Refusal(f"Frames {first} to {last} are more than {_MOST_FRAMES:,}.")
+        raise Refusal(f"Frames {first} to {last} are more than {_MOST_FRAMES:,}; render a shorter range.")
     return first, last
 
 
-def _film(shoot: Shoot, reel: Reel, taken: Taken, frames: range, target: Path) -> dict[str, Any]:
-    """A frame that was not made is held from the one before it, so that the film keeps its time."""
-    there = {*taken.there}
-    shown_at = frames[0]
-    pictures: list[Path] = []
+def _video(
+    renderer: FrameRenderer, cache: FrameCache, outcome: RenderOutcome, frames: range, target: Path
+) -> dict[str, Any]:
+    """Makes the video. A frame that was not rendered repeats the one before it, so that the video keeps its time."""
+    available = {*outcome.available}
+    shown = frames[0]
+    images: list[Path] = []
     for frame in frames:
-        shown_at = frame if frame in there else shown_at
-        pictures.append(reel.path(shown_at))
-    found = shoot.film(pictures, target)
-    return {"path": str(target), **found}
+        shown = frame if frame in available else shown
+        images.append(cache.path(shown))
+    return {"path": str(target), **renderer.make_video(images, target)}
 
 
 def _sampled(frames: list[int]) -> list[int]:
@@ -171,51 +175,49 @@ def _sampled(frames: list[int]) -> list[int]:
     return sorted({frames[0], frames[len(frames) // 2], frames[-1]}) if frames else []
 
 
-# What is told
+# The reply
 
 
-def _data(shoot: Shoot, asked: Render, taken: Taken, samples: int | None) -> dict[str, Any]:
-    shot = shoot.shot
+def _data(
+    renderer: FrameRenderer, arguments: RenderArguments, outcome: RenderOutcome, samples: int | None
+) -> dict[str, Any]:
+    shot, frame_seconds = renderer.shot, outcome.frame_seconds
     return {
-        "kind": asked.kind,
+        "kind": arguments.kind,
         **{key: shot[key] for key in ("camera", "engine", "device", "width", "height", "denoise")},
         "samples": samples,
         "samples_asked": shot["samples"],
-        "made": len(taken.made),
-        "kept": len(taken.kept),
-        "dropped": taken.dropped[:_LISTED],
-        "dropped_count": len(taken.dropped),
-        "missing_count": len(taken.missing),
-        "seconds": round(taken.seconds, 2),
-        "seconds_per_frame": round(taken.each, 2) if taken.each is not None else None,
-        "unbaked": [one["label"] for one in shoot.unbaked],
-        "notes": shoot.notes,
-        "stopped": taken.stopped,
+        "made": len(outcome.made),
+        "kept": len(outcome.kept),
+        "dropped": outcome.dropped[:_LISTED],
+        "dropped_count": len(outcome.dropped),
+        "missing_count": len(outcome.missing),
+        "seconds": round(outcome.seconds, 2),
+        "seconds_per_frame": round(frame_seconds, 2) if frame_seconds is not None else None,
+        "unbaked": [cache["label"] for cache in renderer.unbaked],
+        "notes": renderer.notes,
+        "stopped": outcome.stopped,
     }
 
 
-def _told(shoot: Shoot, data: dict[str, Any], taken: Taken) -> str:
-    samples, asked = data["samples"], data["samples_asked"]
+def _text(renderer: FrameRenderer, data: dict[str, Any], outcome: RenderOutcome) -> str:
+    samples, wanted = data["samples"], data["samples_asked"]
     parts = [f"{data['width']}×{data['height']}", _engine(data)]
     if samples is not None:
-        parts.append(_count(samples, "sample") + (", denoised" if data["denoise"] else ""))
-    how = f"seen by {data['camera']!r}, {', '.join(parts)}"
+        parts.append(format_count(samples, "sample") + (", denoised" if data["denoise"] else ""))
+    how = f"camera {data['camera']!r}, {', '.join(parts)}"
     if data["kind"] == "still":
-        lines = [f"Rendered frame {data['frame']}, {how}, in {data['seconds']:.1f} s: {data['path']}"]
+        lines = [f"Rendered frame {data['frame']} ({how}) in {data['seconds']:.1f} s: {data['path']}"]
     else:
-        lines = [*_told_frames(data, taken, how)]
-    if samples is not None and samples < asked:
-        lines.append(f"- To keep the time budget, {_count(samples, 'sample')} instead of {asked}.")
-    if taken.dropped:
-        lines.append(
-            f"- To keep the time budget, left out {_count(len(taken.dropped), 'frame')}: {_frames(taken.dropped)}."
-        )
+        lines = _animation_lines(data, outcome, how)
+    if samples is not None and samples < wanted:
+        lines.append(f"- To keep the time budget: {format_count(samples, 'sample')} instead of {wanted}.")
+    if outcome.dropped:
+        count = format_count(len(outcome.dropped), "frame")
+        lines.append(f"- To keep the time budget, {count} left out: {_format_frames(outcome.dropped)}.")
     if data["unbaked"]:
-        lines.append(
-            "- Not baked, so it was stepped through from its first frame: " + ", ".join(data["unbaked"][:_NAMED])
-            + (f" and {len(data['unbaked']) - _NAMED} more" if len(data["unbaked"]) > _NAMED else "") + "."
-        )  # fmt: skip
-    lines += [f"- {note}" for note in shoot.notes]
+        lines.append(f"- Not baked, so stepped from the first frame: {format_list(data['unbaked'], _NAMED)}.")
+    lines += [f"- {note}" for note in renderer.notes]
     lines += [f"- **{warning}**" for warning in data["warnings"]]
     return "\n".join(lines)
 
@@ -226,35 +228,33 @@ def _engine(data: dict[str, Any]) -> str:
     return f"{word} on the {data['device']}"
 
 
-def _told_frames(data: dict[str, Any], taken: Taken, how: str) -> list[str]:
-    there = taken.there
-    each = f", {data['seconds_per_frame']} s a frame" if taken.made else ""
-    lines = [f"{_count(len(taken.made), 'frame')} rendered in {data['seconds']:.1f} s{each}; {how}."]
-    if taken.stopped:
-        lines.insert(
-            0, f"**Not finished**: {taken.stopped.rstrip('.')}. Call again with the same arguments to go on."
-        )
-    if taken.kept:
-        lines.append(f"- Kept, since already there: {_count(len(taken.kept), 'frame')}.")
-    if found := data["discarded"]:
-        lines.append(f"- Removed {_count(found['frames'], 'frame')} of an earlier state: {found['why']}.")
-    if taken.missing:
-        lines.append(f"- Missing: {_frames(taken.missing)}.")
-    lines.append(f"- Frames {_frames(there) or '(none)'}: {data['path']}")
-    if film := data["video"]:
-        length = film["frames"] / film["fps"]
+def _animation_lines(data: dict[str, Any], outcome: RenderOutcome, how: str) -> list[str]:
+    lines: list[str] = []
+    if outcome.stopped:
+        why = outcome.stopped.rstrip(".")
+        lines.append(f"**Not finished**: {why}. Call again with the same arguments to continue.")
+    each = f", {data['seconds_per_frame']} s a frame" if outcome.made else ""
+    lines.append(
+        f"{format_count(len(outcome.made), 'frame')} rendered in {data['seconds']:.1f} s{each} ({how})."
+    )
+    if outcome.kept:
+        lines.append(f"- Kept from before: {format_count(len(outcome.kept), 'frame')}.")
+    if discarded := data["discarded"]:
+        count = format_count(discarded["frames"], "frame")
+        lines.append(f"- Removed {count} of an earlier state: {discarded['why']}.")
+    if outcome.missing:
+        lines.append(f"- Missing: {_format_frames(outcome.missing)}.")
+    lines.append(f"- Frames {_format_frames(outcome.available) or '(none)'}: {data['path']}")
+    if video := data["video"]:
+        length = video["frames"] / video["fps"]
         lines.append(
-            f"- Video: {film['path']}, {film['frames']} frames at {film['fps']:g} a second ({length:.1f} s), H.264"
+            f"- Video: {video['path']}, {video['frames']} frames at {video['fps']:g} fps ({length:.1f} s), H.264"
         )
     return lines
 
 
-def _count(number: int, word: str) -> str:
-    return f"{number:,} {word}" + ("" if number == 1 else "s")
-
-
-def _frames(frames: list[int]) -> str:
-    """1–9, or 1–9 by 2, or as many as can be read."""
+def _format_frames(frames: list[int]) -> str:
+    """1–9, or 1–9 by 2, or the first few."""
     if len(frames) < 3:
         return ", ".join(map(str, frames))
     step = frames[1] - frames[0]
@@ -263,4 +263,4 @@ def _frames(frames: list[int]) -> str:
     return ", ".join(map(str, frames[:_NAMED])) + (f" … {frames[-1]}" if len(frames) > _NAMED else "")
 
 
-TOOL = Tool("blender_render", "Render", DESCRIPTION, Render, run, read_only=False, destructive=True)
+TOOL = BlenderTool("blender_render", "Render", DESCRIPTION, RenderArguments, run, destructive=True)

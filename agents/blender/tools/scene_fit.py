@@ -24,12 +24,12 @@ def tokens(text: str) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class ReadoutItem:
     """What is told or left out as a whole: its text, the same as JSON, and how many things it stands for."""
 
     text: str
     data: dict[str, Any]
-    things: int = 1
+    count: int = 1
 
     @property
     def cost(self) -> int:
@@ -39,28 +39,28 @@ class Piece:
 
 
 @dataclass(slots=True)
-class Section:
+class ReadoutSection:
     """A part of the readout; ``weight``: its share of room that does not suffice for all."""
 
     name: str
-    pieces: Sequence[Piece]
+    items: Sequence[ReadoutItem]
     weight: int = 1
     unread: int = 0
-    shown: list[Piece] = field(default_factory=list[Piece])
+    shown: list[ReadoutItem] = field(default_factory=list[ReadoutItem])
 
     @property
     def left_out(self) -> int:
         """How many things behind the shown ones are not told."""
-        return sum(piece.things for piece in self.pieces[len(self.shown) :]) + self.unread
+        return sum(piece.count for piece in self.items[len(self.shown) :]) + self.unread
 
 
-def share_out(sections: Sequence[Section], room: int, footer: int) -> None:
+def share_tokens(sections: Sequence[ReadoutSection], room: int, footer: int) -> None:
     """Gives each section what it needs where there is enough, and its share of the rest where there is not.
 
     ``footer``: tokens for the line below a section that is not shown whole. Sets ``shown``.
     """
     left = room - HEADING * len(sections)
-    needs = {section.name: sum(piece.cost for piece in section.pieces) for section in sections}
+    needs = {section.name: sum(piece.cost for piece in section.items) for section in sections}
     waiting = list(sections)
     while waiting:
         weights, free = sum(section.weight for section in waiting), left - footer * len(waiting)
@@ -69,7 +69,7 @@ def share_out(sections: Sequence[Section], room: int, footer: int) -> None:
             break
         for section in content:
             left -= needs[section.name]
-            section.shown = list(section.pieces)
+            section.shown = list(section.items)
         waiting = [section for section in waiting if section not in content]
     left -= footer * len(waiting)
     weights, shared = sum(section.weight for section in waiting), left
@@ -79,14 +79,14 @@ def share_out(sections: Sequence[Section], room: int, footer: int) -> None:
         left -= _fill(section, left)
     for section in waiting:
         # Alone it has all the room there is; among others the call that shows it is named instead.
-        if not section.shown and len(sections) == 1 and (first := _cut(section.pieces[0], left)) is not None:
+        if not section.shown and len(sections) == 1 and (first := _cut(section.items[0], left)) is not None:
             section.shown.append(first)
 
 
-def _fill(section: Section, room: int) -> int:
+def _fill(section: ReadoutSection, room: int) -> int:
     """Shows as many more pieces as fit; returns what they cost."""
     used = 0
-    for piece in section.pieces[len(section.shown) :]:
+    for piece in section.items[len(section.shown) :]:
         if used + piece.cost > room:
             break
         used += piece.cost
@@ -94,7 +94,7 @@ def _fill(section: Section, room: int) -> int:
     return used
 
 
-def _cut(piece: Piece, room: int) -> Piece | None:
+def _cut(piece: ReadoutItem, room: int) -> ReadoutItem | None:
     """The beginning of a piece that is larger than all the room there is; None where not even that fits."""
     note = "  … cut: raise max_tokens"
     kept: list[str] = []
@@ -108,4 +108,4 @@ def _cut(piece: Piece, room: int) -> Piece | None:
         if room < _LEAST_ROOM:
             return None
         kept = [piece.text[: room // 2]]
-    return Piece("\n".join([*kept, note]), {"name": piece.data.get("name"), "cut": True}, piece.things)
+    return ReadoutItem("\n".join([*kept, note]), {"name": piece.data.get("name"), "cut": True}, piece.count)

@@ -10,8 +10,8 @@ from pydantic import Field
 
 from agents.blender.tools import scene_dynamics as dynamics
 from agents.blender.tools import scene_words as words
-from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
-from agents.blender.tools.scene_fit import Piece, Section, share_out, tokens
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from agents.blender.tools.scene_fit import ReadoutItem, ReadoutSection, share_tokens, tokens
 from agents.blender.tools.scene_fold import fold, fold_tree, series
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ DATA_BLOCKS: SectionName = "data_blocks"
 _OF_SUMMARY: tuple[SectionName, ...] = ("collections", "physics", "animation", "view")
 
 
-class SceneState(Arguments):
+class SceneStateArguments(Arguments):
     """The arguments of ``blender_scene_state``."""
 
     detail: Literal["summary", "normal", "full"] = Field(
@@ -73,39 +73,39 @@ world, render settings; and, marked with !, what looks wrong. Long series are fo
 What does not fit is counted, with the call that shows it."""
 
 
-def run(session: Session, asked: SceneState, call: Call) -> Result:
+def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Result:
     """Reads the scene; fits what it read into ``max_tokens``."""
-    usual = _OF_SUMMARY if asked.detail == "summary" else tuple(_TITLES)
-    names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (asked.sections or usual)]
-    reply = session.blender.call(
+    usual = _OF_SUMMARY if arguments.detail == "summary" else tuple(_TITLES)
+    names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (arguments.sections or usual)]
+    reply = context.blender.call(
         "scene_state",
-        {"detail": asked.detail, "objects": asked.objects, "sections": names},
+        {"detail": arguments.detail, "objects": arguments.objects, "sections": names},
         timeout=TIMEOUT,
         progress=call.progress,
-        given_up=call.given_up,
+        cancelled=call.cancelled,
     )
-    return readout(reply.value, asked)
+    return readout(reply.value, arguments)
 
 
-def readout(facts: dict[str, Any], asked: SceneState) -> Result:
+def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
     """The facts in words and as data, both within ``max_tokens``."""
     sections = [
-        Section(name, _pieces(name, facts[name], asked), weight, facts["unread"].get(name, 0))
+        ReadoutSection(name, _items(name, facts[name], arguments), weight, facts["unread"].get(name, 0))
         for name, (_, weight) in _TITLES.items()
         if name in facts
     ]
-    head = _clipped(words.scene(facts), asked.max_tokens // 4)
-    sections = [section for section in sections if section.pieces or asked.sections]
-    footer = max((tokens(_footer(section, asked)) for section in sections), default=0) + 1
-    share_out(sections, asked.max_tokens - tokens(head), footer)
+    head = _clipped(words.scene(facts), arguments.max_tokens // 4)
+    sections = [section for section in sections if section.items or arguments.sections]
+    footer = max((tokens(_footer(section, arguments)) for section in sections), default=0) + 1
+    share_tokens(sections, arguments.max_tokens - tokens(head), footer)
     data: dict[str, Any] = {"scene": facts["scene"], "notes": facts["notes"], "left_out": {}}
     data |= {name: [] for name in _TITLES if name in facts}
     parts = [head]
     for section in sections:
-        parts.append(_told(section, facts, asked))
+        parts.append(_told(section, facts, arguments))
         data[section.name] = [piece.data for piece in section.shown]
         if section.left_out:
-            data["left_out"][section.name] = {"count": section.left_out, "call": _next(section, asked)}
+            data["left_out"][section.name] = {"count": section.left_out, "call": _next(section, arguments)}
     if (blocks := facts.get(DATA_BLOCKS)) is not None:
         parts.append(_counted(blocks["digests"]))
         data |= {
@@ -114,7 +114,7 @@ def readout(facts: dict[str, Any], asked: SceneState) -> Result:
             "data_block_uses": blocks["uses"],
             "tagged": blocks["tagged"],
         }
-    return Result(_clipped("\n\n".join(parts), asked.max_tokens), data)
+    return Result(_clipped("\n\n".join(parts), arguments.max_tokens), data)
 
 
 def _counted(blocks: dict[str, str]) -> str:
@@ -124,32 +124,34 @@ def _counted(blocks: dict[str, str]) -> str:
     return f"## Data-blocks ({len(blocks):,})\n{told}. Their digests are in the structured data."
 
 
-def _pieces(name: SectionName, entries: list[Entry], asked: SceneState) -> list[Piece]:
+def _items(name: SectionName, entries: list[Entry], arguments: SceneStateArguments) -> list[ReadoutItem]:
     """What a section tells, from the entry on that the caller wants to begin with."""
-    full, summary = asked.detail == "full", asked.detail == "summary"
+    full, summary = arguments.detail == "full", arguments.detail == "summary"
     if name == "collections":
         entries = [_with_series(entry) for entry in entries]
-        entries = fold_tree(entries) if asked.objects is None else entries
+        entries = fold_tree(entries) if arguments.objects is None else entries
     elif name == "animation" and not full:
         entries = [dynamics.counted(entry) if summary else _shortened(entry) for entry in entries]
     elif name == "physics" and summary:
         entries = dynamics.by_kind(entries)
-    if asked.objects is None and name != "collections":
+    if arguments.objects is None and name != "collections":
         entries = fold(entries)
         if len(entries) > _TOO_MANY:
             entries = fold(entries, by_name=False)
     if name == "animation" and full:
         entries = _in_parts(entries)
-    listed = summary or "objects" not in (asked.sections or _TITLES)
+    listed = summary or "objects" not in (arguments.sections or _TITLES)
     write: dict[SectionName, Callable[[Entry], str]] = {
         "collections": lambda entry: words.collection(entry, names=listed),
-        "objects": words.thing,
+        "objects": words.scene_object,
         "physics": dynamics.physics,
         "animation": dynamics.animation,
         "materials": words.material,
         "view": words.view,
     }
-    return [Piece(write[name](entry), entry, entry.get("count", 1)) for entry in entries[asked.start :]]
+    return [
+        ReadoutItem(write[name](entry), entry, entry.get("count", 1)) for entry in entries[arguments.start :]
+    ]
 
 
 def _with_series(entry: Entry) -> Entry:
@@ -181,34 +183,34 @@ def _in_parts(entries: list[Entry]) -> list[Entry]:
     return found
 
 
-def _told(section: Section, facts: dict[str, Any], asked: SceneState) -> str:
+def _told(section: ReadoutSection, facts: dict[str, Any], arguments: SceneStateArguments) -> str:
     """A section with its heading, and with the call that shows what is not in it."""
     title, _ = _TITLES[cast("SectionName", section.name)]
     total = facts["unread"].get(section.name, 0) + len(facts[section.name])
     lines = [f"## {title} ({total:,})", *(piece.text for piece in section.shown)]
     if section.left_out:
-        lines.append(_footer(section, asked))
+        lines.append(_footer(section, arguments))
     return "\n".join(lines)
 
 
-def _footer(section: Section, asked: SceneState) -> str:
+def _footer(section: ReadoutSection, arguments: SceneStateArguments) -> str:
     only = f"; {section.unread:,} of them only with objects=[…]" if section.unread else ""
-    return f"… {section.left_out:,} more: {_next(section, asked)}{only}"
+    return f"… {section.left_out:,} more: {_next(section, arguments)}{only}"
 
 
-def _next(section: Section, asked: SceneState) -> str:
+def _next(section: ReadoutSection, arguments: SceneStateArguments) -> str:
     """The call that goes on where a section ends."""
     given: list[str] = []
-    if asked.objects is not None:
-        objects = json.dumps(asked.objects, ensure_ascii=False)
+    if arguments.objects is not None:
+        objects = json.dumps(arguments.objects, ensure_ascii=False)
         given.append(f"objects={objects if len(objects) <= _LONGEST_OBJECTS else '[… as before]'}")
     given.append(f'sections=["{section.name}"]')
-    if asked.detail != "normal":
-        given.append(f'detail="{asked.detail}"')
-    if start := asked.start + len(section.shown):
+    if arguments.detail != "normal":
+        given.append(f'detail="{arguments.detail}"')
+    if start := arguments.start + len(section.shown):
         given.append(f"start={start}")
-    if asked.max_tokens != SceneState.model_fields["max_tokens"].default:
-        given.append(f"max_tokens={asked.max_tokens}")
+    if arguments.max_tokens != SceneStateArguments.model_fields["max_tokens"].default:
+        given.append(f"max_tokens={arguments.max_tokens}")
     return f"blender_scene_state({', '.join(given)})"
 
 
@@ -226,4 +228,6 @@ def _clipped(text: str, room: int) -> str:
     return "\n".join([*kept, "…"])
 
 
-TOOL = Tool("blender_scene_state", "Read the scene", DESCRIPTION, SceneState, run, read_only=True)
+TOOL = BlenderTool(
+    "blender_scene_state", "Read the scene", DESCRIPTION, SceneStateArguments, run, read_only=True
+)

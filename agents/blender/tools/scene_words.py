@@ -137,7 +137,7 @@ def collection(entry: Entry, *, names: bool) -> str:
     )
 
 
-def thing(entry: Entry) -> str:
+def scene_object(entry: Entry) -> str:
     """An object: a line for itself, one each for modifiers and constraints."""
     head = f"- {titled(entry, entry['type'])} in {', '.join(entry['in'])}"
     lines = [joined(head, [*_place(entry), *_look(entry), *_tags(entry)])]

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import ConfigDict, Field
 
-from agents.blender.tools.base import Arguments, Call, Result, Session, Tool
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.protocol import vocabulary
 from agents.protocol.vocabulary import DeformationKind, MotionKind, Role, meaning_of
 from simworlds.sandbox.errors import Refusal
@@ -27,7 +27,7 @@ class _Tags(Arguments):
 
     name: str = _NAME
 
-    def asked(self) -> tuple[str, dict[str, Any]]:
+    def for_worker(self) -> tuple[str, dict[str, Any]]:
         """(name, {property: value, None to remove it})."""
         given = self.model_dump(include=self.model_fields_set - {"name"})
         return self.name, {vocabulary.PROTOCOL_ROLE if key == "role" else key: given[key] for key in given}
@@ -61,7 +61,7 @@ class ObjectTags(_Tags):
     )
 
 
-class TagObject(Arguments):
+class TagArguments(Arguments):
     """The arguments of ``blender_tag_object``."""
 
     model_config = ConfigDict(json_schema_extra=_without_defaults)
@@ -87,24 +87,24 @@ reply tells the tags as they now are and what the protocol still misses there. T
 saved with the file; this tool makes and moves nothing: blender_group makes collections, roots and parents, and tags."""
 
 
-def run(session: Session, asked: TagObject, call: Call) -> Result:
+def run(context: ToolContext, arguments: TagArguments, call: Call) -> Result:
     """Tags; tells what the tags are now."""
     scene: dict[str, Any] = {}
-    if vocabulary.STRICT_GROUNDING in asked.model_fields_set:
-        scene[vocabulary.STRICT_GROUNDING] = asked.strict_grounding
-    if not (asked.collections or asked.objects or scene):
+    if vocabulary.STRICT_GROUNDING in arguments.model_fields_set:
+        scene[vocabulary.STRICT_GROUNDING] = arguments.strict_grounding
+    if not (arguments.collections or arguments.objects or scene):
         raise Refusal("Nothing is named: give collections, objects or strict_grounding.")
-    reply = session.blender.call(
+    reply = context.blender.call(
         "tag",
         {
-            "collections": [one.asked() for one in asked.collections],
-            "objects": [one.asked() for one in asked.objects],
+            "collections": [one.for_worker() for one in arguments.collections],
+            "objects": [one.for_worker() for one in arguments.objects],
             "scene": scene,
         },
         timeout=_SECONDS,
         changes=True,
         after="after tagging",
-        given_up=call.given_up,
+        cancelled=call.cancelled,
     )
     return Result(_told(reply.value), dict(reply.value))
 
@@ -131,4 +131,4 @@ def _list(tags: dict[str, Any]) -> str:
     )
 
 
-TOOL = Tool("blender_tag_object", "Tag for the scene protocol", DESCRIPTION, TagObject, run)
+TOOL = BlenderTool("blender_tag_object", "Tag for the scene protocol", DESCRIPTION, TagArguments, run)

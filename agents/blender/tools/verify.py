@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from agents.blender.sheets.findings_sheet import draw_findings
-from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.verification import verify_scene
 from agents.protocol.report.report import Checked, as_json, as_text
 from agents.protocol.verify_request import plan_from, rules_named
@@ -24,7 +24,7 @@ _FAULTS = 20
 _SECONDS = 60.0
 
 
-class Verify(Arguments):
+class VerifyArguments(Arguments):
     """The arguments of ``blender_verify``."""
 
     plan: dict[str, Any] | None = Field(
@@ -54,12 +54,12 @@ not be decided is told as such. The scene stays as it is; frames of unbaked simu
 first. Call it after every change that may have broken something."""
 
 
-def run(session: Session, asked: Verify, call: Call) -> Result:
+def run(context: ToolContext, arguments: VerifyArguments, call: Call) -> Result:
     """Judges the open scene."""
-    rules, plan = _rules(asked.rules), _plan(asked.plan)
-    blender = session.blender
+    rules, plan = _rules(arguments.rules), _plan(arguments.plan)
+    blender = context.blender
     with blender.alone():
-        stands = blender.call("stand_at", {"frame": None}, timeout=_SECONDS, given_up=call.given_up).value
+        stands = blender.call("stand_at", {"frame": None}, timeout=_SECONDS, cancelled=call.cancelled).value
         report = verify_scene(blender, rules, plan, call)
         checked = Checked(
             rules,
@@ -69,7 +69,7 @@ def run(session: Session, asked: Verify, call: Call) -> Result:
             plan=plan.title if plan else "",
         )
         text, data = as_text(report, checked), as_json(report, checked)
-        if not asked.image:
+        if not arguments.image:
             return Result(text, data)
         try:
             png = draw_findings(blender, report, call, checked.title)
@@ -78,7 +78,7 @@ def run(session: Session, asked: Verify, call: Call) -> Result:
     path = _place(blender.folder)
     path.write_bytes(png)
     told = f"{text}\n\nThe picture is saved as {path.relative_to(blender.folder.root)}."
-    return Result(told, data, (Picture(png, path),))
+    return Result(told, data, (SavedImage(png, path),))
 
 
 def _rules(wanted: list[str] | None) -> tuple[Rule, ...]:
@@ -108,4 +108,4 @@ def _place(folder: RunFolder) -> Path:
     return previews / f"{number:04d}-findings.png"
 
 
-TOOL = Tool("blender_verify", "Verify the scene", DESCRIPTION, Verify, run, read_only=True)
+TOOL = BlenderTool("blender_verify", "Verify the scene", DESCRIPTION, VerifyArguments, run, read_only=True)

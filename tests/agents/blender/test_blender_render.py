@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from PIL import Image
 
-from agents.blender.render.image_checks import LARGEST_SHOWN, faults, shown
-from agents.blender.render.render_budget import LEAST, Pace
+from agents.blender.render.image_checks import LARGEST_PREVIEW, image_faults, preview_png
+from agents.blender.render.render_budget import LEAST, RenderBudget
 from agents.blender.tools.base import Call, Result
 from agents.blender.tools.render import TOOL
 from simworlds.sandbox.errors import Refusal
@@ -21,7 +21,7 @@ from simworlds.sandbox.errors import Refusal
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -87,34 +87,34 @@ def where(path: Path) -> tuple[float, float]:
     return right / width * 8 - 4, 4 - down / height * 8
 
 
-def frame_files(studio: Studio, name: str = "animation") -> dict[str, tuple[int, int]]:
+def frame_files(session: LiveSession, name: str = "animation") -> dict[str, tuple[int, int]]:
     """The frames of a film: name → what tells whether the file is still the same."""
-    folder = studio.blender.folder.root / "frames" / name
+    folder = session.blender.folder.root / "frames" / name
     return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in sorted(folder.glob("*.png"))}
 
 
 def stopped_after(frames: int) -> Call:
     """A call that is given up when so many frames are done."""
-    given_up = threading.Event()
+    cancelled = threading.Event()
 
     def progress(done: float, total: float | None, text: str) -> None:
         del total, text
         if done >= frames:
-            given_up.set()
+            cancelled.set()
 
-    return Call(progress, given_up)
+    return Call(progress, cancelled)
 
 
 # Stills
 
 
 @pytest.mark.parametrize("engine", ["cycles", "workbench"])
-def test_a_still_shows_what_the_camera_sees(studio: Studio, engine: str) -> None:
-    studio.run(SCENE + "cube.location = (1, 0, -2)")
-    workspace = studio.blender.folder.workspace
+def test_a_still_shows_what_the_camera_sees(session: LiveSession, engine: str) -> None:
+    session.run(SCENE + "cube.location = (1, 0, -2)")
+    workspace = session.blender.folder.workspace
     before = {one.name for one in workspace.iterdir()}
-    found = studio.use(TOOL, None, **{**SMALL, "engine": engine}, name=engine)
-    path = studio.blender.folder.root / "renders" / f"{engine}.png"
+    found = session.use(TOOL, None, **{**SMALL, "engine": engine}, name=engine)
+    path = session.blender.folder.root / "renders" / f"{engine}.png"
     assert where(path) == pytest.approx((1, -2), abs=0.1)
     assert (found.data["path"], found.data["width"], found.data["height"]) == (str(path), 64, 64)
     assert [picture.path for picture in found.pictures] == [path]
@@ -147,9 +147,9 @@ repr(state)
 
 
 @pytest.mark.parametrize("kind", ["still", "animation"])
-def test_rendering_leaves_the_scene_and_its_settings_as_they_were(studio: Studio, kind: str) -> None:
-    studio.run(MOVING)
-    studio.run(
+def test_rendering_leaves_the_scene_and_its_settings_as_they_were(session: LiveSession, kind: str) -> None:
+    session.run(MOVING)
+    session.run(
         "r = s = bpy.context.scene.render\nscene = bpy.context.scene\n"
         "r.engine = 'BLENDER_WORKBENCH'\nr.filepath = '//mine_####'\nr.resolution_percentage = 37\n"
         "r.image_settings.media_type = 'VIDEO'\nr.image_settings.file_format = 'FFMPEG'\n"
@@ -160,48 +160,48 @@ def test_rendering_leaves_the_scene_and_its_settings_as_they_were(studio: Studio
         "scene.timeline_markers.new('cut', frame=1).camera = bpy.data.objects['Camera']\n"
         "scene.frame_set(3, subframe=0.25)"
     )
-    before = studio.run(_STATE)
+    before = session.run(_STATE)
     own: dict[str, Any] = {"frame": 2} if kind == "still" else {"frame_end": 2}
-    found = studio.use(TOOL, kind=kind, **SMALL, camera="Other", **own)
+    found = session.use(TOOL, kind=kind, **SMALL, camera="Other", **own)
     assert not found.failed
-    assert studio.run(_STATE) == before
+    assert session.run(_STATE) == before
 
 
-def test_cameras_on_markers_take_their_turns_unless_one_is_asked_for(studio: Studio) -> None:
-    studio.run(
+def test_cameras_on_markers_take_their_turns_unless_one_is_asked_for(session: LiveSession) -> None:
+    session.run(
         SCENE + "high = bpy.data.objects.new('High', camera.data.copy())\n"
         "high.location, high.rotation_euler = (0, -10, 2), camera.rotation_euler\n"
         "scene.collection.objects.link(high)\n"
         "scene.timeline_markers.new('a', frame=1).camera = camera\n"
         "scene.timeline_markers.new('b', frame=4).camera = high"
     )
-    still = studio.blender.folder.root / "renders" / "still.png"
-    studio.use(TOOL, **SMALL, frame=5)
+    still = session.blender.folder.root / "renders" / "still.png"
+    session.use(TOOL, **SMALL, frame=5)
     assert where(still)[1] == pytest.approx(-2, abs=0.1)
-    studio.use(TOOL, **SMALL, frame=5, camera="Camera")
+    session.use(TOOL, **SMALL, frame=5, camera="Camera")
     assert where(still)[1] == pytest.approx(0, abs=0.1)
 
 
-def test_without_a_camera_it_says_how_to_add_one(studio: Studio) -> None:
+def test_without_a_camera_it_says_how_to_add_one(session: LiveSession) -> None:
     with pytest.raises(Refusal, match="no camera") as refused:
-        studio.use(TOOL)
-    studio.run(str(refused.value).split("\n", 1)[1])
-    assert studio.use(TOOL, **SMALL).data["camera"] == "Camera"
+        session.use(TOOL)
+    session.run(str(refused.value).split("\n", 1)[1])
+    assert session.use(TOOL, **SMALL).data["camera"] == "Camera"
 
 
-def test_a_camera_that_is_none_is_refused_with_the_names_of_those_there_are(studio: Studio) -> None:
-    studio.run(SCENE)
+def test_a_camera_that_is_none_is_refused_with_the_names_of_those_there_are(session: LiveSession) -> None:
+    session.run(SCENE)
     with pytest.raises(Refusal, match=r"'Cube' is no camera.*'Camera'"):
-        studio.use(TOOL, camera="Cube")
+        session.use(TOOL, camera="Cube")
     with pytest.raises(Refusal, match=r"no camera 'Nobody'.*'Camera'"):
-        studio.use(TOOL, camera="Nobody")
+        session.use(TOOL, camera="Nobody")
 
 
-def test_the_only_camera_is_taken_where_none_is_set_and_that_is_told(studio: Studio) -> None:
-    studio.run(SCENE + "scene.camera = None")
-    found = studio.use(TOOL, **SMALL)
+def test_the_only_camera_is_taken_where_none_is_set_and_that_is_told(session: LiveSession) -> None:
+    session.run(SCENE + "scene.camera = None")
+    found = session.use(TOOL, **SMALL)
     assert any("'Camera', the only camera" in note for note in found.data["notes"])
-    assert studio.run("bpy.context.scene.camera is None") is True
+    assert session.run("bpy.context.scene.camera is None") is True
 
 
 @pytest.mark.parametrize(
@@ -218,17 +218,17 @@ def test_the_only_camera_is_taken_where_none_is_set_and_that_is_told(studio: Stu
         ({"kind": "animation", "frame_start": 0, "frame_end": 900_000}, "more than"),
     ],
 )
-def test_what_does_not_fit_is_refused(studio: Studio, given: dict[str, Any], told: str) -> None:
-    studio.run(SCENE)
+def test_what_does_not_fit_is_refused(session: LiveSession, given: dict[str, Any], told: str) -> None:
+    session.run(SCENE)
     with pytest.raises(Refusal, match=told):
-        studio.use(TOOL, **given)
+        session.use(TOOL, **given)
 
 
-def test_a_size_follows_the_scene_and_what_is_asked(studio: Studio) -> None:
-    studio.run(SCENE + "scene.render.resolution_x, scene.render.resolution_y = 200, 100")
+def test_a_size_follows_the_scene_and_what_is_asked(session: LiveSession) -> None:
+    session.run(SCENE + "scene.render.resolution_x, scene.render.resolution_y = 200, 100")
 
     def size(**given: int) -> tuple[int, int]:
-        found = studio.use(TOOL, None, engine="cycles", samples=1, denoise=False, **given)
+        found = session.use(TOOL, None, engine="cycles", samples=1, denoise=False, **given)
         with Image.open(found.data["path"]) as picture:
             return picture.size
 
@@ -237,20 +237,20 @@ def test_a_size_follows_the_scene_and_what_is_asked(studio: Studio) -> None:
     assert size(height=30) == (60, 30)
 
 
-def test_a_black_picture_is_told(studio: Studio) -> None:
-    studio.run(SCENE + "cube.hide_render = True")
-    assert "black" in studio.use(TOOL, **SMALL).data["warnings"][0]
+def test_a_black_picture_is_told(session: LiveSession) -> None:
+    session.run(SCENE + "cube.hide_render = True")
+    assert "black" in session.use(TOOL, **SMALL).data["warnings"][0]
 
 
 # Films
 
 
-def test_a_film_moves_and_can_be_read_back(studio: Studio) -> None:
-    studio.run(MOVING + "scene.render.fps = 12")
+def test_a_film_moves_and_can_be_read_back(session: LiveSession) -> None:
+    session.run(MOVING + "scene.render.fps = 12")
     progress: list[tuple[float, float | None]] = []
     call = Call(lambda done, total, text: progress.append((done, total)))
-    found = studio.use(TOOL, call, **FILM)
-    frames = studio.blender.folder.root / "frames" / "animation"
+    found = session.use(TOOL, call, **FILM)
+    frames = session.blender.folder.root / "frames" / "animation"
     seen = [where(frames / f"{frame:04d}.png")[0] for frame in range(1, 6)]
     assert seen == pytest.approx([-2, -1, 0, 1, 2], abs=0.1)
     video = found.data["video"]
@@ -258,12 +258,12 @@ def test_a_film_moves_and_can_be_read_back(studio: Studio) -> None:
     assert [(done, 5) for done in range(1, 6)] == [one for one in progress if one[0] % 1 == 0 and one[0]]
     assert len(found.pictures) == 3
     # H.264 in MP4 that starts at its first frame, with the colours of the pictures.
-    film = studio.blender.folder.root / "animation.mp4"
+    film = session.blender.folder.root / "animation.mp4"
     data = film.read_bytes()
     assert data[4:8] == b"ftyp"
     assert b"avc1" in data
-    shutil.copyfile(film, studio.blender.folder.workspace / "look.mp4")
-    colour = studio.run(
+    shutil.copyfile(film, session.blender.folder.workspace / "look.mp4")
+    colour = session.run(
         "import os\nimage = bpy.data.images.load(os.path.abspath('look.mp4'))\n"
         "p = list(image.pixels)\nbpy.data.images.remove(image)\nos.remove('look.mp4')\n"
         "at = (32 * 64 + 16) * 4\n[round(v, 2) for v in p[at:at + 3]]"
@@ -271,83 +271,85 @@ def test_a_film_moves_and_can_be_read_back(studio: Studio) -> None:
     assert colour == pytest.approx([1, 0, 0], abs=0.06)
 
 
-def test_frames_that_are_skipped_are_held_in_the_film(studio: Studio) -> None:
-    studio.run(MOVING)
-    found = studio.use(TOOL, **FILM, name="held", step=2)
-    assert [*frame_files(studio, "held")] == ["0001.png", "0003.png", "0005.png"]
+def test_frames_that_are_skipped_are_held_in_the_film(session: LiveSession) -> None:
+    session.run(MOVING)
+    found = session.use(TOOL, **FILM, name="held", step=2)
+    assert [*frame_files(session, "held")] == ["0001.png", "0003.png", "0005.png"]
     assert found.data["video"]["frames"] == 5
 
 
-def test_frames_that_are_there_are_kept_until_the_scene_or_a_setting_changes(studio: Studio) -> None:
-    studio.run(MOVING)
-    studio.use(TOOL, **FILM, frame_end=2, video=False)
-    first = frame_files(studio)
-    studio.run("bpy.context.scene.frame_set(4)\nbpy.data.objects['Cube'].select_set(False)")
-    found = studio.use(TOOL, **FILM, frame_end=3, video=False)
+def test_frames_that_are_there_are_kept_until_the_scene_or_a_setting_changes(session: LiveSession) -> None:
+    session.run(MOVING)
+    session.use(TOOL, **FILM, frame_end=2, video=False)
+    first = frame_files(session)
+    session.run("bpy.context.scene.frame_set(4)\nbpy.data.objects['Cube'].select_set(False)")
+    found = session.use(TOOL, **FILM, frame_end=3, video=False)
     assert (found.data["kept"], found.data["made"]) == (2, 1)
-    assert {name: stamp for name, stamp in frame_files(studio).items() if name in first} == first
-    studio.run("bpy.data.materials['Red'].node_tree.nodes['Emission'].inputs['Strength'].default_value = 0.5")
-    found = studio.use(TOOL, **FILM, frame_end=2, video=False)
+    assert {name: stamp for name, stamp in frame_files(session).items() if name in first} == first
+    session.run(
+        "bpy.data.materials['Red'].node_tree.nodes['Emission'].inputs['Strength'].default_value = 0.5"
+    )
+    found = session.use(TOOL, **FILM, frame_end=2, video=False)
     assert found.data["discarded"] == {"frames": 3, "why": "Material Red changed"}
     assert "earlier state" in found.text
-    assert [*frame_files(studio)] == ["0001.png", "0002.png"]
-    found = studio.use(TOOL, None, **{**FILM, "samples": 2}, frame_end=1, video=False)
+    assert [*frame_files(session)] == ["0001.png", "0002.png"]
+    found = session.use(TOOL, None, **{**FILM, "samples": 2}, frame_end=1, video=False)
     assert found.data["discarded"]["why"] == "samples 1 → 2"
 
 
-def test_a_frame_that_is_not_whole_is_made_again(studio: Studio) -> None:
-    studio.run(MOVING)
-    studio.use(TOOL, **FILM, name="torn", frame_end=2, video=False)
-    torn = studio.blender.folder.root / "frames" / "torn" / "0001.png"
+def test_a_frame_that_is_not_whole_is_made_again(session: LiveSession) -> None:
+    session.run(MOVING)
+    session.use(TOOL, **FILM, name="torn", frame_end=2, video=False)
+    torn = session.blender.folder.root / "frames" / "torn" / "0001.png"
     whole = torn.read_bytes()
     torn.write_bytes(whole[:-20])
-    found = studio.use(TOOL, **FILM, name="torn", frame_end=2, video=False)
+    found = session.use(TOOL, **FILM, name="torn", frame_end=2, video=False)
     assert (found.data["kept"], found.data["made"]) == (1, 1)
     assert where(torn)[0] == pytest.approx(-2, abs=0.1)
 
 
-def test_given_up_it_stops_between_frames_and_goes_on_when_called_again(studio: Studio) -> None:
-    studio.run(MOVING)
-    process = studio.blender.pid
-    found = studio.use(TOOL, stopped_after(2), **FILM, name="given_up")
+def test_given_up_it_stops_between_frames_and_goes_on_when_called_again(session: LiveSession) -> None:
+    session.run(MOVING)
+    process = session.blender.pid
+    found = session.use(TOOL, stopped_after(2), **FILM, name="cancelled")
     assert found.failed
     assert "Not finished" in found.text
-    there = frame_files(studio, "given_up")
+    there = frame_files(session, "cancelled")
     assert [*there] == ["0001.png", "0002.png"]
-    assert studio.blender.pid == process
-    found = studio.use(TOOL, **FILM, name="given_up")
+    assert session.blender.pid == process
+    found = session.use(TOOL, **FILM, name="cancelled")
     assert (found.data["kept"], found.data["made"], found.failed) == (2, 3, False)
-    assert frame_files(studio, "given_up").items() >= there.items()
+    assert frame_files(session, "cancelled").items() >= there.items()
 
 
 # Simulations
 
 
-def test_what_is_not_baked_is_stepped_through_and_told(studio: Studio) -> None:
-    studio.run(FALLING)
-    still = studio.blender.folder.root / "renders" / "still.png"
-    found = studio.use(TOOL, **SMALL, frame=16)
+def test_what_is_not_baked_is_stepped_through_and_told(session: LiveSession) -> None:
+    session.run(FALLING)
+    still = session.blender.folder.root / "renders" / "still.png"
+    found = session.use(TOOL, **SMALL, frame=16)
     assert found.data["unbaked"] == ["the rigid-body world"]
     assert "stepped through" in found.text
     # Free fall for 15 frames at 24 a second.
     assert where(still)[1] == pytest.approx(3 - 9.81 / 2 * (15 / 24) ** 2, abs=0.15)
 
 
-def test_frames_that_were_jumped_to_before_do_not_spoil_a_simulation(studio: Studio) -> None:
-    studio.run(
+def test_frames_that_were_jumped_to_before_do_not_spoil_a_simulation(session: LiveSession) -> None:
+    session.run(
         SCENE + "scene.render.engine = 'BLENDER_EEVEE'\ncube.hide_render = True\n"
         "bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=2, location=(0, 0, 3))\n"
         "cloth = bpy.context.object\ncloth.data.materials.append(material)\n"
         "cloth.rotation_euler.x = 0.5\ncloth.modifiers.new('Cloth', 'CLOTH')\nscene.frame_end = 13"
     )
     jumped: dict[str, Any] = {**FILM, "step": 6, "video": False, "width": 512, "height": 512}
-    studio.run("for frame in (1, 5, 1, 9):\n    bpy.context.scene.frame_set(frame)")
-    studio.use(TOOL, None, **jumped, name="jumped")
-    assert studio.run("bpy.context.scene.frame_current") == 9
-    studio.run("bpy.ops.ptcache.bake_all(bake=True)")
-    baked = studio.use(TOOL, None, **jumped, name="baked")
+    session.run("for frame in (1, 5, 1, 9):\n    bpy.context.scene.frame_set(frame)")
+    session.use(TOOL, None, **jumped, name="jumped")
+    assert session.run("bpy.context.scene.frame_current") == 9
+    session.run("bpy.ops.ptcache.bake_all(bake=True)")
+    baked = session.use(TOOL, None, **jumped, name="baked")
     assert baked.data["unbaked"] == []
-    frames = studio.blender.folder.root / "frames"
+    frames = session.blender.folder.root / "frames"
     for frame in ("0001.png", "0007.png", "0013.png"):
         with Image.open(frames / "jumped" / frame) as one, Image.open(frames / "baked" / frame) as other:
             assert one.tobytes() == other.tobytes(), frame
@@ -357,36 +359,38 @@ def test_frames_that_were_jumped_to_before_do_not_spoil_a_simulation(studio: Stu
 # What goes wrong
 
 
-def test_blender_lost_over_a_frame_is_started_again_and_the_film_is_the_same(own_studio: Studio) -> None:
-    own_studio.run(FALLING)
-    whole = own_studio.use(TOOL, **FILM, name="whole", frame_end=6, video=False)
+def test_blender_lost_over_a_frame_is_started_again_and_the_film_is_the_same(
+    own_session: LiveSession,
+) -> None:
+    own_session.run(FALLING)
+    whole = own_session.use(TOOL, **FILM, name="whole", frame_end=6, video=False)
     # Handlers are not written to checkpoints: Blender ends only the first time.
-    own_studio.run(
+    own_session.run(
         "import os, signal\n"
         "def end(scene, *_):\n"
         "    if scene.frame_current == 4:\n"
         "        os.kill(os.getpid(), signal.SIGKILL)\n"
         "bpy.app.handlers.render_pre.append(end)"
     )
-    found = own_studio.use(TOOL, **FILM, name="broken", frame_end=6, video=False)
+    found = own_session.use(TOOL, **FILM, name="broken", frame_end=6, video=False)
     assert (found.failed, found.data["made"]) == (False, 6)
     assert any("lost over frame 4" in note for note in found.data["notes"])
-    frames = own_studio.blender.folder.root / "frames"
+    frames = own_session.blender.folder.root / "frames"
     heights = [where(frames / "broken" / f"{frame:04d}.png")[1] for frame in range(1, 7)]
     assert heights == [where(frames / "whole" / f"{frame:04d}.png")[1] for frame in range(1, 7)]
     assert heights[-1] < heights[0]
     assert whole.data["made"] == 6
-    assert own_studio.run("bpy.context.scene.frame_current") == 1
+    assert own_session.run("bpy.context.scene.frame_current") == 1
 
 
-def test_a_blender_that_dies_again_and_again_leaves_what_is_there(own_studio: Studio) -> None:
-    own_studio.run(MOVING)
+def test_a_blender_that_dies_again_and_again_leaves_what_is_there(own_session: LiveSession) -> None:
+    own_session.run(MOVING)
     over = threading.Event()
 
     def kill() -> None:
         with suppress(ProcessLookupError):
-            if own_studio.blender.pid is not None:
-                os.kill(own_studio.blender.pid, signal.SIGKILL)
+            if own_session.blender.pid is not None:
+                os.kill(own_session.blender.pid, signal.SIGKILL)
 
     def keep_killing() -> None:
         while not over.wait(0.005):
@@ -401,7 +405,7 @@ def test_a_blender_that_dies_again_and_again_leaves_what_is_there(own_studio: St
             killer.start()
 
     try:
-        found: Result = own_studio.use(TOOL, Call(progress), **FILM)
+        found: Result = own_session.use(TOOL, Call(progress), **FILM)
     finally:
         over.set()
         killer.join()
@@ -409,34 +413,34 @@ def test_a_blender_that_dies_again_and_again_leaves_what_is_there(own_studio: St
     assert found.failed
     assert 2 <= made < 5
     assert "again with the same arguments" in found.text
-    there = frame_files(own_studio)
-    found = own_studio.use(TOOL, **FILM)
+    there = frame_files(own_session)
+    found = own_session.use(TOOL, **FILM)
     assert (found.failed, found.data["kept"], found.data["made"]) == (False, made, 5 - made)
-    assert frame_files(own_studio).items() >= there.items()
+    assert frame_files(own_session).items() >= there.items()
     assert found.data["video"]["frames"] == 5
 
 
 # A time budget
 
 
-def test_a_time_budget_lowers_samples_and_such_frames_are_made_again_without_it(studio: Studio) -> None:
-    studio.run(MOVING + "cube.scale = (9, 1, 9)")
+def test_a_time_budget_lowers_samples_and_such_frames_are_made_again_without_it(session: LiveSession) -> None:
+    session.run(MOVING + "cube.scale = (9, 1, 9)")
     asked: dict[str, Any] = {**FILM, "samples": 60_000, "name": "hurried", "frame_end": 2}
-    found = studio.use(TOOL, **asked, time_budget=2)
+    found = session.use(TOOL, **asked, time_budget=2)
     assert LEAST <= found.data["samples"] < 60_000
     assert "samples instead of 60000" in found.text
     assert found.data["video"]["frames"] == 2
-    found = studio.use(TOOL, **asked, time_budget=2)
+    found = session.use(TOOL, **asked, time_budget=2)
     assert found.data["kept"] + found.data["made"] + found.data["dropped_count"] == 2
     assert found.data["kept"] >= 1
     call = Call()
-    call.given_up.set()
-    found = studio.use(TOOL, call, **asked)
+    call.cancelled.set()
+    found = session.use(TOOL, call, **asked)
     assert (found.data["kept"], found.data["missing_count"]) == (0, 2)
 
 
 class Clock:
-    """Time that passes as it is told to; frames take ``fixed`` seconds and ``each`` for a sample."""
+    """Time that passes as it is told to; frames take ``fixed`` seconds and ``seconds_per_frame`` for a sample."""
 
     def __init__(self, fixed: float, each: float) -> None:
         self.now = 0.0
@@ -455,18 +459,18 @@ class Clock:
 
 def paced(clock: Clock, budget: float, samples: int | None, frames: int) -> list[int | None]:
     """The samples of the frames that are made within a budget."""
-    pace = Pace(budget, samples, clock)
-    while (few := pace.trial(frames)) is not None:
-        pace.tried(few, clock.render(few))
+    budget = RenderBudget(budget, samples, clock)
+    while (few := budget.next_trial(frames)) is not None:
+        budget.add_trial(few, clock.render(few))
     made: list[int | None] = []
     while frames:
-        pace.settle(frames)
-        every = pace.every(frames)
+        budget.lower_samples(frames)
+        every = budget.affordable_step(frames)
         if not every:
             break
         frames //= every
-        pace.took(pace.samples, clock.render(pace.samples))
-        made.append(pace.samples)
+        budget.add_frame(budget.samples, clock.render(budget.samples))
+        made.append(budget.samples)
         frames -= 1
     return made
 
@@ -476,11 +480,11 @@ def test_with_enough_time_nothing_is_lowered() -> None:
 
 
 def test_a_first_frame_that_waited_does_not_make_samples_free() -> None:
-    pace = Pace(10, 60_000, Clock(0, 0))
-    pace.tried(LEAST, 3.0)
-    pace.tried(16, 0.8)
-    pace.settle(2)
-    assert LEAST <= (pace.samples or 0) <= 100
+    budget = RenderBudget(10, 60_000, Clock(0, 0))
+    budget.add_trial(LEAST, 3.0)
+    budget.add_trial(16, 0.8)
+    budget.lower_samples(2)
+    assert LEAST <= (budget.samples or 0) <= 100
 
 
 def test_samples_are_lowered_alike_for_all_frames() -> None:
@@ -506,11 +510,11 @@ def test_frames_of_an_engine_without_samples_are_left_out() -> None:
     assert clock.now <= 11
 
 
-def test_one_frame_is_made_however_short_the_time(studio: Studio) -> None:
-    studio.run(MOVING)
+def test_one_frame_is_made_however_short_the_time(session: LiveSession) -> None:
+    session.run(MOVING)
     big: dict[str, Any] = {**FILM, "engine": "cycles", "samples": 4000, "width": 400, "height": 400}
-    found = studio.use(TOOL, None, **big, name="short", time_budget=1)
-    there = [*frame_files(studio, "short")]
+    found = session.use(TOOL, None, **big, name="short", time_budget=1)
+    there = [*frame_files(session, "short")]
     assert there[0] == "0001.png"
     assert len(there) + found.data["dropped_count"] == 5
     assert found.data["samples"] < 4000
@@ -525,10 +529,10 @@ def test_large_pictures_are_shown_smaller_and_small_ones_as_they_are(tmp_path: P
     Image.new("RGB", (1600, 400), (10, 90, 30)).save(large)
     Image.new("RGB", (160, 40)).save(small)
     shrunk = tmp_path / "shown.png"
-    shrunk.write_bytes(shown(large))
+    shrunk.write_bytes(preview_png(large))
     with Image.open(shrunk) as picture:
-        assert picture.size == (LARGEST_SHOWN, LARGEST_SHOWN // 4)
-    assert shown(small) == small.read_bytes()
+        assert picture.size == (LARGEST_PREVIEW, LARGEST_PREVIEW // 4)
+    assert preview_png(small) == small.read_bytes()
 
 
 def test_pictures_that_show_nothing_or_do_not_change_are_told(tmp_path: Path) -> None:
@@ -537,6 +541,6 @@ def test_pictures_that_show_nothing_or_do_not_change_are_told(tmp_path: Path) ->
     scene = Image.linear_gradient("L")
     scene.save(paths["scene"])
     scene.save(paths["again"])
-    assert "of one colour" in faults([paths["plain"]])[0]
-    assert "alike" in faults([paths["scene"], paths["again"]])[0]
-    assert faults([paths["scene"]]) == []
+    assert "is one colour" in image_faults([paths["plain"]])[0]
+    assert "identical" in image_faults([paths["scene"], paths["again"]])[0]
+    assert image_faults([paths["scene"]]) == []

@@ -6,54 +6,54 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from agents.blender.tools.base import Call, Session, parse
+from agents.blender.tools.base import Call, ToolContext, parse
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox.errors import Died, Refusal
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
 
-def test_the_value_of_a_final_expression_comes_back(studio: Studio) -> None:
-    found = studio.use(TOOL, code="x = 20\nx + 1")
+def test_the_value_of_a_final_expression_comes_back(session: LiveSession) -> None:
+    found = session.use(TOOL, code="x = 20\nx + 1")
     assert found.data["value"] == "21"
     assert not found.failed
 
 
-def test_names_do_not_outlive_a_call_but_the_scene_does(studio: Studio) -> None:
-    studio.use(TOOL, code="kept = 1\nbpy.data.objects.new('Kept', None)")
-    assert studio.use(TOOL, code="'Kept' in bpy.data.objects").data["value"] == "True"
-    assert studio.use(TOOL, code="kept").data["error"]["type"] == "NameError"
+def test_names_do_not_outlive_a_call_but_the_scene_does(session: LiveSession) -> None:
+    session.use(TOOL, code="kept = 1\nbpy.data.objects.new('Kept', None)")
+    assert session.use(TOOL, code="'Kept' in bpy.data.objects").data["value"] == "True"
+    assert session.use(TOOL, code="kept").data["error"]["type"] == "NameError"
 
 
-def test_what_changed_is_told_by_kind(studio: Studio) -> None:
-    made = studio.use(
+def test_what_changed_is_told_by_kind(session: LiveSession) -> None:
+    made = session.use(
         TOOL,
         code="bpy.ops.mesh.primitive_cube_add()\nbpy.context.object.modifiers.new('Smooth', 'SUBSURF')",
     )
     assert made.data["changed"]["objects"] == {"added": ["Cube"]}
     assert made.data["changed"]["modifiers"] == {"added": ["Cube[Smooth]"]}
-    moved = studio.use(TOOL, code="bpy.data.objects['Cube'].location.x = 2")
+    moved = session.use(TOOL, code="bpy.data.objects['Cube'].location.x = 2")
     assert moved.data["changed"]["objects"] == {"changed": ["Cube"]}
-    gone = studio.use(TOOL, code="bpy.data.objects.remove(bpy.data.objects['Cube'])")
+    gone = session.use(TOOL, code="bpy.data.objects.remove(bpy.data.objects['Cube'])")
     assert gone.data["changed"]["objects"] == {"removed": ["Cube"]}
     assert gone.data["changed"]["modifiers"] == {"removed": ["Cube[Smooth]"]}
 
 
-def test_reading_changes_nothing(studio: Studio) -> None:
-    assert studio.use(TOOL, code="len(bpy.data.objects)").data["changed"] == {}
+def test_reading_changes_nothing(session: LiveSession) -> None:
+    assert session.use(TOOL, code="len(bpy.data.objects)").data["changed"] == {}
 
 
-def test_an_error_marks_the_line_that_failed(studio: Studio) -> None:
-    found = studio.use(TOOL, code="a = 1\nb = 2\nc = bpy.data.objects['Nobody']\nd = 4")
+def test_an_error_marks_the_line_that_failed(session: LiveSession) -> None:
+    found = session.use(TOOL, code="a = 1\nb = 2\nc = bpy.data.objects['Nobody']\nd = 4")
     error = found.data["error"]
     assert (error["type"], error["line"]) == ("KeyError", 3)
     assert ">    3  c = bpy.data.objects['Nobody']" in error["source"]
     assert "     4  d = 4" in error["source"]
     assert "supervisor" not in error["traceback"]
-    assert "worker.py" not in error["traceback"]
+    assert not any(name in error["traceback"] for name in ("worker.py", "service.py", "execute.py"))
 
 
 @pytest.mark.parametrize(
@@ -72,25 +72,25 @@ def test_an_error_marks_the_line_that_failed(studio: Studio) -> None:
         ("bpy.ops.object.select_all({'scene': bpy.context.scene})", "bpy.types.Context.temp_override"),
     ],
 )
-def test_an_error_names_what_to_look_up(studio: Studio, code: str, ask: str) -> None:
-    assert studio.use(TOOL, code=code).data["error"]["ask"].startswith(ask)
+def test_an_error_names_what_to_look_up(session: LiveSession, code: str, ask: str) -> None:
+    assert session.use(TOOL, code=code).data["error"]["ask"].startswith(ask)
 
 
-def test_a_name_that_is_not_there_is_answered_with_those_that_are(studio: Studio) -> None:
-    studio.run("for name in ('Chair', 'Table'): bpy.data.objects.new(name, None)")
-    found = studio.use(TOOL, code="bpy.data.objects['Tabel']")
+def test_a_name_that_is_not_there_is_answered_with_those_that_are(session: LiveSession) -> None:
+    session.run("for name in ('Chair', 'Table'): bpy.data.objects.new(name, None)")
+    found = session.use(TOOL, code="bpy.data.objects['Tabel']")
     assert found.data["error"]["there"] == ["Table", "Chair"]
     assert found.data["error"]["ask"] == ""
     assert "`Table`, `Chair`" in found.text
-    socket = studio.use(
+    socket = session.use(
         TOOL,
         code="m = bpy.data.materials.new('m')\nm.use_nodes = True\nm.node_tree.nodes[0].inputs['Rouhgness']",
     )
     assert socket.data["error"]["there"][0] == "Roughness"
 
 
-def test_an_error_whose_text_cannot_be_had_is_told(studio: Studio) -> None:
-    found = studio.use(
+def test_an_error_whose_text_cannot_be_had_is_told(session: LiveSession) -> None:
+    found = session.use(
         TOOL, code="class E(Exception):\n    def __str__(self): raise ValueError('no')\nraise E()"
     )
     error = found.data["error"]
@@ -98,75 +98,75 @@ def test_an_error_whose_text_cannot_be_had_is_told(studio: Studio) -> None:
     assert "cannot be had" in error["message"]
 
 
-def test_an_error_of_python_asks_the_documentation_nothing(studio: Studio) -> None:
-    assert studio.use(TOOL, code="1 / 0").data["error"]["ask"] == ""
+def test_an_error_of_python_asks_the_documentation_nothing(session: LiveSession) -> None:
+    assert session.use(TOOL, code="1 / 0").data["error"]["ask"] == ""
 
 
-def test_the_documentation_answers_into_the_error(studio: Studio) -> None:
+def test_the_documentation_answers_into_the_error(session: LiveSession) -> None:
     asked: list[str] = []
 
     def docs(query: str, *, max_tokens: int = 400) -> str:
         asked.append(query)
         return "It is called Specular IOR Level now."
 
-    session = Session(studio.blender, docs)
-    found = TOOL.run(session, parse(TOOL, {"code": "bpy.context.scene.nonsense"}), Call())
+    context = ToolContext(session.blender, docs)
+    found = TOOL.run(context, parse(TOOL, {"code": "bpy.context.scene.nonsense"}), Call())
     assert asked == ["bpy.types.Scene.nonsense"]
     assert "It is called Specular IOR Level now." in found.text
 
 
-def test_failed_code_is_undone_when_asked(studio: Studio) -> None:
-    studio.use(TOOL, code="bpy.data.objects.new('Before', None)")
-    found = studio.use(TOOL, code="bpy.data.objects.new('Half', None)\n1 / 0", on_error="restore")
+def test_failed_code_is_undone_when_asked(session: LiveSession) -> None:
+    session.use(TOOL, code="bpy.data.objects.new('Before', None)")
+    found = session.use(TOOL, code="bpy.data.objects.new('Half', None)\n1 / 0", on_error="restore")
     assert found.failed
     assert "put back" in found.text
-    assert studio.run("sorted(o.name for o in bpy.data.objects)") == []  # no user, so not written out
+    assert session.run("sorted(o.name for o in bpy.data.objects)") == []  # no user, so not written out
 
 
-def test_failed_code_is_kept_by_default_and_says_how_to_undo_it(studio: Studio) -> None:
-    found = studio.use(
+def test_failed_code_is_kept_by_default_and_says_how_to_undo_it(session: LiveSession) -> None:
+    found = session.use(
         TOOL, code="o = bpy.data.objects.new('Half', None)\nbpy.context.collection.objects.link(o)\n1 / 0"
     )
-    assert studio.run("[o.name for o in bpy.data.objects]") == ["Half"]
+    assert session.run("[o.name for o in bpy.data.objects]") == ["Half"]
     assert "blender_load(checkpoint=" in found.text
 
 
-def test_exit_is_an_error_like_any_other(studio: Studio) -> None:
-    found = studio.use(TOOL, code="import sys\nsys.exit(3)")
+def test_exit_is_an_error_like_any_other(session: LiveSession) -> None:
+    found = session.use(TOOL, code="import sys\nsys.exit(3)")
     assert "sys.exit(3)" in found.data["error"]["message"]
-    assert studio.run("1 + 1") == 2
+    assert session.run("1 + 1") == 2
 
 
 @pytest.mark.parametrize("code", ["this is no code", "def f(:", "\x00", "return 1"])
-def test_what_is_no_code_is_told_with_its_line(studio: Studio, code: str) -> None:
-    found = studio.use(TOOL, code=code)
+def test_what_is_no_code_is_told_with_its_line(session: LiveSession, code: str) -> None:
+    found = session.use(TOOL, code=code)
     assert found.data["error"]["type"] in {"SyntaxError", "ValueError"}
-    assert studio.run("1 + 1") == 2
+    assert session.run("1 + 1") == 2
 
 
-def test_what_is_no_text_is_refused(studio: Studio) -> None:
+def test_what_is_no_text_is_refused(session: LiveSession) -> None:
     with pytest.raises(Refusal, match="code"):
-        studio.use(TOOL, code="\ud800")
+        session.use(TOOL, code="\ud800")
 
 
-def test_code_without_end_is_refused(studio: Studio) -> None:
+def test_code_without_end_is_refused(session: LiveSession) -> None:
     with pytest.raises(Refusal, match="at most"):
-        studio.use(TOOL, code="x = 1\n" * 2_000_000)
+        session.use(TOOL, code="x = 1\n" * 2_000_000)
 
 
-def test_recursion_without_end_is_an_error(studio: Studio) -> None:
-    assert studio.use(TOOL, code="def f(): f()\nf()").data["error"]["type"] == "RecursionError"
+def test_recursion_without_end_is_an_error(session: LiveSession) -> None:
+    assert session.use(TOOL, code="def f(): f()\nf()").data["error"]["type"] == "RecursionError"
 
 
-def test_output_without_end_is_cut_and_counted(studio: Studio) -> None:
-    found = studio.use(TOOL, code="for _ in range(3000): print('x' * 100_000)")
+def test_output_without_end_is_cut_and_counted(session: LiveSession) -> None:
+    found = session.use(TOOL, code="for _ in range(3000): print('x' * 100_000)")
     assert "bytes left out" in found.data["stdout"]
     assert len(found.text) < 20_000
 
 
-def test_output_of_c_and_of_closed_streams_is_kept_apart(studio: Studio) -> None:
-    studio.use(TOOL, code="import sys, os\nos.write(1, b'from C')\nsys.stdout.close()")
-    found = studio.use(TOOL, code="print('heard')")
+def test_output_of_c_and_of_closed_streams_is_kept_apart(session: LiveSession) -> None:
+    session.use(TOOL, code="import sys, os\nos.write(1, b'from C')\nsys.stdout.close()")
+    found = session.use(TOOL, code="print('heard')")
     assert found.data["stdout"] == "heard\n"
 
 
@@ -186,9 +186,9 @@ def test_output_of_c_and_of_closed_streams_is_kept_apart(studio: Studio) -> None
         "bpy.ops.wm.read_homefile(use_empty=True)",
     ],
 )
-def test_one_call_does_not_poison_the_next(studio: Studio, poison: str) -> None:
-    studio.use(TOOL, code=poison)
-    found = studio.use(
+def test_one_call_does_not_poison_the_next(session: LiveSession, poison: str) -> None:
+    session.use(TOOL, code=poison)
+    found = session.use(
         TOOL, code="import json\nbpy.ops.mesh.primitive_cube_add()\nprint(len('abc'))\njson.dumps(1)"
     )
     assert found.data["error"] is None
@@ -196,20 +196,20 @@ def test_one_call_does_not_poison_the_next(studio: Studio, poison: str) -> None:
     assert "Cube" in found.data["changed"]["objects"]["added"]
 
 
-def test_a_value_whose_repr_fails_is_told(studio: Studio) -> None:
-    found = studio.use(TOOL, code="class A:\n    def __repr__(self): raise ValueError('no')\nA()")
+def test_a_value_whose_repr_fails_is_told(session: LiveSession) -> None:
+    found = session.use(TOOL, code="class A:\n    def __repr__(self): raise ValueError('no')\nA()")
     assert "whose repr fails" in found.data["value"]
 
 
-def test_numbers_that_are_none_reach_the_scene_as_they_are(studio: Studio) -> None:
-    found = studio.use(
+def test_numbers_that_are_none_reach_the_scene_as_they_are(session: LiveSession) -> None:
+    found = session.use(
         TOOL, code="bpy.ops.mesh.primitive_cube_add()\nbpy.context.object.location.x = float('nan')"
     )
     assert not found.failed
-    assert studio.run("1 + 1") == 2
+    assert session.run("1 + 1") == 2
 
 
-def test_a_crash_says_which_line_it_was_in(own_studio: Studio) -> None:
+def test_a_crash_says_which_line_it_was_in(own_session: LiveSession) -> None:
     with pytest.raises(Died) as crash:
-        own_studio.use(TOOL, code="import ctypes\nctypes.string_at(0)")
+        own_session.use(TOOL, code="import ctypes\nctypes.string_at(0)")
     assert 'File "<blender_execute>", line 2' in crash.value.printed

@@ -13,7 +13,7 @@ from simworlds.sandbox.errors import Refusal
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -67,15 +67,15 @@ TAGGED: dict[str, Any] = {
 }
 
 
-def refusal(studio: Studio, **tags: Any) -> str:
+def refusal(session: LiveSession, **tags: Any) -> str:
     with pytest.raises(Refusal) as refused:
-        studio.use(TOOL, **tags)
+        session.use(TOOL, **tags)
     return str(refused.value)
 
 
-def properties(studio: Studio) -> dict[str, dict[str, Any]]:
+def properties(session: LiveSession) -> dict[str, dict[str, Any]]:
     """What the scene's things really carry."""
-    return studio.run(
+    return session.run(
         f"known = {[one.name for one in vocabulary.PROPERTIES]!r}\n"
         "things = [*bpy.data.collections, *bpy.data.objects, bpy.context.scene]\n"
         "{one.name: {k: one[k] for k in known if k in one} for one in things if any(k in one for k in known)}"
@@ -88,10 +88,10 @@ def test_the_words_of_the_vocabulary_are_the_ones_that_can_be_said() -> None:
     assert set(vocabulary.MOTION_KINDS) == set(get_args(vocabulary.MotionKind))
 
 
-def test_a_tagged_scene_carries_the_properties_and_misses_nothing(studio: Studio) -> None:
-    studio.run(ROOM)
-    found = studio.use(TOOL, **TAGGED, strict_grounding=True)
-    assert properties(studio) == {
+def test_a_tagged_scene_carries_the_properties_and_misses_nothing(session: LiveSession) -> None:
+    session.run(ROOM)
+    found = session.use(TOOL, **TAGGED, strict_grounding=True)
+    assert properties(session) == {
         "ground": {"protocol_role": "system"},
         "room": {"protocol_role": "system"},
         "floor": {"protocol_role": "object"},
@@ -105,20 +105,20 @@ def test_a_tagged_scene_carries_the_properties_and_misses_nothing(studio: Studio
     assert "object 'Leg': contact_with 'Slab', 'Top'" in found.text
 
 
-def test_tags_survive_a_fresh_process(make_studio: Callable[[str], Studio]) -> None:
-    studio = make_studio("run")
-    studio.run(ROOM)
-    studio.use(TOOL, **TAGGED)
-    before = properties(studio)
-    studio.blender.kill()
-    assert properties(studio) == before
+def test_tags_survive_a_fresh_process(make_session: Callable[[str], LiveSession]) -> None:
+    session = make_session("run")
+    session.run(ROOM)
+    session.use(TOOL, **TAGGED)
+    before = properties(session)
+    session.blender.kill()
+    assert properties(session) == before
     assert len(before) == 7
 
 
-def test_what_is_left_out_stays_and_null_removes(studio: Studio) -> None:
-    studio.run(ROOM)
-    studio.use(TOOL, **TAGGED)
-    found = studio.use(
+def test_what_is_left_out_stays_and_null_removes(session: LiveSession) -> None:
+    session.run(ROOM)
+    session.use(TOOL, **TAGGED)
+    found = session.use(
         TOOL,
         collections=[{"name": "table", "motion_kind": "keyframe", "deformation_kind": None}],
         objects=[{"name": "Leg", "contact_with": None}],
@@ -126,28 +126,30 @@ def test_what_is_left_out_stays_and_null_removes(studio: Studio) -> None:
     )
     assert found.data["collections"] == {"table": {"protocol_role": "object", "motion_kind": "keyframe"}}
     assert found.data["objects"] == {"Leg": {}}
-    now = properties(studio)
+    now = properties(session)
     assert now["table"] == {"protocol_role": "object", "motion_kind": "keyframe"}
     assert "Leg" not in now
     assert "Scene" not in now
 
 
-def test_an_objects_name_in_contact_with_stands_for_its_root(studio: Studio) -> None:
-    studio.run(ROOM)
-    studio.use(TOOL, **TAGGED)
-    studio.use(TOOL, objects=[{"name": "table_root", "contact_with": ["floor", "floor_root"]}])
-    assert properties(studio)["table_root"]["contact_with"] == ["floor_root"]
+def test_an_objects_name_in_contact_with_stands_for_its_root(session: LiveSession) -> None:
+    session.run(ROOM)
+    session.use(TOOL, **TAGGED)
+    session.use(TOOL, objects=[{"name": "table_root", "contact_with": ["floor", "floor_root"]}])
+    assert properties(session)["table_root"]["contact_with"] == ["floor_root"]
 
 
-def test_a_root_moves_to_another_empty_in_one_call(studio: Studio) -> None:
-    studio.run(ROOM)
-    studio.use(TOOL, **TAGGED)
-    studio.run(
+def test_a_root_moves_to_another_empty_in_one_call(session: LiveSession) -> None:
+    session.run(ROOM)
+    session.use(TOOL, **TAGGED)
+    session.run(
         "made = bpy.data.objects.new('anchor', None)\nbpy.data.collections['table'].objects.link(made)"
     )
-    assert "'table_root' as its root" in refusal(studio, objects=[{"name": "anchor", "is_object_root": True}])
+    assert "'table_root' as its root" in refusal(
+        session, objects=[{"name": "anchor", "is_object_root": True}]
+    )
     moved = [{"name": "anchor", "is_object_root": True}, {"name": "table_root", "is_object_root": None}]
-    found = studio.use(TOOL, objects=moved)
+    found = session.use(TOOL, objects=moved)
     assert found.data["objects"] == {"anchor": {"is_object_root": True}, "table_root": {}}
     assert any(one.startswith("G1") for one in found.data["warnings"])
 
@@ -186,28 +188,28 @@ def test_a_root_moves_to_another_empty_in_one_call(studio: Studio) -> None:
     ],
 )
 def test_what_contradicts_the_protocol_is_refused_and_changes_nothing(
-    studio: Studio, tags: dict[str, Any], because: str
+    session: LiveSession, tags: dict[str, Any], because: str
 ) -> None:
-    studio.run(ROOM)
-    studio.run(
+    session.run(ROOM)
+    session.run(
         "light = bpy.data.objects.new('Lamp', bpy.data.lights.new('Lamp', 'POINT'))\n"
         "for made in (light, bpy.data.objects.new('Outside', None)):\n"
         "    bpy.data.collections['room'].objects.link(made)"
     )
-    studio.use(TOOL, **TAGGED)
-    before = properties(studio)
-    assert because in refusal(studio, **tags)
-    assert properties(studio) == before
+    session.use(TOOL, **TAGGED)
+    before = properties(session)
+    assert because in refusal(session, **tags)
+    assert properties(session) == before
 
 
-def test_one_wrong_target_leaves_the_right_ones_untouched(studio: Studio) -> None:
-    studio.run(ROOM)
+def test_one_wrong_target_leaves_the_right_ones_untouched(session: LiveSession) -> None:
+    session.run(ROOM)
     assert "nobody" in refusal(
-        studio,
+        session,
         collections=[{"name": "table", "role": "object"}],
         objects=[{"name": "nobody", "contact_with": ["Leg"]}],
     )
-    assert properties(studio) == {}
+    assert properties(session) == {}
 
 
 @pytest.mark.parametrize(
@@ -227,34 +229,36 @@ def test_one_wrong_target_leaves_the_right_ones_untouched(studio: Studio) -> Non
     ],
 )  # fmt: skip
 def test_what_the_protocol_misses_is_told(
-    studio: Studio, change: str, tags: dict[str, Any], missing: list[str]
+    session: LiveSession, change: str, tags: dict[str, Any], missing: list[str]
 ) -> None:
-    studio.run(ROOM + change)
-    found = studio.use(TOOL, **tags).data["warnings"]
+    session.run(ROOM + change)
+    found = session.use(TOOL, **tags).data["warnings"]
     assert len(found) == len(missing), found
     for start in missing:
         assert any(one.startswith(start) for one in found), (start, found)
 
 
-def test_warnings_of_a_large_scene_are_bounded(studio: Studio) -> None:
-    studio.run(
+def test_warnings_of_a_large_scene_are_bounded(session: LiveSession) -> None:
+    session.run(
         "for n in range(60): bpy.context.scene.collection.children.link(bpy.data.collections.new(f'thing {n}'))"
     )
     tags = [{"name": f"thing {n}", "role": "object"} for n in range(60)]
-    found = studio.use(TOOL, collections=tags).data["warnings"]
+    found = session.use(TOOL, collections=tags).data["warnings"]
     assert len(found) == 21
     assert found[-1].startswith("… and 101 more")
 
 
-def test_what_code_has_put_there_is_told_and_can_be_put_right(studio: Studio) -> None:
-    studio.run(
+def test_what_code_has_put_there_is_told_and_can_be_put_right(session: LiveSession) -> None:
+    session.run(
         ROOM
         + "for name, value in (('Leg', 'Slap'), ('Top', 7)): bpy.data.objects[name]['contact_with'] = value"
     )
-    found = studio.use(TOOL, objects=[{"name": "Leg"}, {"name": "Top"}])
+    found = session.use(TOOL, objects=[{"name": "Leg"}, {"name": "Top"}])
     assert found.data["objects"] == {"Leg": {"contact_with": ["Slap"]}, "Top": {"contact_with": []}}
     assert any(
         "'Leg' is to touch 'Slap', which the scene does not have" in one for one in found.data["warnings"]
     )
-    studio.use(TOOL, objects=[{"name": "Leg", "contact_with": ["Slab"]}, {"name": "Top", "contact_with": []}])
-    assert properties(studio) == {"Leg": {"contact_with": ["Slab"]}}
+    session.use(
+        TOOL, objects=[{"name": "Leg", "contact_with": ["Slab"]}, {"name": "Top", "contact_with": []}]
+    )
+    assert properties(session) == {"Leg": {"contact_with": ["Slab"]}}

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from live_session import LiveSession
 from places import REPO
-from studio import Studio
 from test_escapes import works
 
 from agents.commands import doctor_checks
-from simworlds.sandbox import confine
-from simworlds.sandbox.confinement import Sandbox, best_sandbox, bubblewrap_fault
+from simworlds.sandbox import confine_self
+from simworlds.sandbox.confined_command import Sandbox, best_sandbox, bubblewrap_fault
 from simworlds.sandbox.runtime import Runtime, installed_bpy
 
 pytestmark = pytest.mark.blender
@@ -114,7 +114,7 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
 def test_what_is_no_blender_is_said_and_exits_with_1(tmp_path: Path) -> None:
     done = run("--blender-exe", "/bin/true", home=tmp_path, COLUMNS="200")
     assert done.returncode == 1
-    assert "✗  Blender    No Blender to work in: /bin/true does not say that it is Blender" in done.stdout
+    assert "✗  Blender    No Blender was found: /bin/true does not say that it is Blender" in done.stdout
     assert "✗  Blender cannot work here." in done.stdout
     named = run("--json", home=tmp_path, BLENDER_EXE=str(tmp_path))
     assert (named.returncode, json.loads(named.stdout)["works"]) == (1, False)
@@ -171,14 +171,14 @@ def test_a_sandbox_that_does_not_hold_what_it_says_is_found_out(tmp_path: Path) 
     """Here, one that only limits amounts passes itself off as one that closes files."""
     works("landlock")
     open_one, told = best_sandbox("none"), best_sandbox("landlock")
-    studio = Studio(tmp_path / "run", sandbox=Sandbox("none", told.holds, told.lacks, open_one.limits))
+    session = LiveSession(tmp_path / "run", sandbox=Sandbox("none", told.holds, told.lacks, open_one.limits))
     try:
-        found = doctor_checks._confined(studio.blender, told, None)
+        found = doctor_checks._confined(session.blender, told, None)
     finally:
-        studio.blender.close()
+        session.blender.close()
     assert found.state == "bad"
     assert found.lacks == ("files outside can be read", "files outside can be written")
-    assert confine.has_seccomp()
+    assert confine_self.has_seccomp()
     assert not list(Path.home().glob(".simworlds-doctor-*"))
 
 
@@ -208,7 +208,7 @@ def test_an_installed_blender_is_looked_at(tmp_path: Path) -> None:
 def test_checks_that_are_given_up_end_blender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
-    each = doctor_checks.checks(doctor_checks.Choice())
+    each = doctor_checks.checks(doctor_checks.BlenderChoice())
     for _, check in each:
         if check().name == "Start":
             break

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from fake_messages_api import FakeMessagesAPI, Reply
 
-from agents.blender.blender_sessions import Setup
+from agents.blender.blender_sessions import SessionSetup
 from agents.blender.tools import previews
 from agents.loop import answer_source, judging
 from agents.loop.journal import NAME, Row, read_rows
-from agents.loop.options import Limits, Options
+from agents.loop.options import Options, ResourceLimits
 from agents.loop.session import Ended, Sitting, Stop, begin, resume
 from agents.loop.toolbox import Toolbox
 from simworlds.llm.claude import Claude
-from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -102,8 +102,10 @@ class Played:
         return [(row["stage"], row["taken"]) for row in self.of("decided")]
 
 
-def seat(limits: Limits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None) -> Sitting:
-    return Sitting(limits or Limits(), Onlooker(on_row), stop or Stop(threading.Event()))
+def seat(
+    limits: ResourceLimits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None
+) -> Sitting:
+    return Sitting(limits or ResourceLimits(), Onlooker(on_row), stop or Stop(threading.Event()))
 
 
 def sit(root: Path, at: Sitting | None = None, **options: Any) -> Played:
@@ -131,7 +133,7 @@ def scenes(folder: Path, *files: Path) -> list[dict[str, str]]:
     """{"Object Cube": digest, …} of all that is in each file."""
     read = tuple({file.parent for file in files})
     found: list[dict[str, str]] = []
-    with Toolbox(Setup(best_sandbox(), run=folder, read=read)) as toolbox:
+    with Toolbox(SessionSetup(best_sandbox(), run=folder, read=read)) as toolbox:
         for file in files:
             loaded = toolbox.call("blender_load", {"path": str(file)})
             assert not loaded.failed, loaded.text

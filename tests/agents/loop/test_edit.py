@@ -12,12 +12,12 @@ from PIL import Image
 from sittings import answered, asked_of, scenes, sit
 from team import DONE, Team, reply, run, words_of
 
-from agents.blender.blender_sessions import Setup
+from agents.blender.blender_sessions import SessionSetup
 from agents.loop.errors import Unusable
 from agents.loop.reducer import read_history
 from agents.loop.toolbox import Toolbox
 from agents.views.event_lines import told_event
-from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -133,7 +133,7 @@ bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath("//kitchen.blend"), copy=T
 
 def build(folder: Path, code: str) -> Path:
     """A file made by code, with a texture beside it."""
-    with Toolbox(Setup(best_sandbox(), run=folder / "work")) as toolbox:
+    with Toolbox(SessionSetup(best_sandbox(), run=folder / "work")) as toolbox:
         Image.new("RGB", (4, 4), (20, 90, 30)).save(folder / "work" / "workspace" / "leaf.png")
         made = toolbox.call("blender_execute", {"code": code + _SAVE})
         assert not made.failed, made.text

@@ -16,7 +16,7 @@ from team import ABORT, DONE, Team, calls, last_words, reply, run, turn_of, use,
 
 from agents.loop import run as run_module
 from agents.roles.base import Desk
-from simworlds.llm.context import Limits as Kept
+from simworlds.llm.context import ResourceLimits as Kept
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -91,14 +91,14 @@ def test_arguments_that_do_not_fit_are_told(troubled: Played) -> None:
 def test_code_that_hangs_is_ended_and_blender_is_put_back(troubled: Played) -> None:
     hung = outcomes(troubled, "modeling")[2]
     assert hung["failed"]
-    assert "A new Blender stands at checkpoint" in said(hung)
+    assert "A new Blender was started from checkpoint" in said(hung)
     assert hung["seconds"] < 30
 
 
 def test_code_that_kills_blender_costs_only_itself(troubled: Played) -> None:
     died, built = outcomes(troubled, "modeling")[3:5]
     assert died["failed"]
-    assert "A new Blender stands at checkpoint" in said(died)
+    assert "A new Blender was started from checkpoint" in said(died)
     assert not built["failed"]
 
 

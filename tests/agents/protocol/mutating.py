@@ -18,9 +18,9 @@ from places import REPO
 
 sys.path[:0] = [str(REPO), str(REPO / "tests" / "agents")]
 
+from live_session import LiveSession  # noqa: E402
 from mutation import TOOLS, Mutation  # noqa: E402
 from mutations import draw  # noqa: E402
-from studio import Studio  # noqa: E402
 from valid_scenes import valid_scenes  # noqa: E402
 
 from agents.blender.tools.base import Call  # noqa: E402
@@ -111,29 +111,29 @@ class Rates:
         return "\n".join(rows)
 
 
-def measure_rates(studio: Studio, count: int = COUNT, seed: int = SEED) -> Rates:
+def measure_rates(session: LiveSession, count: int = COUNT, seed: int = SEED) -> Rates:
     """Builds each valid scene, looks at it by all rules, breaks it ``count`` times in all, and looks again."""
     mutations = draw(Random(seed), count)
     outcomes: list[Outcome] = []
     alarms: list[Finding] = []
     looks = 0
     for scene in valid_scenes():
-        studio.empty()
-        scene.build(studio)
-        studio.run(f"import os\nbpy.ops.wm.save_as_mainfile(filepath={_BASE}, copy=True)")
-        alarms += _look(studio, scene, tuple(BY_ID))
+        session.empty()
+        scene.build(session)
+        session.run(f"import os\nbpy.ops.wm.save_as_mainfile(filepath={_BASE}, copy=True)")
+        alarms += _look(session, scene, tuple(BY_ID))
         for mutation in (one for one in mutations if one.scene == scene.name):
-            studio.run(f"{TOOLS}\n{mutation.code}\nbpy.context.view_layer.update()")
-            found = _look(studio, scene, mutation.owners)
+            session.run(f"{TOOLS}\n{mutation.code}\nbpy.context.view_layer.update()")
+            found = _look(session, scene, mutation.owners)
             outcomes.append(Outcome(mutation, tuple(one for one in found if _names_it(mutation, one))))
-            studio.run(f"import os\nbpy.ops.wm.open_mainfile(filepath={_BASE})")
-        alarms += _look(studio, scene, tuple(BY_ID))  # and once more, after all that
+            session.run(f"import os\nbpy.ops.wm.open_mainfile(filepath={_BASE})")
+        alarms += _look(session, scene, tuple(BY_ID))  # and once more, after all that
         looks += 2
     return Rates(tuple(outcomes), looks, tuple(alarms))
 
 
-def _look(studio: Studio, scene: ValidScene, rules: tuple[str, ...]) -> tuple[Finding, ...]:
-    report = verify_scene(studio.blender, [BY_ID[rule] for rule in rules], scene.plan, Call())
+def _look(session: LiveSession, scene: ValidScene, rules: tuple[str, ...]) -> tuple[Finding, ...]:
+    report = verify_scene(session.blender, [BY_ID[rule] for rule in rules], scene.plan, Call())
     return report.findings
 
 
@@ -146,11 +146,11 @@ def _names_it(mutation: Mutation, finding: Finding) -> bool:
 def main(count: int) -> None:
     """Prints the rates as JSON."""
     with tempfile.TemporaryDirectory(prefix="mutating-", ignore_cleanup_errors=True) as place:
-        studio = Studio(Path(place).resolve() / "run")
+        session = LiveSession(Path(place).resolve() / "run")
         try:
-            rates = measure_rates(studio, count)
+            rates = measure_rates(session, count)
         finally:
-            studio.blender.close()
+            session.blender.close()
     sys.stdout.write(json.dumps(rates.data(), ensure_ascii=False) + "\n")
 
 

@@ -13,7 +13,7 @@ from scenes import a_motion, a_plan, build, verified
 from agents.blender.tools.bake import TOOL as BAKE
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.plan.scene import ScenePlan
     from agents.protocol.findings import Report
@@ -468,9 +468,9 @@ MOVING: dict[str, Case] = {
 CASES: dict[str, Case] = LAYOUT | SURFACES | PLANNED | MOVING
 
 
-def judge(studio: Studio, rule: str, case: Case, *, good: bool) -> Report:
+def judge(session: LiveSession, rule: str, case: Case, *, good: bool) -> Report:
     """Builds one of the two, and has the rule judge it."""
-    build(studio, f"{case.base}\n{case.good if good else case.bad}")
+    build(session, f"{case.base}\n{case.good if good else case.bad}")
     if case.baked and good:
-        studio.use(BAKE)
-    return verified(studio, rule, case.plan)
+        session.use(BAKE)
+    return verified(session, rule, case.plan)

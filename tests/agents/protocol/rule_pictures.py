@@ -17,12 +17,12 @@ from places import REPO
 
 sys.path[:0] = [str(REPO), str(REPO / "tests" / "agents")]
 
+from live_session import LiveSession  # noqa: E402
 from PIL import Image, ImageDraw  # noqa: E402
 from rule_cases import CASES, Case, judge  # noqa: E402
-from studio import Studio  # noqa: E402
 
 from agents.blender.sheets import contact_sheet  # noqa: E402
-from agents.blender.sheets.findings_sheet import Mark, linear, panel_of  # noqa: E402
+from agents.blender.sheets.findings_sheet import FindingMark, linear, panel_of  # noqa: E402
 from agents.blender.sheets.text_layout import round_length, shortened, text_width  # noqa: E402
 from agents.protocol.facts import Facts  # noqa: E402
 from agents.protocol.report.folding import rows  # noqa: E402
@@ -58,25 +58,25 @@ def main(ids: Sequence[str]) -> None:
     """Draws the pictures of some rules, or of all."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="rule-pictures-", ignore_cleanup_errors=True) as place:
-        studio = Studio(Path(place).resolve() / "run")
+        session = LiveSession(Path(place).resolve() / "run")
         try:
             for rule in ids or CASES:
                 path = FOLDER / f"{rule}.png"
-                path.write_bytes(draw(studio, rule, CASES[rule]))
+                path.write_bytes(draw(session, rule, CASES[rule]))
                 sys.stdout.write(f"{path.relative_to(REPO)}: {path.stat().st_size / 1000:.1f} kB\n")
         finally:
-            studio.blender.close()
+            session.blender.close()
 
 
-def draw(studio: Studio, rule: str, case: Case) -> bytes:
+def draw(session: LiveSession, rule: str, case: Case) -> bytes:
     """The picture of a rule, as a PNG."""
-    studio.empty()
-    found = judge(studio, rule, case, good=False).findings
+    session.empty()
+    found = judge(session, rule, case, good=False).findings
     finding = rows(found)[0].worst
-    bad = take(studio, case, finding, finding.objects, RED)
-    studio.empty()
-    assert not judge(studio, rule, case, good=True).findings
-    good = take(studio, case, None, finding.objects, GREEN)
+    bad = take(session, case, finding, finding.objects, RED)
+    session.empty()
+    assert not judge(session, rule, case, good=True).findings
+    good = take(session, case, None, finding.objects, GREEN)
     left = good.picture or plot(case, good, good, None)
     right = bad.picture or plot(case, bad, good, finding)
     columns = [
@@ -90,17 +90,21 @@ def draw(studio: Studio, rule: str, case: Case) -> bytes:
 
 
 def take(
-    studio: Studio, case: Case, finding: Finding | None, names: tuple[str, ...], colour: contact_sheet.Colour
+    session: LiveSession,
+    case: Case,
+    finding: Finding | None,
+    names: tuple[str, ...],
+    colour: contact_sheet.Colour,
 ) -> Shot:
     """The open scene as the case is to be looked at."""
     if case.look == "tree":
-        told = studio.blender.call("snapshot", {}, timeout=60).value
+        told = session.blender.call("snapshot", {}, timeout=60).value
         return Shot(tree(Facts.read(told), names if finding else (), case.baked))
     if case.look == "camera":
-        return Shot(rendered(studio))
+        return Shot(rendered(session))
     if case.look == "curve":
-        return curves(studio, case)
-    return Shot(view(studio, case.look, finding, names, colour))
+        return curves(session, case)
+    return Shot(view(session, case.look, finding, names, colour))
 
 
 def column(title: str, colour: contact_sheet.Colour, picture: Image.Image, text: str) -> Image.Image:
@@ -132,9 +136,13 @@ def beside(columns: Sequence[Image.Image]) -> Image.Image:
 
 
 def view(
-    studio: Studio, name: str, finding: Finding | None, names: tuple[str, ...], colour: contact_sheet.Colour
+    session: LiveSession,
+    name: str,
+    finding: Finding | None,
+    names: tuple[str, ...],
+    colour: contact_sheet.Colour,
 ) -> Image.Image:
-    marks = [Mark(1, finding)] if finding else []
+    marks = [FindingMark(1, finding)] if finding else []
     asked = {
         "objects": names,
         "colour": linear(colour),
@@ -143,8 +151,8 @@ def view(
         "frame": None,
         "marked": finding is not None,
     }
-    folder = studio.blender.folder
-    reply = studio.blender.call(
+    folder = session.blender.folder
+    reply = session.blender.call(
         "findings_image",
         {"findings": [asked], "folder": str(folder.workspace), "size": WIDTH, "close": 16, "whole": True},
         timeout=120,
@@ -153,15 +161,15 @@ def view(
     return panels[name].picture
 
 
-def rendered(studio: Studio) -> Image.Image:
-    studio.run(
+def rendered(session: LiveSession) -> Image.Image:
+    session.run(
         "scene = bpy.context.scene\n"
         "scene.render.engine, scene.cycles.samples, scene.cycles.device = 'CYCLES', 32, 'CPU'\n"
         f"scene.render.resolution_x, scene.render.resolution_y = {WIDTH}, {HEIGHT}\n"
-        f"scene.render.filepath = {str(studio.blender.folder.workspace / 'seen.png')!r}\n"
+        f"scene.render.filepath = {str(session.blender.folder.workspace / 'seen.png')!r}\n"
         "bpy.ops.render.render(write_still=True)"
     )
-    with studio.blender.folder.open_made("seen.png") as file:
+    with session.blender.folder.open_made("seen.png") as file:
         return contact_sheet.read_png(file)
 
 
@@ -245,12 +253,12 @@ def mechanisms(thing: ObjectFacts, caches: Sequence[CacheFacts]) -> list[str]:
 # Curves over frames
 
 
-def curves(studio: Studio, case: Case) -> Shot:
+def curves(session: LiveSession, case: Case) -> Shot:
     """How far the plan's actors get (or how high), at every frame of the plan."""
     plan = case.plan
     assert plan is not None
     names = [one.name for one in plan.objects]
-    told: dict[str, Any] = studio.run(
+    told: dict[str, Any] = session.run(
         "scene, found = bpy.context.scene, {}\n"
         f"for frame in range({plan.frame_start}, {plan.frame_end} + 1):\n"
         "    scene.frame_set(frame)\n"

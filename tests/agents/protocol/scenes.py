@@ -14,7 +14,7 @@ from agents.protocol.measures.measure import measure
 from agents.protocol.rules.catalogue import chosen
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.protocol.findings import Finding, Report
     from agents.protocol.measures.measure import Answer, Measures, Request
@@ -205,28 +205,28 @@ def a_motion(
     return a_plan(*relations, **(fields | {"render": {"kind": "animation"}} | more))
 
 
-def build(studio: Studio, script: str) -> None:
+def build(session: LiveSession, script: str) -> None:
     """Runs a script that may use the tools above."""
-    studio.run(f"{TOOLS}\n{script}\nbpy.context.view_layer.update()")
+    session.run(f"{TOOLS}\n{script}\nbpy.context.view_layer.update()")
 
 
-def verified(studio: Studio, rules: str, plan: ScenePlan | None = None) -> Report:
+def verified(session: LiveSession, rules: str, plan: ScenePlan | None = None) -> Report:
     """What rules (``R5,V``) say of the open scene."""
-    return verify_scene(studio.blender, chosen(rules.split(",")), plan, Call())
+    return verify_scene(session.blender, chosen(rules.split(",")), plan, Call())
 
 
-def measures(studio: Studio, *requests: Request[Any]) -> Measures:
+def measures(session: LiveSession, *requests: Request[Any]) -> Measures:
     """What Blender measures in the open scene, in one batch."""
 
     def ask(requests: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        return studio.blender.call("measure", {"requests": requests}, timeout=60).value
+        return session.blender.call("measure", {"requests": requests}, timeout=60).value
 
     return measure(requests, ask)
 
 
-def measured(studio: Studio, request: Request[Answer]) -> Answer:
+def measured(session: LiveSession, request: Request[Answer]) -> Answer:
     """What Blender measures in the open scene."""
-    return measures(studio, request)[request]
+    return measures(session, request)[request]
 
 
 def the_finding(report: Report) -> Finding:

@@ -11,7 +11,7 @@ from agents.blender.tools.group import TOOL as GROUP
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.blender.tools.base import Result
 
@@ -30,21 +30,21 @@ CHAIR = {"object": "Chair", "system": "furniture", "members": ["Seat", "Leg.001"
 ROOM = {"object": "Room", "system": "ground", "members": ["Slab"]}
 
 
-def group(studio: Studio, *groups: dict[str, Any]) -> Result:
-    return studio.use(GROUP, groups=list(groups))
+def group(session: LiveSession, *groups: dict[str, Any]) -> Result:
+    return session.use(GROUP, groups=list(groups))
 
 
-def matrices(studio: Studio) -> dict[str, list[float]]:
-    return studio.run(
+def matrices(session: LiveSession) -> dict[str, list[float]]:
+    return session.run(
         "bpy.context.view_layer.update()\n"
         "{one.name: [round(value, 5) for row in one.matrix_world for value in row]"
         " for one in bpy.data.objects if one.type != 'EMPTY'}"
     )
 
 
-def state(studio: Studio) -> Any:
+def state(session: LiveSession) -> Any:
     """All that grouping could change."""
-    return studio.run(
+    return session.run(
         "(sorted((one.name, sorted(one.objects.keys()), sorted(one.children.keys()), dict(one.items()))"
         " for one in [bpy.context.scene.collection, *bpy.data.collections]),"
         " sorted((one.name, one.parent and one.parent.name, str(one.matrix_world), len(one.keys()))"
@@ -52,21 +52,21 @@ def state(studio: Studio) -> Any:
     )
 
 
-def refused(studio: Studio, *groups: dict[str, Any]) -> str:
+def refused(session: LiveSession, *groups: dict[str, Any]) -> str:
     """Why; and that nothing has changed."""
-    before = state(studio)
+    before = state(session)
     with pytest.raises(Refusal) as error:
-        group(studio, *groups)
-    assert state(studio) == before
+        group(session, *groups)
+    assert state(session) == before
     return str(error.value)
 
 
-def test_loose_meshes_become_objects_of_the_protocol_in_one_call(studio: Studio) -> None:
-    build(studio, LOOSE)
-    before = matrices(studio)
-    found = group(studio, ROOM, {**CHAIR, "contact_with": ["Room"], "motion_kind": "none"})
-    assert matrices(studio) == before
-    report = verified(studio, "C,G,V,W1,W2,W3")
+def test_loose_meshes_become_objects_of_the_protocol_in_one_call(session: LiveSession) -> None:
+    build(session, LOOSE)
+    before = matrices(session)
+    found = group(session, ROOM, {**CHAIR, "contact_with": ["Room"], "motion_kind": "none"})
+    assert matrices(session) == before
+    report = verified(session, "C,G,V,W1,W2,W3")
     assert [finding.message for finding in report.findings] == []
     assert {"C1", "C2", "C3", "C4", "C6", "G1", "G2", "G3", "V1", "W1", "W2"} <= set(report.passed)
     chair = found.data["groups"][1]
@@ -74,90 +74,90 @@ def test_loose_meshes_become_objects_of_the_protocol_in_one_call(studio: Studio)
     assert chair["members"] == ["Leg.001", "Leg.002", "Seat"]
     assert chair["location"] == pytest.approx([1.0, 0.5, 0.0], abs=1e-5)  # the bottom, in the middle
     assert found.data["warnings"] == []
-    assert studio.run("bpy.data.collections['Chair']['motion_kind']") == "none"
+    assert session.run("bpy.data.collections['Chair']['motion_kind']") == "none"
     assert "'Chair' in 'furniture': root 'Chair root' at (1, 0.5, 0), 3 members" in found.text
 
 
-def test_a_given_place_is_the_root_s(studio: Studio) -> None:
-    build(studio, LOOSE)
-    before = matrices(studio)
-    found = group(studio, {**CHAIR, "location": [1.0, 0.5, 0.25]})
+def test_a_given_place_is_the_root_s(session: LiveSession) -> None:
+    build(session, LOOSE)
+    before = matrices(session)
+    found = group(session, {**CHAIR, "location": [1.0, 0.5, 0.25]})
     assert found.data["groups"][0]["location"] == [1.0, 0.5, 0.25]
-    assert matrices(studio) == before
+    assert matrices(session) == before
 
 
-def test_the_bottom_is_that_of_the_evaluated_geometry(studio: Studio) -> None:
-    build(studio, LOOSE)
-    studio.run(
+def test_the_bottom_is_that_of_the_evaluated_geometry(session: LiveSession) -> None:
+    build(session, LOOSE)
+    session.run(
         "array = bpy.data.objects['Seat'].modifiers.new('Array', 'ARRAY')\n"
         "array.use_relative_offset, array.use_constant_offset = False, True\n"
         "array.constant_offset_displace = (2, 0, -3)"
     )
-    found = group(studio, CHAIR)
+    found = group(session, CHAIR)
     assert found.data["groups"][0]["location"] == pytest.approx([2.0, 0.5, -2.6], abs=1e-5)
 
 
-def test_doing_it_twice_changes_nothing(studio: Studio) -> None:
-    build(studio, LOOSE)
-    group(studio, ROOM, CHAIR)
-    before = state(studio)
-    found = group(studio, ROOM, CHAIR)
-    assert state(studio) == before
+def test_doing_it_twice_changes_nothing(session: LiveSession) -> None:
+    build(session, LOOSE)
+    group(session, ROOM, CHAIR)
+    before = state(session)
+    found = group(session, ROOM, CHAIR)
+    assert state(session) == before
     assert found.data["groups"][1]["taken_out_of"] == []
 
 
-def test_more_members_join_what_is_there(studio: Studio) -> None:
-    build(studio, LOOSE)
-    group(studio, {**CHAIR, "members": ["Seat"]})
-    before = matrices(studio)
-    found = group(studio, {"object": "Chair", "members": ["Leg.001", "Leg.002"]})
+def test_more_members_join_what_is_there(session: LiveSession) -> None:
+    build(session, LOOSE)
+    group(session, {**CHAIR, "members": ["Seat"]})
+    before = matrices(session)
+    found = group(session, {"object": "Chair", "members": ["Leg.001", "Leg.002"]})
     assert found.data["groups"][0]["members"] == ["Leg.001", "Leg.002", "Seat"]
     assert found.data["groups"][0]["location"] == pytest.approx([1.0, 0.5, 0.4], abs=1e-5)  # it stays
-    assert matrices(studio) == before
-    assert verified(studio, "G,C4").findings == ()
+    assert matrices(session) == before
+    assert verified(session, "G,C4").findings == ()
 
 
-def test_a_root_that_is_moved_leaves_its_members_where_they_are(studio: Studio) -> None:
-    build(studio, LOOSE)
-    group(studio, CHAIR)
-    before = matrices(studio)
-    found = group(studio, {"object": "Chair", "location": [0, 0, 5]})
+def test_a_root_that_is_moved_leaves_its_members_where_they_are(session: LiveSession) -> None:
+    build(session, LOOSE)
+    group(session, CHAIR)
+    before = matrices(session)
+    found = group(session, {"object": "Chair", "location": [0, 0, 5]})
     assert found.data["groups"][0]["location"] == [0, 0, 5]
-    assert matrices(studio) == before
+    assert matrices(session) == before
 
 
-def test_a_member_of_another_object_changes_over(studio: Studio) -> None:
-    build(studio, LOOSE)
-    group(studio, ROOM, CHAIR)
-    before = matrices(studio)
-    found = group(studio, {"object": "Stick", "system": "props", "members": ["Leg.002"]})
-    assert matrices(studio) == before
+def test_a_member_of_another_object_changes_over(session: LiveSession) -> None:
+    build(session, LOOSE)
+    group(session, ROOM, CHAIR)
+    before = matrices(session)
+    found = group(session, {"object": "Stick", "system": "props", "members": ["Leg.002"]})
+    assert matrices(session) == before
     assert found.data["groups"][0]["taken_out_of"] == ["Chair"]
     assert found.data["groups"][0]["freed_from"] == {"Leg.002": "Chair root"}
-    assert studio.run("bpy.data.objects['Leg.002'].parent.name") == "Stick root"
-    assert verified(studio, "C3,G").findings == ()
+    assert session.run("bpy.data.objects['Leg.002'].parent.name") == "Stick root"
+    assert verified(session, "C3,G").findings == ()
 
 
-def test_chains_of_parents_stay_and_only_their_upper_end_is_hung_up(studio: Studio) -> None:
-    build(studio, LOOSE)
-    studio.run(
+def test_chains_of_parents_stay_and_only_their_upper_end_is_hung_up(session: LiveSession) -> None:
+    build(session, LOOSE)
+    session.run(
         "for name in ('Leg.001', 'Leg.002'):\n"
         "    leg, seat = bpy.data.objects[name], bpy.data.objects['Seat']\n"
         "    world = leg.matrix_world.copy()\n"
         "    leg.parent = seat\n"
         "    leg.matrix_world = world"
     )
-    before = matrices(studio)
-    group(studio, CHAIR)
-    parents = studio.run(
+    before = matrices(session)
+    group(session, CHAIR)
+    parents = session.run(
         "{name: bpy.data.objects[name].parent.name for name in ('Seat', 'Leg.001', 'Leg.002')}"
     )
     assert parents == {"Seat": "Chair root", "Leg.001": "Seat", "Leg.002": "Seat"}
-    assert matrices(studio) == before
+    assert matrices(session) == before
 
 
-def test_a_turned_stretched_and_animated_mesh_stays_as_it_is_at_every_frame(studio: Studio) -> None:
-    build(studio, LOOSE)
+def test_a_turned_stretched_and_animated_mesh_stays_as_it_is_at_every_frame(session: LiveSession) -> None:
+    build(session, LOOSE)
     script = (
         "parent = bpy.data.objects.new('Old', None)\n"
         "scene.collection.objects.link(parent)\n"
@@ -167,7 +167,7 @@ def test_a_turned_stretched_and_animated_mesh_stays_as_it_is_at_every_frame(stud
         "key(seat, 1, location=(0, 0, 0))\n"
         "key(seat, 20, location=(1, 2, 3))\n"
     )
-    studio.run(
+    session.run(
         "import bpy\nfrom mathutils import Matrix, Vector, Euler\nscene = bpy.context.scene\n"
         "def key(one, frame, location):\n    one.location = location\n"
         "    one.keyframe_insert('location', frame=frame)\n" + script
@@ -175,49 +175,49 @@ def test_a_turned_stretched_and_animated_mesh_stays_as_it_is_at_every_frame(stud
     places = []
     for grouped in (False, True):
         if grouped:
-            studio.run("bpy.context.scene.frame_set(7)")
-            found = group(studio, CHAIR)
+            session.run("bpy.context.scene.frame_set(7)")
+            found = group(session, CHAIR)
             assert found.data["groups"][0]["freed_from"] == {"Seat": "Old"}
         places.append([])
         for frame in (1, 10, 20):
-            studio.run(f"bpy.context.scene.frame_set({frame})")
-            places[-1].append(matrices(studio)["Seat"])
+            session.run(f"bpy.context.scene.frame_set({frame})")
+            places[-1].append(matrices(session)["Seat"])
     for before, after in zip(*places, strict=True):
         assert after == pytest.approx(before, abs=2e-5)
 
 
-def test_an_empty_that_holds_all_meshes_already_becomes_the_root(studio: Studio) -> None:
-    build(studio, LOOSE)
-    studio.run(
+def test_an_empty_that_holds_all_meshes_already_becomes_the_root(session: LiveSession) -> None:
+    build(session, LOOSE)
+    session.run(
         "handle = bpy.data.objects.new('Handle', None)\n"
         "bpy.context.scene.collection.objects.link(handle)\n"
         "for name in ('Seat', 'Leg.001', 'Leg.002'):\n"
         "    bpy.data.objects[name].parent = handle"
     )
-    found = group(studio, {**CHAIR, "members": [*CHAIR["members"], "Handle"]})
+    found = group(session, {**CHAIR, "members": [*CHAIR["members"], "Handle"]})
     assert found.data["groups"][0]["root"] == "Handle"
-    assert verified(studio, "C4,G").findings == ()
+    assert verified(session, "C4,G").findings == ()
 
 
-def test_a_root_loses_its_own_parent_and_stays(studio: Studio) -> None:
-    build(studio, LOOSE)
-    group(studio, ROOM, CHAIR)
-    studio.run(
+def test_a_root_loses_its_own_parent_and_stays(session: LiveSession) -> None:
+    build(session, LOOSE)
+    group(session, ROOM, CHAIR)
+    session.run(
         "root, other = bpy.data.objects['Chair root'], bpy.data.objects['Slab']\n"
         "world = root.matrix_world.copy()\n"
         "root.parent = other\n"
         "root.matrix_world = world"
     )
-    before = matrices(studio)
-    found = group(studio, {"object": "Chair"})
+    before = matrices(session)
+    found = group(session, {"object": "Chair"})
     assert found.data["groups"][0]["freed_from"] == {"Chair root": "Slab"}
-    assert matrices(studio) == before
-    assert verified(studio, "G2").findings == ()
+    assert matrices(session) == before
+    assert verified(session, "G2").findings == ()
 
 
-def test_collections_that_physics_goes_by_keep_their_members(studio: Studio) -> None:
-    build(studio, LOOSE)
-    studio.run(
+def test_collections_that_physics_goes_by_keep_their_members(session: LiveSession) -> None:
+    build(session, LOOSE)
+    session.run(
         "colliders = bpy.data.collections.new('Colliders')\n"
         "bpy.context.scene.collection.children.link(colliders)\n"
         "colliders.objects.link(bpy.data.objects['Seat'])\n"
@@ -228,28 +228,28 @@ def test_collections_that_physics_goes_by_keep_their_members(studio: Studio) -> 
         "bpy.context.view_layer.objects.active = bpy.data.objects['Leg.001']\n"
         "bpy.ops.rigidbody.object_add()"
     )
-    found = group(studio, CHAIR)
+    found = group(session, CHAIR)
     assert found.data["groups"][0]["taken_out_of"] == ["Scene Collection"]
-    assert studio.run("bpy.data.collections['Colliders'].objects.keys()") == ["Seat"]
-    assert studio.run("bpy.data.collections['Bodies'].objects.keys()") == ["Leg.001"]
-    assert studio.run("bpy.data.objects['Leg.001'].rigid_body is not None") is True
+    assert session.run("bpy.data.collections['Colliders'].objects.keys()") == ["Seat"]
+    assert session.run("bpy.data.collections['Bodies'].objects.keys()") == ["Leg.001"]
+    assert session.run("bpy.data.objects['Leg.001'].rigid_body is not None") is True
 
 
-def test_a_system_that_was_nested_comes_under_the_scene(studio: Studio) -> None:
-    build(studio, LOOSE)
-    studio.run(
+def test_a_system_that_was_nested_comes_under_the_scene(session: LiveSession) -> None:
+    build(session, LOOSE)
+    session.run(
         "outer, inner = bpy.data.collections.new('House'), bpy.data.collections.new('furniture')\n"
         "bpy.context.scene.collection.children.link(outer)\n"
         "outer.children.link(inner)"
     )
-    group(studio, ROOM, CHAIR)
-    assert verified(studio, "C").findings == ()
-    assert studio.run("bpy.data.collections['House'].children.keys()") == []
+    group(session, ROOM, CHAIR)
+    assert verified(session, "C").findings == ()
+    assert session.run("bpy.data.collections['House'].children.keys()") == []
 
 
-def test_what_the_protocol_still_misses_is_told(studio: Studio) -> None:
-    build(studio, LOOSE)
-    found = group(studio, CHAIR)
+def test_what_the_protocol_still_misses_is_told(session: LiveSession) -> None:
+    build(session, LOOSE)
+    found = group(session, CHAIR)
     assert any(one.startswith("C6:") for one in found.data["warnings"])
     assert "The protocol still misses:" in found.text
 
@@ -280,10 +280,10 @@ def test_what_the_protocol_still_misses_is_told(studio: Studio) -> None:
     ],
 )
 def test_what_cannot_be_is_refused_and_nothing_changes(
-    studio: Studio, groups: list[dict[str, Any]], why: str
+    session: LiveSession, groups: list[dict[str, Any]], why: str
 ) -> None:
     build(
-        studio,
+        session,
         LOOSE
         + """
 lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
@@ -302,12 +302,12 @@ hand.parent, hand.parent_type, hand.parent_bone = rig, "BONE", "B"
 system("props")
 """,
     )
-    assert why in refused(studio, *groups)
+    assert why in refused(session, *groups)
 
 
-def test_what_hangs_on_a_bone_keeps_it_when_the_armature_is_a_member(studio: Studio) -> None:
+def test_what_hangs_on_a_bone_keeps_it_when_the_armature_is_a_member(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         LOOSE
         + """
 rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
@@ -321,12 +321,12 @@ scene.collection.objects.link(hand)
 hand.parent, hand.parent_type, hand.parent_bone = rig, "BONE", "B"
 """,
     )
-    before = matrices(studio)
-    group(studio, {"object": "Arm", "system": "body", "members": ["Hand", "Rig"], "deformation_kind": "rig"})
-    assert matrices(studio) == before
-    assert studio.run("(lambda one: (one.parent.name, one.parent_bone))(bpy.data.objects['Hand'])") == (
+    before = matrices(session)
+    group(session, {"object": "Arm", "system": "body", "members": ["Hand", "Rig"], "deformation_kind": "rig"})
+    assert matrices(session) == before
+    assert session.run("(lambda one: (one.parent.name, one.parent_bone))(bpy.data.objects['Hand'])") == (
         "Rig",
         "B",
     )
-    assert studio.run("bpy.data.objects['Rig'].parent.name") == "Arm root"
-    assert verified(studio, "G").findings == ()
+    assert session.run("bpy.data.objects['Rig'].parent.name") == "Arm root"
+    assert verified(session, "G").findings == ()

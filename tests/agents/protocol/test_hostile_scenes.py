@@ -11,7 +11,7 @@ from scenes import a_plan, build, verified
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.protocol.findings import Finding, Report
 
@@ -41,9 +41,9 @@ def plan(**more: Any) -> Any:
     return a_plan(*relations, **({"objects": objects} | more))
 
 
-def judged(studio: Studio, script: str, rules: str = ALL) -> Report:
-    build(studio, script)
-    report = verified(studio, rules, plan())
+def judged(session: LiveSession, script: str, rules: str = ALL) -> Report:
+    build(session, script)
+    report = verified(session, rules, plan())
     assert [one.message for one in report.findings if one.outcome == "error"] == []
     return report
 
@@ -52,8 +52,8 @@ def of(report: Report, rule: str) -> list[Finding]:
     return [one for one in report.findings if one.rule == rule]
 
 
-def test_the_scene_that_is_not_broken_is_in_order(studio: Studio) -> None:
-    report = judged(studio, SCENE)
+def test_the_scene_that_is_not_broken_is_in_order(session: LiveSession) -> None:
+    report = judged(session, SCENE)
     assert {one.rule for one in report.findings} == {"W4", "W5"}
     assert {"C3", "G1", "V1", "V2", "W1", "R1", "R2", "R3", "R4", "R5", "R10", "R13"} <= set(report.passed)
 
@@ -71,8 +71,8 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("change", BROKEN.values(), ids=BROKEN)
-def test_what_cannot_be_measured_passes_no_rule_that_is_about_it(studio: Studio, change: str) -> None:
-    report = judged(studio, SCENE + change)
+def test_what_cannot_be_measured_passes_no_rule_that_is_about_it(session: LiveSession, change: str) -> None:
+    report = judged(session, SCENE + change)
     assert not report.ok
     for rule in ("V1", "V2", "R2", "R4", "R5", "R10"):
         assert rule not in report.passed
@@ -82,23 +82,23 @@ def test_what_cannot_be_measured_passes_no_rule_that_is_about_it(studio: Studio,
     assert "Traceback" not in " ".join(one.message for one in report.findings)
 
 
-def test_an_empty_scene_passes_nothing_that_needs_something(studio: Studio) -> None:
-    report = verified(studio, ALL)
+def test_an_empty_scene_passes_nothing_that_needs_something(session: LiveSession) -> None:
+    report = verified(session, ALL)
     assert {one.rule for one in report.findings} == {"C6", "W4", "W5"}
     assert not report.ok
     assert set(report.passed) <= {"W3"}
-    planned = verified(studio, ALL, plan())
+    planned = verified(session, ALL, plan())
     assert {("R1", ("Crate",)), ("R1", ("Floor",))} <= {(one.rule, one.objects) for one in planned.findings}
     assert not {"R1", "R2", "R3", "R5", "R10", "R13"} & set(planned.passed)
 
 
-def test_a_plan_for_another_scene_is_met_by_nothing(studio: Studio) -> None:
+def test_a_plan_for_another_scene_is_met_by_nothing(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         'thing("Sea", plane("Water", (-9, -9), (9, 9)), system_name="ground")\n'
         'hull = box("Hull", (0, 0, 0), (1, 1, 1))\nthing("Ship", hull)\nhull["contact_with"] = "Water"',
     )
-    report = verified(studio, ALL, plan())
+    report = verified(session, ALL, plan())
     inventory = {one.objects for one in of(report, "R1")}
     assert inventory == {("Crate",), ("Floor",), ("Sea",), ("Ship",)}
     for rule in ("R2", "R3", "R5", "R10", "R13"):
@@ -120,8 +120,8 @@ WITHOUT = {
 
 
 @pytest.mark.parametrize("more", WITHOUT.values(), ids=WITHOUT)
-def test_contacts_of_what_has_no_geometry_are_found(studio: Studio, more: str) -> None:
-    report = judged(studio, SCENE + more, "V,W1,R4")
+def test_contacts_of_what_has_no_geometry_are_found(session: LiveSession, more: str) -> None:
+    report = judged(session, SCENE + more, "V,W1,R4")
     if "contact_with" in more:
         assert {one.outcome for one in of(report, "V1")} == {"broken"}
         assert "nothing of that name with a surface" in of(report, "V1")[0].message
@@ -141,14 +141,14 @@ FLAT = {
 
 
 @pytest.mark.parametrize("change", FLAT.values(), ids=FLAT)
-def test_what_has_collapsed_is_measured_as_what_it_is(studio: Studio, change: str) -> None:
-    report = judged(studio, SCENE + change)
+def test_what_has_collapsed_is_measured_as_what_it_is(session: LiveSession, change: str) -> None:
+    report = judged(session, SCENE + change)
     assert "V1" in report.passed  # it lies on the slab
     assert of(report, "R2")
 
 
-def test_collections_that_make_instances_of_each_other_are_refused(studio: Studio) -> None:
-    studio.run(
+def test_collections_that_make_instances_of_each_other_are_refused(session: LiveSession) -> None:
+    session.run(
         'a, b = (bpy.data.collections.new(name) for name in "AB")\n'
         "for holds, makes in ((a, b), (b, a)):\n"
         '    maker = bpy.data.objects.new(f"of {makes.name}", None)\n'
@@ -156,12 +156,12 @@ def test_collections_that_make_instances_of_each_other_are_refused(studio: Studi
         "    holds.objects.link(maker)\nmaker = None"
     )
     with pytest.raises(Refusal, match=r"in a circle, ('A' → 'B' → 'A'|'B' → 'A' → 'B')"):
-        verified(studio, ALL)
+        verified(session, ALL)
 
 
-def test_endless_instances_are_told_in_seconds(studio: Studio) -> None:
+def test_endless_instances_are_told_in_seconds(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         SCENE + 'levels = [bpy.data.collections.new(f"Level {k}") for k in range(6)]\n'
         'levels[0].objects.link(box("Brick", (0, 0, 0), (1, 1, 1)))\n'
         "for below, above in zip(levels, levels[1:]):\n    for k in range(12):\n"
@@ -172,7 +172,7 @@ def test_endless_instances_are_told_in_seconds(studio: Studio) -> None:
         'tower.instance_type, tower.instance_collection = "COLLECTION", levels[-1]\ntower["contact_with"] = "Slab"',
     )
     began = time.perf_counter()
-    report = verified(studio, "V,R4", plan())
+    report = verified(session, "V,R4", plan())
     assert time.perf_counter() - began < 20
     assert {(one.rule, one.objects, one.outcome) for one in report.findings} == {
         ("V1", ("Tower", "Slab"), "undecided"),
@@ -182,17 +182,17 @@ def test_endless_instances_are_told_in_seconds(studio: Studio) -> None:
     assert "more than 50000 instances" in " ".join(one.message for one in report.findings)
 
 
-def test_a_mesh_that_is_being_edited_is_measured_as_it_is(studio: Studio) -> None:
+def test_a_mesh_that_is_being_edited_is_measured_as_it_is(session: LiveSession) -> None:
     build(
-        studio, SCENE + 'bpy.context.view_layer.objects.active = crate\nbpy.ops.object.mode_set(mode="EDIT")'
+        session, SCENE + 'bpy.context.view_layer.objects.active = crate\nbpy.ops.object.mode_set(mode="EDIT")'
     )
-    report = verified(studio, ALL, plan())
+    report = verified(session, ALL, plan())
     assert {one.rule for one in report.findings} == {"W4", "W5"}
 
 
-def test_a_long_simulation_that_is_not_baked_is_undecided_at_once(studio: Studio) -> None:
+def test_a_long_simulation_that_is_not_baked_is_undecided_at_once(session: LiveSession) -> None:
     began = time.perf_counter()
-    report = judged(studio, SCENE + "rigid(crate)\nscene.frame_end = 100_000", "V1,V2,R3")
+    report = judged(session, SCENE + "rigid(crate)\nscene.frame_end = 100_000", "V1,V2,R3")
     assert time.perf_counter() - began < 5
     told = [one for one in report.findings if one.outcome == "undecided"]
     assert {one.rule for one in told} == {"V1", "V2", "R3"}
@@ -218,22 +218,22 @@ ODD_TAGS = {
 
 
 @pytest.mark.parametrize("change", ODD_TAGS.values(), ids=ODD_TAGS)
-def test_tags_that_say_nonsense_are_findings_at_most(studio: Studio, change: str) -> None:
-    report = judged(studio, SCENE + change)
+def test_tags_that_say_nonsense_are_findings_at_most(session: LiveSession, change: str) -> None:
+    report = judged(session, SCENE + change)
     assert report.findings
     if "Nobody" in change:
         assert len(of(report, "V1")) == 2000
 
 
-def test_a_thousand_rules_breaches_do_not_stop_a_report(studio: Studio) -> None:
+def test_a_thousand_rules_breaches_do_not_stop_a_report(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         'cube = box("Cube", (0, 0, 0), (1, 1, 1))\nfor k in range(400):\n'
         '    one = bpy.data.objects.new(f"C{k}", cube.data)\n    one.location = (k % 20 * 0.6, k // 20 * 0.6, 0)\n'
         "    scene.collection.objects.link(one)",
     )
     began = time.perf_counter()
-    report = verified(studio, "C3,V2")
+    report = verified(session, "C3,V2")
     assert time.perf_counter() - began < 60
     assert len(of(report, "C3")) == 400
     crossing = of(report, "V2")

@@ -11,7 +11,7 @@ from scenes import a_plan, build, the_finding, verified
 from agents.protocol.judging.move_advice import told_move
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.plan.scene import ScenePlan
 
@@ -74,14 +74,14 @@ MENDED: dict[str, tuple[str, str, ScenePlan | None]] = {
 @pytest.mark.blender
 @pytest.mark.parametrize(("rule", "script", "plan"), MENDED.values(), ids=MENDED)
 def test_what_is_moved_as_told_is_mended(
-    studio: Studio, rule: str, script: str, plan: ScenePlan | None
+    session: LiveSession, rule: str, script: str, plan: ScenePlan | None
 ) -> None:
-    build(studio, FLOOR + script)
-    name, way = way_told(the_finding(verified(studio, rule, plan)).fix)
+    build(session, FLOOR + script)
+    name, way = way_told(the_finding(verified(session, rule, plan)).fix)
     assert name in {"Crate", "Planks"}
-    studio.run(
+    session.run(
         'one = bpy.data.objects["Planks"]\n'
         f"one.matrix_world.translation += __import__('mathutils').Vector({way})\n"
         "bpy.context.view_layer.update()"
     )
-    assert verified(studio, rule, plan).passed == (rule,)
+    assert verified(session, rule, plan).passed == (rule,)

@@ -9,15 +9,15 @@ import pytest
 from mutating import COUNT, measure_rates
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
 
 def test_breaches_are_found_by_the_rules_that_own_them_and_valid_scenes_raise_no_alarm(
-    studio: Studio, capsys: pytest.CaptureFixture[str]
+    session: LiveSession, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    rates = measure_rates(studio)
+    rates = measure_rates(session)
     with capsys.disabled():
         sys.stdout.write(f"\n{rates.table()}\n")
     missed = [row for row in rates.log().splitlines() if row.endswith("NOTHING")]

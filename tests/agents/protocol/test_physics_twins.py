@@ -17,7 +17,7 @@ from test_rule_mechanism import DECLARED, LAST, NAMED, SOLVED
 from agents.blender.tools.bake import TOOL as BAKE
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -124,16 +124,16 @@ for frame, (theirs, _) in film.items():
 WAYS = {"keyframes": BY_TURNS, "shape keys": BY_SHAPES}
 
 
-def filmed(studio: Studio, name: str) -> list[np.ndarray]:
+def filmed(session: LiveSession, name: str) -> list[np.ndarray]:
     """The rendered frames."""
-    studio.run(f"""
+    session.run(f"""
 scene = bpy.context.scene
 for frame in {SHOWN}:
     scene.frame_set(frame)
     scene.render.filepath = f"//{name} {{frame}}.png"
     bpy.ops.render.render(write_still=True)
 """)
-    folder = studio.blender.folder.workspace
+    folder = session.blender.folder.workspace
     return [np.asarray(Image.open(folder / f"{name} {frame}.png").convert("RGB"), float) for frame in SHOWN]
 
 
@@ -143,19 +143,19 @@ def off(one: np.ndarray, other: np.ndarray) -> float:
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("kind", SOLVED)
-def test_a_twin_that_looks_the_same_is_no_simulation(studio: Studio, kind: str, way: str) -> None:
+def test_a_twin_that_looks_the_same_is_no_simulation(session: LiveSession, kind: str, way: str) -> None:
     script = f"{DECLARED}\nscene.frame_start, scene.frame_end = 1, {LAST}\n{STAGE}{SOLVED[kind]}{SEEN.get(kind, '')}"
-    build(studio, f"{script}\ndeclared('Actor', {kind!r}, 'bake')")
-    studio.use(BAKE)
-    real = filmed(studio, "real")
+    build(session, f"{script}\ndeclared('Actor', {kind!r}, 'bake')")
+    session.use(BAKE)
+    real = filmed(session, "real")
     moved = off(real[0], real[-1])
     assert moved > 1.0  # of 255: the pictures show that it moves
-    assert verified(studio, "R15").passed == ("R15",)
+    assert verified(session, "R15").passed == ("R15",)
     made = BY_TRANSFORMS if (kind, way) == ("sim_rigid", "keyframes") else WAYS[way]
-    studio.run(FILM + made)
-    for one, other in zip(real, filmed(studio, "fake"), strict=True):
+    session.run(FILM + made)
+    for one, other in zip(real, filmed(session, "fake"), strict=True):
         assert off(one, other) < SAME * moved
-    found = the_finding(verified(studio, "R15"))
+    found = the_finding(verified(session, "R15"))
     assert (found.rule, found.severity, found.outcome, found.objects) == ("R15", "hard", "broken", ("Actor",))
     assert f"declared {kind}, but has no {NAMED[kind]} that is on" in found.message
     assert found.measured == 0.0

@@ -12,7 +12,7 @@ from scenes import build, measured, measures
 from agents.protocol.measures.measure import Crossings, Extents, Gap, Pieces, Surface, Unmeasured
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -21,17 +21,17 @@ R2, R3 = 2**0.5, 3**0.5
 ON_ITS_CORNER = math.degrees(math.atan(1 / R2))
 
 
-def made(studio: Studio, script: str) -> None:
-    build(studio, ALONE + script)
+def made(session: LiveSession, script: str) -> None:
+    build(session, ALONE + script)
 
 
-def gap(studio: Studio, a: str = "A", b: str = "B") -> float:
-    return measured(studio, Gap((a,), (b,))).distance
+def gap(session: LiveSession, a: str = "A", b: str = "B") -> float:
+    return measured(session, Gap((a,), (b,))).distance
 
 
-def depth(studio: Studio, *names: str) -> float | None:
+def depth(session: LiveSession, *names: str) -> float | None:
     """How deep the deepest pair is in each other; None if none shares space."""
-    pairs = measured(studio, Crossings(names or ("A", "B"))).pairs
+    pairs = measured(session, Crossings(names or ("A", "B"))).pairs
     assert all(pair.undecided == "" for pair in pairs)
     return max((pair.depth for pair in pairs if pair.depth is not None), default=None)
 
@@ -81,23 +81,23 @@ APART = {
 
 
 @pytest.mark.parametrize(("script", "distance"), APART.values(), ids=APART)
-def test_distances_are_exact(studio: Studio, script: str, distance: float) -> None:
-    made(studio, script)
-    found = measured(studio, Gap(("A",), ("B",)))
-    back = measured(studio, Gap(("B",), ("A",)))
+def test_distances_are_exact(session: LiveSession, script: str, distance: float) -> None:
+    made(session, script)
+    found = measured(session, Gap(("A",), ("B",)))
+    back = measured(session, Gap(("B",), ("A",)))
     assert found.distance == pytest.approx(distance, abs=2e-6)
     assert back.distance == pytest.approx(found.distance, abs=1e-6)
     assert math.dist(found.here, found.there) == pytest.approx(distance, abs=1e-5)
 
 
-def test_of_several_surfaces_the_nearest_two_count(studio: Studio) -> None:
+def test_of_several_surfaces_the_nearest_two_count(session: LiveSession) -> None:
     made(
-        studio,
+        session,
         'for k in range(5):\n    add(box(f"L{k}", (k, 0, 0), (k + 0.1, 1, 1)))\n'
         '    add(box(f"R{k}", (k, 2 + k / 10, 0), (k + 0.1, 3, 1)))',
     )
     lefts, rights = (tuple(f"{side}{k}" for k in range(5)) for side in "LR")
-    found = measured(studio, Gap(lefts, rights))
+    found = measured(session, Gap(lefts, rights))
     assert found.distance == pytest.approx(1, abs=1e-6)
     assert (found.here[1], found.there[1]) == (pytest.approx(1), pytest.approx(2))
 
@@ -192,9 +192,9 @@ DEEP = {
 
 
 @pytest.mark.parametrize(("script", "expected"), DEEP.values(), ids=DEEP)
-def test_depths_are_what_geometry_says(studio: Studio, script: str, expected: float) -> None:
-    made(studio, script)
-    found, back = depth(studio), depth(studio, "B", "A")
+def test_depths_are_what_geometry_says(session: LiveSession, script: str, expected: float) -> None:
+    made(session, script)
+    found, back = depth(session), depth(session, "B", "A")
     assert found == pytest.approx(expected, rel=0.02, abs=3e-5)
     assert back == pytest.approx(expected, rel=0.02, abs=3e-5)
 
@@ -230,9 +230,9 @@ TOUCHING = {
 
 
 @pytest.mark.parametrize("script", TOUCHING.values(), ids=TOUCHING)
-def test_what_touches_or_is_beside_each_other_shares_no_space(studio: Studio, script: str) -> None:
-    made(studio, script)
-    assert (depth(studio) or 0.0) < 5e-5
+def test_what_touches_or_is_beside_each_other_shares_no_space(session: LiveSession, script: str) -> None:
+    made(session, script)
+    assert (depth(session) or 0.0) < 5e-5
 
 
 # What is evaluated
@@ -311,23 +311,23 @@ SEEN = {
 
 
 @pytest.mark.parametrize("script", SEEN.values(), ids=SEEN)
-def test_what_is_seen_is_measured_and_told_in_the_facts(studio: Studio, script: str) -> None:
-    made(studio, FLOOR + 'bpy.data.objects["A"].location.z = -0.51\n' + script)
-    assert gap(studio) == pytest.approx(0.01, abs=2e-4)
-    high = measured(studio, Extents(("B",))).high
+def test_what_is_seen_is_measured_and_told_in_the_facts(session: LiveSession, script: str) -> None:
+    made(session, FLOOR + 'bpy.data.objects["A"].location.z = -0.51\n' + script)
+    assert gap(session) == pytest.approx(0.01, abs=2e-4)
+    high = measured(session, Extents(("B",))).high
     assert high[2] == pytest.approx(0.5, abs=2e-4)
-    told = studio.blender.call("snapshot", {}, timeout=60).value["objects"]
+    told = session.blender.call("snapshot", {}, timeout=60).value["objects"]
     facts = next(one for one in told if one["name"] == "B")
     assert facts["surface"]
     assert facts["polygons"] > 0
     assert facts["box"]["high"] == pytest.approx(high, abs=1e-5)
 
 
-def test_text_is_there_once(studio: Studio) -> None:
-    made(studio, SEEN["text"])
-    found = measured(studio, Surface("B"))
+def test_text_is_there_once(session: LiveSession) -> None:
+    made(session, SEEN["text"])
+    found = measured(session, Surface("B"))
     assert (found.open_edges, found.parts) == (0, 1)
-    size = measured(studio, Extents(("B",))).size
+    size = measured(session, Extents(("B",))).size
     assert found.volume == pytest.approx(size[0] * size[1] * size[2], rel=1e-3)
 
 
@@ -344,12 +344,12 @@ def test_text_is_there_once(studio: Studio) -> None:
         'for name in "CB":\n    add(bpy.data.objects.new(name, bpy.data.metaballs.new(name)))',
     ],
 )
-def test_what_has_no_faces_has_no_surface(studio: Studio, script: str) -> None:
-    made(studio, FLOOR + script)
+def test_what_has_no_faces_has_no_surface(session: LiveSession, script: str) -> None:
+    made(session, FLOOR + script)
     with pytest.raises(Unmeasured, match="'B' has no surface"):
-        gap(studio)
-    assert measured(studio, Crossings(("A", "B"))).pairs == ()
-    told = studio.blender.call("snapshot", {}, timeout=60).value["objects"]
+        gap(session)
+    assert measured(session, Crossings(("A", "B"))).pairs == ()
+    told = session.blender.call("snapshot", {}, timeout=60).value["objects"]
     assert not next(one for one in told if one["name"] == "B")["surface"]
 
 
@@ -372,26 +372,28 @@ def test_what_has_no_faces_has_no_surface(studio: Studio, script: str) -> None:
          False, True),
     ],
 )  # fmt: skip
-def test_what_is_hidden_is_told_apart(studio: Studio, hide: str, rendered: bool, evaluated: bool) -> None:
+def test_what_is_hidden_is_told_apart(
+    session: LiveSession, hide: str, rendered: bool, evaluated: bool
+) -> None:
     script = 'kept, inner = bpy.data.collections.new("Kept"), bpy.data.collections.new("Inner")\n'
     script += "scene.collection.children.link(kept)\nkept.objects.link(cube)\n"
     script += 'layer = bpy.context.view_layer.layer_collection.children["Kept"]\n'
-    made(studio, CUBE + script + hide)
-    told = studio.blender.call("snapshot", {}, timeout=60).value["objects"]
+    made(session, CUBE + script + hide)
+    told = session.blender.call("snapshot", {}, timeout=60).value["objects"]
     facts = next(one for one in told if one["name"] == "Cube")
     assert (facts["rendered"], facts["evaluated"]) == (rendered, evaluated)
     assert facts["surface"]
     if evaluated:
-        assert measured(studio, Surface("Cube")).polygons == 12
+        assert measured(session, Surface("Cube")).polygons == 12
     else:
         with pytest.raises(Unmeasured, match="not evaluated"):
-            measured(studio, Surface("Cube"))
+            measured(session, Surface("Cube"))
 
 
-def test_objects_of_other_scenes_are_not_there(studio: Studio) -> None:
-    made(studio, FLOOR + CUBE + 'bpy.data.scenes.new("Other").collection.objects.link(cube)')
+def test_objects_of_other_scenes_are_not_there(session: LiveSession) -> None:
+    made(session, FLOOR + CUBE + 'bpy.data.scenes.new("Other").collection.objects.link(cube)')
     with pytest.raises(Unmeasured, match="no object 'Cube' in the scene"):
-        gap(studio, "A", "Cube")
+        gap(session, "A", "Cube")
 
 
 # Meshes as such
@@ -409,10 +411,10 @@ def test_objects_of_other_scenes_are_not_there(studio: Studio) -> None:
     ],
 )  # fmt: skip
 def test_a_mesh_is_told_as_it_is(
-    studio: Studio, script: str, open_edges: int, volume: float, area: float | None, parts: int
+    session: LiveSession, script: str, open_edges: int, volume: float, area: float | None, parts: int
 ) -> None:
-    made(studio, script)
-    found = measured(studio, Surface("B"))
+    made(session, script)
+    found = measured(session, Surface("B"))
     assert (found.finite, found.open_edges, found.parts) == (True, open_edges, parts)
     assert found.volume == pytest.approx(volume, rel=1e-5)
     assert area is None or found.area == pytest.approx(area, rel=1e-5)
@@ -421,16 +423,16 @@ def test_a_mesh_is_told_as_it_is(
 # Much of it
 
 
-def test_meshes_of_a_million_vertices_are_measured_in_seconds(studio: Studio) -> None:
+def test_meshes_of_a_million_vertices_are_measured_in_seconds(session: LiveSession) -> None:
     made(
-        studio,
+        session,
         FINE + 'dense = fine("A", 1, 63).modifiers.new("S", "SUBSURF")\n'
         'dense.subdivision_type, dense.levels = "SIMPLE", 4\n'
         'add(ball("B", 0.3, at=(0.1, 0.2, 0.31)))\nadd(ball("C", 0.3, at=(0.1, 0.2, -0.295)))',
     )
     surface, apart, crossing = Surface("A"), Gap(("A",), ("B",)), Crossings(("A", "B", "C"))
     began = time.perf_counter()
-    found = measures(studio, surface, apart, crossing)
+    found = measures(session, surface, apart, crossing)
     assert time.perf_counter() - began < 40  # some seconds where nothing else runs
     assert found[surface].vertices > 1_000_000
     assert found[apart].distance == pytest.approx(0.01, abs=1e-6)
@@ -438,24 +440,24 @@ def test_meshes_of_a_million_vertices_are_measured_in_seconds(studio: Studio) ->
     assert found[crossing].pairs[0].depth == pytest.approx(0.005, rel=0.02)
 
 
-def test_the_same_dense_mesh_twice_is_no_trouble(studio: Studio) -> None:
+def test_the_same_dense_mesh_twice_is_no_trouble(session: LiveSession) -> None:
     made(
-        studio,
+        session,
         'for name in "AB":\n    dense = add(ball(name, 0.5)).modifiers.new("S", "SUBSURF")\n    dense.levels = 4',
     )
-    found = depth(studio)
+    found = depth(session)
     assert found is not None
     assert 0.9 < found <= 1
 
 
-def test_thousands_of_parts_are_looked_at_in_seconds(studio: Studio) -> None:
+def test_thousands_of_parts_are_looked_at_in_seconds(session: LiveSession) -> None:
     made(
-        studio,
+        session,
         'cube = box("Cube", (0, 0, 0), (1, 1, 1))\nfor k in range(2500):\n'
         '    add(bpy.data.objects.new(f"P{k}", cube.data)).location = (k % 50, k // 50, 0)',
     )
     names = tuple(f"P{k}" for k in range(2500))
     began = time.perf_counter()
-    assert len(measured(studio, Pieces(names, 0.002, 0.005, 0.01)).pieces) == 1
-    assert depth(studio, *names) is None
+    assert len(measured(session, Pieces(names, 0.002, 0.005, 0.01)).pieces) == 1
+    assert depth(session, *names) is None
     assert time.perf_counter() - began < 20

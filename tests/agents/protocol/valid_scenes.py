@@ -13,7 +13,7 @@ from valid_room import ROOM, room_plan
 from agents.blender.tools.bake import TOOL as BAKE
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.plan.scene import ScenePlan
 
@@ -27,11 +27,11 @@ class ValidScene:
     plan: ScenePlan
     baked: bool = False
 
-    def build(self, studio: Studio) -> None:
+    def build(self, session: LiveSession) -> None:
         """Builds it in an empty scene, and bakes what is simulated."""
-        studio.run(f"{TOOLS}\n{STAGE}\n{self.script}\nbpy.context.view_layer.update()")
+        session.run(f"{TOOLS}\n{STAGE}\n{self.script}\nbpy.context.view_layer.update()")
         if self.baked:
-            studio.use(BAKE)
+            session.use(BAKE)
 
 
 def valid_scenes() -> tuple[ValidScene, ...]:

@@ -194,7 +194,7 @@ def test_more_objects_than_can_be_looked_at_are_not_scored(files: Path) -> None:
 
 def test_a_file_that_needs_too_much_memory_is_not_scored(files: Path, spec: Spec) -> None:
     found = audited("heavy", files, spec, Means(memory=GIB // 2))
-    said = "Blender ended while reading it: it ran out of memory, of which it may have 0.5 GB"
+    said = "Blender ended while reading it: it ran out of memory; the limit is 0.5 GB"
     assert (found.not_scored or "").startswith(said)
 
 

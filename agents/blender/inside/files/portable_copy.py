@@ -315,10 +315,13 @@ def _outside(apart=(), visit=None):
     """
     if not hasattr(bpy.data, "file_path_foreach"):  # before Blender 5.0
         paths = set(bpy.utils.blend_paths(absolute=True, packed=False, local=True))
+        libraries = {
+            _absolute(library.filepath): f"library {library.name!r}" for library in bpy.data.libraries
+        }
         return [
-            {"what": "a file", "path": one, "missing": not os.path.exists(one)}
-            for one in sorted(paths)
-            if one and not _is_own(one)
+            {"what": libraries.get(path, "a file"), "path": path, "missing": not _is_readable(path)}
+            for path in sorted(paths)
+            if path and not _is_own(path)
         ]
     found = []
 
@@ -327,11 +330,23 @@ def _outside(apart=(), visit=None):
         if owner.library is not None or path in {"", "<builtin>", *apart} or _is_own(real):
             return None
         what = f"{owner.bl_rna.name.lower()} {owner.name!r}"
-        found.append({"what": what, "path": real, "missing": not os.path.exists(real)})
+        found.append({"what": what, "path": real, "missing": not _is_readable(real)})
         return visit(owner, path) if visit is not None else None
 
     bpy.data.file_path_foreach(at, flags={"SKIP_PACKED"})
     return found
+
+
+def _is_readable(path):
+    """Whether a file can be read, or a folder listed. To exist is not enough: some sandboxes only refuse to open it."""
+    try:
+        if os.path.isdir(path):
+            os.scandir(path).close()
+        else:
+            os.close(os.open(path, os.O_RDONLY | os.O_NONBLOCK))
+    except (OSError, ValueError):
+        return False
+    return True
 
 
 def _is_own(path):

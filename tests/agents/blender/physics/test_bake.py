@@ -12,7 +12,7 @@ from agents.blender.tools.base import Call
 from simworlds.sandbox.errors import Interrupted, Refusal, TookTooLong
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -104,10 +104,10 @@ def one(found: Any) -> dict[str, Any]:
 # Which caches, which frames
 
 
-def test_every_kind_of_cache_is_baked_over_the_scenes_range(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ncloth()\nsoft()\nemitter()\nhair()\nbody()\ncanvas()")
+def test_every_kind_of_cache_is_baked_over_the_scenes_range(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ncloth()\nsoft()\nemitter()\nhair()\nbody()\ncanvas()")
     seen: list[tuple[float, float | None, str]] = []
-    found = studio.use(TOOL, Call(progress=lambda *told: seen.append(told)))
+    found = session.use(TOOL, Call(progress=lambda *told: seen.append(told)))
     assert not found.failed
     assert found.data["range"] == [1, 12]
     caches = {cache["kind"]: cache for cache in found.data["caches"]}
@@ -126,61 +126,61 @@ def test_every_kind_of_cache_is_baked_over_the_scenes_range(studio: Studio) -> N
     assert "5 caches: frame 7 of 1–12" in [text for _, _, text in seen]
 
 
-def test_the_range_is_set_from_the_arguments_and_the_scene_keeps_its_own(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ncloth()\nemitter()\nscene.frame_set(5)")
-    found = studio.use(TOOL, frame_start=3, frame_end=20)
+def test_the_range_is_set_from_the_arguments_and_the_scene_keeps_its_own(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ncloth()\nemitter()\nscene.frame_set(5)")
+    found = session.use(TOOL, frame_start=3, frame_end=20)
     ranges = {cache["kind"]: cache["range"] for cache in found.data["caches"]}
     assert ranges["cloth"] == [3, 20]
     assert ranges["particles"][1] == 20
-    assert studio.run("s = bpy.context.scene\n(s.frame_start, s.frame_end, s.frame_current)") == (1, 12, 5)
+    assert session.run("s = bpy.context.scene\n(s.frame_start, s.frame_end, s.frame_current)") == (1, 12, 5)
 
 
 @pytest.mark.parametrize("preview", [False, True])
-def test_particles_are_not_baked_beyond_the_range(studio: Studio, preview: bool) -> None:
+def test_particles_are_not_baked_beyond_the_range(session: LiveSession, preview: bool) -> None:
     code = "scene.frame_end = 250\nscene.use_preview_range = True\nscene.frame_preview_end = 100"
-    studio.run(f"{PARTS}\nemitter()\n{code}\nscene.use_preview_range = {preview}")
+    session.run(f"{PARTS}\nemitter()\n{code}\nscene.use_preview_range = {preview}")
     read = "s = bpy.context.scene\n(s.frame_start, s.frame_end, s.frame_preview_start, s.frame_preview_end)"
-    before = studio.run(read)
+    before = session.run(read)
     if preview:
-        assert one(studio.use(TOOL, frame_end=10))["range"] == [1, 10]
-    assert one(studio.use(TOOL, frame_end=120))["range"] == [1, 107]  # the last of them dies at 106
-    assert studio.run(read) == before
+        assert one(session.use(TOOL, frame_end=10))["range"] == [1, 10]
+    assert one(session.use(TOOL, frame_end=120))["range"] == [1, 107]  # the last of them dies at 106
+    assert session.run(read) == before
 
 
-def test_only_what_is_asked_for_is_baked(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ncloth('Flag', 0)\ncloth('Sail', 3)\ntank()")
-    found = studio.use(TOOL, objects=["Sail"])
+def test_only_what_is_asked_for_is_baked(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ncloth('Flag', 0)\ncloth('Sail', 3)\ntank()")
+    found = session.use(TOOL, objects=["Sail"])
     assert one(found)["object"] == "Sail"
-    state = studio.run(
+    state = session.run(
         "[(m.point_cache.is_baked, m.point_cache.frame_end, o.name) for o in bpy.data.objects for m in o.modifiers "
         "if m.type == 'CLOTH']"
     )
     assert sorted(state) == [(False, 250, "Flag"), (True, 12, "Sail")]
     tank = "bpy.data.objects['Tank'].modifiers[0]"
-    assert studio.run(f"{tank}.show_viewport, {tank}.domain_settings.cache_type") == (True, "REPLAY")
+    assert session.run(f"{tank}.show_viewport, {tank}.domain_settings.cache_type") == (True, "REPLAY")
 
 
-def test_any_rigid_body_stands_for_their_world(studio: Studio) -> None:
-    studio.run(f"{PARTS}\nbody('A', 0)\nbody('B', 3)\ncloth('Flag', 6)")
-    entry = one(studio.use(TOOL, objects=["B"]))
+def test_any_rigid_body_stands_for_their_world(session: LiveSession) -> None:
+    session.run(f"{PARTS}\nbody('A', 0)\nbody('B', 3)\ncloth('Flag', 6)")
+    entry = one(session.use(TOOL, objects=["B"]))
     assert (entry["kind"], entry["object"], entry["bodies"]) == ("rigid_body", None, 2)
 
 
-def test_baking_again_shows_what_was_changed(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ncloth()\ntank()")
-    studio.use(TOOL, frame_end=8)
-    first = studio.run(f"{PARTS}\nlowest('Flag', 8), lowest('Tank', 8)")
-    studio.run("bpy.context.scene.gravity.z = -3")
-    studio.use(TOOL, frame_end=8)
-    cloth, liquid = studio.run(f"{PARTS}\nlowest('Flag', 8), lowest('Tank', 8)")
+def test_baking_again_shows_what_was_changed(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ncloth()\ntank()")
+    session.use(TOOL, frame_end=8)
+    first = session.run(f"{PARTS}\nlowest('Flag', 8), lowest('Tank', 8)")
+    session.run("bpy.context.scene.gravity.z = -3")
+    session.use(TOOL, frame_end=8)
+    cloth, liquid = session.run(f"{PARTS}\nlowest('Flag', 8), lowest('Tank', 8)")
     assert cloth > first[0] + 0.1
     assert liquid > first[1] + 0.1
 
 
-def test_a_longer_bake_of_a_fluid_does_not_go_on_where_the_last_one_ended(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ntank()")
-    studio.use(TOOL, frame_end=5)
-    entry = one(studio.use(TOOL, frame_end=9))
+def test_a_longer_bake_of_a_fluid_does_not_go_on_where_the_last_one_ended(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ntank()")
+    session.use(TOOL, frame_end=5)
+    entry = one(session.use(TOOL, frame_end=9))
     assert (entry["frames"], entry["missing"]) == (9, 0)
 
 
@@ -203,19 +203,19 @@ def test_a_longer_bake_of_a_fluid_does_not_go_on_where_the_last_one_ended(studio
     ],
 )
 def test_what_cannot_be_baked_is_refused(
-    studio: Studio, code: str, arguments: dict[str, Any], words: str
+    session: LiveSession, code: str, arguments: dict[str, Any], words: str
 ) -> None:
-    studio.run(f"{PARTS}\n{code}")
+    session.run(f"{PARTS}\n{code}")
     with pytest.raises(Refusal, match=words):
-        studio.use(TOOL, **arguments)
+        session.use(TOOL, **arguments)
 
 
 @pytest.mark.parametrize(
     "arguments", [{"frame_end": 1e9}, {"frame_start": -1}, {"objects": "all"}, {"timeout": 0}]
 )
-def test_arguments_out_of_bounds_are_refused(studio: Studio, arguments: dict[str, Any]) -> None:
+def test_arguments_out_of_bounds_are_refused(session: LiveSession, arguments: dict[str, Any]) -> None:
     with pytest.raises(Refusal, match="blender_bake"):
-        studio.use(TOOL, **arguments)
+        session.use(TOOL, **arguments)
 
 
 # What did not move
@@ -245,9 +245,11 @@ def test_arguments_out_of_bounds_are_refused(studio: Studio, arguments: dict[str
         ("tank(kind='GAS', flow='LIQUID')", "flow_type"),
     ],
 )
-def test_a_bake_in_which_nothing_moved_names_the_likely_cause(studio: Studio, code: str, words: str) -> None:
-    studio.run(f"{PARTS}\n{code}")
-    found = studio.use(TOOL, frame_end=6)
+def test_a_bake_in_which_nothing_moved_names_the_likely_cause(
+    session: LiveSession, code: str, words: str
+) -> None:
+    session.run(f"{PARTS}\n{code}")
+    found = session.use(TOOL, frame_end=6)
     entry = one(found)
     assert words in (entry["warning"] or entry["fault"])
     assert words in found.text
@@ -263,95 +265,95 @@ def test_a_bake_in_which_nothing_moved_names_the_likely_cause(studio: Studio, co
         "tank(kind='GAS', flow='FIRE', flame_smoke=0)",
     ],
 )
-def test_fluids_are_seen_to_move_in_every_form(studio: Studio, code: str) -> None:
-    studio.run(f"{PARTS}\n{code}")
-    found = studio.use(TOOL, frame_end=6)
+def test_fluids_are_seen_to_move_in_every_form(session: LiveSession, code: str) -> None:
+    session.run(f"{PARTS}\n{code}")
+    found = session.use(TOOL, frame_end=6)
     assert one(found)["warning"] is None, found.text
     assert 0.05 < one(found)["moved"] < 1.0
 
 
-def test_a_fluid_that_carries_other_things_is_baked_before_them(studio: Studio) -> None:
-    studio.run(f"{PARTS}\nemitter()\ntank()\ntank('Sea', 30)")
-    studio.run(
+def test_a_fluid_that_carries_other_things_is_baked_before_them(session: LiveSession) -> None:
+    session.run(f"{PARTS}\nemitter()\ntank()\ntank('Sea', 30)")
+    session.run(
         "bpy.ops.object.effector_add(type='FLUID')\n"
         "bpy.context.object.field.source_object = bpy.data.objects['Tank']"
     )
     seen: list[str] = []
-    studio.use(TOOL, Call(progress=lambda done, total, text: seen.append(text.split(":")[0])), frame_end=3)
+    session.use(TOOL, Call(progress=lambda done, total, text: seen.append(text.split(":")[0])), frame_end=3)
     assert list(dict.fromkeys(seen))[:3] == ["liquid of 'Tank'", "particles of 'Tap'", "liquid of 'Sea'"]
 
 
 # Where fluids lie
 
 
-def test_fluids_lie_in_the_workspace_wherever_they_were_to_lie(studio: Studio) -> None:
-    studio.run(
+def test_fluids_lie_in_the_workspace_wherever_they_were_to_lie(session: LiveSession) -> None:
+    session.run(
         f"{PARTS}\ntank(cache_directory='/tmp/elsewhere')\ntank('A b/ü', 24, cache_directory='/tmp/elsewhere')"
     )
-    found = studio.use(TOOL, frame_end=3)
+    found = session.use(TOOL, frame_end=3)
     assert not found.failed, found.text
     folders = {cache["folder"] for cache in found.data["caches"]}
     assert len(folders) == 2
-    workspace = str(studio.blender.folder.workspace)
+    workspace = str(session.blender.folder.workspace)
     assert all(folder.startswith(f"{workspace}/cache/fluid/") for folder in folders)
-    assert studio.run(
+    assert session.run(
         "[o.modifiers[0].domain_settings.cache_directory[:2] for o in bpy.data.objects "
         "if o.modifiers[0].fluid_type == 'DOMAIN']"
     ) == ["//", "//"]
 
 
-def test_bakes_of_long_ago_are_removed(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ntank('Vat')")
+def test_bakes_of_long_ago_are_removed(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ntank('Vat')")
     for _ in range(5):
-        studio.use(TOOL, frame_end=2)
-    place = studio.blender.folder.workspace / "cache" / "fluid" / "Vat"
+        session.use(TOOL, frame_end=2)
+    place = session.blender.folder.workspace / "cache" / "fluid" / "Vat"
     assert sorted(folder.name for folder in place.iterdir()) == ["0003", "0004", "0005"]
 
 
 # What survives
 
 
-def test_a_bake_is_kept_as_a_checkpoint(studio: Studio) -> None:
-    studio.run(f"{PARTS}\nemitter()\ncanvas()\ntank()")
-    assert not studio.use(TOOL).failed
-    last = studio.blender.checkpoints.last
+def test_a_bake_is_kept_as_a_checkpoint(session: LiveSession) -> None:
+    session.run(f"{PARTS}\nemitter()\ncanvas()\ntank()")
+    assert not session.use(TOOL).failed
+    last = session.blender.checkpoints.last
     assert last is not None
     assert last.after == "after baking"
     read = f"{PARTS}\nlowest('Tank', 9), painted('Wall', 4), painted('Wall', 12)"
-    before = studio.run(read)
+    before = session.run(read)
     assert 0 < before[1] < before[2]
-    studio.blender.kill()
-    assert studio.run(read) == before
+    session.blender.kill()
+    assert session.run(read) == before
 
 
-def test_edit_mode_is_left_for_a_bake(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ncloth()\nbpy.ops.object.mode_set(mode='EDIT')")
-    found = studio.use(TOOL)
+def test_edit_mode_is_left_for_a_bake(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ncloth()\nbpy.ops.object.mode_set(mode='EDIT')")
+    found = session.use(TOOL)
     assert "EDIT mode" in found.text
     assert one(found)["moved"] > 0.5
 
 
-def test_a_bake_given_up_half_way_leaves_the_last_one_and_blender_well(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ntank()")
-    studio.use(TOOL, frame_end=6)
+def test_a_bake_given_up_half_way_leaves_the_last_one_and_blender_well(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ntank()")
+    session.use(TOOL, frame_end=6)
     read = f"{PARTS}\nlowest('Tank', 2), lowest('Tank', 6)"
-    before = studio.run(read)
-    call = Call(given_up=threading.Event())
+    before = session.run(read)
+    call = Call(cancelled=threading.Event())
 
     def give_up(done: float, total: float | None, text: str) -> None:
         if done >= 3:
-            call.given_up.set()
+            call.cancelled.set()
 
     with pytest.raises(Interrupted, match="checkpoint"):
-        studio.use(TOOL, Call(progress=give_up, given_up=call.given_up), frame_end=100_000)
-    assert studio.run(read) == before
-    assert not studio.use(TOOL, frame_end=8).failed
+        session.use(TOOL, Call(progress=give_up, cancelled=call.cancelled), frame_end=100_000)
+    assert session.run(read) == before
+    assert not session.use(TOOL, frame_end=8).failed
 
 
-def test_a_bake_past_its_deadline_is_undone(studio: Studio) -> None:
-    studio.run(f"{PARTS}\ncloth()")
+def test_a_bake_past_its_deadline_is_undone(session: LiveSession) -> None:
+    session.run(f"{PARTS}\ncloth()")
     with pytest.raises(TookTooLong, match="deadline of 1 s"):
-        studio.use(TOOL, frame_end=1_000_000, timeout=1)
+        session.use(TOOL, frame_end=1_000_000, timeout=1)
     cache = "bpy.data.objects['Flag'].modifiers[0].point_cache"
-    assert studio.run(f"{cache}.is_baked, {cache}.frame_end") == (False, 250)
-    assert not studio.use(TOOL).failed
+    assert session.run(f"{cache}.is_baked, {cache}.frame_end") == (False, 250)
+    assert not session.use(TOOL).failed

@@ -13,7 +13,7 @@ from simworlds.sandbox.blender_process import BlenderProcess
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -37,19 +37,19 @@ len(box.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.vertices)
 """
 
 
-def test_executed_code_may_bake_a_fluid(own_studio: Studio) -> None:
-    assert own_studio.run(POUR) > 100
+def test_executed_code_may_bake_a_fluid(own_session: LiveSession) -> None:
+    assert own_session.run(POUR) > 100
 
 
-def test_code_that_speaks_of_manta_early_does_no_harm(own_studio: Studio) -> None:
-    own_studio.run("compile('from manta import *', 'x', 'exec')\nfrom manta import *")
-    assert own_studio.run(POUR) > 100
+def test_code_that_speaks_of_manta_early_does_no_harm(own_session: LiveSession) -> None:
+    own_session.run("compile('from manta import *', 'x', 'exec')\nfrom manta import *")
+    assert own_session.run(POUR) > 100
 
 
-def test_code_that_drops_manta_does_no_harm(own_studio: Studio) -> None:
-    assert own_studio.run(POUR) > 100
-    own_studio.run("import sys\ndel sys.modules['manta']\nbpy.ops.wm.read_factory_settings(use_empty=True)")
-    assert own_studio.run(POUR) > 100
+def test_code_that_drops_manta_does_no_harm(own_session: LiveSession) -> None:
+    assert own_session.run(POUR) > 100
+    own_session.run("import sys\ndel sys.modules['manta']\nbpy.ops.wm.read_factory_settings(use_empty=True)")
+    assert own_session.run(POUR) > 100
 
 
 def test_the_self_test_tells_that_fluids_work_and_what_this_version_needs(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from studio import Studio
+from live_session import LiveSession
 
 from agents.blender.tools.bake import TOOL
 from agents.blender.tools.files import LOAD, SAVE
@@ -160,26 +160,26 @@ FINGERPRINT = (
 
 
 @pytest.fixture(scope="module")
-def stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+def stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession]:
     """All solvers, baked."""
-    studio = Studio(tmp_path_factory.mktemp("solvers"))
-    studio.run(BUILD)
+    session = LiveSession(tmp_path_factory.mktemp("solvers"))
+    session.run(BUILD)
     points = ["Sheet", "Straight0", "Tap", "Jelly"]
     for objects, last in ((points, LAST), (["Tank", "Air"], LAST_OF_FLUIDS)):
-        found = studio.use(TOOL, objects=objects, frame_start=1, frame_end=last)
+        found = session.use(TOOL, objects=objects, frame_start=1, frame_end=last)
         assert not found.failed, found.text
         assert not [cache["warning"] for cache in found.data["caches"] if cache["warning"]], found.text
-    yield studio
-    studio.blender.close()
+    yield session
+    session.blender.close()
 
 
-def read(studio: Studio, what: str, frames: range) -> list[Any]:
+def read(session: LiveSession, what: str, frames: range) -> list[Any]:
     """What a function of READ tells at every frame."""
-    found = studio.run(f"{READ}\nat({list(frames)}, {what})")
+    found = session.run(f"{READ}\nat({list(frames)}, {what})")
     return [found[frame][what] for frame in frames]
 
 
-def test_cloth_lies_on_the_sphere_and_not_in_the_floor(stage: Studio) -> None:
+def test_cloth_lies_on_the_sphere_and_not_in_the_floor(stage: LiveSession) -> None:
     before, after = read(stage, "sheet", range(1, LAST + 1, LAST - 1))
     assert before["high"] == pytest.approx(1.1, abs=0.001)
     assert after["distance"] > 0.5
@@ -187,7 +187,7 @@ def test_cloth_lies_on_the_sphere_and_not_in_the_floor(stage: Studio) -> None:
     assert 0.0 < after["low"] < 0.2
 
 
-def test_a_straight_tower_stands_and_a_leaning_one_topples(stage: Studio) -> None:
+def test_a_straight_tower_stands_and_a_leaning_one_topples(stage: LiveSession) -> None:
     straight, leaning = stage.run(
         f"{READ}\nbpy.context.scene.frame_set({LAST})\ntower('Straight'), tower('Leaning')"
     )
@@ -198,7 +198,7 @@ def test_a_straight_tower_stands_and_a_leaning_one_topples(stage: Studio) -> Non
     assert all(z > 0.2 for _, _, z in leaning)
 
 
-def test_particles_collide_with_the_tray(stage: Studio) -> None:
+def test_particles_collide_with_the_tray(stage: LiveSession) -> None:
     rain = read(stage, "rain", range(5, LAST + 1, 2))
     assert rain[-1]["count"] == 200
     assert min(frame["low"] for frame in rain) > -0.001
@@ -208,7 +208,7 @@ def test_particles_collide_with_the_tray(stage: Studio) -> None:
     assert any(later > earlier + 0.05 for earlier, later in pairwise(lows)), "none bounced"
 
 
-def test_a_soft_body_squashes_and_recovers(stage: Studio) -> None:
+def test_a_soft_body_squashes_and_recovers(stage: LiveSession) -> None:
     jelly = read(stage, "jelly", range(2, LAST + 1, 2))
     assert jelly[0]["height"] == pytest.approx(1.0, abs=0.001)
     assert min(frame["height"] for frame in jelly) < 0.88
@@ -216,7 +216,7 @@ def test_a_soft_body_squashes_and_recovers(stage: Studio) -> None:
     assert min(frame["low"] for frame in jelly) > -0.02
 
 
-def test_liquid_keeps_its_volume_and_reaches_the_far_wall(stage: Studio) -> None:
+def test_liquid_keeps_its_volume_and_reaches_the_far_wall(stage: LiveSession) -> None:
     liquid = read(stage, "liquid", range(1, LAST_OF_FLUIDS + 1))
     block = liquid[0]["volume"]
     assert block == pytest.approx(0.9 * 1.0 * 0.7, rel=0.3)  # less a cell along the walls
@@ -228,7 +228,7 @@ def test_liquid_keeps_its_volume_and_reaches_the_far_wall(stage: Studio) -> None
     assert liquid[-1]["level"] < 0.5
 
 
-def test_smoke_rises(stage: Studio) -> None:
+def test_smoke_rises(stage: LiveSession) -> None:
     gas = read(stage, "gas", range(1, LAST_OF_FLUIDS + 1, 4))
     heights = [frame["middle"] for frame in gas]
     assert heights[0] == pytest.approx(0.4, abs=0.1)
@@ -238,7 +238,7 @@ def test_smoke_rises(stage: Studio) -> None:
     assert amounts == sorted(amounts)
 
 
-def test_a_baked_domain_tells_of_the_parts_that_it_has(stage: Studio) -> None:
+def test_a_baked_domain_tells_of_the_parts_that_it_has(stage: LiveSession) -> None:
     state = stage.use(SCENE_STATE, objects=["Tank", "Air"], sections=["physics"])
     domains = {one["name"]: one for one in state.data["physics"] if one["kind"] == "fluid_domain"}
     assert domains["Tank"]["cache"]["baked"] == ["data", "mesh"]
@@ -246,19 +246,19 @@ def test_a_baked_domain_tells_of_the_parts_that_it_has(stage: Studio) -> None:
     assert "settings" not in domains["Air"]
 
 
-def test_baked_physics_is_there_again_after_a_crash(stage: Studio) -> None:
+def test_baked_physics_is_there_again_after_a_crash(stage: LiveSession) -> None:
     before = stage.run(FINGERPRINT)
     stage.blender.kill()
     assert stage.run(FINGERPRINT) == before
 
 
 def test_saved_physics_opens_elsewhere_in_a_fresh_process(
-    stage: Studio, make_studio: Callable[[str], Studio]
+    stage: LiveSession, make_session: Callable[[str], LiveSession]
 ) -> None:
     before = stage.run(FINGERPRINT)
     saved = stage.use(SAVE, name="solvers")
     assert not saved.failed, saved.text
-    other = make_studio("elsewhere")
+    other = make_session("elsewhere")
     ours, theirs = other.blender.folder.root, stage.blender.folder.root
     shutil.copyfile(theirs / "solvers.blend", ours / "solvers.blend")
     shutil.copytree(theirs / "blendcache_solvers", ours / "blendcache_solvers")

@@ -15,7 +15,7 @@ from agents.blender.tools.motion_sheet import TOOL
 from simworlds.sandbox.errors import Refusal, ToolBroke
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.blender.tools.base import Result
 
@@ -82,9 +82,9 @@ def red_places(found: Result, panels: int, height: int) -> list[tuple[float, flo
     return places
 
 
-def test_a_falling_body_falls_as_physics_has_it_and_comes_to_rest(studio: Studio) -> None:
-    studio.run(FALL)
-    found = studio.use(
+def test_a_falling_body_falls_as_physics_has_it_and_comes_to_rest(session: LiveSession) -> None:
+    session.run(FALL)
+    found = session.use(
         TOOL,
         actors=["Crate"],
         phases=[{"name": "fall", "start": 1, "end": 20}, {"name": "settle", "start": 20, "end": 60}],
@@ -105,15 +105,15 @@ def test_a_falling_body_falls_as_physics_has_it_and_comes_to_rest(studio: Studio
     assert crate["speed_of"] == "centre"
 
 
-def test_a_ball_that_bounces_touches_the_floor_again_and_again(studio: Studio) -> None:
-    studio.run(
+def test_a_ball_that_bounces_touches_the_floor_again_and_again(session: LiveSession) -> None:
+    session.run(
         "s = bpy.context.scene\ns.frame_end = 90\nbpy.ops.mesh.primitive_plane_add(size=20)\n"
         "f = bpy.context.object\nf.name = 'Floor'\nbpy.ops.rigidbody.object_add(type='PASSIVE')\n"
         "bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=0.1, location=(0, 0, 2.1))\n"
         "o = bpy.context.object\no.name = 'Ball'\nbpy.ops.rigidbody.object_add()\n"
         "o.rigid_body.collision_shape = 'SPHERE'\no.rigid_body.restitution = f.rigid_body.restitution = 0.9"
     )
-    ball = actor(studio.use(TOOL, actors=["Ball"], frames=[1, 90]), "Ball")
+    ball = actor(session.use(TOOL, actors=["Ball"], frames=[1, 90]), "Ball")
     times = [first for first, _ in ball["phases"][0]["contacts"][0]["frames"]]
     # It falls 2 m in 0.64 s, bounces with 0.9 of its speed, and is in the air for 0.9 of twice that time.
     assert times[0] == pytest.approx(1 + 24 * 0.64, abs=1.5)
@@ -121,12 +121,12 @@ def test_a_ball_that_bounces_touches_the_floor_again_and_again(studio: Studio) -
     assert times[1] - times[0] == pytest.approx(24 * 2 * 0.64 * 0.9, abs=2)
 
 
-def test_what_is_not_baked_is_stepped_and_moves_as_when_it_is_baked(studio: Studio) -> None:
-    studio.run(FALL + "o.rotation_euler = (0.5, 0.4, 0.3)\n")
+def test_what_is_not_baked_is_stepped_and_moves_as_when_it_is_baked(session: LiveSession) -> None:
+    session.run(FALL + "o.rotation_euler = (0.5, 0.4, 0.3)\n")
     asked: dict[str, Any] = {"actors": ["Crate"], "frames": [25, 40]}
-    stepped = studio.use(TOOL, **asked)
-    studio.run("bpy.ops.ptcache.bake_all(bake=True)")
-    played = studio.use(TOOL, **asked)
+    stepped = session.use(TOOL, **asked)
+    session.run("bpy.ops.ptcache.bake_all(bake=True)")
+    played = session.use(TOOL, **asked)
     assert stepped.data["stepped_from"] == 1
     assert "not baked: the rigid-body world" in stepped.text
     assert "stepped_from" not in played.data
@@ -139,19 +139,19 @@ def test_what_is_not_baked_is_stepped_and_moves_as_when_it_is_baked(studio: Stud
     assert one["phases"][0]["turn"] > 5
 
 
-def test_a_bake_that_is_outdated_is_told(studio: Studio) -> None:
-    studio.run(
+def test_a_bake_that_is_outdated_is_told(session: LiveSession) -> None:
+    session.run(
         FALL + "bpy.ops.ptcache.bake_all(bake=True)\no.location.z = 4\nbpy.context.view_layer.update()"
     )
-    found = actor(studio.use(TOOL, actors=["Crate"], frames=[1, 20]), "Crate")
+    found = actor(session.use(TOOL, actors=["Crate"], frames=[1, 20]), "Crate")
     assert found["caches"][0]["state"] == "baked, outdated"
     assert "outdated" in found["notes"][0]
 
 
-def test_keyframed_motion_has_its_exact_speeds(studio: Studio) -> None:
-    studio.run(SLIDE)
+def test_keyframed_motion_has_its_exact_speeds(session: LiveSession) -> None:
+    session.run(SLIDE)
     phases = [{"name": "rest", "start": 49, "end": 60}, {"name": "slide", "start": 1, "end": 49}]
-    found = studio.use(TOOL, actors=["Sledge"], phases=phases)
+    found = session.use(TOOL, actors=["Sledge"], phases=phases)
     sledge = actor(found, "Sledge")
     slide, rest = sledge["phases"]
     assert (slide["phase"], rest["phase"]) == ("slide", "rest")
@@ -164,17 +164,17 @@ def test_keyframed_motion_has_its_exact_speeds(studio: Studio) -> None:
     assert "stepped_from" not in found.data
 
 
-def test_cloth_is_measured_by_its_vertices_for_its_origin_stays(studio: Studio) -> None:
-    studio.run(
+def test_cloth_is_measured_by_its_vertices_for_its_origin_stays(session: LiveSession) -> None:
+    session.run(
         "s = bpy.context.scene\ns.frame_end = 30\n"
         "bpy.ops.mesh.primitive_uv_sphere_add(radius=0.6, location=(0, 0, 0.6))\n"
         "bpy.context.object.name = 'Ball'\nbpy.context.object.modifiers.new('C', 'COLLISION')\n"
         "bpy.ops.mesh.primitive_grid_add(x_subdivisions=16, y_subdivisions=16, size=2, location=(0, 0, 1.6))\n"
         "bpy.context.object.name = 'Sheet'\nbpy.context.object.modifiers.new('Cloth', 'CLOTH')"
     )
-    sheet = actor(studio.use(TOOL, actors=["Sheet"]), "Sheet")
+    sheet = actor(session.use(TOOL, actors=["Sheet"]), "Sheet")
     motion = sheet["phases"][0]
-    assert studio.run("tuple(bpy.data.objects['Sheet'].matrix_world.translation)") == pytest.approx(
+    assert session.run("tuple(bpy.data.objects['Sheet'].matrix_world.translation)") == pytest.approx(
         (0, 0, 1.6)
     )
     assert motion["start_position"] == pytest.approx([0, 0, 1.6], abs=1e-3)
@@ -187,14 +187,14 @@ def test_cloth_is_measured_by_its_vertices_for_its_origin_stays(studio: Studio) 
     assert 6 <= ball["frames"][0][0] <= 12
 
 
-def test_particles_are_measured_by_their_mean_from_the_first_one_on(studio: Studio) -> None:
-    studio.run(
+def test_particles_are_measured_by_their_mean_from_the_first_one_on(session: LiveSession) -> None:
+    session.run(
         "s = bpy.context.scene\ns.frame_end = 40\n"
         "bpy.ops.mesh.primitive_plane_add(size=1, location=(0, 0, 4))\no = bpy.context.object\no.name = 'Shower'\n"
         "o.modifiers.new('P', 'PARTICLE_SYSTEM')\np = o.particle_systems[0].settings\n"
         "p.count, p.frame_start, p.frame_end, p.normal_factor = 300, 10, 10, 0"
     )
-    shower = actor(studio.use(TOOL, actors=["Shower"], frames=[1, 20, 34]), "Shower")
+    shower = actor(session.use(TOOL, actors=["Shower"], frames=[1, 20, 34]), "Shower")
     motion = shower["phases"][0]
     assert shower["measured"] == "particles"
     assert 10 <= motion["there"][0] <= 11
@@ -205,8 +205,8 @@ def test_particles_are_measured_by_their_mean_from_the_first_one_on(studio: Stud
     assert shower["samples"][0].get("position") is None
 
 
-def test_an_object_collection_moves_as_one_and_goes_by_its_name(studio: Studio) -> None:
-    studio.run(
+def test_an_object_collection_moves_as_one_and_goes_by_its_name(session: LiveSession) -> None:
+    session.run(
         SLIDE
         + "bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 3))\np = bpy.context.object\np.name = 'Runner'\n"
         "p.parent = o\nbpy.ops.mesh.primitive_cube_add(size=1, location=(11, 0, 0))\n"
@@ -215,7 +215,7 @@ def test_an_object_collection_moves_as_one_and_goes_by_its_name(studio: Studio) 
         "    c = bpy.data.collections.new(name)\n    s.collection.children.link(c)\n    c['protocol_role'] = 'object'\n"
         "    for thing in things:\n        s.collection.objects.unlink(thing)\n        c.objects.link(thing)"
     )
-    sleigh = actor(studio.use(TOOL, actors=["Sleigh"]), "Sleigh")
+    sleigh = actor(session.use(TOOL, actors=["Sleigh"]), "Sleigh")
     assert (sleigh["kind"], sleigh["objects"]) == ("object collection", ["Runner", "Sledge"])
     motion = sleigh["phases"][0]
     assert motion["start_position"] == pytest.approx([0, 0, 1.5], abs=1e-3)
@@ -225,20 +225,20 @@ def test_an_object_collection_moves_as_one_and_goes_by_its_name(studio: Studio) 
     assert motion["contacts"][0]["frames"][0][0] >= 48
 
 
-def test_an_empty_is_measured_by_what_hangs_on_it_or_by_itself(studio: Studio) -> None:
-    studio.run(
+def test_an_empty_is_measured_by_what_hangs_on_it_or_by_itself(session: LiveSession) -> None:
+    session.run(
         SLIDE + "e = bpy.data.objects.new('Root', None)\ns.collection.objects.link(e)\no.parent = e\n"
         "f = bpy.data.objects.new('Lone', None)\ns.collection.objects.link(f)\n"
         "f.keyframe_insert('location', frame=1)\nf.location.z = 2\nf.keyframe_insert('location', frame=25)"
     )
-    found = studio.use(TOOL, actors=["Root", "Lone"], frames=[1, 49])
+    found = session.use(TOOL, actors=["Root", "Lone"], frames=[1, 49])
     assert actor(found, "Root")["phases"][0]["displacement"] == pytest.approx(10, abs=1e-3)
     assert actor(found, "Lone")["phases"][0]["displacement"] == pytest.approx(2, abs=1e-3)
     assert actor(found, "Lone")["measured"] == "origin"
 
 
-def test_bones_and_instances_are_measured_where_they_are(studio: Studio) -> None:
-    studio.run(
+def test_bones_and_instances_are_measured_where_they_are(session: LiveSession) -> None:
+    session.run(
         SLIDE + "bpy.ops.object.armature_add()\nr = bpy.context.object\nr.name = 'Rig'\nb = r.pose.bones[0]\n"
         "b.rotation_mode = 'XYZ'\nb.keyframe_insert('rotation_euler', frame=1)\n"
         "b.rotation_euler.x = 1.5707963\nb.keyframe_insert('rotation_euler', frame=25)\n"
@@ -246,7 +246,7 @@ def test_bones_and_instances_are_measured_where_they_are(studio: Studio) -> None
         "i = bpy.data.objects.new('Copy', None)\ni.instance_type, i.instance_collection = 'COLLECTION', c\n"
         "i.location.z = 3\ns.collection.objects.link(i)"
     )
-    found = studio.use(TOOL, actors=["Rig", "Copy"], frames=[1, 25, 49])
+    found = session.use(TOOL, actors=["Rig", "Copy"], frames=[1, 25, 49])
     # The bone's tail, a metre from its head, goes a quarter of a circle; the mean of both ends goes half as far.
     rig = actor(found, "Rig")["phases"][0]
     assert rig["displacement"] == pytest.approx(math.sqrt(2) / 2, rel=0.01)
@@ -256,96 +256,96 @@ def test_bones_and_instances_are_measured_where_they_are(studio: Studio) -> None
     assert copy["start_position"][2] == pytest.approx(3, abs=0.01)
 
 
-def test_the_scene_is_left_as_it_was(studio: Studio) -> None:
-    studio.run(FALL + "for f in range(1, 8): s.frame_set(f)\ns.frame_set(7, subframe=0.25)")
-    before = studio.run(STATE)
-    studio.use(TOOL, actors=["Crate", "Floor"], frames=[10, 30])
-    assert studio.run(STATE) == before
-    studio.run("bpy.ops.ptcache.bake_all(bake=True)\nbpy.context.scene.frame_set(30)")
-    before = studio.run(STATE)
-    studio.use(TOOL, actors=["Crate"], frames=[10, 30])
-    assert studio.run(STATE) == before
-    assert not list(studio.blender.folder.workspace.glob(".motion*"))
+def test_the_scene_is_left_as_it_was(session: LiveSession) -> None:
+    session.run(FALL + "for f in range(1, 8): s.frame_set(f)\ns.frame_set(7, subframe=0.25)")
+    before = session.run(STATE)
+    session.use(TOOL, actors=["Crate", "Floor"], frames=[10, 30])
+    assert session.run(STATE) == before
+    session.run("bpy.ops.ptcache.bake_all(bake=True)\nbpy.context.scene.frame_set(30)")
+    before = session.run(STATE)
+    session.use(TOOL, actors=["Crate"], frames=[10, 30])
+    assert session.run(STATE) == before
+    assert not list(session.blender.folder.workspace.glob(".motion*"))
 
 
-def test_the_pictures_show_the_motion_in_one_fixed_frame(studio: Studio) -> None:
-    studio.run(FALL)
-    found = studio.use(TOOL, actors=["Crate"], frames=[1, 10, 15, 20, 24, 60])
+def test_the_pictures_show_the_motion_in_one_fixed_frame(session: LiveSession) -> None:
+    session.run(FALL)
+    found = session.use(TOOL, actors=["Crate"], frames=[1, 10, 15, 20, 24, 60])
     rows = np.array([row for _, row in red_places(found, 6, 248)])
     heights = np.array([one["position"][2] for one in actor(found, "Crate")["samples"]])
     down = (rows - rows[0]) / (rows[-1] - rows[0])
     assert down == pytest.approx((heights[0] - heights) / (heights[0] - heights[-1]), abs=0.03)
     assert found.pictures[0].path.read_bytes() == found.pictures[0].png
-    again = studio.use(TOOL, actors=["Crate"], frames=[1, 60])
+    again = session.use(TOOL, actors=["Crate"], frames=[1, 60])
     assert again.pictures[0].path != found.pictures[0].path
 
 
-def test_what_is_in_a_closed_room_is_seen(studio: Studio) -> None:
-    studio.run(
+def test_what_is_in_a_closed_room_is_seen(session: LiveSession) -> None:
+    session.run(
         SLIDE + "bpy.ops.mesh.primitive_cube_add(size=1)\nr = bpy.context.object\n"
         "r.scale = (14, 4, 4)\nr.location.x = 5\nr.name = 'Room'"
     )
-    found = studio.use(TOOL, actors=["Sledge"], frames=[1, 13, 25, 37, 49])
+    found = session.use(TOOL, actors=["Sledge"], frames=[1, 13, 25, 37, 49])
     across = np.array([column for column, _ in red_places(found, 5, 140)])
     assert np.diff(across) == pytest.approx([across[1] - across[0]] * 4, abs=4), "it slides evenly"
     assert across[1] - across[0] > 25
 
 
-def test_a_simulation_that_ends_early_or_stands_still_is_told_with_why(studio: Studio) -> None:
-    studio.run(FALL + "s.rigidbody_world.point_cache.frame_end = 15\ns.use_gravity = False")
-    notes = actor(studio.use(TOOL, actors=["Crate"], frames=[1, 30]), "Crate")["notes"]
+def test_a_simulation_that_ends_early_or_stands_still_is_told_with_why(session: LiveSession) -> None:
+    session.run(FALL + "s.rigidbody_world.point_cache.frame_end = 15\ns.use_gravity = False")
+    notes = actor(session.use(TOOL, actors=["Crate"], frames=[1, 30]), "Crate")["notes"]
     assert "Simulated up to frame 15 only: the rigid-body world." in notes
     assert any("does not move" in note and "no gravity" in note for note in notes)
 
 
-def test_a_fluid_that_only_a_bake_brings_is_told(studio: Studio) -> None:
-    studio.run(
+def test_a_fluid_that_only_a_bake_brings_is_told(session: LiveSession) -> None:
+    session.run(
         "s = bpy.context.scene\ns.frame_end = 10\nbpy.ops.mesh.primitive_cube_add(size=2)\no = bpy.context.object\n"
         "o.name = 'Tank'\nm = o.modifiers.new('F', 'FLUID')\nm.fluid_type = 'DOMAIN'\n"
         "m.domain_settings.domain_type = 'LIQUID'\nm.domain_settings.use_mesh = True\n"
         "m.domain_settings.resolution_max = 16\nm.domain_settings.cache_type = 'ALL'\n"
         "m.domain_settings.cache_directory = bpy.path.abspath('//nothing_baked')"
     )
-    tank = actor(studio.use(TOOL, actors=["Tank"]), "Tank")
+    tank = actor(session.use(TOOL, actors=["Tank"]), "Tank")
     assert (tank["measured"], tank["phases"][0]["present"]) == ("fluid", False)
     assert any("Not baked: liquid of 'Tank'" in note for note in tank["notes"])
 
 
-def test_motion_that_is_not_the_same_twice_is_told(studio: Studio) -> None:
-    studio.run(
+def test_motion_that_is_not_the_same_twice_is_told(session: LiveSession) -> None:
+    session.run(
         SLIDE + "o.animation_data_clear()\ncalls = [0]\ndef wander(scene, graph=None):\n    calls[0] += 1\n"
         "    bpy.data.objects['Sledge'].location.x = calls[0]\n"
         "bpy.app.handlers.frame_change_pre.append(wander)"
     )
-    notes = actor(studio.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")["notes"]
+    notes = actor(session.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")["notes"]
     assert any("does not repeat" in note for note in notes)
 
 
-def test_what_cannot_be_seen_is_told(studio: Studio) -> None:
-    studio.run(SLIDE + "o.hide_render = True")
-    notes = actor(studio.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")["notes"]
+def test_what_cannot_be_seen_is_told(session: LiveSession) -> None:
+    session.run(SLIDE + "o.hide_render = True")
+    notes = actor(session.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")["notes"]
     assert notes == ["Not in the pictures: 'Sledge': hidden from renders."]
 
 
-def test_places_that_are_no_numbers_are_no_places(studio: Studio) -> None:
-    studio.run(SLIDE + "o.animation_data_clear()\no.location.x = float('nan')")
-    found = actor(studio.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")
+def test_places_that_are_no_numbers_are_no_places(session: LiveSession) -> None:
+    session.run(SLIDE + "o.animation_data_clear()\no.location.x = float('nan')")
+    found = actor(session.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")
     assert not found["phases"][0]["present"]
 
 
-def test_a_long_range_is_measured_at_a_stride_and_says_so(studio: Studio) -> None:
-    studio.run(SLIDE + "s.frame_end = 1801")
+def test_a_long_range_is_measured_at_a_stride_and_says_so(session: LiveSession) -> None:
+    session.run(SLIDE + "s.frame_end = 1801")
     phases = [{"name": "a", "start": 1, "end": 50}, {"name": "b", "start": 50, "end": 1801}]
-    found = studio.use(TOOL, actors=["Sledge"], phases=phases, frames=[1, 1801])
+    found = session.use(TOOL, actors=["Sledge"], phases=phases, frames=[1, 1801])
     assert found.data["stride"] == 4
     assert "every 4 frames" in found.text
     assert actor(found, "Sledge")["phases"][0]["displacement"] == pytest.approx(10, abs=1e-3)
 
 
-def test_progress_is_told_as_frames_go_by(studio: Studio) -> None:
-    studio.run(FALL)
+def test_progress_is_told_as_frames_go_by(session: LiveSession) -> None:
+    session.run(FALL)
     told: list[tuple[float, float | None, str]] = []
-    studio.use(TOOL, Call(progress=lambda *one: told.append(one)), actors=["Crate"], frames=[1, 20])
+    session.use(TOOL, Call(progress=lambda *one: told.append(one)), actors=["Crate"], frames=[1, 20])
     done = [one[0] for one in told]
     assert len(done) >= 40
     assert done == sorted(done)
@@ -374,28 +374,27 @@ def test_progress_is_told_as_frames_go_by(studio: Studio) -> None:
         ),
     ],
 )
-def test_what_cannot_be_asked_is_refused(studio: Studio, asked: dict[str, Any], told: str) -> None:
-    studio.run(FALL)
+def test_what_cannot_be_asked_is_refused(session: LiveSession, asked: dict[str, Any], told: str) -> None:
+    session.run(FALL)
     with pytest.raises(Refusal) as refused:
-        studio.use(TOOL, **asked)
+        session.use(TOOL, **asked)
     assert told in str(refused.value)
 
 
-def test_what_is_not_in_the_view_layer_is_refused(studio: Studio) -> None:
-    studio.run(
+def test_what_is_not_in_the_view_layer_is_refused(session: LiveSession) -> None:
+    session.run(
         "c = bpy.data.collections.new('Attic')\nbpy.context.scene.collection.children.link(c)\n"
         "bpy.ops.mesh.primitive_cube_add()\no = bpy.context.object\n"
         "bpy.context.scene.collection.objects.unlink(o)\n"
         "c.objects.link(o)\nbpy.context.view_layer.layer_collection.children['Attic'].exclude = True"
     )
     with pytest.raises(Refusal, match="not in the view layer"):
-        studio.use(TOOL, actors=["Attic"])
+        session.use(TOOL, actors=["Attic"])
 
 
-def test_an_answer_that_executed_code_forged_is_not_believed(own_studio: Studio) -> None:
-    own_studio.run(FALL)
-    own_studio.run(
-        "from simworlds_worker.motion import motion_sheet\nmotion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}"
-    )
+def test_an_answer_that_executed_code_forged_is_not_believed(own_session: LiveSession) -> None:
+    own_session.run(FALL)
+    forged = "motion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}"
+    own_session.run(f"from simworlds_worker.motion import motion_sheet\n{forged}")
     with pytest.raises(ToolBroke, match="cannot be understood"):
-        own_studio.use(TOOL, actors=["Crate"])
+        own_session.use(TOOL, actors=["Crate"])

@@ -8,7 +8,7 @@ import pytest
 from preview_views import SIZE, Views, build, is_coloured
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -51,7 +51,7 @@ MATERIALS = {
 }
 
 
-def test_colours_are_those_of_the_materials(studio: Studio) -> None:
+def test_colours_are_those_of_the_materials(session: LiveSession) -> None:
     rows = "\n".join(
         f"thing = box({name!r}, ({2 * at}, 0, 0)); M, T, S, O, add, link = fresh({name!r})\nC = {colour}\n{code}\n"
         "thing.data.materials.append(M)"
@@ -59,13 +59,13 @@ def test_colours_are_those_of_the_materials(studio: Studio) -> None:
         for colour in ((0.02, 0.02, 0.8, 1),)
     )
     build(
-        studio,
+        session,
         "def fresh(name):\n"
         "    made = bpy.data.materials.new(name); made.use_nodes = True; tree = made.node_tree\n"
         "    return (made, tree, tree.nodes['Principled BSDF'], tree.get_output_node('ALL'),\n"
         "            lambda kind: tree.nodes.new('ShaderNode' + kind), tree.links.new)\n" + rows,
     )
-    views = Views(studio, "scene")
+    views = Views(session, "scene")
     top, metres = views.pictures["top"], views.by_name["top"]["metres_per_pixel"]
     wrong: list[str] = []
     for at, name in enumerate(MATERIALS):
@@ -80,18 +80,18 @@ def test_colours_are_those_of_the_materials(studio: Studio) -> None:
     assert wrong == []
 
 
-def test_a_material_of_the_object_wins_over_that_of_the_mesh(studio: Studio) -> None:
+def test_a_material_of_the_object_wins_over_that_of_the_mesh(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "o = box('Crate', rgb=(.8, 0, 0)); p = box('Other', rgb=(0, 0, .8))\n"
         "o.material_slots[0].link = 'OBJECT'; o.material_slots[0].material = p.active_material",
     )
-    assert is_coloured(Views(studio, "mesh", "Crate").middle("front"), "blue")
+    assert is_coloured(Views(session, "mesh", "Crate").middle("front"), "blue")
 
 
-def test_a_picture_is_laid_on_as_its_coordinates_say(studio: Studio) -> None:
+def test_a_picture_is_laid_on_as_its_coordinates_say(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "bpy.ops.mesh.primitive_plane_add(size=2); o = paint(bpy.context.object, 1, 1, 1)\n"
         "T = o.active_material.node_tree\n"
         "i = bpy.data.images.new('Halves', 8, 8)\n"
@@ -99,7 +99,7 @@ def test_a_picture_is_laid_on_as_its_coordinates_say(studio: Studio) -> None:
         "n = T.nodes.new('ShaderNodeTexImage'); n.image = i; n.interpolation = 'Closest'\n"
         "T.links.new(n.outputs[0], T.nodes['Principled BSDF'].inputs[0])",
     )
-    top = Views(studio, "mesh", "Plane").pictures["top"]
+    top = Views(session, "mesh", "Plane").pictures["top"]
     left, right = (top.getpixel((round(top.width * share), top.height // 2)) for share in (0.3, 0.7))
     assert isinstance(left, tuple)
     assert isinstance(right, tuple)

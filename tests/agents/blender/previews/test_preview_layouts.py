@@ -10,7 +10,7 @@ from preview_views import Views, build, is_coloured
 from agents.blender.tools import bake, previews
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -41,9 +41,9 @@ THIN = HOUSE + "box('Shell', (0, 0, 1.25), (4.4, 4.4, 2.5), (.6, .6, .6)).parent
 @pytest.mark.parametrize(
     "walls", [THICK, THICK + "house.rotation_euler.z = .6\n", THIN], ids=["thick", "turned", "one box"]
 )
-def test_a_closed_room_is_opened_from_every_side(studio: Studio, walls: str) -> None:
-    build(studio, room(walls))
-    views = Views(studio, "scene")
+def test_a_closed_room_is_opened_from_every_side(session: LiveSession, walls: str) -> None:
+    build(session, room(walls))
+    views = Views(session, "scene")
     for name, view in views.by_name.items():
         assert view["cut_away"], name
         assert views.share(name, "red") > 0.02, name
@@ -52,37 +52,37 @@ def test_a_closed_room_is_opened_from_every_side(studio: Studio, walls: str) -> 
     assert not any("Chest" in name for view in views.by_name.values() for name in view["cut_away"])
 
 
-def test_a_roof_without_walls_is_lifted(studio: Studio) -> None:
-    build(studio, room(HOUSE) + "\nbox('Roof', (0, 0, 2.6), (5, 5, .2), (.6, .6, .6))")
-    views = Views(studio, "scene")
+def test_a_roof_without_walls_is_lifted(session: LiveSession) -> None:
+    build(session, room(HOUSE) + "\nbox('Roof', (0, 0, 2.6), (5, 5, .2), (.6, .6, .6))")
+    views = Views(session, "scene")
     assert {name for name, view in views.by_name.items() if view["cut_away"]} == {"top", "three-quarter"}
     assert views.by_name["top"]["cut_away"] == ["Roof"]
     assert views.share("top", "red") > 0.02
 
 
-def test_what_was_cut_away_is_said_on_the_sheet(studio: Studio) -> None:
-    build(studio, room(THICK))
-    found = studio.use(previews.SCENE_LAYOUT)
+def test_what_was_cut_away_is_said_on_the_sheet(session: LiveSession) -> None:
+    build(session, room(THICK))
+    found = session.use(previews.SCENE_LAYOUT)
     assert "top: Ceiling" in found.text
     assert "front: South" in found.text
 
 
-def test_an_empty_room_is_opened_and_a_solid_is_not(studio: Studio) -> None:
-    build(studio, THICK)
-    assert Views(studio, "scene").by_name["top"]["cut_away"] == ["Ceiling"]
-    studio.empty()
-    build(studio, "box('Solid', size=(4, 4, 3))")
-    assert not any(view["cut_away"] for view in Views(studio, "scene").data["views"])
+def test_an_empty_room_is_opened_and_a_solid_is_not(session: LiveSession) -> None:
+    build(session, THICK)
+    assert Views(session, "scene").by_name["top"]["cut_away"] == ["Ceiling"]
+    session.empty()
+    build(session, "box('Solid', size=(4, 4, 3))")
+    assert not any(view["cut_away"] for view in Views(session, "scene").data["views"])
 
 
-def test_nothing_is_cut_away_outdoors(studio: Studio) -> None:
+def test_nothing_is_cut_away_outdoors(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "random.seed(4); box('Ground', (0, 0, -.05), (40, 40, .1))\n"
         "for at in range(30):\n"
         "    box(f'House {at}', (random.uniform(-18, 18), random.uniform(-18, 18), 1.5), (3, 3, 3))",
     )
-    assert not any(view["cut_away"] for view in Views(studio, "scene").data["views"])
+    assert not any(view["cut_away"] for view in Views(session, "scene").data["views"])
 
 
 CROWD = """
@@ -93,14 +93,14 @@ box('Lost', (0, 0, -700))
 """
 
 
-def test_ground_sky_and_what_is_lost_do_not_make_dots_of_the_rest(studio: Studio) -> None:
-    build(studio, CROWD)
-    views = Views(studio, "scene")
+def test_ground_sky_and_what_is_lost_do_not_make_dots_of_the_rest(session: LiveSession) -> None:
+    build(session, CROWD)
+    views = Views(session, "scene")
     assert views.extent == pytest.approx([6, 1, 1])
     assert views.share("front", "red") > 0.05
     assert "'Ground', 'Sky'" in " ".join(views.data["notes"])
     assert "'Lost' at (0, 0, -700) m" in " ".join(views.data["notes"])
-    assert Views(studio, "scene", everything=True).extent[0] == pytest.approx(1600, rel=0.01)
+    assert Views(session, "scene", everything=True).extent[0] == pytest.approx(1600, rel=0.01)
 
 
 RAIN = """
@@ -115,9 +115,9 @@ for frame in range(1, 6): bpy.context.scene.frame_set(frame)
 """
 
 
-def test_what_copies_are_made_of_may_stand_aside(studio: Studio) -> None:
-    build(studio, RAIN)
-    views = Views(studio, "scene")
+def test_what_copies_are_made_of_may_stand_aside(session: LiveSession) -> None:
+    build(session, RAIN)
+    views = Views(session, "scene")
     assert views.extent[0] == pytest.approx(4)
     assert views.share("front", "red") > 0.005
     assert "'Drop' at (40, 0, 0) m" in " ".join(views.data["notes"])
@@ -129,10 +129,10 @@ for at in range(4): box(f'Chest {at}', (at - 1.5, 0, -2), (.6, .6, .6), (.8, 0, 
 """
 
 
-def test_a_cave_of_many_faces_is_opened_in_seconds(studio: Studio) -> None:
-    build(studio, CAVE + "import time; bpy.app.driver_namespace['began'] = time.process_time()")
-    views = Views(studio, "scene")
-    spent = studio.run("import time; time.process_time() - bpy.app.driver_namespace['began']")
+def test_a_cave_of_many_faces_is_opened_in_seconds(session: LiveSession) -> None:
+    build(session, CAVE + "import time; bpy.app.driver_namespace['began'] = time.process_time()")
+    views = Views(session, "scene")
+    spent = session.run("import time; time.process_time() - bpy.app.driver_namespace['began']")
     assert all(view["cut_away"] == ["Icosphere"] for view in views.by_name.values())
     assert all(views.share(name, "red") > 0.002 for name in views.by_name)
     assert spent < 10  # of the processor, not of the clock
@@ -151,23 +151,23 @@ box('Stone', (.3, 0, .3), (.3, .3, .3), (.8, 0, 0))
 """
 
 
-def test_a_liquid_is_its_surface_and_no_room(own_studio: Studio) -> None:
-    build(own_studio, POOL)
-    own_studio.use(bake.TOOL, frame_start=1, frame_end=3)
-    views = Views(own_studio, "scene", frame=2)
+def test_a_liquid_is_its_surface_and_no_room(own_session: LiveSession) -> None:
+    build(own_session, POOL)
+    own_session.use(bake.TOOL, frame_start=1, frame_end=3)
+    views = Views(own_session, "scene", frame=2)
     assert not any(view["cut_away"] for view in views.by_name.values())
     assert views.extent[2] < 0.8
     assert views.share("top", "blue") > 0.2
 
 
-def test_the_scenes_camera_has_a_picture_of_its_own(studio: Studio) -> None:
+def test_the_scenes_camera_has_a_picture_of_its_own(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "box('Aim', (0, 5, 0), rgb=(.8, 0, 0)); c = bpy.data.cameras.new('Eye'); o = bpy.data.objects.new('Eye', c)\n"
         "o.rotation_euler.x = math.pi / 2; bpy.context.scene.collection.objects.link(o); scene = bpy.context.scene\n"
         "scene.camera = o; scene.render.resolution_x, scene.render.resolution_y = 400, 100; box('Behind', (0, -50, 0))",
     )
-    views = Views(studio, "scene")
+    views = Views(session, "scene")
     assert list(views.by_name)[-1] == "camera 'Eye'"
     picture = views.pictures["camera 'Eye'"]
     assert picture.width == 4 * picture.height

@@ -12,7 +12,7 @@ from agents.blender.tools import previews
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -63,58 +63,58 @@ bpy.app.handlers.depsgraph_update_post.remove(spoil)
 """
 
 
-def census(studio: Studio) -> dict[str, Any]:
-    studio.run(CENSUS)
-    return json.loads((studio.blender.folder.workspace / "census.json").read_text())
+def census(session: LiveSession) -> dict[str, Any]:
+    session.run(CENSUS)
+    return json.loads((session.blender.folder.workspace / "census.json").read_text())
 
 
-def test_no_preview_leaves_a_trace(studio: Studio) -> None:
-    build(studio, LIVED_IN)
-    before = census(studio)
-    studio.use(previews.SCENE_LAYOUT)
-    assert census(studio) == before
-    studio.use(previews.SINGLE_MESH, object="Table", frame=9)
-    assert census(studio) == before
-    studio.run("bpy.data.objects['Table'].location.x += 1e-3")
-    assert census(studio) != before, "the census sees nothing"
+def test_no_preview_leaves_a_trace(session: LiveSession) -> None:
+    build(session, LIVED_IN)
+    before = census(session)
+    session.use(previews.SCENE_LAYOUT)
+    assert census(session) == before
+    session.use(previews.SINGLE_MESH, object="Table", frame=9)
+    assert census(session) == before
+    session.run("bpy.data.objects['Table'].location.x += 1e-3")
+    assert census(session) != before, "the census sees nothing"
 
 
-def test_a_preview_that_fails_half_way_leaves_no_trace_either(studio: Studio) -> None:
-    build(studio, LIVED_IN)
-    obstacle = studio.blender.folder.workspace / ".preview-2.png"
-    studio.run("import os; os.makedirs('.preview-2.png/x')")
-    before = census(studio)
+def test_a_preview_that_fails_half_way_leaves_no_trace_either(session: LiveSession) -> None:
+    build(session, LIVED_IN)
+    obstacle = session.blender.folder.workspace / ".preview-2.png"
+    session.run("import os; os.makedirs('.preview-2.png/x')")
+    before = census(session)
     try:
         with pytest.raises(Refusal, match="could not be rendered"):
-            studio.use(previews.SCENE_LAYOUT, frame=9)
-        assert census(studio) == before
+            session.use(previews.SCENE_LAYOUT, frame=9)
+        assert census(session) == before
         assert [path.name for path in obstacle.parent.glob(".preview*")] == [obstacle.name]
     finally:
         (obstacle / "x").rmdir()
         obstacle.rmdir()
 
 
-def test_a_render_of_the_scenes_own_is_kept(studio: Studio) -> None:
+def test_a_render_of_the_scenes_own_is_kept(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "box('Crate', rgb=(.8, 0, 0)); bpy.ops.object.camera_add(location=(0, -4, 0), rotation=(math.pi / 2, 0, 0))\n"
         "s = bpy.context.scene; s.camera = bpy.context.object; s.render.engine = 'BLENDER_WORKBENCH'\n"
         "s.render.resolution_x = s.render.resolution_y = 64; bpy.ops.render.render()\n"
         "bpy.data.images['Render Result'].save_render(os.path.abspath('before.png'))",
     )
-    studio.use(previews.SCENE_LAYOUT)
-    studio.run("bpy.data.images['Render Result'].save_render(__import__('os').path.abspath('after.png'))")
+    session.use(previews.SCENE_LAYOUT)
+    session.run("bpy.data.images['Render Result'].save_render(__import__('os').path.abspath('after.png'))")
     pictures = [
-        (studio.blender.folder.workspace / f"{name}.png").read_bytes() for name in ("before", "after")
+        (session.blender.folder.workspace / f"{name}.png").read_bytes() for name in ("before", "after")
     ]
     assert pictures[0] == pictures[1]
 
 
-def test_previews_work_while_a_mesh_is_being_edited(studio: Studio) -> None:
+def test_previews_work_while_a_mesh_is_being_edited(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "box('Crate', rgb=(.8, 0, 0)); bpy.ops.object.mode_set(mode='EDIT')\n"
         "bpy.ops.mesh.select_all(action='SELECT'); bpy.ops.transform.resize(value=(3, 1, 1))",
     )
-    assert Views(studio, "mesh", "Crate").extent == pytest.approx([3, 1, 1])
-    assert studio.run("bpy.context.mode") == "EDIT_MESH"
+    assert Views(session, "mesh", "Crate").extent == pytest.approx([3, 1, 1])
+    assert session.run("bpy.context.mode") == "EDIT_MESH"

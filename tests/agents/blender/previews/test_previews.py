@@ -14,60 +14,60 @@ from agents.blender.tools.base import Call
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
 
-def test_a_preview_is_a_picture_and_the_same_as_a_file(studio: Studio) -> None:
-    build(studio, "box('Crate', size=(1, 2, 3))")
-    found = studio.use(previews.SINGLE_MESH, object="Crate")
+def test_a_preview_is_a_picture_and_the_same_as_a_file(session: LiveSession) -> None:
+    build(session, "box('Crate', size=(1, 2, 3))")
+    found = session.use(previews.SINGLE_MESH, object="Crate")
     (picture,) = found.pictures
     assert picture.path.read_bytes() == picture.png
-    assert picture.path.is_relative_to(studio.blender.folder.root / "previews")
-    assert found.data["file"] == str(picture.path.relative_to(studio.blender.folder.root))
+    assert picture.path.is_relative_to(session.blender.folder.root / "previews")
+    assert found.data["file"] == str(picture.path.relative_to(session.blender.folder.root))
     with Image.open(picture.path) as image:
         assert image.width == 2 * (previews.PANEL + 2) + contact_sheet.GAP + 2 * contact_sheet.MARGIN
         assert image.height > image.width
     assert "1 m × 2 m × 3 m" in found.text
-    assert not list(studio.blender.folder.workspace.glob(".preview*"))
+    assert not list(session.blender.folder.workspace.glob(".preview*"))
 
 
-def test_files_of_several_previews_stay_beside_each_other(studio: Studio) -> None:
-    build(studio, "box('A/../../b'); box('A/../../c')")
-    paths = {studio.use(previews.SINGLE_MESH, object=f"A/../../{name}").pictures[0].path for name in "bbc"}
+def test_files_of_several_previews_stay_beside_each_other(session: LiveSession) -> None:
+    build(session, "box('A/../../b'); box('A/../../c')")
+    paths = {session.use(previews.SINGLE_MESH, object=f"A/../../{name}").pictures[0].path for name in "bbc"}
     assert len(paths) == 3
-    assert {path.parent for path in paths} == {studio.blender.folder.root / "previews"}
+    assert {path.parent for path in paths} == {session.blender.folder.root / "previews"}
 
 
-def test_the_views_come_one_after_the_other_with_progress(studio: Studio) -> None:
-    build(studio, "box('Crate')")
+def test_the_views_come_one_after_the_other_with_progress(session: LiveSession) -> None:
+    build(session, "box('Crate')")
     told: list[tuple[float, float | None, str]] = []
-    studio.use(previews.SCENE_LAYOUT, Call(progress=lambda *step: told.append(step)))
+    session.use(previews.SCENE_LAYOUT, Call(progress=lambda *step: told.append(step)))
     assert told == [(0, 4, "front"), (1, 4, "right"), (2, 4, "top"), (3, 4, "three-quarter")]
 
 
 # What is shown
 
 
-def test_each_side_shows_what_is_there_as_large_as_itis_coloured(studio: Studio) -> None:
-    build(studio, "box('Crate', place=(40, -7, 3), size=(1, 2, 3))")
-    views = Views(studio, "mesh", "Crate")
+def test_each_side_shows_what_is_there_as_large_as_itis_coloured(session: LiveSession) -> None:
+    build(session, "box('Crate', place=(40, -7, 3), size=(1, 2, 3))")
+    views = Views(session, "mesh", "Crate")
     assert views.seen("front") == pytest.approx((1, 3), abs=0.04)
     assert views.seen("right") == pytest.approx((2, 3), abs=0.04)
     assert views.seen("top") == pytest.approx((1, 2), abs=0.04)
     assert views.data["low"] == pytest.approx([39.5, -8, 1.5])
 
 
-def test_each_side_is_seen_from_where_its_name_says(studio: Studio) -> None:
+def test_each_side_is_seen_from_where_its_name_says(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "box('Body', size=(2, 2, 2), rgb=(.5, .5, .5))\n"
         "for name, place, rgb in (('F', (0, -1.1, 0), (.8, 0, 0)), ('R', (1.1, 0, 0), (0, .8, 0)),\n"
         "                         ('T', (0, 0, 1.1), (0, 0, .8)), ('Behind', (0, 1.1, 0), (0, .8, 0))):\n"
         "    box(name, place, rgb=rgb)",
     )
-    views = Views(studio, "scene")
+    views = Views(session, "scene")
     assert is_coloured(views.middle("front"), "red")
     assert is_coloured(views.middle("right"), "green")
     assert is_coloured(views.middle("top"), "blue")
@@ -105,52 +105,52 @@ def test_each_side_is_seen_from_where_its_name_says(studio: Studio) -> None:
     ],
     ids=["modifier", "turned", "sphere", "curve", "metaball", "shape key", "instance", "wire"],
 )
-def test_the_evaluated_geometry_is_framed(studio: Studio, code: str, extent: tuple[float, ...]) -> None:
-    build(studio, code)
-    views = Views(studio, "mesh", "It")
+def test_the_evaluated_geometry_is_framed(session: LiveSession, code: str, extent: tuple[float, ...]) -> None:
+    build(session, code)
+    views = Views(session, "mesh", "It")
     assert views.extent == pytest.approx(extent, abs=0.02 * max(extent))
     assert max(views.seen("top")) == pytest.approx(max(extent[:2]), rel=0.04)
 
 
-def test_particles_and_hair_are_seen_as_far_as_they_reach(studio: Studio) -> None:
+def test_particles_and_hair_are_seen_as_far_as_they_reach(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "bpy.ops.mesh.primitive_plane_add(size=1, location=(0, 0, 5)); o = bpy.context.object; o.name = 'Rain'\n"
         "s = o.modifiers.new('p', 'PARTICLE_SYSTEM').particle_system.settings; s.count = 50; s.frame_end = 2\n"
         "bpy.ops.mesh.primitive_plane_add(size=1); o = bpy.context.object; o.name = 'Fur'\n"
         "s = o.modifiers.new('p', 'PARTICLE_SYSTEM').particle_system.settings; s.type = 'HAIR'; s.hair_length = 2\n"
         "for frame in range(1, 16): bpy.context.scene.frame_set(frame)",
     )
-    rain = Views(studio, "mesh", "Rain")
+    rain = Views(session, "mesh", "Rain")
     # Thrown up with 1 m/s, for 14/24 s.
     assert rain.data["low"][2] == pytest.approx(5 + 14 / 24 - 9.81 / 2 * (14 / 24) ** 2, abs=0.15)
     assert rain.seen("front")[0] == pytest.approx(1, abs=0.15)
-    assert Views(studio, "mesh", "Fur").extent[2] == pytest.approx(2, rel=0.05)
+    assert Views(session, "mesh", "Fur").extent[2] == pytest.approx(2, rel=0.05)
 
 
-def test_one_mesh_one_object_and_one_system_are_shown_alone(studio: Studio) -> None:
+def test_one_mesh_one_object_and_one_system_are_shown_alone(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "seat, back = box('Seat'), box('Back', (0, 0, 1)); other = box('Table', (5, 0, 0))\n"
         "chair, table = collection('Chair', 'object', seat, back), collection('Desk', 'object', other)\n"
         "root = bpy.context.scene.collection; furniture = collection('Furniture', 'system')\n"
         "for one in (chair, table): root.children.unlink(one); furniture.children.link(one)\n"
         "box('Ball', (0, 9, 0))",
     )
-    assert Views(studio, "mesh", "Seat").extent == pytest.approx([1, 1, 1])
-    assert Views(studio, "object", "Chair").extent == pytest.approx([1, 1, 2])
-    system = Views(studio, "system", "Furniture")
+    assert Views(session, "mesh", "Seat").extent == pytest.approx([1, 1, 1])
+    assert Views(session, "object", "Chair").extent == pytest.approx([1, 1, 2])
+    system = Views(session, "system", "Furniture")
     assert system.extent == pytest.approx([6, 1, 2])
     assert [label[0] for label in system.by_name["top"]["labels"]] == ["Chair", "Desk"]
-    assert Views(studio, "scene").extent == pytest.approx([6, 10, 2])
+    assert Views(session, "scene").extent == pytest.approx([6, 10, 2])
 
 
-def test_labels_stand_on_what_they_name(studio: Studio) -> None:
+def test_labels_stand_on_what_they_name(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "box('Red', (-3, 2, 0), rgb=(.8, 0, 0)); box('Blue', (3, -2, 0), rgb=(0, 0, .8)); box('Far', (9, 9, 0))",
     )
-    views = Views(studio, "scene")
+    views = Views(session, "scene")
     top = views.pictures["top"]
     places = {
         name: (x * top.width / SIZE, y * top.width / SIZE) for name, x, y in views.by_name["top"]["labels"]
@@ -164,23 +164,23 @@ def test_labels_stand_on_what_they_name(studio: Studio) -> None:
 # Frames
 
 
-def test_another_frame_is_shown_and_left_again(studio: Studio) -> None:
+def test_another_frame_is_shown_and_left_again(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "o = box('Lift')\nfor frame, z in ((1, 0), (11, 5)):\n"
         "    o.location.z = z; o.keyframe_insert('location', frame=frame)\n"
         "bpy.context.scene.frame_set(3, subframe=0.25)",
     )
-    views = Views(studio, "mesh", "Lift", frame=11)
+    views = Views(session, "mesh", "Lift", frame=11)
     assert views.data["low"][2] == pytest.approx(4.5)
     assert views.data["frame"] == 11
-    assert studio.run("bpy.context.scene.frame_current, bpy.context.scene.frame_subframe") == (3, 0.25)
+    assert session.run("bpy.context.scene.frame_current, bpy.context.scene.frame_subframe") == (3, 0.25)
 
 
-def test_what_was_moved_and_not_keyed_stays_where_itis_coloured(studio: Studio) -> None:
-    build(studio, "o = box('Lift'); o.keyframe_insert('location', frame=1); o.location = (7, 0, 0)")
-    Views(studio, "mesh", "Lift", frame=5)
-    assert studio.run("tuple(bpy.data.objects['Lift'].location)") == (7, 0, 0)
+def test_what_was_moved_and_not_keyed_stays_where_itis_coloured(session: LiveSession) -> None:
+    build(session, "o = box('Lift'); o.keyframe_insert('location', frame=1); o.location = (7, 0, 0)")
+    Views(session, "mesh", "Lift", frame=5)
+    assert session.run("tuple(bpy.data.objects['Lift'].location)") == (7, 0, 0)
 
 
 DRAPE = """
@@ -197,21 +197,23 @@ graph = bpy.context.evaluated_depsgraph_get()
 """
 
 
-def test_a_simulation_is_shown_where_it_stands_and_goes_on_as_if_nobody_had_looked(studio: Studio) -> None:
-    build(studio, DRAPE)
-    alone = studio.run(CLOTH)
-    studio.empty()
-    build(studio, DRAPE)
-    views = Views(studio, "scene", frame=9)
+def test_a_simulation_is_shown_where_it_stands_and_goes_on_as_if_nobody_had_looked(
+    session: LiveSession,
+) -> None:
+    build(session, DRAPE)
+    alone = session.run(CLOTH)
+    session.empty()
+    build(session, DRAPE)
+    views = Views(session, "scene", frame=9)
     assert views.data["frame"] == 5
     assert any("cloth of 'Cloth' is not baked" in note for note in views.data["notes"])
-    assert studio.run("bpy.context.scene.frame_current") == 5
-    assert studio.run(CLOTH) == alone
+    assert session.run("bpy.context.scene.frame_current") == 5
+    assert session.run(CLOTH) == alone
 
 
-def test_a_baked_simulation_is_shown_at_any_frame(studio: Studio) -> None:
-    build(studio, DRAPE + "bpy.ops.ptcache.bake_all(bake=True); bpy.context.scene.frame_set(1)")
-    views = Views(studio, "mesh", "Cloth", frame=12)
+def test_a_baked_simulation_is_shown_at_any_frame(session: LiveSession) -> None:
+    build(session, DRAPE + "bpy.ops.ptcache.bake_all(bake=True); bpy.context.scene.frame_set(1)")
+    views = Views(session, "mesh", "Cloth", frame=12)
     assert views.data["notes"] == []
     assert views.extent[2] > 0.05  # it was flat
 
@@ -219,20 +221,20 @@ def test_a_baked_simulation_is_shown_at_any_frame(studio: Studio) -> None:
 # Refusals and odd cases
 
 
-def test_an_unknown_name_is_refused_with_the_nearest_ones(studio: Studio) -> None:
-    build(studio, "collection('Chair', 'object', box('Seat')); collection('Furniture', 'system')")
+def test_an_unknown_name_is_refused_with_the_nearest_ones(session: LiveSession) -> None:
+    build(session, "collection('Chair', 'object', box('Seat')); collection('Furniture', 'system')")
     for tool, argument, name, near in (
         (previews.SINGLE_MESH, "object", "seet", "Seat"),
         (previews.OBJECT, "object", "chairs", "Chair"),
         (previews.SYSTEM_LAYOUT, "system", "furnitur", "Furniture"),
     ):
         with pytest.raises(Refusal, match=near):
-            studio.use(tool, **{argument: name})
+            session.use(tool, **{argument: name})
 
 
-def test_a_collection_without_its_role_is_shown_with_a_note(studio: Studio) -> None:
-    build(studio, "collection('Chair', 'object', box('Seat'))")
-    assert "is tagged protocol_role='object'" in studio.use(previews.SYSTEM_LAYOUT, system="Chair").text
+def test_a_collection_without_its_role_is_shown_with_a_note(session: LiveSession) -> None:
+    build(session, "collection('Chair', 'object', box('Seat'))")
+    assert "is tagged protocol_role='object'" in session.use(previews.SYSTEM_LAYOUT, system="Chair").text
 
 
 @pytest.mark.parametrize(
@@ -246,37 +248,37 @@ def test_a_collection_without_its_role_is_shown_with_a_note(studio: Studio) -> N
         ("box('It', size=(1e11, 1, 1))", "too large"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused_with_the_reason(studio: Studio, code: str, why: str) -> None:
-    build(studio, code)
+def test_what_cannot_be_drawn_is_refused_with_the_reason(session: LiveSession, code: str, why: str) -> None:
+    build(session, code)
     for kind in ("mesh", "scene"):
         with pytest.raises(Refusal, match=why):
-            Views(studio, kind, "It")
+            Views(session, kind, "It")
 
 
-def test_an_empty_scene_is_refused(studio: Studio) -> None:
+def test_an_empty_scene_is_refused(session: LiveSession) -> None:
     with pytest.raises(Refusal, match="it is empty"):
-        studio.use(previews.SCENE_LAYOUT)
+        session.use(previews.SCENE_LAYOUT)
 
 
-def test_one_broken_thing_does_not_hide_the_others(studio: Studio) -> None:
+def test_one_broken_thing_does_not_hide_the_others(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         "box('Good'); box('Bad').location.x = float('nan'); box('Shut', (3, 0, 0)).hide_set(True)\n"
         "box('Proxy', (9, 0, 0)).hide_render = True",
     )
-    views = Views(studio, "scene")
+    views = Views(session, "scene")
     assert views.extent == pytest.approx([1, 1, 1])
     notes = " ".join(views.data["notes"])
     assert "'Bad': its transform" in notes
     assert "hidden in the viewport: 'Shut'" in notes
     assert "hidden from renders: 'Proxy'" in notes
-    assert "without its modifiers" in " ".join(Views(studio, "mesh", "Shut").data["notes"])
+    assert "without its modifiers" in " ".join(Views(session, "mesh", "Shut").data["notes"])
 
 
 @pytest.mark.parametrize("size", [1e-6, 1e-3, 1e5, 1e7])
-def test_size_makes_no_difference(studio: Studio, size: float) -> None:
-    build(studio, f"box('It', ({size}, 0, 0), ({size}, {size}, {2 * size}), (.8, 0, 0))")
-    views = Views(studio, "mesh", "It")
+def test_size_makes_no_difference(session: LiveSession, size: float) -> None:
+    build(session, f"box('It', ({size}, 0, 0), ({size}, {size}, {2 * size}), (.8, 0, 0))")
+    views = Views(session, "mesh", "It")
     assert views.seen("front")[1] == pytest.approx(2 * size, rel=0.03)
     assert views.share("front", "red") > 0.3
 
@@ -284,11 +286,11 @@ def test_size_makes_no_difference(studio: Studio, size: float) -> None:
 # Where Workbench cannot draw
 
 
-def test_cycles_draws_where_there_is_no_graphics_driver(own_studio: Studio) -> None:
-    own_studio.blender.launch.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = "/nonexistent"
-    own_studio.blender.kill()
-    build(own_studio, "box('Crate', size=(1, 1, 2), rgb=(.8, 0, 0))")
-    views = Views(own_studio, "mesh", "Crate")
+def test_cycles_draws_where_there_is_no_graphics_driver(own_session: LiveSession) -> None:
+    own_session.blender.launch.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = "/nonexistent"
+    own_session.blender.kill()
+    build(own_session, "box('Crate', size=(1, 1, 2), rgb=(.8, 0, 0))")
+    views = Views(own_session, "mesh", "Crate")
     assert views.data["engine"] == "CYCLES"
     assert "Workbench cannot draw" in " ".join(views.data["notes"])
     assert views.seen("front") == pytest.approx((1, 2), abs=0.06)

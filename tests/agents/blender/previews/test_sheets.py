@@ -9,7 +9,7 @@ import pytest
 from PIL import Image, ImageChops
 
 from agents.blender.sheets import contact_sheet
-from agents.blender.sheets.text_layout import broken, round_length, shortened, text_width, told_length
+from agents.blender.sheets.text_layout import format_length, round_length, shortened, text_width, wrapped
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ def test_a_round_length_is_the_largest_that_fits(longest: float, length: float) 
     [(0, "0 m"), (0.2, "0.2 m"), (1.0, "1 m"), (100.0, "100 m"), (2.345, "2.35 m"), (0.01234, "0.0123 m")],
 )
 def test_lengths_are_told_in_metres(metres: float, said: str) -> None:
-    assert told_length(metres) == said
+    assert format_length(metres) == said
 
 
 def test_a_name_that_is_too_long_keeps_its_ends() -> None:
@@ -151,7 +151,7 @@ def test_a_name_that_is_too_long_keeps_its_ends() -> None:
 
 def test_lines_are_broken_at_words() -> None:
     text = "several words that have to be set on more than one line"
-    lines = broken(text, 120, 13)
+    lines = wrapped(text, 120, 13)
     assert " ".join(lines) == text
     assert max(text_width(line, 13) for line in lines) <= 120
 

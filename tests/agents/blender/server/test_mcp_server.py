@@ -22,11 +22,11 @@ from PIL import Image
 from serving import COMMAND, REPO, ByHand, below, blenders, environment, have_ended, over_stdio
 
 from agents.blender import server as served
-from agents.blender.blender_sessions import Setup, Studios
+from agents.blender.blender_sessions import BlenderSessions, SessionSetup
 from agents.blender.docs_client import DocsClient
 from agents.blender.tool_catalogue import TOOLS
 from agents.blender.tools import execute
-from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -200,9 +200,9 @@ async def test_a_call_that_is_cancelled_is_undone_and_the_next_one_works(client:
     after = (await run(client, "bpy.context.scene['kept']")).structured_content
     assert after is not None
     assert after["value"] == "1"
-    assert "was given up after" in after["note"]
-    assert "stands at checkpoint" in after["note"]
-    assert time.monotonic() - began < 10
+    assert "was cancelled after" in after["note"]
+    assert "started from checkpoint" in after["note"]
+    assert time.monotonic() - began < 60  # far from the deadline of 100 s
 
 
 async def test_what_waits_behind_a_cancelled_call_is_not_lost_and_what_is_cancelled_never_runs(
@@ -210,22 +210,22 @@ async def test_what_waits_behind_a_cancelled_call_is_not_lost_and_what_is_cancel
 ) -> None:
     await run(client, "bpy.context.scene['ran'] = ''")
 
-    async def add(letter: str, patience: float) -> None:
+    async def add(letter: str, patience: float, seconds: float = 0) -> None:
         with anyio.move_on_after(patience):
-            await run(client, f"bpy.context.scene['ran'] += {letter!r}\nimport time; time.sleep(0.5)")
+            await run(client, f"bpy.context.scene['ran'] += {letter!r}\nimport time; time.sleep({seconds})")
 
     async with anyio.create_task_group() as calls:
-        for letter, patience in (("a", 60), ("b", 0.2), ("c", 60)):
-            calls.start_soon(add, letter, patience)
+        for call in (("a", 60, 5), ("b", 0.2), ("c", 60)):
+            calls.start_soon(add, *call)
             await anyio.wait_all_tasks_blocked()
     assert await value(client, "bpy.context.scene['ran']") == "'ac'"
 
 
 async def test_the_documentation_answers_while_blender_works(client: Client) -> None:
     async with anyio.create_task_group() as calls:
-        calls.start_soon(run, client, "import time; time.sleep(3)")
+        calls.start_soon(run, client, "import time; time.sleep(50)")
         await anyio.wait_all_tasks_blocked()
-        with anyio.fail_after(2):
+        with anyio.fail_after(30):
             answer = await client.call_tool("blender_docs", {"query": "ClothSettings.quality"})
         calls.cancel_scope.cancel()
     assert answer.structured_content is not None
@@ -274,8 +274,8 @@ async def test_an_unforeseen_error_shows_no_traceback(
         return {}["a secret of ours"]
 
     monkeypatch.setitem(served.BY_NAME, "blender_execute", replace(execute.TOOL, run=broken))
-    studios = Studios(Setup(best_sandbox(), run=tmp_path / "run"))
-    async with Client(served.make_server(studios, DocsClient())) as connected:
+    blender_sessions = BlenderSessions(SessionSetup(best_sandbox(), run=tmp_path / "run"))
+    async with Client(served.make_server(blender_sessions, DocsClient())) as connected:
         answer = await run(connected, "1")
     assert answer.is_error
     assert "KeyError" in said(answer)
@@ -293,7 +293,7 @@ def test_without_a_base_blender_works_and_the_documentation_says_what_to_do(tmp_
         asked = wire.call("tools/call", name="blender_docs", arguments={"query": "cloth"})["result"]
         assert asked["isError"]
         assert "simworlds kb build" in asked["content"][0]["text"]
-        assert time.monotonic() - began < 20
+        assert time.monotonic() - began < 60
 
 
 def test_a_documentation_server_that_was_killed_is_started_again(home: Path) -> None:

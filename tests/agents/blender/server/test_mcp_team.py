@@ -12,12 +12,12 @@ from serving import over_stdio
 from small_plan import small_plan
 
 from agents.blender import server as served
-from agents.blender.blender_sessions import Setup, Studios
+from agents.blender.blender_sessions import BlenderSessions, SessionSetup
 from agents.blender.docs_client import DocsClient
 from agents.blender.team import PROMPTS
 from agents.plan.part import STAGES
 from agents.roles.prompts import protocol_text, role_text, stage_text, team_text
-from simworlds.sandbox.confinement import best_sandbox
+from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -144,8 +144,8 @@ async def test_the_plan_that_is_sound_is_one_that_the_verifier_takes(client: Cli
 
 
 async def test_a_server_for_a_caller_with_roles_of_its_own_has_none_of_this(tmp_path: Path) -> None:
-    studios = Studios(Setup(best_sandbox(), run=tmp_path / "run"))
-    async with Client(served.make_server(studios, DocsClient())) as connected:
+    blender_sessions = BlenderSessions(SessionSetup(best_sandbox(), run=tmp_path / "run"))
+    async with Client(served.make_server(blender_sessions, DocsClient())) as connected:
         assert connected.server_capabilities.prompts is None
         assert connected.instructions is not None
         assert "blender_plan_check" not in connected.instructions

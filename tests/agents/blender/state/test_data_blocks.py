@@ -10,7 +10,7 @@ from agents.blender.tools.files import LOAD, SAVE
 from agents.blender.tools.scene_state import TOOL
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -55,8 +55,8 @@ CURVE = (
 )
 
 
-def blocks(studio: Studio) -> dict[str, Any]:
-    return studio.use(TOOL, sections=["data_blocks"]).data
+def blocks(session: LiveSession) -> dict[str, Any]:
+    return session.use(TOOL, sections=["data_blocks"]).data
 
 
 def changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, set[str]]:
@@ -70,12 +70,12 @@ def changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, set[str]
 
 
 @pytest.fixture
-def scene(studio: Studio) -> Studio:
-    studio.run(SCENE)
-    return studio
+def scene(session: LiveSession) -> LiveSession:
+    session.run(SCENE)
+    return session
 
 
-def test_everything_that_a_file_keeps_is_told_and_nothing_else(scene: Studio) -> None:
+def test_everything_that_a_file_keeps_is_told_and_nothing_else(scene: LiveSession) -> None:
     found = scene.use(TOOL, sections=["data_blocks"])
     assert {
         "Object Cube", "Mesh Cube", "Material Glaze", "Object Lamp", "Light Lamp", "Camera Camera", "Scene Scene",
@@ -90,11 +90,11 @@ def test_everything_that_a_file_keeps_is_told_and_nothing_else(scene: Studio) ->
     assert "data_blocks" not in scene.use(TOOL).data
 
 
-def test_digests_are_not_cut_however_short_the_readout(studio: Studio) -> None:
-    studio.run(
+def test_digests_are_not_cut_however_short_the_readout(session: LiveSession) -> None:
+    session.run(
         "for n in range(300):\n    bpy.context.scene.collection.objects.link(bpy.data.objects.new(f'E{n}', None))"
     )
-    found = studio.use(TOOL, sections=["data_blocks"], max_tokens=500)
+    found = session.use(TOOL, sections=["data_blocks"], max_tokens=500)
     assert sum(name.startswith("Object E") for name in found.data["data_blocks"]) == 300
 
 
@@ -113,13 +113,13 @@ def test_digests_are_not_cut_however_short_the_readout(studio: Studio) -> None:
     ],
     ids=["frames", "selecting", "selecting vertices", "a text's cursor", "updating", "the 3D cursor"],
 )  # fmt: skip
-def test_looking_about_changes_no_digest(scene: Studio, code: str) -> None:
+def test_looking_about_changes_no_digest(scene: LiveSession, code: str) -> None:
     before = blocks(scene)
     scene.run(code)
     assert not changed(before, blocks(scene))
 
 
-def test_saving_and_opening_elsewhere_changes_no_digest(scene: Studio) -> None:
+def test_saving_and_opening_elsewhere_changes_no_digest(scene: LiveSession) -> None:
     scene.run(
         "import os\nimage = bpy.data.images.new('Leaf', 4, 4)\nimage.filepath_raw = os.path.abspath('leaf.png')\n"
         "image.file_format = 'PNG'\nimage.save()\nbpy.data.images.remove(image)\n"
@@ -167,21 +167,21 @@ EDITS: list[tuple[str, dict[str, set[str]]]] = [
 
 @pytest.mark.parametrize(("code", "expected"), EDITS, ids=[" ".join(one[0].split())[-40:] for one in EDITS])
 def test_an_edit_changes_the_digests_of_what_it_edits_alone(
-    scene: Studio, code: str, expected: dict[str, set[str]]
+    scene: LiveSession, code: str, expected: dict[str, set[str]]
 ) -> None:
     before = blocks(scene)
     scene.run(code)
     assert changed(before, blocks(scene)) == expected
 
 
-def test_a_bake_is_told_apart_from_its_settings(studio: Studio) -> None:
-    studio.run(
+def test_a_bake_is_told_apart_from_its_settings(session: LiveSession) -> None:
+    session.run(
         "bpy.context.scene.frame_end = 4\nbpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3)\n"
         "bpy.context.object.modifiers.new('Cloth', 'CLOTH').point_cache.frame_end = 4"
     )
-    before = blocks(studio)
-    studio.run("bpy.ops.ptcache.bake_all(bake=True)")
-    baked = blocks(studio)
+    before = blocks(session)
+    session.run("bpy.ops.ptcache.bake_all(bake=True)")
+    baked = blocks(session)
     assert changed(before, baked) == {"Object Grid": {"caches"}}
-    studio.run("bpy.data.objects['Grid'].modifiers['Cloth'].settings.mass = 2")
-    assert "modifiers" in changed(baked, blocks(studio))["Object Grid"]
+    session.run("bpy.data.objects['Grid'].modifiers['Cloth'].settings.mass = 2")
+    assert "modifiers" in changed(baked, blocks(session))["Object Grid"]

@@ -7,13 +7,13 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import pytest
+from live_session import LiveSession
 from processes import of_run
-from studio import Studio
 
 from agents.blender import checkpoints
 from agents.blender.checkpoints import KEPT, Checkpoint
 from agents.blender.tools.execute import TOOL
-from simworlds.sandbox.confinement import Limits, best_sandbox
+from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox
 from simworlds.sandbox.errors import Died, Refusal
 
 if TYPE_CHECKING:
@@ -30,19 +30,19 @@ def adding(name: str) -> str:
     return f"bpy.context.collection.objects.link(bpy.data.objects.new({name!r}, None))"
 
 
-def numbers(studio: Studio) -> list[int]:
-    return [one.number for one in studio.blender.checkpoints.newest_first()]
+def numbers(session: LiveSession) -> list[int]:
+    return [one.number for one in session.blender.checkpoints.newest_first()]
 
 
 @pytest.fixture(scope="module")
-def _kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
-    studio = Studio(tmp_path_factory.mktemp("checkpoints") / "run")
-    yield studio
-    studio.blender.close()
+def _kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession]:
+    session = LiveSession(tmp_path_factory.mktemp("checkpoints") / "run")
+    yield session
+    session.blender.close()
 
 
 @pytest.fixture
-def kept(_kept: Studio, monkeypatch: pytest.MonkeyPatch) -> Studio:
+def kept(_kept: LiveSession, monkeypatch: pytest.MonkeyPatch) -> LiveSession:
     """A Blender with an empty scene that is kept, however slow this machine is at present."""
     monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 1e6)
     _kept.empty()
@@ -64,7 +64,7 @@ def full_disk() -> Iterator[None]:
 # When
 
 
-def test_a_small_scene_is_kept_after_every_call_that_may_change_it(kept: Studio) -> None:
+def test_a_small_scene_is_kept_after_every_call_that_may_change_it(kept: LiveSession) -> None:
     before = numbers(kept)[0]
     kept.run(adding("One"))
     kept.run(adding("Two"))
@@ -76,7 +76,7 @@ def test_a_small_scene_is_kept_after_every_call_that_may_change_it(kept: Studio)
 
 
 def test_a_large_scene_waits_until_the_work_is_worth_it(
-    kept: Studio, monkeypatch: pytest.MonkeyPatch
+    kept: LiveSession, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A real scene of a million vertices, which takes a while to write; nothing is cheap any more."""
     monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 0.0)
@@ -86,8 +86,9 @@ def test_a_large_scene_waits_until_the_work_is_worth_it(
         "bpy.context.collection.objects.link(bpy.data.objects.new('Large', mesh))"
     )
     large = kept.blender.keep("a large scene")
-    cost = kept.blender.checkpoints._cost
     assert large.bytes > 10_000_000
+    assert kept.blender.checkpoints._cost > 0
+    cost = kept.blender.checkpoints._cost = 0.5  # as long as the calls that follow cannot take
     kept.run(adding("Quick"))
     kept.run(adding("Quick, too"))
     assert numbers(kept)[0] == large.number
@@ -95,14 +96,15 @@ def test_a_large_scene_waits_until_the_work_is_worth_it(
     kept.run(f"import time\ntime.sleep({cost * checkpoints.PATIENCE})")
     assert numbers(kept)[0] == large.number + 1
     assert kept.blender.checkpoints.unkept == 0
+    kept.blender.checkpoints._cost = 0.5
     kept.run(adding("Lost"))
-    with pytest.raises(Died, match=r"what the last call before had changed since then is lost, too"):
+    with pytest.raises(Died, match=r"the changes of the last call before it are lost too"):
         kept.use(TOOL, code=CRASH)
     assert kept.run(NAMES) == ["Large", "Quick", "Quick, too"]
 
 
 def test_what_is_to_be_undone_is_kept_before_however_large(
-    kept: Studio, monkeypatch: pytest.MonkeyPatch
+    kept: LiveSession, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept.run(adding("Kept"))
     monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 0.0)
@@ -113,7 +115,7 @@ def test_what_is_to_be_undone_is_kept_before_however_large(
     assert kept.run(NAMES) == ["Kept", "Not yet kept"]
 
 
-def test_the_way_back_says_what_else_it_undoes(kept: Studio, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_way_back_says_what_else_it_undoes(kept: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
     last = kept.blender.checkpoints.last
     assert last is not None
     found = kept.use(TOOL, code="1 / 0")
@@ -127,14 +129,14 @@ def test_the_way_back_says_what_else_it_undoes(kept: Studio, monkeypatch: pytest
     assert f"To undo it, and the 2 call(s) before it: blender_load(checkpoint={last.number})." in found.text
 
 
-def test_a_checkpoint_is_no_event_to_the_scenes_handlers(kept: Studio) -> None:
+def test_a_checkpoint_is_no_event_to_the_scenes_handlers(kept: LiveSession) -> None:
     code = "def never(*_):\n    while True: pass\nbpy.app.handlers.save_pre.append(never)\n" + adding("Kept")
     kept.use(TOOL, code=code)
     assert kept.blender.keep("a handler that never returns").number == numbers(kept)[0]
     assert kept.run("len(bpy.app.handlers.save_pre)") == 1
 
 
-def test_nothing_is_kept_twice(kept: Studio) -> None:
+def test_nothing_is_kept_twice(kept: LiveSession) -> None:
     first = kept.blender.keep("once")
     assert kept.blender.keep("twice") == first
 
@@ -142,7 +144,7 @@ def test_nothing_is_kept_twice(kept: Studio) -> None:
 # What is kept
 
 
-def test_the_newest_are_kept(kept: Studio) -> None:
+def test_the_newest_are_kept(kept: LiveSession) -> None:
     for number in range(KEPT + 3):
         kept.run(adding(str(number)))
     assert len(numbers(kept)) == KEPT
@@ -150,11 +152,11 @@ def test_the_newest_are_kept(kept: Studio) -> None:
     files = sorted(int(path.stem) for path in kept.blender.folder.checkpoints.iterdir())
     assert files == sorted(numbers(kept))
     gone = numbers(kept)[-1] - 1
-    with pytest.raises(Refusal, match=rf"There is no checkpoint {gone}; kept are {gone + 1}, "):
+    with pytest.raises(Refusal, match=rf"There is no checkpoint {gone}\. Available: {gone + 1}, "):
         kept.blender.restore(gone)
 
 
-def test_large_ones_are_fewer(kept: Studio, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_large_ones_are_fewer(kept: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
     kept.run(adding("One"))
     last = kept.blender.checkpoints.last
     assert last is not None
@@ -166,21 +168,21 @@ def test_large_ones_are_fewer(kept: Studio, monkeypatch: pytest.MonkeyPatch) -> 
     assert len(numbers(kept)) == checkpoints.KEPT_LEAST
 
 
-def test_going_back_is_a_step_of_its_own(kept: Studio) -> None:
+def test_going_back_is_a_step_of_its_own(kept: LiveSession) -> None:
     kept.run(adding("One"))
     one = kept.blender.keep("one")
     kept.run(adding("Two"))
     two = kept.blender.keep("two")
     assert kept.blender.restore(one.number) == one
     assert kept.run(NAMES) == ["One"]
-    with pytest.raises(Died, match=r"stands at checkpoint \d+ \(.*how the scene was before"):
+    with pytest.raises(Died, match=r"started from checkpoint \d+ \(.*as it was before"):
         kept.use(TOOL, code=CRASH)
     assert kept.run(NAMES) == ["One"]
     kept.blender.restore(two.number)
     assert kept.run(NAMES) == ["One", "Two"]
 
 
-def test_a_state_comes_back_as_it_was(kept: Studio) -> None:
+def test_a_state_comes_back_as_it_was(kept: LiveSession) -> None:
     """Paths, the frame, the mode's object, data without users and what was packed."""
     look = (
         "s = bpy.context.scene\n(s.frame_current, s.render.filepath, bpy.data.images['i'].filepath,"
@@ -203,7 +205,7 @@ def test_a_state_comes_back_as_it_was(kept: Studio) -> None:
     assert kept.run(look) == before
 
 
-def test_relative_paths_still_lead_there_when_code_has_saved_elsewhere(kept: Studio) -> None:
+def test_relative_paths_still_lead_there_when_code_has_saved_elsewhere(kept: LiveSession) -> None:
     kept.run(
         "import os\nos.makedirs('sub', exist_ok=True)\n"
         "bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath('sub/other.blend'))\n"
@@ -220,7 +222,7 @@ def test_relative_paths_still_lead_there_when_code_has_saved_elsewhere(kept: Stu
 # When it fails
 
 
-def test_a_full_disk_costs_one_checkpoint_and_is_told_beside_the_result(kept: Studio) -> None:
+def test_a_full_disk_costs_one_checkpoint_and_is_told_beside_the_result(kept: LiveSession) -> None:
     kept.run(adding("Kept"))
     last = kept.blender.keep("before")
     content = last.path.read_bytes()
@@ -228,34 +230,34 @@ def test_a_full_disk_costs_one_checkpoint_and_is_told_beside_the_result(kept: St
         found = kept.use(TOOL, code=f"{adding('Unkept')}\n6 * 7")
     assert found.data["value"] == "42"
     assert not found.failed
-    assert "The state cannot be kept: " in found.text
+    assert "No checkpoint could be taken: " in found.text
     assert "File too large" in found.text
-    assert f"{last} is untouched" in found.text
+    assert f"{last} is unchanged" in found.text
     assert numbers(kept)[0] == last.number
     assert last.path.read_bytes() == content
     assert not list(kept.blender.folder.checkpoints.glob(".*"))
     # With room again, the next call keeps both.
     found = kept.use(TOOL, code=adding("Later"))
-    assert "cannot be kept" not in found.text
+    assert "could be taken" not in found.text
     kept.blender.kill()
     assert kept.run(NAMES) == ["Kept", "Later", "Unkept"]
 
 
-def test_what_was_not_kept_for_want_of_room_is_told_when_it_is_lost(kept: Studio) -> None:
+def test_what_was_not_kept_for_want_of_room_is_told_when_it_is_lost(kept: LiveSession) -> None:
     kept.run(adding("Kept"))
     kept.blender.keep("before")
     with full_disk():
         kept.run(adding("Unkept"))
-    with pytest.raises(Died, match=r"what the last call before had changed since then is lost, too"):
+    with pytest.raises(Died, match=r"the changes of the last call before it are lost too"):
         kept.use(TOOL, code=CRASH)
     assert kept.run(NAMES) == ["Kept"]
 
 
-def test_a_checkpoint_that_is_asked_for_fails_plainly(kept: Studio) -> None:
+def test_a_checkpoint_that_is_asked_for_fails_plainly(kept: LiveSession) -> None:
     kept.blender.checkpoints.changed(0.0)
     with (
         full_disk(),
-        pytest.raises(Refusal, match=r"The state cannot be kept: .*File too large.*Blender is well"),
+        pytest.raises(Refusal, match=r"No checkpoint could be taken: .*File too large.*Blender still runs"),
     ):
         kept.blender.keep("now")
     before = kept.blender.inner_pid
@@ -265,33 +267,33 @@ def test_a_checkpoint_that_is_asked_for_fails_plainly(kept: Studio) -> None:
 
 def test_a_scene_too_large_to_be_written_is_told_and_stays(tmp_path: Path) -> None:
     """Blender itself cannot write it: it is confined to small files."""
-    studio = Studio(tmp_path / "run", sandbox=best_sandbox(None, Limits(file_size=3 << 20)))
+    session = LiveSession(tmp_path / "run", sandbox=best_sandbox(None, ResourceLimits(file_size=3 << 20)))
     try:
-        found = studio.use(
+        found = session.use(
             TOOL,
             code="import numpy\nmesh = bpy.data.meshes.new('Large')\nmesh.vertices.add(1_000_000)\n"
             "mesh.vertices.foreach_set('co', numpy.random.random(3_000_000))\nmesh.use_fake_user = True",
         )
-        assert "The state cannot be kept" in found.text
+        assert "No checkpoint could be taken" in found.text
         assert "File too large" in found.text
-        assert studio.run("len(bpy.data.meshes['Large'].vertices)") == 1_000_000
-        assert numbers(studio) == [1]
+        assert session.run("len(bpy.data.meshes['Large'].vertices)") == 1_000_000
+        assert numbers(session) == [1]
     finally:
-        studio.blender.close()
+        session.blender.close()
     assert of_run(tmp_path / "run") == []
 
 
 def test_what_cannot_be_opened_is_passed_over_and_told(tmp_path: Path) -> None:
-    studio = Studio(tmp_path / "run")
+    session = LiveSession(tmp_path / "run")
     for name in ("One", "Two"):
-        studio.run(adding(name))
-        studio.blender.keep(name)
-    studio.run(adding("Three"))
-    studio.blender.close()
+        session.run(adding(name))
+        session.blender.keep(name)
+    session.run(adding("Three"))
+    session.blender.close()
     files = sorted((tmp_path / "run" / "checkpoints").iterdir())
     files[-1].write_bytes(files[-1].read_bytes()[:2000])
     files[-2].write_bytes(b"no blend at all")
-    again = Studio(tmp_path / "run")
+    again = LiveSession(tmp_path / "run")
     try:
         assert again.run(NAMES) == ["One"]
         last = again.blender.checkpoints.last
@@ -306,13 +308,13 @@ def test_what_cannot_be_opened_is_passed_over_and_told(tmp_path: Path) -> None:
 
 
 def test_halves_of_checkpoints_are_cleared_away(tmp_path: Path) -> None:
-    studio = Studio(tmp_path / "run")
-    studio.run(adding("Kept"))
-    studio.blender.close()
+    session = LiveSession(tmp_path / "run")
+    session.run(adding("Kept"))
+    session.blender.close()
     (tmp_path / "run" / "checkpoints" / ".000009.blend.part").write_bytes(b"half")
     (tmp_path / "run" / "workspace" / "scene.blend@").write_bytes(b"half")
     (tmp_path / "run" / "checkpoints" / "notes.txt").write_text("mine")
-    again = Studio(tmp_path / "run")
+    again = LiveSession(tmp_path / "run")
     try:
         assert again.run(NAMES) == ["Kept"]
         assert not list((tmp_path / "run").rglob("*.part"))
@@ -322,7 +324,7 @@ def test_halves_of_checkpoints_are_cleared_away(tmp_path: Path) -> None:
         again.blender.close()
 
 
-def test_a_checkpoint_says_what_it_is(kept: Studio) -> None:
+def test_a_checkpoint_says_what_it_is(kept: LiveSession) -> None:
     kept.use(TOOL, code="tower = 'high'")
     last = kept.blender.checkpoints.last
     assert isinstance(last, Checkpoint)

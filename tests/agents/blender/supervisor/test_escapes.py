@@ -13,27 +13,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from live_session import LiveSession
 from places import REPO
-from studio import Studio
 
 from agents.blender.tools.execute import TOOL
-from simworlds.sandbox import confine
-from simworlds.sandbox.confinement import Limits, best_sandbox, bubblewrap_fault
-from simworlds.sandbox.errors import Died, LeftBehind, OutOfBounds, Refusal, Untrustworthy
+from simworlds.sandbox import confine_self
+from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.errors import Died, LeftBehind, LimitExceeded, Refusal, Untrustworthy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from simworlds.sandbox.confinement import Kind
+    from simworlds.sandbox.confined_command import Kind
 
 pytestmark = [
     pytest.mark.blender,
-    pytest.mark.skipif(not confine.has_seccomp(), reason="system calls cannot be closed on this machine"),
+    pytest.mark.skipif(
+        not confine_self.has_seccomp(), reason="system calls cannot be closed on this machine"
+    ),
 ]
 
 SECRET = "sk-ant-this-is-no-key-but-must-not-be-seen"
 MIB = 1 << 20
-LIMITS = Limits(memory=1600 * MIB, file_size=16 * MIB, disk=64 * MIB, files=400, threads=300)
+LIMITS = ResourceLimits(memory=1600 * MIB, file_size=16 * MIB, disk=64 * MIB, files=400, threads=300)
 KINDS: tuple[Kind, ...] = ("bubblewrap", "landlock")
 DENIED = {"PermissionError", "FileNotFoundError", "OSError", "ProcessLookupError"}
 
@@ -41,23 +43,25 @@ DENIED = {"PermissionError", "FileNotFoundError", "OSError", "ProcessLookupError
 def works(kind: Kind) -> Kind:
     if kind == "bubblewrap" and (fault := bubblewrap_fault()):
         pytest.skip(f"bubblewrap does not work here: {fault}")
-    if kind == "landlock" and not confine.landlock_abi():
+    if kind == "landlock" and not confine_self.landlock_abi():
         pytest.skip("this kernel has no Landlock")
     return kind
 
 
 @pytest.fixture(scope="module", params=KINDS)
-def _confined(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+def _confined(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[LiveSession]:
     kind = works(request.param)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ANTHROPIC_API_KEY", SECRET)
-        studio = Studio(tmp_path_factory.mktemp(kind) / "run", sandbox=best_sandbox(kind, LIMITS))
-    yield studio
-    studio.blender.close()
+        session = LiveSession(tmp_path_factory.mktemp(kind) / "run", sandbox=best_sandbox(kind, LIMITS))
+    yield session
+    session.blender.close()
 
 
 @pytest.fixture
-def confined(_confined: Studio) -> Studio:
+def confined(_confined: LiveSession) -> LiveSession:
     """A Blender in a narrow sandbox, with an empty scene and an empty workspace."""
     _confined.empty()
     for path in _confined.blender.folder.workspace.iterdir():
@@ -68,14 +72,14 @@ def confined(_confined: Studio) -> Studio:
 
 
 @pytest.fixture(scope="module")
-def _channelled(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
-    studio = Studio(tmp_path_factory.mktemp("channel") / "run")
-    yield studio
-    studio.blender.close()
+def _channelled(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession]:
+    session = LiveSession(tmp_path_factory.mktemp("channel") / "run")
+    yield session
+    session.blender.close()
 
 
 @pytest.fixture
-def channelled(_channelled: Studio) -> Studio:
+def channelled(_channelled: LiveSession) -> LiveSession:
     """A Blender in whatever sandbox is the best here, with an empty scene: its channel is the same in all of them."""
     _channelled.empty()
     return _channelled
@@ -91,21 +95,21 @@ def home() -> Iterator[Path]:
         yield folder
 
 
-def tried(studio: Studio, code: str) -> tuple[str, Any]:
+def tried(session: LiveSession, code: str) -> tuple[str, Any]:
     """(type of the error, None) or ("", value) of code that Blender survives."""
-    data = studio.use(TOOL, code=code, timeout=20).data
+    data = session.use(TOOL, code=code, timeout=20).data
     error = data["error"]
     return (error["type"], None) if error else ("", data["value"])
 
 
-def assert_denied(studio: Studio, code: str) -> None:
-    kind, value = tried(studio, code)
+def assert_denied(session: LiveSession, code: str) -> None:
+    kind, value = tried(session, code)
     assert kind in DENIED, f"{code!r} came to {kind or value}"
 
 
-def keep_an_object(studio: Studio) -> None:
-    studio.run("bpy.context.collection.objects.link(bpy.data.objects.new('Kept', None))")
-    studio.blender.keep("an object")
+def keep_an_object(session: LiveSession) -> None:
+    session.run("bpy.context.collection.objects.link(bpy.data.objects.new('Kept', None))")
+    session.blender.keep("an object")
 
 
 LIBC = "import ctypes, os\nlibc = ctypes.CDLL(None, use_errno=True)\n"
@@ -114,7 +118,7 @@ LIBC = "import ctypes, os\nlibc = ctypes.CDLL(None, use_errno=True)\n"
 # Reading
 
 
-def test_keys_in_the_home_folder_cannot_be_read(confined: Studio, home: Path) -> None:
+def test_keys_in_the_home_folder_cannot_be_read(confined: LiveSession, home: Path) -> None:
     key = home / ".ssh" / "id_ed25519"
     assert key.read_text() == SECRET
     for code in (f"open({str(key)!r}).read()", f"__import__('os').listdir({str(key.parent)!r})"):
@@ -126,7 +130,7 @@ def test_keys_in_the_home_folder_cannot_be_read(confined: Studio, home: Path) ->
 @pytest.mark.parametrize(
     "path", ["/etc/passwd", "/etc/shadow", str(REPO / "README.md"), "/root", "/home", "/tmp", "/var"]
 )
-def test_what_blender_does_not_need_cannot_be_read(confined: Studio, path: str) -> None:
+def test_what_blender_does_not_need_cannot_be_read(confined: LiveSession, path: str) -> None:
     if not Path(path).exists():
         pytest.skip(f"there is no {path}")
     code = f"import os\nos.listdir({path!r}) if os.path.isdir({path!r}) else open({path!r}).read()"
@@ -143,7 +147,7 @@ def test_what_blender_does_not_need_cannot_be_read(confined: Studio, path: str) 
     assert kind in DENIED or set(eval(value)) <= names  # type: ignore[attr-defined]
 
 
-def test_the_key_of_the_model_is_in_no_environment(confined: Studio) -> None:
+def test_the_key_of_the_model_is_in_no_environment(confined: LiveSession) -> None:
     """Neither in its own, nor in that of a process that it can look at; and those that have it cannot be looked at."""
     holder = subprocess.Popen(["sleep", "60"], env={"ANTHROPIC_API_KEY": SECRET})
     try:
@@ -167,7 +171,7 @@ found
         holder.wait()
 
 
-def test_memory_of_other_processes_cannot_be_read(confined: Studio) -> None:
+def test_memory_of_other_processes_cannot_be_read(confined: LiveSession) -> None:
     own = os.getpid()
     assert_denied(confined, f"open('/proc/{own}/mem', 'rb').read(1)")
     assert_denied(confined, f"open('/proc/{own}/maps').read()")
@@ -183,7 +187,7 @@ part = (ctypes.c_void_p * 2)(ctypes.addressof(buffer), 8)
 # Writing
 
 
-def test_the_repository_cannot_be_written_to(confined: Studio) -> None:
+def test_the_repository_cannot_be_written_to(confined: LiveSession) -> None:
     readme = REPO / "README.md"
     before = readme.stat()
     planted = REPO / "agents" / "planted.py"
@@ -210,7 +214,7 @@ def test_the_repository_cannot_be_written_to(confined: Studio) -> None:
     assert (readme.stat().st_size, readme.stat().st_mtime) == (before.st_size, before.st_mtime)
 
 
-def test_the_run_can_be_written_to_in_its_workspace_alone(confined: Studio) -> None:
+def test_the_run_can_be_written_to_in_its_workspace_alone(confined: LiveSession) -> None:
     root = confined.blender.folder.root
     for code in (
         f"open({str(root / 'planted')!r}, 'w')",
@@ -229,12 +233,12 @@ def test_the_run_can_be_written_to_in_its_workspace_alone(confined: Studio) -> N
 @pytest.mark.parametrize(
     "place", ["/dev/shm/x", "/tmp/x", "/var/tmp/x", "/run/x", "/x", "/usr/x", "/dev/x", "/etc/x"]
 )
-def test_shared_places_cannot_be_written_to(confined: Studio, place: str) -> None:
+def test_shared_places_cannot_be_written_to(confined: LiveSession, place: str) -> None:
     assert_denied(confined, f"open({place!r}, 'w')")
     assert not Path(place).exists()
 
 
-def test_blender_saves_nothing_outside(confined: Studio, home: Path) -> None:
+def test_blender_saves_nothing_outside(confined: LiveSession, home: Path) -> None:
     for path in (home / "x.blend", REPO / "x.blend", confined.blender.folder.root / "x.blend"):
         kind, _ = tried(confined, f"bpy.ops.wm.save_as_mainfile(filepath={str(path)!r})")
         assert kind == "RuntimeError"
@@ -248,7 +252,7 @@ def test_blender_saves_nothing_outside(confined: Studio, home: Path) -> None:
     assert [path.name for path in home.iterdir()] == [".ssh"]
 
 
-def test_links_lead_neither_code_nor_blender_nor_the_host_out(confined: Studio, home: Path) -> None:
+def test_links_lead_neither_code_nor_blender_nor_the_host_out(confined: LiveSession, home: Path) -> None:
     key = home / ".ssh" / "id_ed25519"
     folder = confined.blender.folder
     # Planted by the host, so that they are there whatever the sandbox does about making them.
@@ -273,7 +277,7 @@ def test_links_lead_neither_code_nor_blender_nor_the_host_out(confined: Studio, 
 
 @pytest.mark.parametrize("planted", ["link", "folder"])
 def test_what_stands_in_the_place_of_the_runs_own_file_is_not_written_through(
-    confined: Studio, home: Path, planted: str
+    confined: LiveSession, home: Path, planted: str
 ) -> None:
     key = home / ".ssh" / "id_ed25519"
     keep_an_object(confined)
@@ -291,7 +295,7 @@ def test_what_stands_in_the_place_of_the_runs_own_file_is_not_written_through(
 # The network
 
 
-def test_no_server_is_reached(confined: Studio) -> None:
+def test_no_server_is_reached(confined: LiveSession) -> None:
     with (
         socket.create_server(("127.0.0.1", 0)) as tcp,
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp,
@@ -329,7 +333,7 @@ def test_no_server_is_reached(confined: Studio) -> None:
             udp.recv(10)
 
 
-def test_io_uring_which_could_do_all_that_is_closed(confined: Studio) -> None:
+def test_io_uring_which_could_do_all_that_is_closed(confined: LiveSession) -> None:
     assert tried(
         confined, f"{LIBC}libc.syscall(425, 8, ctypes.create_string_buffer(120)), ctypes.get_errno()"
     ) == (
@@ -341,7 +345,7 @@ def test_io_uring_which_could_do_all_that_is_closed(confined: Studio) -> None:
 # Processes
 
 
-def test_no_process_can_be_started(confined: Studio) -> None:
+def test_no_process_can_be_started(confined: LiveSession) -> None:
     for code in (
         "while True: __import__('os').fork()",
         "__import__('subprocess').run(['/bin/true'])",
@@ -356,14 +360,14 @@ def test_no_process_can_be_started(confined: Studio) -> None:
     assert not (confined.blender.folder.workspace / "planted").exists()
 
 
-def test_threads_without_end_are_stopped(confined: Studio) -> None:
+def test_threads_without_end_are_stopped(confined: LiveSession) -> None:
     code = "import _thread, time\n_thread.stack_size(65536)\nwhile True: _thread.start_new_thread(time.sleep, (60,))"
-    with pytest.raises(OutOfBounds, match=r"started [\d,]+ threads; 300 at most"):
+    with pytest.raises(LimitExceeded, match=r"started [\d,]+ threads; the limit is 300"):
         confined.use(TOOL, code=code, timeout=20)
     assert confined.run("1 + 1") == 2
 
 
-def test_nobody_else_gets_a_signal(confined: Studio) -> None:
+def test_nobody_else_gets_a_signal(confined: LiveSession) -> None:
     own = os.getpid()
     started = confined.blender.pid
     for code in (
@@ -388,7 +392,7 @@ def test_nobody_else_gets_a_signal(confined: Studio) -> None:
 # Rights
 
 
-def test_limits_can_be_neither_raised_nor_lowered(confined: Studio) -> None:
+def test_limits_can_be_neither_raised_nor_lowered(confined: LiveSession) -> None:
     for which in ("DATA", "FSIZE", "CORE", "NOFILE"):
         code = f"import resource\nresource.getrlimit(resource.RLIMIT_{which})"
         before = tried(confined, code)
@@ -399,7 +403,7 @@ def test_limits_can_be_neither_raised_nor_lowered(confined: Studio) -> None:
     assert tried(confined, f"{LIBC}libc.setrlimit(1, (ctypes.c_ulong * 2)(3, 3))") == ("", "-1")
 
 
-def test_nothing_can_be_mounted_or_made_root(confined: Studio) -> None:
+def test_nothing_can_be_mounted_or_made_root(confined: LiveSession) -> None:
     calls = (
         "[libc.mount(b'none', b'.', b'tmpfs', 0, None), libc.chroot(b'.'), libc.unshare(0x10000000),"
         " libc.setns(os.open('/proc/self/ns/mnt', 0), 0), libc.umount2(b'.', 2), libc.setuid(12345),"
@@ -411,7 +415,7 @@ def test_nothing_can_be_mounted_or_made_root(confined: Studio) -> None:
 # Amounts
 
 
-def test_one_file_grows_to_its_limit_and_no_further(confined: Studio) -> None:
+def test_one_file_grows_to_its_limit_and_no_further(confined: LiveSession) -> None:
     assert tried(confined, "open('big', 'wb').write(bytes(40 << 20))")[0] == "OSError"
     assert (confined.blender.folder.workspace / "big").stat().st_size <= LIMITS.file_size
     kind, _ = tried(
@@ -428,20 +432,20 @@ def test_one_file_grows_to_its_limit_and_no_further(confined: Studio) -> None:
     [
         ("for i in range(10**6): open(f'f{i}', 'w').write('x')", "more than 400 files"),
         ("import os\nfor i in range(10**6): os.mkdir(f'd{i}')", "more than 400 files"),
-        ("for i in range(60): open(f'b{i}', 'wb').write(bytes(15 << 20))", "67 MB at most"),
+        ("for i in range(60): open(f'b{i}', 'wb').write(bytes(15 << 20))", "the limit is 67 MB"),
         (
             "import os\nhome = os.environ['TMPDIR']\n"
             "for i in range(60): open(f'{home}/b{i}', 'wb').write(bytes(15 << 20))",
-            "67 MB at most",
+            "the limit is 67 MB",
         ),
-        ("import os\nfor i in range(10**5): os.mkdir('d'); os.chdir('d')", "64 deep into each other"),
+        ("import os\nfor i in range(10**5): os.mkdir('d'); os.chdir('d')", "more than 64 deep"),
     ],
     ids=["files", "folders", "bytes", "temporary bytes", "depth"],
 )
-def test_a_disk_cannot_be_filled(confined: Studio, code: str, told: str) -> None:
+def test_a_disk_cannot_be_filled(confined: LiveSession, code: str, told: str) -> None:
     """What was written before stays; what the call wrote goes, so that the next one has room."""
     confined.run("open('kept', 'w').write('from before')")
-    with pytest.raises(OutOfBounds, match=told):
+    with pytest.raises(LimitExceeded, match=told):
         confined.use(TOOL, code=f"{code}\nimport time; time.sleep(20)", timeout=30)
     workspace = confined.blender.folder.workspace
     assert {path.name for path in workspace.iterdir()} <= {"kept", "scene.blend"}
@@ -449,28 +453,28 @@ def test_a_disk_cannot_be_filled(confined: Studio, code: str, told: str) -> None
     assert confined.run("import time; time.sleep(0.6); open('kept').read()") == "from before"
 
 
-def test_short_calls_do_not_slip_through(confined: Studio) -> None:
+def test_short_calls_do_not_slip_through(confined: LiveSession) -> None:
     """Each of them ends before it would be looked at."""
 
     def write_on() -> None:
         for number in range(40):
             confined.use(TOOL, code=f"open('b{number}', 'wb').write(bytes(12 << 20))")
 
-    with pytest.raises(OutOfBounds, match="67 MB at most"):
+    with pytest.raises(LimitExceeded, match="the limit is 67 MB"):
         write_on()
     assert confined.run("import time; time.sleep(0.6); 1 + 1") == 2
 
 
-def test_memory_has_an_end(confined: Studio) -> None:
+def test_memory_has_an_end(confined: LiveSession) -> None:
     assert tried(confined, "bytearray(4 << 30)")[0] == "MemoryError"
     assert tried(confined, "import mmap\nmmap.mmap(-1, 4 << 30, flags=mmap.MAP_PRIVATE)")[0] in {
         "OSError",
         "MemoryError",
     }
     assert tried(confined, "import numpy\nnumpy.ones(10**9)")[0] in {"MemoryError", "_ArrayMemoryError"}
-    with pytest.raises(Died, match=r"ran out of memory, of which it may have 1\.7 GB"):
+    with pytest.raises(Died, match=r"ran out of memory; the limit is 1\.7 GB"):
         confined.use(TOOL, code="bpy.ops.mesh.primitive_grid_add(x_subdivisions=15000, y_subdivisions=15000)")
-    with pytest.raises(OutOfBounds, match=r"came to hold [\d.]+ GB of memory; 1\.7 GB at most"):
+    with pytest.raises(LimitExceeded, match=r"used [\d.]+ GB of memory; the limit is 1\.7 GB"):
         confined.use(
             TOOL,
             code="import mmap, time\nshared = mmap.mmap(-1, 2 << 30)\n"
@@ -483,7 +487,7 @@ def test_memory_has_an_end(confined: Studio) -> None:
 # What would outlive the process
 
 
-def test_nothing_that_code_leaves_runs_in_the_next_blender(confined: Studio) -> None:
+def test_nothing_that_code_leaves_runs_in_the_next_blender(confined: LiveSession) -> None:
     marker = "planted_by_code"
     confined.run(f"""
 import os, sys
@@ -521,7 +525,7 @@ bpy.context.view_layer.update()
     assert found == (False, False, False, True, False, [])
 
 
-def test_no_temporary_file_outlives_the_process(confined: Studio) -> None:
+def test_no_temporary_file_outlives_the_process(confined: LiveSession) -> None:
     private = confined.blender.folder.private
     confined.run("import os\nopen(os.path.join(os.environ['TMPDIR'], 'left'), 'w').write('x')")
     assert (private / "left").exists()
@@ -541,7 +545,7 @@ wire, ticket = frame.f_locals['wire'], frame.f_locals['request']['ticket']
 """
 
 
-def test_bytes_on_the_channel_are_not_believed(channelled: Studio) -> None:
+def test_bytes_on_the_channel_are_not_believed(channelled: LiveSession) -> None:
     keep_an_object(channelled)
     code = """
 import os
@@ -552,7 +556,7 @@ for number in range(100, 400):
 """
     with pytest.raises(Untrustworthy, match="right signature") as caught:
         channelled.use(TOOL, code=code)
-    assert "A new Blender stands at checkpoint" in str(caught.value)
+    assert "A new Blender was started from checkpoint" in str(caught.value)
     assert channelled.run("[o.name for o in bpy.data.objects]") == ["Kept"]
 
 
@@ -567,14 +571,14 @@ for number in range(100, 400):
         "{'nothing': 1}",
     ],
 )
-def test_a_signed_answer_that_is_none_is_not_believed(channelled: Studio, answer: str) -> None:
-    with pytest.raises(Untrustworthy, match=r"no answer.*A new Blender stands at checkpoint"):
+def test_a_signed_answer_that_is_none_is_not_believed(channelled: LiveSession, answer: str) -> None:
+    with pytest.raises(Untrustworthy, match=r"not a valid reply.*A new Blender was started from checkpoint"):
         channelled.use(TOOL, code=f"{WIRE}wire.send({answer})\nimport time; time.sleep(10)", timeout=15)
     assert channelled.run("1 + 1") == 2
 
 
 @pytest.mark.parametrize("value", ["None", "[]", "{'value': 'x', 'error': 'y', 'changed': 1}"])
-def test_an_outcome_that_is_none_is_not_believed(channelled: Studio, value: str) -> None:
+def test_an_outcome_that_is_none_is_not_believed(channelled: LiveSession, value: str) -> None:
     keep_an_object(channelled)
     code = f"{WIRE}wire.send({{'ticket': ticket, 'value': {value}, 'seconds': 0.1, 'left': []}})"
     with pytest.raises((Untrustworthy, LeftBehind, Died)) as caught:
@@ -583,7 +587,7 @@ def test_an_outcome_that_is_none_is_not_believed(channelled: Studio, value: str)
     assert channelled.run("[o.name for o in bpy.data.objects]") == ["Kept"]
 
 
-def test_answering_in_the_workers_name_does_not_touch_the_next_call(channelled: Studio) -> None:
+def test_answering_in_the_workers_name_does_not_touch_the_next_call(channelled: LiveSession) -> None:
     """Code that knows the key can answer its own call before it is over; its real answer then comes too late."""
     value = "{'value': 'forged', 'error': None, 'changed': {}, 'mode': 'OBJECT'}"
     code = f"{WIRE}wire.send({{'ticket': ticket, 'value': {value}, 'seconds': 0.1, 'left': []}})"
@@ -591,4 +595,4 @@ def test_answering_in_the_workers_name_does_not_touch_the_next_call(channelled: 
         channelled.use(TOOL, code=code)
     started = time.monotonic()
     assert channelled.run("1 + 1") == 2
-    assert time.monotonic() - started < 10
+    assert time.monotonic() - started < 60

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from live_session import LiveSession
 from processes import becomes, of_run
-from studio import Studio
 
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox.errors import BlenderError, Lost
@@ -61,22 +61,22 @@ VICTIMS = [*CODE, "checkpoint"]
 
 
 @pytest.fixture(scope="module")
-def killed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
-    studio = Studio(tmp_path_factory.mktemp("kills") / "run")
-    studio.run(SCENE)
-    studio.blender.keep("the scene")
-    yield studio
-    studio.blender.close()
+def killed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession]:
+    session = LiveSession(tmp_path_factory.mktemp("kills") / "run")
+    session.run(SCENE)
+    session.blender.keep("the scene")
+    yield session
+    session.blender.close()
 
 
-def begin(studio: Studio, victim: str, number: int) -> None:
+def begin(session: LiveSession, victim: str, number: int) -> None:
     """What is to be killed: it changes the scene's mark first, so that half of it can be told from all."""
     if victim == "checkpoint":
-        studio.run(f"bpy.context.scene['round'] = {number}")
-        studio.blender.checkpoints.changed(0.0)
-        studio.blender.keep(f"round {number}")
+        session.run(f"bpy.context.scene['round'] = {number}")
+        session.blender.checkpoints.changed(0.0)
+        session.blender.keep(f"round {number}")
     else:
-        studio.use(TOOL, code=f"bpy.context.scene['round'] = {number}\n{CODE[victim]}", timeout=60)
+        session.use(TOOL, code=f"bpy.context.scene['round'] = {number}\n{CODE[victim]}", timeout=60)
 
 
 def family(number: int | None) -> set[int]:
@@ -101,56 +101,59 @@ def opens_elsewhere(paths: list[Path], key: str) -> list[int]:
 
 
 @pytest.mark.parametrize("victim", VICTIMS)
-def test_kills_at_random_moments_cost_at_most_the_call(killed: Studio, victim: str) -> None:
-    studio, blender = killed, killed.blender
+def test_kills_at_random_moments_cost_at_most_the_call(killed: LiveSession, victim: str) -> None:
+    session, blender = killed, killed.blender
     root = blender.folder.root
     chance = random.Random(f"{SEED} {victim}")
     blender.kill()
-    studio.run("1")
+    session.run("1")
     started = time.monotonic()
-    begin(studio, victim, -1)
+    begin(session, victim, -1)
     takes = time.monotonic() - started
     blender.keep("before the kills")
     survived = 0
-    mark = -1
+    # Under load a scene takes long to write, and not every call leaves a checkpoint: a kill goes back to the last one.
+    mark = kept = -1
     for number in range(KILLS):
         hit, before = blender.pid if number % 2 else blender.inner_pid, family(blender.pid)
         killer = threading.Timer(chance.uniform(0, 1.1 * takes), os.kill, (hit, signal.SIGKILL))
         killer.start()
         fault = None
         try:
-            begin(studio, victim, number)
+            begin(session, victim, number)
         except Lost as error:
             fault = str(error)
         killer.join()
         # Behind bubblewrap, Blender ends a little after it.
         assert becomes(lambda before=before: not before & set(of_run(root)))
-        found = studio.run("bpy.context.scene['round']")
+        found = session.run("bpy.context.scene['round']")
         if fault is None:
             survived += 1
             assert found == number
         else:
-            assert "A new Blender stands at checkpoint" in fault
-            # What is to be kept had been, if it was the second checkpoint of the round that was killed.
-            assert found in ({mark, number} if victim == "checkpoint" else {mark}), (
+            assert "A new Blender was started from checkpoint" in fault
+            # The round was kept already if it was its second checkpoint that was killed.
+            assert found in ({kept, number} if victim == "checkpoint" else {kept}), (
                 f"{victim} {number}: {fault}"
             )
+            assert kept == mark or "lost too" in fault
         mark = found
+        kept = kept if blender.checkpoints.unkept else found
         assert becomes(lambda: set(of_run(root)) == family(blender.pid)), (
             "a process of an earlier Blender is left"
         )
     assert survived < KILLS, "no kill came in time"
     blender.keep("after the kills")
-    kept = [one.path for one in blender.checkpoints.newest_first()]
-    assert opens_elsewhere(kept, "round")[0] == mark
+    files = [checkpoint.path for checkpoint in blender.checkpoints.newest_first()]
+    assert opens_elsewhere(files, "round")[0] == mark
 
 
-def test_kills_while_another_blender_is_being_started(killed: Studio) -> None:
+def test_kills_while_another_blender_is_being_started(killed: LiveSession) -> None:
     """Whatever belongs to the run is killed, again and again, until it comes up."""
-    studio, blender = killed, killed.blender
+    session, blender = killed, killed.blender
     chance = random.Random(SEED)
     blender.keep("before the kills")
-    before = studio.run("bpy.context.scene['round']")
+    before = session.run("bpy.context.scene['round']")
     for _ in range(4):
         begun = blender.pid
         assert begun is not None
@@ -170,15 +173,15 @@ def test_kills_while_another_blender_is_being_started(killed: Studio) -> None:
         killer.start()
         fault = None
         try:
-            studio.run("1")
+            session.run("1")
         except BlenderError as error:
             fault = str(error)
         killer.join()
-        assert fault is None or "stands at checkpoint" in fault
-        assert studio.run("bpy.context.scene['round']") == before
+        assert fault is None or "started from checkpoint" in fault
+        assert session.run("bpy.context.scene['round']") == before
 
 
-def test_nothing_is_left_of_all_that(killed: Studio) -> None:
+def test_nothing_is_left_of_all_that(killed: LiveSession) -> None:
     root = killed.blender.folder.root
     killed.blender.close()
     assert becomes(lambda: of_run(root) == [])

@@ -11,7 +11,7 @@ import pytest
 
 from agents.blender.run_folder import RunFolder, locked, new_run
 from simworlds.sandbox import usage
-from simworlds.sandbox.confinement import Limits
+from simworlds.sandbox.confined_command import ResourceLimits
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def test_a_plain_name_is_a_file_of_the_run(folder: RunFolder, name: str, lies: s
     ],
 )
 def test_a_name_that_leads_elsewhere_is_refused(folder: RunFolder, name: str) -> None:
-    with pytest.raises(Refusal, match="relative path of plain names"):
+    with pytest.raises(Refusal, match="give a relative path such as"):
         folder.place_for(name, ".blend")
 
 
@@ -77,7 +77,7 @@ def test_a_name_that_leads_elsewhere_is_refused(folder: RunFolder, name: str) ->
     "name", ["workspace/x", "checkpoints/000001", "private/x", "Workspace/x", "CHECKPOINTS/x"]
 )
 def test_folders_with_a_purpose_are_no_place_to_save_in(folder: RunFolder, name: str) -> None:
-    with pytest.raises(Refusal, match="save beside it"):
+    with pytest.raises(Refusal, match="choose another folder"):
         folder.place_for(name, ".blend")
 
 
@@ -103,7 +103,7 @@ def test_what_blender_made_is_moved_whole(folder: RunFolder) -> None:
 
 @pytest.mark.parametrize("relative", ["", "/etc/passwd", "../../outside/secret.blend", "a/../b", "a\0b"])
 def test_what_is_no_path_in_the_workspace_is_refused(folder: RunFolder, outside: Path, relative: str) -> None:
-    with pytest.raises(Refusal, match="no path in the workspace"):
+    with pytest.raises(Refusal, match="not a valid path in the workspace"):
         folder.open_made(relative)
 
 
@@ -111,9 +111,9 @@ def test_a_link_is_neither_read_nor_taken_nor_removed_through(folder: RunFolder,
     (folder.workspace / "link.blend").symlink_to(outside)
     (folder.workspace / "linked").symlink_to(outside.parent)
     for relative in ("link.blend", "linked/secret.blend"):
-        with pytest.raises(Refusal, match="not a plain file"):
+        with pytest.raises(Refusal, match="not a regular file"):
             folder.open_made(relative)
-        with pytest.raises(Refusal, match="not a plain file"):
+        with pytest.raises(Refusal, match="not a regular file"):
             folder.take(relative, folder.root / "kept.blend")
     assert outside.read_text() == "secret"
     assert not (folder.root / "kept.blend").exists()
@@ -161,7 +161,7 @@ def test_what_is_no_plain_file_is_refused_at_once(folder: RunFolder, kind: str) 
         os.mkfifo(path)
     elif kind == "folder":
         path.mkdir()
-    with pytest.raises(Refusal, match="not a plain file"):
+    with pytest.raises(Refusal, match="not a regular file"):
         folder.open_made("made")
 
 
@@ -252,13 +252,13 @@ def test_everything_is_swept_however_deep_or_closed(tmp_path: Path, outside: Pat
     (room / "closed").mkdir()
     (room / "closed" / "file").write_text("x")
     (room / "closed").chmod(0)
-    usage.sweep(room)
+    usage.empty_folder(room)
     assert list(room.iterdir()) == []
     assert outside.read_text() == "secret"
 
 
 def test_sweeping_what_is_not_there_is_no_error(tmp_path: Path) -> None:
-    usage.sweep(tmp_path / "none")
+    usage.empty_folder(tmp_path / "none")
 
 
 def test_what_is_measured_is_what_lies_on_disk_and_no_link(tmp_path: Path, outside: Path) -> None:
@@ -308,41 +308,44 @@ def two(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
 
 
 def test_what_is_written_to_both_folders_counts_together(two: tuple[Path, Path]) -> None:
-    watch = usage.Bounds(two, Limits(disk=150_000, files=0))
+    watch = usage.UsageMonitor(two, ResourceLimits(disk=150_000, files=0))
     for number, folder in enumerate(two):
-        assert watch.fault(over=True) is None
+        assert watch.excess(at_end=True) is None
         for name in range(20):  # many files are no fault, where their number has no limit
             (folder / f"{number}-{name}").write_bytes(bytes(4096))
-    assert watch.fault(over=True) == "brought the run's files to 0 MB; 0 MB at most"
+    assert watch.excess(at_end=True) == "brought the run's files to 0 MB; the limit is 0 MB"
 
 
 def test_what_was_there_before_is_no_fault_but_more_is(two: tuple[Path, Path]) -> None:
     for number in range(30):
         (two[0] / f"old{number}").write_text("x")
-    watch = usage.Bounds(two, Limits(files=10))
-    assert watch.fault(over=True) is None
+    watch = usage.UsageMonitor(two, ResourceLimits(files=10))
+    assert watch.excess(at_end=True) is None
     (two[0] / "new").write_text("x")
-    assert watch.fault(over=True) == "brought the run to more than 30 files"
+    assert watch.excess(at_end=True) == "brought the run to more than 30 files"
 
 
-def test_between_two_looks_there_is_a_pause_unless_the_call_is_over(two: tuple[Path, Path]) -> None:
-    watch = usage.Bounds(two, Limits(files=1))
-    assert watch.fault() is None
+def test_checks_are_paused_between_two_but_not_at_the_end_of_a_call(
+    two: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(usage, "_CHECK_SECONDS", 1e6)
+    watch = usage.UsageMonitor(two, ResourceLimits(files=1))
+    assert watch.excess() is None
     for number in range(5):
         (two[0] / str(number)).write_text("x")
-    assert watch.fault() is None
-    assert watch.fault(over=True) is not None
+    assert watch.excess() is None
+    assert watch.excess(at_end=True) is not None
 
 
 def test_the_moment_that_was_fine_is_after_what_was_written_before_it(two: tuple[Path, Path]) -> None:
-    watch = usage.Bounds(two, Limits(files=3))
+    watch = usage.UsageMonitor(two, ResourceLimits(files=3))
     (two[0] / "kept").write_text("x")
-    assert watch.fault(over=True) is None
-    since = watch.fine
+    assert watch.excess(at_end=True) is None
+    since = watch.last_within_limits
     for number in range(5):
         (two[1] / str(number)).write_text("x")
-    assert watch.fault(over=True) is not None
-    assert watch.fine == since
+    assert watch.excess(at_end=True) is not None
+    assert watch.last_within_limits == since
     for folder in two:
         usage.remove_since(folder, since)
     assert (two[0] / "kept").exists()

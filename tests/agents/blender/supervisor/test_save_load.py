@@ -12,17 +12,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from studio import Studio, no_docs
+from live_session import LiveSession, no_docs
 
 from agents.blender.checkpoints import KEPT
 from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
-from agents.blender.saved_files import take_all
+from agents.blender.saved_files import copy_from_workspace
 from agents.blender.supervisor import Supervisor
-from agents.blender.tools.base import Session
+from agents.blender.tools.base import ToolContext
 from agents.blender.tools.files import LOAD, SAVE
 from simworlds.sandbox.blender_process import BlenderProcess
-from simworlds.sandbox.confinement import best_sandbox, default_limits
+from simworlds.sandbox.confined_command import best_sandbox, default_limits
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -75,15 +75,15 @@ COLOUR = "[round(x, 2) for x in bpy.data.images['wood.png'].pixels[:4]]"
 
 
 @pytest.fixture(scope="module")
-def _run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
-    made = Studio(tmp_path_factory.mktemp("saving") / "run")
+def _run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession]:
+    made = LiveSession(tmp_path_factory.mktemp("saving") / "run")
     made.use(SAVE, name="empty", verify=False)
     yield made
     made.blender.close()
 
 
 @pytest.fixture
-def studio(_run: Studio) -> Studio:
+def session(_run: LiveSession) -> LiveSession:
     """A run whose scene is empty, and in which nothing but that was saved."""
     root = _run.blender.folder.root
     for made in (*root.iterdir(), *(root / "workspace").iterdir()):
@@ -98,20 +98,20 @@ def studio(_run: Studio) -> Studio:
 
 
 @contextmanager
-def studio_for(root: Path, **launch: Any) -> Iterator[Studio]:
+def session_for(root: Path, **launch: Any) -> Iterator[LiveSession]:
     """A run whose Blender is started otherwise."""
     folder = RunFolder.make(root)
-    made = Studio.__new__(Studio)
+    made = LiveSession.__new__(LiveSession)
     made.blender = Supervisor(make_launch(folder.workspace, **launch), folder)
-    made.session = Session(made.blender, no_docs)
+    made.context = ToolContext(made.blender, no_docs)
     made.blender.start()
     yield made
     made.blender.close()
 
 
-def refusal(studio: Studio, tool: Any, **arguments: Any) -> str:
+def refusal(session: LiveSession, tool: Any, **arguments: Any) -> str:
     with pytest.raises(Refusal) as refused:
-        studio.use(tool, **arguments)
+        session.use(tool, **arguments)
     return str(refused.value)
 
 
@@ -146,69 +146,69 @@ def elsewhere(path: Path, room: Path, code: str) -> Any:
     ids=["cloth in memory", "cloth on disk", "liquid"],
 )
 def test_a_baked_cache_opens_elsewhere_and_here_again(
-    studio: Studio, tmp_path: Path, recipe: str, label: str, files: int
+    session: LiveSession, tmp_path: Path, recipe: str, label: str, files: int
 ) -> None:
-    studio.run(recipe)
-    before = studio.run(MEASURE)
-    found = studio.use(SAVE, name="saves/tower")
+    session.run(recipe)
+    before = session.run(MEASURE)
+    found = session.use(SAVE, name="saves/tower")
     assert not found.failed, found.text
     assert (found.data["beside"] or {"files": 0})["files"] == files
     assert [(one["label"], one["baked"]) for one in found.data["opened"]["caches"]] == [(label, True)]
     assert found.data["external"] == []
-    assert studio.run(MEASURE) == before, "saving has changed the scene that was saved"
+    assert session.run(MEASURE) == before, "saving has changed the scene that was saved"
     path = Path(found.data["path"])
-    assert path == studio.blender.folder.root / "saves" / "tower.blend"
+    assert path == session.blender.folder.root / "saves" / "tower.blend"
 
-    studio.run("bpy.ops.wm.read_homefile(use_empty=True)")
-    shutil.rmtree(studio.blender.folder.workspace / "caches", ignore_errors=True)
-    studio.use(LOAD, path="saves/tower")
-    assert studio.run(MEASURE) == before
-    assert not (studio.blender.folder.workspace / ".loading").exists()
+    session.run("bpy.ops.wm.read_homefile(use_empty=True)")
+    shutil.rmtree(session.blender.folder.workspace / "caches", ignore_errors=True)
+    session.use(LOAD, path="saves/tower")
+    assert session.run(MEASURE) == before
+    assert not (session.blender.folder.workspace / ".loading").exists()
 
     assert elsewhere(path, tmp_path / "elsewhere", MEASURE) == before
     assert before[0] > 100
 
 
-def test_a_picture_is_packed_into_the_copy_alone(studio: Studio, tmp_path: Path) -> None:
-    studio.run(PICTURE)
-    found = studio.use(SAVE, name="tower", verify=False)
+def test_a_picture_is_packed_into_the_copy_alone(session: LiveSession, tmp_path: Path) -> None:
+    session.run(PICTURE)
+    found = session.use(SAVE, name="tower", verify=False)
     assert found.data["packed"] == ["wood.png"]
     assert found.data["external"] == []
     state = "image = bpy.data.images['wood.png']\n(image.packed_file is None, image.filepath)"
-    assert studio.run(state) == (True, "//textures/wood.png")
+    assert session.run(state) == (True, "//textures/wood.png")
     assert elsewhere(Path(found.data["path"]), tmp_path / "elsewhere", COLOUR) == [0.25, 0.5, 0.75, 1.0]
 
 
-def test_without_packing_a_picture_is_found_where_it_lies(studio: Studio) -> None:
-    studio.run(PICTURE)
-    found = studio.use(SAVE, name="saves/tower", verify=False, pack=False)
-    lies = str(studio.blender.folder.workspace / "textures" / "wood.png")
+def test_without_packing_a_picture_is_found_where_it_lies(session: LiveSession) -> None:
+    session.run(PICTURE)
+    found = session.use(SAVE, name="saves/tower", verify=False, pack=False)
+    lies = str(session.blender.folder.workspace / "textures" / "wood.png")
     assert [(one["path"], one["missing"]) for one in found.data["external"]] == [(lies, False)]
     assert lies in found.text
-    studio.run("bpy.ops.wm.read_homefile(use_empty=True)")
-    studio.use(LOAD, path="saves/tower")
-    assert studio.run(COLOUR) == [0.25, 0.5, 0.75, 1.0]
+    session.run("bpy.ops.wm.read_homefile(use_empty=True)")
+    session.use(LOAD, path="saves/tower")
+    assert session.run(COLOUR) == [0.25, 0.5, 0.75, 1.0]
 
 
-def test_pixels_that_no_file_holds_are_saved(studio: Studio, tmp_path: Path) -> None:
-    studio.run(
+def test_pixels_that_no_file_holds_are_saved(session: LiveSession, tmp_path: Path) -> None:
+    session.run(
         "image = bpy.data.images.new('wood.png', 2, 2)\nimage.pixels[:] = [1, 0, 1, 1] * 4\nimage.use_fake_user = True"
     )
-    found = studio.use(SAVE, name="tower", verify=False, pack=False)
+    found = session.use(SAVE, name="tower", verify=False, pack=False)
     assert found.data["rescued"] == ["wood.png"]
     assert elsewhere(Path(found.data["path"]), tmp_path / "elsewhere", COLOUR) == [1, 0, 1, 1]
 
 
-def test_what_is_missing_is_named_and_hinders_nothing(studio: Studio) -> None:
-    studio.run(PICTURE + "\nos.remove('textures/wood.png')")
-    found = studio.use(SAVE, name="tower", verify=False)
+def test_what_is_missing_is_named_and_hinders_nothing(session: LiveSession) -> None:
+    session.run(PICTURE + "\nos.remove('textures/wood.png')")
+    found = session.use(SAVE, name="tower", verify=False)
     assert found.data["packed"] == []
     assert [one["missing"] for one in found.data["external"]] == [True]
     assert "(missing)" in found.text
 
 
-def test_a_bake_of_geometry_nodes_goes_along(studio: Studio, tmp_path: Path) -> None:
-    studio.run("""
+def test_a_bake_of_geometry_nodes_goes_along(session: LiveSession, tmp_path: Path) -> None:
+    session.run("""
 bpy.ops.mesh.primitive_cube_add()
 bpy.context.object.name = "Sheet"
 tree = bpy.data.node_groups.new("Rise", "GeometryNodeTree")
@@ -227,39 +227,41 @@ modifier.node_group, modifier.bake_target, modifier.bake_directory = tree, "DISK
 bpy.context.scene.frame_end = 9
 bpy.ops.object.simulation_nodes_cache_bake(selected=True)
 """)
-    before = studio.run(MEASURE)
-    found = studio.use(SAVE, name="tower", verify=False)
+    before = session.run(MEASURE)
+    found = session.use(SAVE, name="tower", verify=False)
     assert found.data["beside"]["files"] == 18
     assert elsewhere(Path(found.data["path"]), tmp_path / "elsewhere", MEASURE) == before
     assert before[2] == pytest.approx(1.8)
 
 
-def test_caches_of_an_older_save_go_with_it(studio: Studio) -> None:
-    studio.run(CLOTH.replace("ON_DISK", "True"))
-    beside = Path(studio.use(SAVE, name="tower", verify=False).data["beside"]["path"])
+def test_caches_of_an_older_save_go_with_it(session: LiveSession) -> None:
+    session.run(CLOTH.replace("ON_DISK", "True"))
+    beside = Path(session.use(SAVE, name="tower", verify=False).data["beside"]["path"])
     assert len(list(beside.iterdir())) == 12
-    studio.run("bpy.data.objects.remove(bpy.data.objects['Sheet'])")
-    assert studio.use(SAVE, name="tower", verify=False).data["beside"] is None
+    session.run("bpy.data.objects.remove(bpy.data.objects['Sheet'])")
+    assert session.use(SAVE, name="tower", verify=False).data["beside"] is None
     assert not beside.exists()
 
 
-def test_a_cache_whose_files_are_gone_is_not_called_whole(studio: Studio) -> None:
-    studio.run(LIQUID + "\nimport shutil\nshutil.rmtree('caches')")
-    found = studio.use(SAVE, name="tower", verify=False)
+def test_a_cache_whose_files_are_gone_is_not_called_whole(session: LiveSession) -> None:
+    session.run(LIQUID + "\nimport shutil\nshutil.rmtree('caches')")
+    found = session.use(SAVE, name="tower", verify=False)
     assert found.failed
-    assert "liquid of 'Sheet' passes for baked, but 9 of its frames are missing" in found.text
-    assert (studio.blender.folder.root / "tower.blend").exists()
+    assert "liquid of 'Sheet' is marked as baked, but 9 of its frames are missing" in found.text
+    assert (session.blender.folder.root / "tower.blend").exists()
 
 
-def test_another_folders_file_opens_with_its_caches_and_pictures(studio: Studio, tmp_path: Path) -> None:
-    studio.run(CLOTH.replace("ON_DISK", "True") + PICTURE)
-    before = studio.run(MEASURE)
-    saved = Path(studio.use(SAVE, name="tower", verify=False).data["path"])
+def test_another_folders_file_opens_with_its_caches_and_pictures(
+    session: LiveSession, tmp_path: Path
+) -> None:
+    session.run(CLOTH.replace("ON_DISK", "True") + PICTURE)
+    before = session.run(MEASURE)
+    saved = Path(session.use(SAVE, name="tower", verify=False).data["path"])
     assets = tmp_path / "assets"
     shutil.move(saved.parent / "workspace" / "textures", assets / "textures")
     for one in (saved, saved.with_name("blendcache_tower")):
         shutil.move(one, assets / one.name)
-    with studio_for(tmp_path / "other", read=(assets,)) as other:
+    with session_for(tmp_path / "other", read=(assets,)) as other:
         files = {path: path.read_bytes() for path in assets.rglob("*") if path.is_file()}
         assert other.use(LOAD, path=str(assets / "tower.blend")).data["objects"] == 2
         assert other.run(MEASURE) == before
@@ -274,33 +276,33 @@ def test_another_folders_file_opens_with_its_caches_and_pictures(studio: Studio,
 # Checkpoints
 
 
-def test_a_save_without_a_name_is_a_checkpoint_to_go_back_to(studio: Studio) -> None:
-    studio.run("bpy.ops.mesh.primitive_cube_add()")
-    number = studio.use(SAVE).data["checkpoint"]
-    assert not studio.use(SAVE).data["new"]
-    studio.run("bpy.data.objects.remove(bpy.data.objects['Cube'])")
-    assert number in studio.use(LOAD).data["checkpoints"]
-    found = studio.use(LOAD, checkpoint=number)
+def test_a_save_without_a_name_is_a_checkpoint_to_go_back_to(session: LiveSession) -> None:
+    session.run("bpy.ops.mesh.primitive_cube_add()")
+    number = session.use(SAVE).data["checkpoint"]
+    assert not session.use(SAVE).data["new"]
+    session.run("bpy.data.objects.remove(bpy.data.objects['Cube'])")
+    assert number in session.use(LOAD).data["checkpoints"]
+    found = session.use(LOAD, checkpoint=number)
     assert f"back at checkpoint {number}" in found.text
-    assert studio.run("[one.name for one in bpy.data.objects]") == ["Cube"]
+    assert session.run("[one.name for one in bpy.data.objects]") == ["Cube"]
     assert found.data["checkpoint"] > number
-    studio.blender.kill()
-    assert studio.run("[one.name for one in bpy.data.objects]") == ["Cube"], (
+    session.blender.kill()
+    assert session.run("[one.name for one in bpy.data.objects]") == ["Cube"], (
         "the last checkpoint is another one"
     )
 
 
-def test_the_oldest_checkpoint_can_be_gone_back_to(studio: Studio) -> None:
+def test_the_oldest_checkpoint_can_be_gone_back_to(session: LiveSession) -> None:
     for number in range(14):
-        studio.run(f"bpy.data.objects.new('{number}', None).use_fake_user = True")
-    studio.use(LOAD, checkpoint=studio.use(LOAD).data["checkpoints"][-1])
-    assert studio.run("len(bpy.data.objects)") == 14 - (KEPT - 1)
+        session.run(f"bpy.data.objects.new('{number}', None).use_fake_user = True")
+    session.use(LOAD, checkpoint=session.use(LOAD).data["checkpoints"][-1])
+    assert session.run("len(bpy.data.objects)") == 14 - (KEPT - 1)
 
 
-def test_no_such_checkpoint_is_refused_with_those_that_are_kept(studio: Studio) -> None:
-    kept = studio.use(LOAD).data["checkpoints"]
-    assert f"kept are {kept[-1]}, " in refusal(studio, LOAD, checkpoint=9999)
-    assert "not both" in refusal(studio, LOAD, checkpoint=1, path="tower")
+def test_no_such_checkpoint_is_refused_with_those_that_are_kept(session: LiveSession) -> None:
+    kept = session.use(LOAD).data["checkpoints"]
+    assert f"Available: {kept[-1]}, " in refusal(session, LOAD, checkpoint=9999)
+    assert "not both" in refusal(session, LOAD, checkpoint=1, path="tower")
 
 
 # What is refused
@@ -311,32 +313,32 @@ def test_no_such_checkpoint_is_refused_with_those_that_are_kept(studio: Studio) 
     ["../out", "/tmp/out", "..", ".", "", "a/../../out", "workspace/in", "Checkpoints/000001", "a\0b", "a\nb", "~/x*",
      "a/" * 20 + "b", "x" * 300],
 )  # fmt: skip
-def test_a_name_that_leads_elsewhere_is_refused(studio: Studio, name: str) -> None:
-    before = sorted(studio.blender.folder.root.rglob("*"))
-    assert refusal(studio, SAVE, name=name)
-    assert sorted(studio.blender.folder.root.rglob("*")) == before
+def test_a_name_that_leads_elsewhere_is_refused(session: LiveSession, name: str) -> None:
+    before = sorted(session.blender.folder.root.rglob("*"))
+    assert refusal(session, SAVE, name=name)
+    assert sorted(session.blender.folder.root.rglob("*")) == before
 
 
-def test_a_folders_name_is_refused(studio: Studio) -> None:
-    (studio.blender.folder.root / "folder.blend").mkdir()
-    assert "is a folder" in refusal(studio, SAVE, name="folder")
-    assert "no plain file" in refusal(studio, LOAD, path="folder.blend")
+def test_a_folders_name_is_refused(session: LiveSession) -> None:
+    (session.blender.folder.root / "folder.blend").mkdir()
+    assert "is a folder" in refusal(session, SAVE, name="folder")
+    assert "not a regular file" in refusal(session, LOAD, path="folder.blend")
 
 
-def test_a_link_out_of_the_runs_folder_is_not_followed(studio: Studio, tmp_path: Path) -> None:
-    (studio.blender.folder.root / "out").symlink_to(tmp_path)
-    assert "leads out" in refusal(studio, SAVE, name="out/tower")
+def test_a_link_out_of_the_runs_folder_is_not_followed(session: LiveSession, tmp_path: Path) -> None:
+    (session.blender.folder.root / "out").symlink_to(tmp_path)
+    assert "leads out" in refusal(session, SAVE, name="out/tower")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_links_that_code_leaves_where_files_are_written_are_not_followed(
-    studio: Studio, tmp_path: Path
+    session: LiveSession, tmp_path: Path
 ) -> None:
     victim = tmp_path / "victim"
     victim.mkdir()
     (victim / "kept").write_text("kept")
-    studio.run(LIQUID)
-    studio.run(f"""
+    session.run(LIQUID)
+    session.run(f"""
 import os, shutil
 shutil.rmtree("caches/Sheet/mesh")
 os.symlink({str(victim)!r}, "caches/Sheet/mesh")
@@ -344,82 +346,82 @@ os.symlink({str(victim / "kept")!r}, "caches/Sheet/data/stolen.vdb")
 os.symlink({str(victim / "kept")!r}, ".saved.blend")
 os.symlink({str(victim)!r}, ".loading")
 """)
-    assert "not a plain file" in refusal(studio, SAVE, name="tower")
-    assert not (studio.blender.folder.root / "tower.blend").exists()
-    studio.run("import os\nfor link in ('data/stolen.vdb', 'mesh'): os.remove(f'caches/Sheet/{link}')")
-    studio.use(SAVE, name="tower", verify=False)
-    studio.use(LOAD, path="tower")
+    assert "not a regular file" in refusal(session, SAVE, name="tower")
+    assert not (session.blender.folder.root / "tower.blend").exists()
+    session.run("import os\nfor link in ('data/stolen.vdb', 'mesh'): os.remove(f'caches/Sheet/{link}')")
+    session.use(SAVE, name="tower", verify=False)
+    session.use(LOAD, path="tower")
     assert [(one.name, one.read_text()) for one in victim.iterdir()] == [("kept", "kept")]
-    assert [one.name for one in studio.blender.folder.root.glob(".saving-*")] == []
+    assert [one.name for one in session.blender.folder.root.glob(".saving-*")] == []
 
 
 @pytest.mark.parametrize("below", ["../out", "/tmp/out", "", "a/../../out", "a\0b"])
-def test_a_reply_cannot_name_a_place_outside(studio: Studio, tmp_path: Path, below: str) -> None:
-    (studio.blender.folder.workspace / "made").write_text("made")
-    with pytest.raises(Refusal, match="cannot be a file of a cache"):
-        take_all(studio.blender.folder, [("made", below)], tmp_path / "caches")
+def test_a_reply_cannot_name_a_place_outside(session: LiveSession, tmp_path: Path, below: str) -> None:
+    (session.blender.folder.workspace / "made").write_text("made")
+    with pytest.raises(Refusal, match="not a valid path for a cache file"):
+        copy_from_workspace(session.blender.folder, [("made", below)], tmp_path / "caches")
     assert not list(tmp_path.iterdir())
 
 
 HOSTILE = {
     "nothing.blend": (None, "There is no nothing.blend. Saved in this run: empty.blend."),
-    "../other.blend": (None, "leave out '..'"),
+    "../other.blend": (None, "give a path without '..'"),
     "/etc/passwd": (None, "may not be opened"),
     "void.blend": (b"", "is empty"),
-    "text.blend": (b"hello, I am a scene", "is no .blend file"),
+    "text.blend": (b"hello, I am a scene", "is not a .blend file"),
     "head.blend": (b"BLENDER17-01v0501", "cannot be opened"),
     "squeezed.blend": (b"\x28\xb5\x2f\xfd" + bytes(range(256)) * 8, "cannot be opened"),
     "checkpoints/NEWEST": (None, "go back to it with checkpoint="),
-    "a\0b": (None, "is no path"),
+    "a\0b": (None, "is not a valid path"),
 }
 
 
 @pytest.mark.parametrize("path", HOSTILE)
-def test_what_is_no_blend_file_is_refused_and_the_scene_stays(studio: Studio, path: str) -> None:
-    studio.run("bpy.ops.mesh.primitive_cube_add()")
+def test_what_is_no_blend_file_is_refused_and_the_scene_stays(session: LiveSession, path: str) -> None:
+    session.run("bpy.ops.mesh.primitive_cube_add()")
     content, because = HOSTILE[path]
-    root = studio.blender.folder.root
+    root = session.blender.folder.root
     if content is not None:
         (root / path).write_bytes(content)
     path = path.replace("NEWEST", max(one.name for one in (root / "checkpoints").glob("*.blend")))
-    assert because in refusal(studio, LOAD, path=path)
-    assert studio.run("[one.name for one in bpy.data.objects]") == ["Cube"]
+    assert because in refusal(session, LOAD, path=path)
+    assert session.run("[one.name for one in bpy.data.objects]") == ["Cube"]
 
 
-def test_a_torn_or_newer_file_is_refused_and_the_scene_stays(studio: Studio) -> None:
-    studio.run("bpy.ops.mesh.primitive_cube_add()")
-    studio.run(
+def test_a_torn_or_newer_file_is_refused_and_the_scene_stays(session: LiveSession) -> None:
+    session.run("bpy.ops.mesh.primitive_cube_add()")
+    session.run(
         "bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//plain.blend'), copy=True, compress=False)"
     )
-    whole = (studio.blender.folder.workspace / "plain.blend").read_bytes()
-    root = studio.blender.folder.root
+    whole = (session.blender.folder.workspace / "plain.blend").read_bytes()
+    root = session.blender.folder.root
     (root / "torn.blend").write_bytes(whole[: len(whole) // 2])
     version = whole[12:17]
     assert version == b"v0501"
     (root / "newer.blend").write_bytes(whole.replace(version, b"v0777", 1))
-    studio.run("bpy.data.objects['Cube'].location.x = 3")
-    assert "torn.blend cannot be opened" in refusal(studio, LOAD, path="torn")
-    told = refusal(studio, LOAD, path="newer.blend")
+    session.run("bpy.data.objects['Cube'].location.x = 3")
+    assert "torn.blend cannot be opened" in refusal(session, LOAD, path="torn")
+    told = refusal(session, LOAD, path="newer.blend")
     assert "saved by Blender 7.77" in told
-    assert "The scene stands as before, at checkpoint" in told
-    assert studio.run("[(one.name, one.location.x) for one in bpy.data.objects]") == [("Cube", 3.0)]
+    assert "The scene is unchanged, at checkpoint" in told
+    assert session.run("[(one.name, one.location.x) for one in bpy.data.objects]") == [("Cube", 3.0)]
     (root / "plain.blend").write_bytes(whole)
-    assert studio.use(LOAD, path="plain").data["objects"] == 1
-    assert studio.run("bpy.data.objects['Cube'].location.x") == 0.0
+    assert session.use(LOAD, path="plain").data["objects"] == 1
+    assert session.run("bpy.data.objects['Cube'].location.x") == 0.0
 
 
-def test_scripts_in_a_file_do_not_run(studio: Studio) -> None:
-    studio.run(
+def test_scripts_in_a_file_do_not_run(session: LiveSession) -> None:
+    session.run(
         "text = bpy.data.texts.new('start.py')\n"
         "text.write(\"import bpy\\nbpy.data.objects.new('Ran', None)\")\n"
         "text.use_module = True\n"
         "bpy.ops.mesh.primitive_cube_add()"
     )
-    studio.use(SAVE, name="tower", verify=False)
-    found = studio.use(LOAD, path="tower")
+    session.use(SAVE, name="tower", verify=False)
+    found = session.use(LOAD, path="tower")
     assert found.data["scripts"]
     assert "they do not run" in found.text
-    assert studio.run("[one.name for one in bpy.data.objects]") == ["Cube"]
+    assert session.run("[one.name for one in bpy.data.objects]") == ["Cube"]
 
 
 # Full disks
@@ -427,7 +429,7 @@ def test_scripts_in_a_file_do_not_run(studio: Studio) -> None:
 
 def test_a_file_too_large_for_the_sandbox_leaves_the_old_one_whole(tmp_path: Path) -> None:
     sandbox = best_sandbox(limits=replace(default_limits(), file_size=2_000_000))
-    with studio_for(tmp_path / "small", sandbox=sandbox) as small:
+    with session_for(tmp_path / "small", sandbox=sandbox) as small:
         root = small.blender.folder.root
         small.use(SAVE, name="tower", verify=False)
         before = (root / "tower.blend").read_bytes()
@@ -439,27 +441,27 @@ def test_a_file_too_large_for_the_sandbox_leaves_the_old_one_whole(tmp_path: Pat
         assert small.blender.call("execute", {"code": code}, timeout=60).value["error"] is None
         told = refusal(small, SAVE, name="tower")
         assert "tower.blend was not saved" in told
-        assert "untouched" in told
+        assert "The older file of that name is unchanged" in told
         assert (root / "tower.blend").read_bytes() == before
         assert not (root / "workspace" / ".saved.blend").exists()
 
 
-def test_a_full_disk_leaves_the_old_file_and_its_caches_whole(studio: Studio) -> None:
-    studio.run(CLOTH.replace("ON_DISK", "True"))
-    studio.use(SAVE, name="tower", verify=False)
-    root = studio.blender.folder.root
+def test_a_full_disk_leaves_the_old_file_and_its_caches_whole(session: LiveSession) -> None:
+    session.run(CLOTH.replace("ON_DISK", "True"))
+    session.use(SAVE, name="tower", verify=False)
+    root = session.blender.folder.root
     before = {path: path.read_bytes() for path in root.glob("*tower*/*")} | {
         root / "tower.blend": (root / "tower.blend").read_bytes()
     }
     assert len(before) == 13
-    studio.run("bpy.data.objects['Sheet'].scale.x = 2")
+    session.run("bpy.data.objects['Sheet'].scale.x = 2")
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1000, hard))
     try:
-        told = refusal(studio, SAVE, name="tower", verify=False)
+        told = refusal(session, SAVE, name="tower", verify=False)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert os.strerror(27) in told
-    assert "untouched" in told
+    assert "The older file of that name is unchanged" in told
     assert {path: path.read_bytes() for path in before} == before
     assert [path.name for path in root.iterdir() if path.name.startswith(".saving")] == []

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from live_session import LiveSession
 from places import REPO
 from processes import becomes, of_run
-from studio import Studio
 
 from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
@@ -34,9 +34,7 @@ pytestmark = pytest.mark.blender
 
 DEBIANS = Path("/usr/bin/blender")
 NAMES = "sorted(o.name for o in bpy.data.objects)"
-STANDS = (
-    r"A new Blender stands at checkpoint \d+ \([^\n]*, \d\d:\d\d:\d\d\), which is how the scene was before\."
-)
+STANDS = r"A new Blender was started from checkpoint \d+ \([^\n]*, \d\d:\d\d:\d\d\), which is the scene as it was before\."
 
 
 def adding(name: str) -> str:
@@ -44,14 +42,14 @@ def adding(name: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def _hardy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
-    studio = Studio(tmp_path_factory.mktemp("hardy") / "run")
-    yield studio
-    studio.blender.close()
+def _hardy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession]:
+    session = LiveSession(tmp_path_factory.mktemp("hardy") / "run")
+    yield session
+    session.blender.close()
 
 
 @pytest.fixture
-def hardy(_hardy: Studio) -> Studio:
+def hardy(_hardy: LiveSession) -> LiveSession:
     """A Blender with one object, which is kept; shared by tests that end it."""
     _hardy.empty()
     _hardy.run(adding("Kept"))
@@ -59,12 +57,12 @@ def hardy(_hardy: Studio) -> Studio:
     return _hardy
 
 
-def lost(studio: Studio, code: str, timeout: float = 20.0) -> Lost:
+def lost(session: LiveSession, code: str, timeout: float = 20.0) -> Lost:
     """The error of code that Blender does not survive; nothing of the scene may be lost by it."""
     with pytest.raises(Lost) as caught:
-        studio.use(TOOL, code=f"{adding('Undone')}\n{code}", timeout=timeout)
+        session.use(TOOL, code=f"{adding('Undone')}\n{code}", timeout=timeout)
     assert re.search(STANDS, str(caught.value)), str(caught.value)
-    assert studio.run(NAMES) == ["Kept"]
+    assert session.run(NAMES) == ["Kept"]
     return caught.value
 
 
@@ -86,7 +84,7 @@ def lost(studio: Studio, code: str, timeout: float = 20.0) -> Lost:
         ("import os; os.execv('/bin/sleep', ['sleep', '600'])", "or it became another program"),
     ],
 )
-def test_code_that_ends_blender_is_undone_and_told(hardy: Studio, code: str, told: str) -> None:
+def test_code_that_ends_blender_is_undone_and_told(hardy: LiveSession, code: str, told: str) -> None:
     error = lost(hardy, code)
     assert isinstance(error, Died)
     assert re.search(
@@ -95,7 +93,7 @@ def test_code_that_ends_blender_is_undone_and_told(hardy: Studio, code: str, tol
     )
 
 
-def test_quitting_blender_costs_nothing_but_at_most_itself(hardy: Studio) -> None:
+def test_quitting_blender_costs_nothing_but_at_most_itself(hardy: LiveSession) -> None:
     with contextlib.suppress(Died):
         hardy.use(TOOL, code="bpy.ops.wm.quit_blender()")
     assert hardy.run(NAMES) == ["Kept"]
@@ -116,13 +114,15 @@ def test_quitting_blender_costs_nothing_but_at_most_itself(hardy: Studio) -> Non
         ("import sys\ndef hook(*_): raise ValueError('spoilt')\nsys.addaudithook(hook)", "spoilt"),
     ],
 )
-def test_what_code_leaves_behind_does_not_reach_the_next_call(hardy: Studio, code: str, told: str) -> None:
+def test_what_code_leaves_behind_does_not_reach_the_next_call(
+    hardy: LiveSession, code: str, told: str
+) -> None:
     error = lost(hardy, code)
     assert isinstance(error, LeftBehind)
     assert told in str(error)
 
 
-def test_threads_that_end_with_their_call_are_no_fault(hardy: Studio) -> None:
+def test_threads_that_end_with_their_call_are_no_fault(hardy: LiveSession) -> None:
     code = "import threading\nt = threading.Thread(target=print, args=('from a thread',))\nt.start()"
     assert hardy.use(TOOL, code=code).data["stdout"] == "from a thread\n"
 
@@ -146,14 +146,14 @@ def test_threads_that_end_with_their_call_are_no_fault(hardy: Studio) -> None:
         "import json, os, time; json.dumps = json.loads = os.write = os.read = time.perf_counter = None",
         "import sys; sys.setprofile(lambda *_: 1 / 0)",
         "import sys; sys.meta_path.clear(); sys.path_hooks = []",
-        "import sys, types; sys.modules['files'] = sys.modules['changes'] = types.ModuleType('files')",
+        "import sys, types; sys.modules['simworlds_worker.changes'] = types.ModuleType('changes')",
         "import warnings; warnings.simplefilter('error')",
         "import numpy; numpy.seterr(all='raise')",
         "import locale; locale.setlocale(locale.LC_ALL, '')",
         "import os; os.umask(0o777)",
     ],
 )
-def test_blender_survives(hardy: Studio, code: str) -> None:
+def test_blender_survives(hardy: LiveSession, code: str) -> None:
     """The same process goes on, and what it is asked next works as ever."""
     blender = hardy.blender.inner_pid
     hardy.use(TOOL, code=code)
@@ -188,18 +188,18 @@ def test_blender_survives(hardy: Studio, code: str) -> None:
     ],
     ids=["python", "sleep", "c", "render", "catches all", "output", "ignores signals"],
 )
-def test_a_deadline_is_kept_whatever_runs(hardy: Studio, code: str) -> None:
+def test_a_deadline_is_kept_whatever_runs(hardy: LiveSession, code: str) -> None:
     started = time.monotonic()
     error = lost(hardy, code, timeout=0.7)
-    assert (
-        time.monotonic() - started < 15
-    )  # the deadline, another Blender, and a machine that does other things too
+    assert time.monotonic() - started < 60  # a new Blender takes long to start on a busy machine
     assert isinstance(error, TookTooLong)
-    assert "ran past its deadline of 0.7 s, and Blender was stopped. A new Blender stands at" in str(error)
+    assert "ran past its deadline of 0.7 s, and Blender was stopped. A new Blender was started from" in str(
+        error
+    )
     assert len(error.printed) <= 2000
 
 
-def test_what_an_error_says_can_be_read_aloud(hardy: Studio) -> None:
+def test_what_an_error_says_can_be_read_aloud(hardy: LiveSession) -> None:
     hardy.run("tower = 1")
     hardy.blender.keep("a tower")
     with pytest.raises(TookTooLong) as caught:
@@ -207,59 +207,59 @@ def test_what_an_error_says_can_be_read_aloud(hardy: Studio) -> None:
     kept = hardy.blender.checkpoints.last
     assert kept is not None
     assert str(caught.value) == (
-        "The code 'while True: pass' ran past its deadline of 0.3 s, and Blender was stopped. A new Blender stands at "
-        f"{kept}, which is how the scene was before."
+        "The code 'while True: pass' ran past its deadline of 0.3 s, and Blender was stopped. A new Blender was "
+        f"started from {kept}, which is the scene as it was before."
     )
 
 
-def test_code_that_is_to_be_undone_when_it_fails_is_undone_when_it_crashes(hardy: Studio) -> None:
+def test_code_that_is_to_be_undone_when_it_fails_is_undone_when_it_crashes(hardy: LiveSession) -> None:
     hardy.blender.checkpoints.changed(0.0)
     with pytest.raises(Died):
         hardy.use(TOOL, code=f"{adding('Half')}\nimport os\nos.abort()", on_error="restore")
     assert hardy.run(NAMES) == ["Kept"]
 
 
-def test_a_call_that_nobody_waits_for_any_more_is_ended(hardy: Studio) -> None:
+def test_a_call_that_nobody_waits_for_any_more_is_ended(hardy: LiveSession) -> None:
     call = Call()
-    threading.Timer(0.2, call.given_up.set).start()
+    threading.Timer(0.2, call.cancelled.set).start()
     started = time.monotonic()
-    with pytest.raises(Interrupted, match=r"was given up after \d\.\d s, and Blender was stopped"):
+    with pytest.raises(Interrupted, match=r"was cancelled after \d\.\d s, and Blender was stopped"):
         hardy.use(TOOL, call, code="while True: pass", timeout=100)
-    assert time.monotonic() - started < 15
+    assert time.monotonic() - started < 60
     assert hardy.run(NAMES) == ["Kept"]
 
 
-def test_ctrl_c_ends_the_call_and_not_the_run(hardy: Studio) -> None:
+def test_ctrl_c_ends_the_call_and_not_the_run(hardy: LiveSession) -> None:
     threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         hardy.use(TOOL, code="while True: pass", timeout=100)
     assert hardy.run(NAMES) == ["Kept"]
 
 
-def test_arguments_too_large_are_refused_before_they_are_sent(hardy: Studio) -> None:
+def test_arguments_too_large_are_refused_before_they_are_sent(hardy: LiveSession) -> None:
     blender = hardy.blender.inner_pid
     with pytest.raises(Refusal, match=r"arguments of execute are too large: .* at most"):
         hardy.blender.call("execute", {"code": "#" * (17 << 20)}, timeout=20)
     assert hardy.blender.inner_pid == blender
 
 
-SHORT_ANSWERS = """
+SMALL_ANSWERS = """
 import gc
-[encoder] = [thing for thing in gc.get_objects() if type(thing).__name__ == "Encoder"]
-encoder._largest = 1000
+from simworlds.sandbox.inside.channel import Encoder
+next(item for item in gc.get_objects() if isinstance(item, Encoder))._largest = 1000
 """
 
 
-def test_an_answer_too_large_is_told(own_studio: Studio) -> None:
+def test_an_answer_too_large_is_told(own_session: LiveSession) -> None:
     with pytest.raises(Refusal, match=r"The answer cannot be sent: .* at most"):
-        own_studio.use(TOOL, code=SHORT_ANSWERS + "'x' * 3000")
+        own_session.use(TOOL, code=f"{SMALL_ANSWERS}\n'x' * 3000")
 
 
 # Between calls
 
 
 @pytest.mark.parametrize("which", ["outer", "inner"])
-def test_a_blender_that_ends_between_two_calls_is_started_again(hardy: Studio, which: str) -> None:
+def test_a_blender_that_ends_between_two_calls_is_started_again(hardy: LiveSession, which: str) -> None:
     number = hardy.blender.pid if which == "outer" else hardy.blender.inner_pid
     assert number is not None
     inner = Path(f"/proc/{hardy.blender.inner_pid}")
@@ -270,20 +270,20 @@ def test_a_blender_that_ends_between_two_calls_is_started_again(hardy: Studio, w
     assert re.search(STANDS, found.text), found.text
 
 
-def test_what_is_lost_between_two_calls_is_told(hardy: Studio) -> None:
+def test_what_is_lost_between_two_calls_is_told(hardy: LiveSession) -> None:
     """A scene that is slow to write is not written after every call."""
     hardy.blender.checkpoints.changed(0.0)
     hardy.blender.checkpoints.changed(0.0)
     hardy.blender.kill()
     found = hardy.use(TOOL, code="1")
     assert "Blender had ended" in found.text
-    assert "what the last 2 calls before had changed since then is lost, too" in found.text
+    assert "the changes of the last 2 calls before it are lost too" in found.text
     assert "lost" not in hardy.use(TOOL, code="1").text
 
 
 def test_blender_outlives_the_thread_that_started_it(tmp_path: Path) -> None:
-    made: list[Studio] = []
-    starter = threading.Thread(target=lambda: made.append(Studio(tmp_path / "run")))
+    made: list[LiveSession] = []
+    starter = threading.Thread(target=lambda: made.append(LiveSession(tmp_path / "run")))
     starter.start()
     starter.join()
     blender = made[0].blender
@@ -301,7 +301,7 @@ def test_blender_outlives_the_thread_that_started_it(tmp_path: Path) -> None:
         blender.close()
 
 
-def test_calls_of_many_threads_are_answered_each_with_its_own(hardy: Studio) -> None:
+def test_calls_of_many_threads_are_answered_each_with_its_own(hardy: LiveSession) -> None:
     answers: dict[int, object] = {}
 
     def ask(number: int) -> None:
@@ -316,8 +316,8 @@ def test_calls_of_many_threads_are_answered_each_with_its_own(hardy: Studio) -> 
     assert answers == {number: (str(number**2), f"{number}\n") for number in range(12)}
 
 
-def test_two_runs_know_nothing_of_each_other(make_studio: Callable[[str], Studio]) -> None:
-    one, two = make_studio("one"), make_studio("two")
+def test_two_runs_know_nothing_of_each_other(make_session: Callable[[str], LiveSession]) -> None:
+    one, two = make_session("one"), make_session("two")
     one.run(adding("One"))
     two.run(adding("Two"))
     one.blender.kill()
@@ -330,12 +330,12 @@ def test_two_runs_know_nothing_of_each_other(make_studio: Callable[[str], Studio
 
 
 def test_a_run_goes_on_where_it_was_left(tmp_path: Path) -> None:
-    first = Studio(tmp_path / "run")
+    first = LiveSession(tmp_path / "run")
     first.run(adding("Kept"))
     first.blender.call("execute", {"code": adding("Not yet written")}, timeout=20)
     first.blender.checkpoints.changed(0.0)
     first.blender.close()
-    second = Studio(tmp_path / "run")
+    second = LiveSession(tmp_path / "run")
     try:
         assert second.run(NAMES) == ["Kept", "Not yet written"]
     finally:
@@ -346,21 +346,21 @@ def test_nothing_remains_of_a_run_that_is_closed(tmp_path: Path) -> None:
     def open_files() -> int:
         return len(list(Path("/proc/self/fd").iterdir()))
 
-    Studio(tmp_path / "first").blender.close()
+    LiveSession(tmp_path / "first").blender.close()
     before = open_files()
-    studio = Studio(tmp_path / "run")
-    studio.run("open(bpy.app.tempdir + 'left', 'w').write('x')")
+    session = LiveSession(tmp_path / "run")
+    session.run("open(bpy.app.tempdir + 'left', 'w').write('x')")
     assert of_run(tmp_path / "run")
-    studio.blender.close()
-    studio.blender.close()
+    session.blender.close()
+    session.blender.close()
     assert of_run(tmp_path / "run") == []
     assert open_files() == before
     assert sorted(path.name for path in (tmp_path / "run").iterdir()) == [".lock", "checkpoints", "workspace"]
     with pytest.raises(CannotStart, match="ended"):
-        studio.run("1")
+        session.run("1")
 
 
-def test_a_run_is_one_supervisors(hardy: Studio) -> None:
+def test_a_run_is_one_supervisors(hardy: LiveSession) -> None:
     folder = hardy.blender.folder
     with pytest.raises(Refusal, match="in use by another"):
         Supervisor(make_launch(folder.workspace), folder)
@@ -382,17 +382,15 @@ def test_a_blender_that_does_not_come_up_says_why(tmp_path: Path) -> None:
         '#!/bin/sh\n[ "$1" = --version ] && echo "Blender 5.9.9" && exit\necho "no libX.so" >&2\nexit 7\n'
     )
     fake.chmod(0o755)
-    with pytest.raises(CannotStart, match=r"(?s)did not come up.*exit code 7.*no libX\.so"):
-        Studio(tmp_path / "run", blender_exe=fake)
+    with pytest.raises(CannotStart, match=r"(?s)did not start.*exit code 7.*no libX\.so"):
+        LiveSession(tmp_path / "run", blender_exe=fake)
     assert of_run(tmp_path / "run") == []
 
 
-def test_a_session_that_is_being_ended_starts_no_blender(own_studio: Studio) -> None:
-    own_studio.blender.end()
-    with pytest.raises(
-        TookTooLong, match="Another Blender could not be started: this session is being ended"
-    ):
-        own_studio.use(TOOL, code="while True: pass", timeout=0.2)
+def test_a_session_that_is_being_ended_starts_no_blender(own_session: LiveSession) -> None:
+    own_session.blender.end()
+    with pytest.raises(TookTooLong, match="A new Blender could not be started: this session is being ended"):
+        own_session.use(TOOL, code="while True: pass", timeout=0.2)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere it ends when it next looks at its channel")
@@ -406,11 +404,11 @@ def test_blender_ends_with_its_supervisor_whatever_it_is_doing(tmp_path: Path, k
 import sys
 sys.path[:0] = [{str(REPO / "tests" / "agents")!r}]
 from pathlib import Path
-from studio import Studio
-from simworlds.sandbox.confinement import best_sandbox
-studio = Studio(Path({str(tmp_path / "run")!r}), sandbox=best_sandbox({kind!r}))
+from live_session import LiveSession
+from simworlds.sandbox.confined_command import best_sandbox
+session = LiveSession(Path({str(tmp_path / "run")!r}), sandbox=best_sandbox({kind!r}))
 print("ready", flush=True)
-studio.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, timeout=600)
+session.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, timeout=600)
 """
     process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
     try:
@@ -422,7 +420,7 @@ studio.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range
         process.kill()
         process.communicate()
     assert becomes(lambda: of_run(tmp_path / "run") == [])
-    reopened = Studio(tmp_path / "run")  # nothing holds the run's folder
+    reopened = LiveSession(tmp_path / "run")  # nothing holds the run's folder
     reopened.blender.close()
 
 
@@ -432,21 +430,21 @@ _TINY_DISK = """
 import sys
 sys.path[:0] = [{tests!r}]
 from pathlib import Path
-from studio import Studio
-from simworlds.sandbox.confinement import best_sandbox
-from simworlds.sandbox.errors import OutOfBounds
+from live_session import LiveSession
+from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.errors import LimitExceeded
 from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
-studio = Studio(Path({place!r}) / "run", sandbox=best_sandbox("landlock"))
+session = LiveSession(Path({place!r}) / "run", sandbox=best_sandbox("landlock"))
 try:
-    studio.use(TOOL, code=(
+    session.use(TOOL, code=(
         "import os, time\\nfile = os.open('hidden', os.O_CREAT | os.O_RDWR)\\nos.unlink('hidden')\\n"
         "while True: os.write(file, bytes(1 << 20)); time.sleep(0.02)"), timeout=60)
-except OutOfBounds as error:
+except LimitExceeded as error:
     print(error)
-print(studio.run("time = __import__('time'); time.sleep(0.6); 1 + 1"))
-studio.blender.close()
+print(session.run("time = __import__('time'); time.sleep(0.6); 1 + 1"))
+session.blender.close()
 """
 
 
@@ -464,7 +462,7 @@ def test_the_last_of_a_disk_is_left_to_others(tmp_path: Path) -> None:
     script = _TINY_DISK.format(tests=str(REPO / "tests" / "agents"), place=str(place))
     words = [*mount, f'mount -t tmpfs -o size=64m tmpfs {place} && exec "$0" -c "$1"', sys.executable, script]
     done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
-    assert re.search(r"left \d+ MB free on the disk, where \d+ MB are to stay free", done.stdout), (
+    assert re.search(r"left \d+ MB free on the disk; \d+ MB must stay free", done.stdout), (
         done.stdout + done.stderr
     )
     assert done.stdout.splitlines()[-1] == "2"
@@ -474,15 +472,15 @@ def test_the_last_of_a_disk_is_left_to_others(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def debians(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+def debians(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession]:
     if not DEBIANS.exists():
         pytest.skip(f"there is no {DEBIANS}")
-    studio = Studio(tmp_path_factory.mktemp("debian") / "run", blender_exe=DEBIANS)
-    yield studio
-    studio.blender.close()
+    session = LiveSession(tmp_path_factory.mktemp("debian") / "run", blender_exe=DEBIANS)
+    yield session
+    session.blender.close()
 
 
-def test_an_installed_blender_works_the_same_way(debians: Studio) -> None:
+def test_an_installed_blender_works_the_same_way(debians: LiveSession) -> None:
     assert debians.run("bpy.app.background, bpy.app.version >= (2, 83)") == (True, True)
     found = debians.use(TOOL, code="print('heard')\nbpy.ops.mesh.primitive_cube_add()\nlen(bpy.data.objects)")
     assert (found.data["stdout"], found.data["value"]) == ("heard\n", "1")
@@ -495,7 +493,7 @@ def test_an_installed_blender_works_the_same_way(debians: Studio) -> None:
         ("while True: pass", TookTooLong),
         ("import threading, time; threading.Thread(target=time.sleep, args=(600,)).start()", LeftBehind),
     ):
-        with pytest.raises(error, match=r"stands at checkpoint \d+ .*how the scene was before"):
+        with pytest.raises(error, match=r"started from checkpoint \d+ .*as it was before"):
             debians.use(
                 TOOL,
                 code=f"bpy.ops.mesh.primitive_cube_add()\n{code}",
@@ -504,7 +502,9 @@ def test_an_installed_blender_works_the_same_way(debians: Studio) -> None:
         assert debians.run(NAMES) == ["Cube"]
 
 
-def test_a_blender_without_numpy_still_shows_its_scenes_and_says_what_else_it_lacks(debians: Studio) -> None:
+def test_a_blender_without_numpy_still_shows_its_scenes_and_says_what_else_it_lacks(
+    debians: LiveSession,
+) -> None:
     if debians.run("__import__('importlib.util').util.find_spec('numpy') is not None"):
         pytest.skip("this one has it")
     debians.empty()
@@ -518,7 +518,7 @@ def test_a_blender_without_numpy_still_shows_its_scenes_and_says_what_else_it_la
         debians.use(MOTION_SHEET, actors=["Chest"])
 
 
-def test_an_installed_blender_is_confined_too(debians: Studio) -> None:
+def test_an_installed_blender_is_confined_too(debians: LiveSession) -> None:
     for code in ("import socket; socket.socket()", "import os; os.fork()", "open('/etc/passwd').read()"):
         assert debians.use(TOOL, code=code).data["error"]["type"] in {"PermissionError", "FileNotFoundError"}
     assert not (RunFolder(debians.blender.folder.root).root / "planted").exists()

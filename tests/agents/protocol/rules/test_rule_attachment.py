@@ -8,7 +8,7 @@ import pytest
 from scenes import a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.protocol.findings import Report
 
@@ -43,9 +43,9 @@ def fixed(part: str, host: str) -> dict[str, Any]:
     return {"kind": "FixedAttachment", "part": part, "host": host}
 
 
-def fastened(studio: Studio, script: str, part: str = "Handle", host: str = "Door") -> Report:
-    build(studio, script)
-    return verified(studio, "R7", a_plan(fixed(part, host)))
+def fastened(session: LiveSession, script: str, part: str = "Handle", host: str = "Door") -> Report:
+    build(session, script)
+    return verified(session, "R7", a_plan(fixed(part, host)))
 
 
 @pytest.mark.parametrize(
@@ -64,8 +64,8 @@ for one in (door, handle):
     ],
     ids=["child of", "parent", "copy transforms", "mesh to mesh", "both to a third"],
 )
-def test_what_touches_and_is_linked_is_fastened(studio: Studio, link: str) -> None:
-    assert fastened(studio, DOOR.format(gap=0) + link).passed == ("R7",)
+def test_what_touches_and_is_linked_is_fastened(session: LiveSession, link: str) -> None:
+    assert fastened(session, DOOR.format(gap=0) + link).passed == ("R7",)
 
 
 @pytest.mark.parametrize(
@@ -79,20 +79,20 @@ def test_what_touches_and_is_linked_is_fastened(studio: Studio, link: str) -> No
     ],
     ids=["nothing", "muted", "without influence", "another constraint", "the wrong way"],
 )
-def test_what_only_touches_is_not(studio: Studio, link: str) -> None:
-    found = the_finding(fastened(studio, DOOR.format(gap=0) + link))
+def test_what_only_touches_is_not(session: LiveSession, link: str) -> None:
+    found = the_finding(fastened(session, DOOR.format(gap=0) + link))
     assert (found.rule, found.severity, found.objects) == ("R7", "hard", ("Handle", "Door"))
     assert "neither a parent nor a constraint" in found.message
 
 
-def test_what_follows_its_host_is_what_is_asked_for(studio: Studio) -> None:
+def test_what_follows_its_host_is_what_is_asked_for(session: LiveSession) -> None:
     # Fastened is the part, not the host: a door that follows its handle would do as well.
-    assert fastened(studio, DOOR.format(gap=0) + "door.parent = handle").passed == ("R7",)
+    assert fastened(session, DOOR.format(gap=0) + "door.parent = handle").passed == ("R7",)
 
 
 @pytest.mark.parametrize(("gap", "touches"), [(0.0019, True), (0.0021, False), (0.1, False)])
-def test_the_part_must_touch_its_host(studio: Studio, gap: float, touches: bool) -> None:
-    report = fastened(studio, DOOR.format(gap=gap) + CHILD_OF)
+def test_the_part_must_touch_its_host(session: LiveSession, gap: float, touches: bool) -> None:
+    report = fastened(session, DOOR.format(gap=gap) + CHILD_OF)
     if touches:
         assert report.passed == ("R7",)
     else:
@@ -102,13 +102,13 @@ def test_the_part_must_touch_its_host(studio: Studio, gap: float, touches: bool)
         assert found.at is not None
 
 
-def test_a_handle_swings_with_its_door(studio: Studio) -> None:
-    assert fastened(studio, DOOR.format(gap=0) + CHILD_OF + SWING).passed == ("R7",)
+def test_a_handle_swings_with_its_door(session: LiveSession) -> None:
+    assert fastened(session, DOOR.format(gap=0) + CHILD_OF + SWING).passed == ("R7",)
 
 
 @pytest.mark.parametrize(("way", "holds"), [(0.0018, True), (0.0022, False), (0.1, False)])
-def test_a_link_that_does_not_hold_is_no_fastening(studio: Studio, way: float, holds: bool) -> None:
-    report = fastened(studio, DOOR.format(gap=0) + CHILD_OF + SWING + SLIDE.format(way=way))
+def test_a_link_that_does_not_hold_is_no_fastening(session: LiveSession, way: float, holds: bool) -> None:
+    report = fastened(session, DOOR.format(gap=0) + CHILD_OF + SWING + SLIDE.format(way=way))
     if holds:
         assert report.passed == ("R7",)
     else:
@@ -117,9 +117,9 @@ def test_a_link_that_does_not_hold_is_no_fastening(studio: Studio, way: float, h
         assert found.tolerance == pytest.approx(0.002)
 
 
-def test_copying_the_location_does_not_turn_with_the_door(studio: Studio) -> None:
+def test_copying_the_location_does_not_turn_with_the_door(session: LiveSession) -> None:
     link = 'c = handle.constraints.new("COPY_LOCATION"); c.target = door; c.use_offset = True\n'
-    found = the_finding(fastened(studio, DOOR.format(gap=0) + link + SWING))
+    found = the_finding(fastened(session, DOOR.format(gap=0) + link + SWING))
     assert found.measured is not None
     assert found.measured > 1.0
 
@@ -132,12 +132,12 @@ handle = bpy.data.objects["Brass"]
 
 
 @pytest.mark.parametrize("host", ["Door/Leaf", "Door"])
-def test_parts_of_one_object_are_fastened_by_its_root(studio: Studio, host: str) -> None:
-    assert fastened(studio, PARTS, "Door/Brass", host).passed == ("R7",)
+def test_parts_of_one_object_are_fastened_by_its_root(session: LiveSession, host: str) -> None:
+    assert fastened(session, PARTS, "Door/Brass", host).passed == ("R7",)
 
 
-def test_a_part_that_is_keyed_by_itself_is_not(studio: Studio) -> None:
-    found = the_finding(fastened(studio, PARTS + SLIDE.format(way=0.1), "Door/Brass", "Door/Leaf"))
+def test_a_part_that_is_keyed_by_itself_is_not(session: LiveSession) -> None:
+    found = the_finding(fastened(session, PARTS + SLIDE.format(way=0.1), "Door/Brass", "Door/Leaf"))
     assert found.measured == pytest.approx(0.1, abs=1e-4)
 
 
@@ -178,14 +178,14 @@ bpy.context.view_layer.update()
 
 
 @pytest.mark.parametrize("kind", ["CHILD_OF", "ARMATURE"])
-def test_a_bone_carries_what_it_holds(studio: Studio, kind: str) -> None:
+def test_a_bone_carries_what_it_holds(session: LiveSession, kind: str) -> None:
     sword = MAN.format(kind=kind, target="rig", bone="Hand")
-    assert fastened(studio, sword, "Sword", "Man").passed == ("R7",)
+    assert fastened(session, sword, "Sword", "Man").passed == ("R7",)
 
 
-def test_what_a_bending_host_leaves_behind_is_not_fastened(studio: Studio) -> None:
+def test_what_a_bending_host_leaves_behind_is_not_fastened(session: LiveSession) -> None:
     sword = MAN.format(kind="CHILD_OF", target="root", bone="")
-    found = the_finding(fastened(studio, sword, "Sword", "Man"))
+    found = the_finding(fastened(session, sword, "Sword", "Man"))
     assert found.measured == pytest.approx(0.532, abs=0.01)
 
 
@@ -208,15 +208,15 @@ thing("Window", box("Pane", ({x} - 0.5 + {rim}, {y}, 1 + {rim}), ({x} + 0.5 - {r
 """
 
 
-def filled(studio: Studio, script: str, filler: str = "Window") -> Report:
-    build(studio, script)
-    return verified(studio, "R8", a_plan({"kind": "Aperture", "filler": filler, "host": "Wall"}))
+def filled(session: LiveSession, script: str, filler: str = "Window") -> Report:
+    build(session, script)
+    return verified(session, "R8", a_plan({"kind": "Aperture", "filler": filler, "host": "Wall"}))
 
 
 @pytest.mark.parametrize("wall", [WALL + CUT, SHEET], ids=["cut", "sheet"])
 @pytest.mark.parametrize(("rim", "fits"), [(0.0, True), (0.009, True), (0.011, False), (0.05, False)])
-def test_the_rim_must_be_near_all_around(studio: Studio, wall: str, rim: float, fits: bool) -> None:
-    report = filled(studio, wall + WINDOW.format(x=0, y=0.08, rim=rim))
+def test_the_rim_must_be_near_all_around(session: LiveSession, wall: str, rim: float, fits: bool) -> None:
+    report = filled(session, wall + WINDOW.format(x=0, y=0.08, rim=rim))
     if fits:
         assert report.passed == ("R8",)
     else:
@@ -227,16 +227,16 @@ def test_the_rim_must_be_near_all_around(studio: Studio, wall: str, rim: float, 
 
 
 @pytest.mark.parametrize("wall", [WALL + CUT, SHEET], ids=["cut", "sheet"])
-def test_one_side_that_gapes_is_enough(studio: Studio, wall: str) -> None:
-    found = the_finding(filled(studio, wall + WINDOW.format(x=0.006, y=0.08, rim=0.0065)))
+def test_one_side_that_gapes_is_enough(session: LiveSession, wall: str) -> None:
+    found = the_finding(filled(session, wall + WINDOW.format(x=0.006, y=0.08, rim=0.0065)))
     assert found.measured == pytest.approx(0.0125, abs=1e-4)
     assert found.at is not None
     assert found.at[0] == pytest.approx(-0.5, abs=1e-3)
 
 
 @pytest.mark.parametrize(("rim", "fits"), [(-0.0005, True), (-0.0015, False), (-0.02, False)])
-def test_a_filler_that_is_too_large_is_in_the_wall(studio: Studio, rim: float, fits: bool) -> None:
-    report = filled(studio, WALL + CUT + WINDOW.format(x=0, y=0.08, rim=rim))
+def test_a_filler_that_is_too_large_is_in_the_wall(session: LiveSession, rim: float, fits: bool) -> None:
+    report = filled(session, WALL + CUT + WINDOW.format(x=0, y=0.08, rim=rim))
     if fits:
         assert report.passed == ("R8",)
     else:
@@ -256,27 +256,27 @@ def test_a_filler_that_is_too_large_is_in_the_wall(studio: Studio, rim: float, f
     ],
     ids=["no opening", "beside it", "before it"],
 )
-def test_without_an_opening_around_it_nothing_is_filled(studio: Studio, script: str) -> None:
-    found = the_finding(filled(studio, script))
+def test_without_an_opening_around_it_nothing_is_filled(session: LiveSession, script: str) -> None:
+    found = the_finding(filled(session, script))
     assert (found.tolerance, found.unit) == (180.0, "°")
     assert found.measured is not None
     assert found.measured > 200
     assert "in no opening" in found.message
 
 
-def test_a_window_stuck_onto_the_wall_is_not_in_it(studio: Studio) -> None:
-    found = the_finding(filled(studio, WALL + WINDOW.format(x=0, y=-0.04, rim=0.005)))
+def test_a_window_stuck_onto_the_wall_is_not_in_it(session: LiveSession) -> None:
+    found = the_finding(filled(session, WALL + WINDOW.format(x=0, y=-0.04, rim=0.005)))
     assert found.measured == pytest.approx(180, abs=10)
 
 
-def test_a_door_needs_no_rim_at_the_floor(studio: Studio) -> None:
+def test_a_door_needs_no_rim_at_the_floor(session: LiveSession) -> None:
     gate = WALL + CUT.replace("(-0.5, -0.1, 1), (0.5, 0.3, 2)", "(-2.5, -0.1, -1), (2.5, 0.3, 2.2)")
     assert filled(
-        studio, gate + 'thing("Gate", box("Wood", (-2.496, 0.1, 0), (2.496, 0.14, 2.196)))', "Gate"
+        session, gate + 'thing("Gate", box("Wood", (-2.496, 0.1, 0), (2.496, 0.14, 2.196)))', "Gate"
     ).passed
 
 
-def test_round_openings_in_turned_walls_are_filled_too(studio: Studio) -> None:
+def test_round_openings_in_turned_walls_are_filled_too(session: LiveSession) -> None:
     script = """
 wall = box("Bricks", (-3, -0.1, 0), (3, 0.1, 2.5), turn=(10, 20, 30))
 thing("Wall", wall)
@@ -288,13 +288,13 @@ scene.collection.objects.link(cutter)
 wall.modifiers.new("Opening", "BOOLEAN").object = cutter
 thing("Porthole", glass)
 """
-    assert filled(studio, script.format(radius=0.392), "Porthole").passed == ("R8",)
-    studio.empty()
-    found = the_finding(filled(studio, script.format(radius=0.385), "Porthole"))
+    assert filled(session, script.format(radius=0.392), "Porthole").passed == ("R8",)
+    session.empty()
+    found = the_finding(filled(session, script.format(radius=0.385), "Porthole"))
     assert found.measured == pytest.approx(0.015, abs=2e-4)
 
 
-def test_walls_and_windows_of_several_parts_are_taken_whole(studio: Studio) -> None:
+def test_walls_and_windows_of_several_parts_are_taken_whole(session: LiveSession) -> None:
     script = """
 def beams(low, high, start, end, front, back):
     return [((low, front, start), (high, back, start + .05)), ((low, front, end - .05), (high, back, end)),
@@ -305,13 +305,13 @@ thing("Wall", box("Below", (-3, 0, 0), (3, .2, 1)), box("Above", (-3, 0, 2), (3,
 frame = [box(f"Beam {k}", *ends) for k, ends in enumerate(beams(-.497, .497, 1.003, 1.997, .05, .1))]
 thing("Window", *frame, box("Glass", (-.447, .07, 1.053), (.447, .08, 1.947)))
 """
-    assert filled(studio, script).passed == ("R8",)
+    assert filled(session, script).passed == ("R8",)
 
 
 @pytest.mark.parametrize("rule", ["R7", "R8"])
-def test_what_is_not_there_is_undecided(studio: Studio, rule: str) -> None:
-    build(studio, DOOR.format(gap=0))
+def test_what_is_not_there_is_undecided(session: LiveSession, rule: str) -> None:
+    build(session, DOOR.format(gap=0))
     plan = a_plan(fixed("Knob", "Door"), {"kind": "Aperture", "filler": "Knob", "host": "Door"})
-    found = the_finding(verified(studio, rule, plan))
+    found = the_finding(verified(session, rule, plan))
     assert (found.outcome, found.objects) == ("undecided", ("Knob", "Door"))
     assert "'Knob'" in found.message

@@ -12,7 +12,7 @@ from rule_cases import CASES, judge
 from agents.protocol.rules.catalogue import RULES
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 
 PICTURES = REPO / "docs" / "rules"
@@ -21,13 +21,13 @@ IDS = [rule.id for rule in RULES]
 
 @pytest.mark.blender
 @pytest.mark.parametrize("rule", IDS)
-def test_the_good_scene_keeps_the_rule_and_its_twin_breaks_it(studio: Studio, rule: str) -> None:
+def test_the_good_scene_keeps_the_rule_and_its_twin_breaks_it(session: LiveSession, rule: str) -> None:
     case = CASES[rule]
-    good = judge(studio, rule, case, good=True)
+    good = judge(session, rule, case, good=True)
     assert [finding.message for finding in good.findings] == []
     assert good.passed == (rule,)
-    studio.empty()
-    bad = judge(studio, rule, case, good=False)
+    session.empty()
+    bad = judge(session, rule, case, good=False)
     assert bad.findings
     assert {(finding.rule, finding.outcome) for finding in bad.findings} == {(rule, "broken")}
 

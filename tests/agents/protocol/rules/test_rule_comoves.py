@@ -8,7 +8,7 @@ import pytest
 from scenes import a_motion, a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.plan.scene import ScenePlan
 
@@ -33,9 +33,9 @@ def plan(*phases: dict[str, Any], relation: dict[str, Any] = RIDES) -> ScenePlan
     )
 
 
-def test_what_is_parented_travels_along(studio: Studio) -> None:
-    build(studio, CART)
-    assert verified(studio, "R18", plan()).passed == ("R18",)
+def test_what_is_parented_travels_along(session: LiveSession) -> None:
+    build(session, CART)
+    assert verified(session, "R18", plan()).passed == ("R18",)
 
 
 @pytest.mark.parametrize(
@@ -48,12 +48,12 @@ def test_what_is_parented_travels_along(studio: Studio) -> None:
     ],
 )
 def test_a_rider_may_shift_by_a_centimetre_or_a_fiftieth_of_its_diagonal(
-    studio: Studio, size: float, shift: float, most: float, holds: bool
+    session: LiveSession, size: float, shift: float, most: float, holds: bool
 ) -> None:
     script = f"key(crate, 11, location=(0, 0, 0))\nkey(crate, 31, location=(0, {shift}, 0))"
     script = f"bpy.data.objects['Case'].data.transform(Matrix.Scale({size / 0.4}, 4))\n{script}"
-    build(studio, CART + script)
-    found = verified(studio, "R18", plan())
+    build(session, CART + script)
+    found = verified(session, "R18", plan())
     assert (found.passed == ("R18",)) == holds
     if not holds:
         finding = the_finding(found)
@@ -63,38 +63,38 @@ def test_a_rider_may_shift_by_a_centimetre_or_a_fiftieth_of_its_diagonal(
 
 
 @pytest.mark.parametrize(("turn", "holds"), [(2.9, True), (3.1, False)])
-def test_a_rider_may_turn_by_three_degrees(studio: Studio, turn: float, holds: bool) -> None:
+def test_a_rider_may_turn_by_three_degrees(session: LiveSession, turn: float, holds: bool) -> None:
     script = (
         "key(crate, 11, rotation_euler=(0, 0, 0))\n"
         f"key(crate, 31, rotation_euler=(0, 0, math.radians({turn})))"
     )
-    build(studio, CART + script)
-    found = verified(studio, "R18", plan())
+    build(session, CART + script)
+    found = verified(session, "R18", plan())
     assert (found.passed == ("R18",)) == holds
     if not holds:
         assert (the_finding(found).measured, the_finding(found).unit) == (pytest.approx(turn, abs=0.02), "°")
 
 
-def test_what_is_left_behind_is_told_with_how_far(studio: Studio) -> None:
-    build(studio, CART + "crate.parent = None")
-    shift, turn = verified(studio, "R18", plan()).findings
+def test_what_is_left_behind_is_told_with_how_far(session: LiveSession) -> None:
+    build(session, CART + "crate.parent = None")
+    shift, turn = verified(session, "R18", plan()).findings
     assert (shift.measured, shift.frame) == (pytest.approx(5, abs=0.01), 41)
     assert turn.measured == pytest.approx(90, abs=0.1)
 
 
-def test_before_its_host_sets_off_a_rider_may_come_aboard(studio: Studio) -> None:
+def test_before_its_host_sets_off_a_rider_may_come_aboard(session: LiveSession) -> None:
     aboard = "crate.parent = None\ncrate.constraints.new('CHILD_OF').target = cart\n" + (
         "key(crate, 1, location=(0, 3, 0))\nkey(crate, 20, location=(0, 0, 0))\n"
         "cart.animation_data_clear()\nkey(cart, 21, location=(0, 0, 0))\nkey(cart, 41, location=(5, 0, 0))\n"
     )
-    build(studio, CART + aboard)
+    build(session, CART + aboard)
     late = {"actor": "Cart", "kind": "translate", "start": 21, "end": 41}
-    assert verified(studio, "R18", plan(late)).passed == ("R18",)
+    assert verified(session, "R18", plan(late)).passed == ("R18",)
     early = {"actor": "Cart", "kind": "translate", "start": 1, "end": 41}
-    assert the_finding(verified(studio, "R18", plan(early))).measured == pytest.approx(3, abs=0.01)
+    assert the_finding(verified(session, "R18", plan(early))).measured == pytest.approx(3, abs=0.01)
 
 
-def test_a_rider_is_held_to_the_part_of_its_host_that_is_next_to_it(studio: Studio) -> None:
+def test_a_rider_is_held_to_the_part_of_its_host_that_is_next_to_it(session: LiveSession) -> None:
     # The wheels turn, and the mast at the other end bends; the crate stays on the bed.
     script = """
 wheel = lathe("Wheel", [(0, -0.05), (0.2, -0.05), (0.2, 0.05), (0, 0.05)], at=(-0.9, 0, 0.2))
@@ -107,11 +107,11 @@ key(wheel, 41, rotation_euler=(0, 0, 20))
 key(mast, 1, rotation_euler=(0, 0, 0))
 key(mast, 41, rotation_euler=(0.5, 0, 0))
 """
-    build(studio, CART + script)
-    assert verified(studio, "R18", plan()).passed == ("R18",)
+    build(session, CART + script)
+    assert verified(session, "R18", plan()).passed == ("R18",)
 
 
-def test_a_body_that_friction_does_not_hold_slides_on_its_cart(studio: Studio) -> None:
+def test_a_body_that_friction_does_not_hold_slides_on_its_cart(session: LiveSession) -> None:
     script = """
 scene.frame_start, scene.frame_end = 1, 41
 bed = box("Bed", (-1, -0.5, -0.1), (1, 0.5, 0.1), at=(0, 0, 0.3))
@@ -122,25 +122,25 @@ rigid(case, friction=FRICTION)
 key(cart, 1, location=(0, 0, 0))
 key(cart, 41, location=(1, 0, 0))
 """
-    build(studio, script.replace("FRICTION", "1"))
-    assert verified(studio, "R18", plan()).passed == ("R18",)
-    studio.empty()
-    build(studio, script.replace("FRICTION", "0"))
-    finding = the_finding(verified(studio, "R18", plan()))
+    build(session, script.replace("FRICTION", "1"))
+    assert verified(session, "R18", plan()).passed == ("R18",)
+    session.empty()
+    build(session, script.replace("FRICTION", "0"))
+    finding = the_finding(verified(session, "R18", plan()))
     assert finding.measured == pytest.approx(1, abs=0.05)
 
 
-def test_a_part_travels_with_its_own_object(studio: Studio) -> None:
-    build(studio, CART + "bpy.data.collections['Cart'].objects.link(bpy.data.objects['Case'])")
+def test_a_part_travels_with_its_own_object(session: LiveSession) -> None:
+    build(session, CART + "bpy.data.collections['Cart'].objects.link(bpy.data.objects['Case'])")
     own = {"kind": "CoMoves", "a": "Cart/Case", "b": "Cart"}
     plan_of = a_plan(own, frame_end=41)
-    assert verified(studio, "R18", plan_of).passed == ("R18",)
+    assert verified(session, "R18", plan_of).passed == ("R18",)
 
 
-def test_what_is_not_there_is_undecided(studio: Studio) -> None:
-    build(studio, CART)
+def test_what_is_not_there_is_undecided(session: LiveSession) -> None:
+    build(session, CART)
     finding = the_finding(
-        verified(studio, "R18", plan(relation={"kind": "CoMoves", "a": "Dog", "b": "Cart"}))
+        verified(session, "R18", plan(relation={"kind": "CoMoves", "a": "Dog", "b": "Cart"}))
     )
     assert (finding.outcome, finding.objects) == ("undecided", ("Dog", "Cart"))
     assert "nothing called 'Dog'" in finding.message

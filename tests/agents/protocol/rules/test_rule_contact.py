@@ -8,7 +8,7 @@ import pytest
 from scenes import a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -29,12 +29,14 @@ def crate(height: float, size: float = 0.2) -> str:
 @pytest.mark.parametrize(
     ("size", "epsilon"), [(0.05, 0.002), (0.2, 0.002), (1.0, 0.005 * 3**0.5), (3.0, 0.01)]
 )
-def test_a_gap_counts_as_contact_up_to_the_tolerance(studio: Studio, size: float, epsilon: float) -> None:
-    build(studio, crate(0.99 * epsilon, size) + SAID)
-    assert verified(studio, "V1").passed == ("V1",)
-    studio.empty()
-    build(studio, crate(1.01 * epsilon, size) + SAID)
-    found = the_finding(verified(studio, "V1"))
+def test_a_gap_counts_as_contact_up_to_the_tolerance(
+    session: LiveSession, size: float, epsilon: float
+) -> None:
+    build(session, crate(0.99 * epsilon, size) + SAID)
+    assert verified(session, "V1").passed == ("V1",)
+    session.empty()
+    build(session, crate(1.01 * epsilon, size) + SAID)
+    found = the_finding(verified(session, "V1"))
     assert (found.rule, found.severity, found.outcome) == ("V1", "hard", "broken")
     assert found.objects == ("Planks", "Slab")
     assert found.measured == pytest.approx(1.01 * epsilon, abs=1e-6)
@@ -44,16 +46,16 @@ def test_a_gap_counts_as_contact_up_to_the_tolerance(studio: Studio, size: float
     assert -1e-6 <= found.at[2] <= 1.01 * epsilon + 1e-6
 
 
-def test_the_gap_of_a_leg_is_told_in_millimetres(studio: Studio) -> None:
-    build(studio, crate(0.005) + SAID)
-    assert "but are 5.0 mm apart" in the_finding(verified(studio, "V1")).message
+def test_the_gap_of_a_leg_is_told_in_millimetres(session: LiveSession) -> None:
+    build(session, crate(0.005) + SAID)
+    assert "but are 5.0 mm apart" in the_finding(verified(session, "V1")).message
 
 
-def test_a_plan_may_ask_for_less(studio: Studio) -> None:
-    build(studio, crate(0.0015) + SAID)
-    assert verified(studio, "V1").passed == ("V1",)
+def test_a_plan_may_ask_for_less(session: LiveSession) -> None:
+    build(session, crate(0.0015) + SAID)
+    assert verified(session, "V1").passed == ("V1",)
     strict = a_plan({"kind": "Upright", "a": "Crate"}, tolerances={"contact": 0.001, "contact_share": 0.001})
-    assert the_finding(verified(studio, "V1", strict)).tolerance == pytest.approx(0.001)
+    assert the_finding(verified(session, "V1", strict)).tolerance == pytest.approx(0.001)
 
 
 @pytest.mark.parametrize(
@@ -69,11 +71,11 @@ def test_a_plan_may_ask_for_less(studio: Studio) -> None:
         'bpy.data.objects["Floor root"]["contact_with"] = ["Planks"]',
     ],
 )
-def test_either_side_may_say_it_in_any_of_the_names(studio: Studio, said: str) -> None:
-    build(studio, crate(0.001) + said)
-    assert verified(studio, "V1").passed == ("V1",)
-    studio.run("bpy.data.objects['Crate root'].location.z += 0.05\nbpy.context.view_layer.update()")
-    assert the_finding(verified(studio, "V1")).measured == pytest.approx(0.051, abs=1e-6)
+def test_either_side_may_say_it_in_any_of_the_names(session: LiveSession, said: str) -> None:
+    build(session, crate(0.001) + said)
+    assert verified(session, "V1").passed == ("V1",)
+    session.run("bpy.data.objects['Crate root'].location.z += 0.05\nbpy.context.view_layer.update()")
+    assert the_finding(verified(session, "V1")).measured == pytest.approx(0.051, abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -85,19 +87,19 @@ def test_either_side_may_say_it_in_any_of_the_names(studio: Studio, said: str) -
         {"kind": "Aperture", "filler": "Crate", "host": "Floor"},
     ],
 )
-def test_relations_of_contact_are_declarations(studio: Studio, relation: dict[str, object]) -> None:
-    build(studio, crate(0.003))
-    report = verified(studio, "V1", a_plan(relation))
+def test_relations_of_contact_are_declarations(session: LiveSession, relation: dict[str, object]) -> None:
+    build(session, crate(0.003))
+    report = verified(session, "V1", a_plan(relation))
     found = the_finding(report)
     assert found.measured == pytest.approx(0.003, abs=1e-6)
     assert str(relation["kind"]) in found.message
 
 
-def test_a_contact_that_is_told_twice_is_found_once(studio: Studio) -> None:
+def test_a_contact_that_is_told_twice_is_found_once(session: LiveSession) -> None:
     more = 'bpy.data.objects["Floor root"]["contact_with"] = ["Crate"]'
-    build(studio, crate(0.003) + SAID + more)
+    build(session, crate(0.003) + SAID + more)
     plan = a_plan({"kind": "SupportedBy", "child": "Crate", "parents": ("Floor",)})
-    the_finding(verified(studio, "V1", plan))
+    the_finding(verified(session, "V1", plan))
 
 
 @pytest.mark.parametrize(
@@ -110,24 +112,24 @@ def test_a_contact_that_is_told_twice_is_found_once(studio: Studio) -> None:
         ('bpy.data.objects["Bulb"]["contact_with"] = ["Slab"]', ("Bulb", "Slab")),
     ],
 )
-def test_contacts_with_nobody_are_told(studio: Studio, said: str, objects: tuple[str, ...]) -> None:
+def test_contacts_with_nobody_are_told(session: LiveSession, said: str, objects: tuple[str, ...]) -> None:
     bulb = (
         'scene.collection.objects.link(bpy.data.objects.new("Bulb", bpy.data.lights.new("Bulb", "POINT")))\n'
     )
-    build(studio, crate(0) + bulb + said)
-    found = the_finding(verified(studio, "V1"))
+    build(session, crate(0) + bulb + said)
+    found = the_finding(verified(session, "V1"))
     assert (found.objects, found.outcome, found.measured) == (objects, "broken", None)
 
 
-def test_parts_of_one_object_that_say_so_must_touch_as_well(studio: Studio) -> None:
+def test_parts_of_one_object_that_say_so_must_touch_as_well(session: LiveSession) -> None:
     lid = 'lid = box("Lid", (-0.1, -0.1, 0.2), (0.1, 0.1, 0.22), at=(0, 0, {}))\n'
     lid += 'lid.parent = root\nbpy.data.collections["Crate"].objects.link(lid)\n'
-    build(studio, crate(0) + lid.format(0.001) + 'lid["contact_with"] = ["Planks"]')
-    assert verified(studio, "V1").passed == ("V1",)
-    studio.empty()
+    build(session, crate(0) + lid.format(0.001) + 'lid["contact_with"] = ["Planks"]')
+    assert verified(session, "V1").passed == ("V1",)
+    session.empty()
     # The root stands for the whole crate: the lid does not touch what is left of it.
-    build(studio, crate(0) + lid.format(0.004) + 'lid["contact_with"] = ["Crate root"]')
-    found = the_finding(verified(studio, "V1"))
+    build(session, crate(0) + lid.format(0.004) + 'lid["contact_with"] = ["Crate root"]')
+    found = the_finding(verified(session, "V1"))
     assert found.measured == pytest.approx(0.004, abs=1e-6)
 
 
@@ -141,14 +143,14 @@ EVALUATED = {
 
 
 @pytest.mark.parametrize("change", EVALUATED.values(), ids=EVALUATED)
-def test_surfaces_are_those_that_are_seen(studio: Studio, change: str) -> None:
-    build(studio, crate(0.5) + SAID)
-    assert the_finding(verified(studio, "V1")).measured == pytest.approx(0.5, abs=1e-6)
-    studio.run(
+def test_surfaces_are_those_that_are_seen(session: LiveSession, change: str) -> None:
+    build(session, crate(0.5) + SAID)
+    assert the_finding(verified(session, "V1")).measured == pytest.approx(0.5, abs=1e-6)
+    session.run(
         "planks, root = bpy.data.objects['Planks'], bpy.data.objects['Crate root']\n"
         f"{change}\nbpy.context.view_layer.update()"
     )
-    assert verified(studio, "V1").passed == ("V1",)
+    assert verified(session, "V1").passed == ("V1",)
 
 
 LIFTED = """
@@ -159,23 +161,25 @@ scene.frame_start, scene.frame_end = 1, 20
 
 
 @pytest.mark.parametrize(("first", "last"), [(0.0, 0.4), (0.4, 0.0)])
-def test_what_moves_touches_at_one_end_of_the_timeline(studio: Studio, first: float, last: float) -> None:
-    build(studio, crate(0) + LIFTED.format(first, last) + SAID)
-    assert verified(studio, "V1").passed == ("V1",)
+def test_what_moves_touches_at_one_end_of_the_timeline(
+    session: LiveSession, first: float, last: float
+) -> None:
+    build(session, crate(0) + LIFTED.format(first, last) + SAID)
+    assert verified(session, "V1").passed == ("V1",)
 
 
-def test_what_moves_and_never_touches_is_found_where_it_is_nearest(studio: Studio) -> None:
-    build(studio, crate(0) + LIFTED.format(0.4, 0.1) + SAID)
-    found = the_finding(verified(studio, "V1"))
+def test_what_moves_and_never_touches_is_found_where_it_is_nearest(session: LiveSession) -> None:
+    build(session, crate(0) + LIFTED.format(0.4, 0.1) + SAID)
+    found = the_finding(verified(session, "V1"))
     assert found.frame == 20
     assert found.measured == pytest.approx(0.1, abs=1e-6)
-    assert studio.run("bpy.context.scene.frame_current") == 1
+    assert session.run("bpy.context.scene.frame_current") == 1
 
 
-def test_what_is_not_evaluated_cannot_be_measured_and_hides_no_other_finding(studio: Studio) -> None:
-    build(studio, crate(0.05) + SAID + 'thing("Rug", box("Wool", (1, 1, 0), (2, 2, 0.01)))\n'
+def test_what_is_not_evaluated_cannot_be_measured_and_hides_no_other_finding(session: LiveSession) -> None:
+    build(session, crate(0.05) + SAID + 'thing("Rug", box("Wool", (1, 1, 0), (2, 2, 0.01)))\n'
           'wool = bpy.data.objects["Wool"]\nwool.hide_viewport, wool["contact_with"] = True, "Slab"')  # fmt: skip
-    report = verified(studio, "V1")
+    report = verified(session, "V1")
     assert {(one.objects, one.outcome) for one in report.findings} == {
         (("Planks", "Slab"), "broken"),
         (("Wool", "Slab"), "undecided"),
@@ -186,6 +190,6 @@ def test_what_is_not_evaluated_cannot_be_measured_and_hides_no_other_finding(stu
     )
 
 
-def test_without_declarations_there_is_nothing_to_judge(studio: Studio) -> None:
-    build(studio, crate(0.5))
-    assert set(verified(studio, "V1").idle) == {"V1"}
+def test_without_declarations_there_is_nothing_to_judge(session: LiveSession) -> None:
+    build(session, crate(0.5))
+    assert set(verified(session, "V1").idle) == {"V1"}

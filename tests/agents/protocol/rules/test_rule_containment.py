@@ -8,7 +8,7 @@ import pytest
 from scenes import a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.protocol.findings import Report
 
@@ -33,14 +33,16 @@ def inside(content: str, container: str, **more: Any) -> dict[str, Any]:
     return {"kind": "Inside", "content": content, "container": container, **more}
 
 
-def held(studio: Studio, script: str, content: str = "Ball", container: str = "Cup", **more: Any) -> Report:
-    build(studio, script)
-    return verified(studio, "R9", a_plan(inside(content, container, **more)))
+def held(
+    session: LiveSession, script: str, content: str = "Ball", container: str = "Cup", **more: Any
+) -> Report:
+    build(session, script)
+    return verified(session, "R9", a_plan(inside(content, container, **more)))
 
 
 @pytest.mark.parametrize("kind", CUPS)
-def test_a_ball_in_a_cup_is_inside(studio: Studio, kind: str) -> None:
-    assert held(studio, cup(kind) + BALL.format(x=0, z=0.04)).passed == ("R9",)
+def test_a_ball_in_a_cup_is_inside(session: LiveSession, kind: str) -> None:
+    assert held(session, cup(kind) + BALL.format(x=0, z=0.04)).passed == ("R9",)
 
 
 # Places a millimetre inside of the sphere are looked at; above a plane is as much of them as of their height.
@@ -50,8 +52,8 @@ def below_the_rim(z: float) -> float:
 
 @pytest.mark.parametrize("kind", ["thick", "sheet", "inside out"])
 @pytest.mark.parametrize(("z", "within"), [(0.08, True), (0.0815, True), (0.0822, False), (0.09, False)])
-def test_an_open_container_ends_at_its_rim(studio: Studio, kind: str, z: float, within: bool) -> None:
-    report = held(studio, cup(kind) + BALL.format(x=0, z=z))
+def test_an_open_container_ends_at_its_rim(session: LiveSession, kind: str, z: float, within: bool) -> None:
+    report = held(session, cup(kind) + BALL.format(x=0, z=z))
     if within:
         assert report.passed == ("R9",)
     else:
@@ -65,8 +67,8 @@ def test_an_open_container_ends_at_its_rim(studio: Studio, kind: str, z: float, 
 
 @pytest.mark.parametrize("kind", ["thick", "sheet", "inside out"])
 @pytest.mark.parametrize(("z", "within"), [(0.0995, True), (0.1005, False)])
-def test_in_part_is_half(studio: Studio, kind: str, z: float, within: bool) -> None:
-    report = held(studio, cup(kind) + BALL.format(x=0, z=z), partial=True)
+def test_in_part_is_half(session: LiveSession, kind: str, z: float, within: bool) -> None:
+    report = held(session, cup(kind) + BALL.format(x=0, z=z), partial=True)
     if within:
         assert report.passed == ("R9",)
     else:
@@ -77,22 +79,22 @@ def test_in_part_is_half(studio: Studio, kind: str, z: float, within: bool) -> N
 
 @pytest.mark.parametrize("kind", ["thick", "sheet", "inside out"])
 @pytest.mark.parametrize(("x", "z"), [(0, 0.2), (0.07, 0.05), (0.066, 0.05), (0, -0.03)])
-def test_beside_above_and_below_is_outside(studio: Studio, kind: str, x: float, z: float) -> None:
-    found = the_finding(held(studio, cup(kind) + BALL.format(x=x, z=z)))
+def test_beside_above_and_below_is_outside(session: LiveSession, kind: str, x: float, z: float) -> None:
+    found = the_finding(held(session, cup(kind) + BALL.format(x=x, z=z)))
     assert found.measured == pytest.approx(0, abs=0.04)
 
 
-def test_the_wall_of_a_container_is_not_its_cavity(studio: Studio) -> None:
-    found = the_finding(held(studio, cup("thick") + BALL.format(x=0.026, z=0.05)))
+def test_the_wall_of_a_container_is_not_its_cavity(session: LiveSession) -> None:
+    found = the_finding(held(session, cup("thick") + BALL.format(x=0.026, z=0.05)))
     assert found.measured == pytest.approx(0.86, abs=0.02)
     assert "in its wall" in found.message
 
 
-def test_touching_the_wall_is_inside(studio: Studio) -> None:
+def test_touching_the_wall_is_inside(session: LiveSession) -> None:
     # Both lie at the ground of the cup, the second one half a millimetre deep in it.
-    assert held(studio, cup("thick") + BALL.format(x=0, z=0.025)).passed == ("R9",)
-    studio.empty()
-    assert held(studio, cup("thick") + BALL.format(x=0, z=0.0245)).passed == ("R9",)
+    assert held(session, cup("thick") + BALL.format(x=0, z=0.025)).passed == ("R9",)
+    session.empty()
+    assert held(session, cup("thick") + BALL.format(x=0, z=0.0245)).passed == ("R9",)
 
 
 TRAY = """
@@ -103,21 +105,21 @@ thing("Tray", box("Base", (-.3, -.3, 0), (.3, .3, .01)),
 
 
 @pytest.mark.parametrize(("top", "within"), [(0.1, True), (0.1009, True), (0.102, False)])
-def test_a_box_of_boards_is_full_to_its_rim(studio: Studio, top: float, within: bool) -> None:
+def test_a_box_of_boards_is_full_to_its_rim(session: LiveSession, top: float, within: bool) -> None:
     sand = f'thing("Sand", box("Grains", (-.29, -.29, .01), (.29, .29, {top})))'
-    report = held(studio, TRAY + sand, "Sand", "Tray")
+    report = held(session, TRAY + sand, "Sand", "Tray")
     assert report.ok is within
     if not within:
         # The top is as large as the ground; a tenth of the whole are the sides.
         assert the_finding(report).measured == pytest.approx(0.57, abs=0.05)
 
 
-def test_paper_on_a_tray_is_inside_and_at_its_outside_is_not(studio: Studio) -> None:
+def test_paper_on_a_tray_is_inside_and_at_its_outside_is_not(session: LiveSession) -> None:
     paper = 'thing("Paper", plane("Sheet", (-.1, -.1), (.1, .1), at=(0, 0, .01)))'
-    assert held(studio, TRAY + paper, "Paper", "Tray").passed == ("R9",)
-    studio.empty()
+    assert held(session, TRAY + paper, "Paper", "Tray").passed == ("R9",)
+    session.empty()
     stuck = 'thing("Paper", box("Sheet", (.3005, -.1, 0), (.301, .1, .1)))'
-    assert the_finding(held(studio, TRAY + stuck, "Paper", "Tray")).measured == pytest.approx(0, abs=0.05)
+    assert the_finding(held(session, TRAY + stuck, "Paper", "Tray")).measured == pytest.approx(0, abs=0.05)
 
 
 @pytest.mark.parametrize(
@@ -148,31 +150,33 @@ def test_paper_on_a_tray_is_inside_and_at_its_outside_is_not(studio: Studio) -> 
     ],
     ids=["tank", "safe", "shelf", "cage", "room without a front"],
 )
-def test_containers_of_many_kinds_hold_what_is_in_them(studio: Studio, container: str, content: str) -> None:
+def test_containers_of_many_kinds_hold_what_is_in_them(
+    session: LiveSession, container: str, content: str
+) -> None:
     script = f'thing("Cup", {container})\nroot = thing("Ball", {content})\n'
-    assert held(studio, script).passed == ("R9",)
-    studio.empty()
-    found = the_finding(held(studio, script + "root.location = (0, -4, 0)"))
+    assert held(session, script).passed == ("R9",)
+    session.empty()
+    found = the_finding(held(session, script + "root.location = (0, -4, 0)"))
     assert found.measured == pytest.approx(0, abs=0.01)
 
 
-def test_legs_around_something_contain_nothing(studio: Studio) -> None:
+def test_legs_around_something_contain_nothing(session: LiveSession) -> None:
     table = """
 legs = [box(f"Leg {x} {y}", (x - .02, y - .02, 0), (x + .02, y + .02, .7)) for x in (-.4, .4) for y in (-.4, .4)]
 thing("Cup", box("Top", (-.5, -.5, .7), (.5, .5, .75)), *legs)
 thing("Ball", ball("Cat", .15, at=(0, 0, .16)))
 """
-    assert the_finding(held(studio, table)).measured == pytest.approx(0, abs=0.05)
+    assert the_finding(held(session, table)).measured == pytest.approx(0, abs=0.05)
 
 
-def test_what_drops_into_a_cup_is_inside_at_last(studio: Studio) -> None:
+def test_what_drops_into_a_cup_is_inside_at_last(session: LiveSession) -> None:
     drop = """
 scene.frame_start, scene.frame_end = 1, 20
 root = bpy.data.objects["Ball root"]
 key(root, 20, location=(0, 0, 0))
 key(root, 1, location=(0, 0, 1))
 """
-    assert held(studio, cup("thick") + BALL.format(x=0, z=0.03) + drop).passed == ("R9",)
+    assert held(session, cup("thick") + BALL.format(x=0, z=0.03) + drop).passed == ("R9",)
 
 
 # EmbeddedIn
@@ -182,9 +186,11 @@ SHEET = 'thing("Floor", plane("Lawn", (-1, -1), (1, 1)))\n'
 POST = 'thing("Post", box("Wood", (0, 0, -{depth}), (0.1, 0.1, 1 - {depth})))\n'
 
 
-def embedded(studio: Studio, script: str, depth: float, part: str = "Post", host: str = "Floor") -> Report:
-    build(studio, script)
-    return verified(studio, "R9", a_plan({"kind": "EmbeddedIn", "part": part, "host": host, "depth": depth}))
+def embedded(
+    session: LiveSession, script: str, depth: float, part: str = "Post", host: str = "Floor"
+) -> Report:
+    build(session, script)
+    return verified(session, "R9", a_plan({"kind": "EmbeddedIn", "part": part, "host": host, "depth": depth}))
 
 
 @pytest.mark.parametrize(
@@ -196,8 +202,8 @@ def embedded(studio: Studio, script: str, depth: float, part: str = "Post", host
 @pytest.mark.parametrize(
     ("depth", "right"), [(0.2, True), (0.181, True), (0.219, True), (0.179, False), (0.221, False)]
 )
-def test_a_post_is_as_deep_as_planned(studio: Studio, floor: str, depth: float, right: bool) -> None:
-    report = embedded(studio, floor + POST.format(depth=depth), 0.2)
+def test_a_post_is_as_deep_as_planned(session: LiveSession, floor: str, depth: float, right: bool) -> None:
+    report = embedded(session, floor + POST.format(depth=depth), 0.2)
     if right:
         assert report.passed == ("R9",)
     else:
@@ -208,28 +214,28 @@ def test_a_post_is_as_deep_as_planned(studio: Studio, floor: str, depth: float, 
 
 
 @pytest.mark.parametrize("floor", [SLAB, SHEET], ids=["slab", "sheet"])
-def test_a_post_on_the_floor_is_not_in_it(studio: Studio, floor: str) -> None:
-    found = the_finding(embedded(studio, floor + POST.format(depth=0), 0.2))
+def test_a_post_on_the_floor_is_not_in_it(session: LiveSession, floor: str) -> None:
+    found = the_finding(embedded(session, floor + POST.format(depth=0), 0.2))
     assert found.measured == pytest.approx(0, abs=1e-6)
 
 
-def test_depth_is_the_way_out_not_the_nearest_surface(studio: Studio) -> None:
+def test_depth_is_the_way_out_not_the_nearest_surface(session: LiveSession) -> None:
     board = 'thing("Floor", box("Board", (-.2, -.2, 0), (.2, .2, .06)))\n'
     nail = 'thing("Post", lathe("Nail", [(0, .01), (.002, .015), (.002, .11), (.005, .11), (.005, .112), (0, .112)]))'
-    assert embedded(studio, board + nail, 0.05).passed == ("R9",)
-    studio.empty()
-    assert embedded(studio, SLAB + POST.format(depth=0.4), 0.4).passed == ("R9",)
+    assert embedded(session, board + nail, 0.05).passed == ("R9",)
+    session.empty()
+    assert embedded(session, SLAB + POST.format(depth=0.4), 0.4).passed == ("R9",)
 
 
-def test_a_peg_in_a_sheet_is_as_deep_as_its_shorter_end(studio: Studio) -> None:
+def test_a_peg_in_a_sheet_is_as_deep_as_its_shorter_end(session: LiveSession) -> None:
     wall = 'thing("Floor", plane("Paper", (-1, 0), (1, 2), turn=(90, 0, 0)))\n'
     peg = 'thing("Post", box("Peg", (-.02, -.08, 1), (.02, .02, 1.04)))'
-    assert embedded(studio, wall + peg, 0.02).passed == ("R9",)
+    assert embedded(session, wall + peg, 0.02).passed == ("R9",)
 
 
-def test_a_round_stone_is_half_in_the_ground(studio: Studio) -> None:
+def test_a_round_stone_is_half_in_the_ground(session: LiveSession) -> None:
     stone = 'thing("Post", ball("Granite", 0.2, at=(0.3, 0.2, 0.1)))'
-    assert embedded(studio, SLAB + stone, 0.1).passed == ("R9",)
+    assert embedded(session, SLAB + stone, 0.1).passed == ("R9",)
 
 
 @pytest.mark.parametrize(
@@ -240,7 +246,7 @@ def test_a_round_stone_is_half_in_the_ground(studio: Studio) -> None:
         ('bpy.data.objects["Rubber"].data.clear_geometry()', "nothing with a surface that is called 'Ball'"),
     ],
 )
-def test_what_cannot_be_measured_is_undecided(studio: Studio, more: str, reason: str) -> None:
-    found = the_finding(held(studio, cup("thick") + BALL.format(x=0, z=0.04) + more))
+def test_what_cannot_be_measured_is_undecided(session: LiveSession, more: str, reason: str) -> None:
+    found = the_finding(held(session, cup("thick") + BALL.format(x=0, z=0.04) + more))
     assert (found.outcome, found.objects) == ("undecided", ("Ball", "Cup"))
     assert reason in found.message

@@ -8,7 +8,7 @@ import pytest
 from scenes import a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.plan.scene import ScenePlan
     from agents.protocol.findings import Report
@@ -36,22 +36,22 @@ def plan(*subjects: str, **more: Any) -> ScenePlan:
     return a_plan(objects=objects, camera=camera, **more)
 
 
-def seen(studio: Studio, script: str, *subjects: str, **more: Any) -> Report:
-    build(studio, STAGE + script)
-    return verified(studio, "R14", plan(*subjects, **more))
+def seen(session: LiveSession, script: str, *subjects: str, **more: Any) -> Report:
+    build(session, STAGE + script)
+    return verified(session, "R14", plan(*subjects, **more))
 
 
-def test_what_stands_in_the_middle_of_the_picture_is_framed(studio: Studio) -> None:
-    found = seen(studio, "thing('Crate', box('Case', (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)))", "Crate")
+def test_what_stands_in_the_middle_of_the_picture_is_framed(session: LiveSession) -> None:
+    found = seen(session, "thing('Crate', box('Case', (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)))", "Crate")
     assert found.passed == ("R14",)
 
 
 @pytest.mark.parametrize(("outside", "framed"), [(0.19, True), (0.21, False)])
 def test_a_fifth_of_a_subject_may_be_outside_of_the_picture(
-    studio: Studio, outside: float, framed: bool
+    session: LiveSession, outside: float, framed: bool
 ) -> None:
     right = WIDE / 2 + outside
-    found = seen(studio, f"sheet('Poster', {right - 1}, {right}, -0.5, 0.5)", "Poster")
+    found = seen(session, f"sheet('Poster', {right - 1}, {right}, -0.5, 0.5)", "Poster")
     assert (found.passed == ("R14",)) == framed
     if not framed:
         finding = the_finding(found)
@@ -61,9 +61,11 @@ def test_a_fifth_of_a_subject_may_be_outside_of_the_picture(
 
 
 @pytest.mark.parametrize(("cover", "framed"), [(0.0101, True), (0.0099, False)])
-def test_a_subject_covers_a_hundredth_of_the_picture(studio: Studio, cover: float, framed: bool) -> None:
+def test_a_subject_covers_a_hundredth_of_the_picture(
+    session: LiveSession, cover: float, framed: bool
+) -> None:
     half = (cover * WIDE * HIGH) ** 0.5 / 2
-    found = seen(studio, f"sheet('Stamp', {-half}, {half}, {-half}, {half})", "Stamp")
+    found = seen(session, f"sheet('Stamp', {-half}, {half}, {-half}, {half})", "Stamp")
     assert (found.passed == ("R14",)) == framed
     if not framed:
         assert the_finding(found).measured == pytest.approx(cover, rel=1e-3)
@@ -71,11 +73,11 @@ def test_a_subject_covers_a_hundredth_of_the_picture(studio: Studio, cover: floa
 
 
 @pytest.mark.parametrize(("hidden", "framed"), [(0.48, True), (0.52, False)])
-def test_half_of_a_subject_may_be_hidden(studio: Studio, hidden: float, framed: bool) -> None:
+def test_half_of_a_subject_may_be_hidden(session: LiveSession, hidden: float, framed: bool) -> None:
     # Half as far away, half as wide: the wall's edge hides what is behind it up to twice as far out.
     edge = (hidden - 0.5) / 2
     found = seen(
-        studio,
+        session,
         f"sheet('Poster', -0.5, 0.5, -0.5, 0.5)\nsheet('Wall', -3, {edge}, -2, 2, y=-5)\n",
         "Poster",
     )
@@ -106,15 +108,15 @@ bpy.data.objects["Wall mesh"].data.materials.append(glass)
     ],
     ids=["a wall", "not rendered", "collection not rendered", "glass", "red glass", "no glass"],
 )
-def test_only_what_is_rendered_and_opaque_hides(studio: Studio, why: str, hides: bool) -> None:
-    build(studio, STAGE + "sheet('Poster', -0.5, 0.5, -0.5, 0.5)\nsheet('Wall', -3, 3, -2, 2, y=-5)\n" + why)
-    found = verified(studio, "R14", plan("Poster"))
+def test_only_what_is_rendered_and_opaque_hides(session: LiveSession, why: str, hides: bool) -> None:
+    build(session, STAGE + "sheet('Poster', -0.5, 0.5, -0.5, 0.5)\nsheet('Wall', -3, 3, -2, 2, y=-5)\n" + why)
+    found = verified(session, "R14", plan("Poster"))
     assert bool(found.findings) == hides
     if hides:
         assert the_finding(found).measured == 1.0
 
 
-def test_a_thing_does_not_hide_itself_nor_do_its_instances(studio: Studio) -> None:
+def test_a_thing_does_not_hide_itself_nor_do_its_instances(session: LiveSession) -> None:
     script = """
 makers = [plane("Seats", (-1, -1), (1, 1), turn=(90, 0, 0))]
 copy = box("Copy", (-0.8, -0.8, -0.8), (0.8, 0.8, 0.8))
@@ -122,10 +124,10 @@ thing("Crowd", *makers)
 scene.collection.objects.link(copy)
 copy.parent, makers[0].instance_type = makers[0], "VERTS"
 """
-    assert seen(studio, script, "Crowd").passed == ("R14",)
+    assert seen(session, script, "Crowd").passed == ("R14",)
 
 
-def test_a_fountain_is_seen_with_its_drops_as_soon_as_there_are_any(studio: Studio) -> None:
+def test_a_fountain_is_seen_with_its_drops_as_soon_as_there_are_any(session: LiveSession) -> None:
     script = """
 scene.frame_end = 41
 basin = plane("Basin", (-0.5, -0.5), (0.5, 0.5), turn=(90, 0, 0))
@@ -137,26 +139,26 @@ drops.normal_factor, drops.object_align_factor = 0, (40, 0, 0)
 scene.gravity = (0, 0, 0)
 """
     # A thousand samples of the basin, which stays, and a thousand drops, which fly out of the picture.
-    finding = the_finding(seen(studio, script, "Fountain", render={"kind": "animation"}))
+    finding = the_finding(seen(session, script, "Fountain", render={"kind": "animation"}))
     assert (finding.frame, finding.measured) == (21, pytest.approx(0.5, abs=0.02))
-    studio.run("bpy.data.objects['Basin'].show_instancer_for_render = False")
-    finding = the_finding(verified(studio, "R14", plan("Fountain", render={"kind": "animation"})))
+    session.run("bpy.data.objects['Basin'].show_instancer_for_render = False")
+    finding = the_finding(verified(session, "R14", plan("Fountain", render={"kind": "animation"})))
     assert finding.measured == 1.0
 
 
-def test_behind_an_orthographic_camera_nothing_is_seen(studio: Studio) -> None:
+def test_behind_an_orthographic_camera_nothing_is_seen(session: LiveSession) -> None:
     script = """
 scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 4
 sheet("Before", -0.5, 0.5, -0.5, 0.5)
 sheet("Beside", 1.7, 2.7, -0.5, 0.5)
 sheet("Behind", -0.5, 0.5, -0.5, 0.5, y=-12)
 """
-    found = seen(studio, script, "Before", "Beside", "Behind")
+    found = seen(session, script, "Before", "Beside", "Behind")
     told = {finding.objects[0]: finding.measured for finding in found.findings}
     assert told == {"Beside": pytest.approx(0.7, abs=0.01), "Behind": 1.0}
 
 
-def test_what_leaves_the_picture_is_told_with_the_frame(studio: Studio) -> None:
+def test_what_leaves_the_picture_is_told_with_the_frame(session: LiveSession) -> None:
     script = """
 scene.frame_end = 41
 root = sheet("Kite", -0.5, 0.5, -0.5, 0.5)
@@ -165,13 +167,13 @@ key(root, 41, location=(4, 0, 0))
 linear(root)
 scene.frame_set(7)
 """
-    found = seen(studio, script, "Kite")
+    found = seen(session, script, "Kite")
     finding = the_finding(found)
     assert (finding.frame, finding.measured) == (41, pytest.approx(0.9, abs=0.005))
-    assert studio.run("bpy.context.scene.frame_current") == 7
+    assert session.run("bpy.context.scene.frame_current") == 7
 
 
-def test_a_wall_that_moves_in_is_seen_in_the_middle(studio: Studio) -> None:
+def test_a_wall_that_moves_in_is_seen_in_the_middle(session: LiveSession) -> None:
     script = """
 scene.frame_end = 41
 sheet("Poster", -0.5, 0.5, -0.5, 0.5)
@@ -179,12 +181,12 @@ root = sheet("Wall", -3, 3, -2, 2, y=-5)
 for frame, x in ((1, 9), (21, 0), (41, 9)):
     key(root, frame, location=(x, 0, 0))
 """
-    finding = the_finding(seen(studio, script, "Poster"))
+    finding = the_finding(seen(session, script, "Poster"))
     assert (finding.frame, finding.measured, finding.objects[1]) == (21, 1.0, "Wall mesh")
 
 
-def test_without_an_active_camera_nothing_is_framed(studio: Studio) -> None:
-    finding = the_finding(seen(studio, "sheet('Poster', -1, 1, -1, 1)\nscene.camera = None", "Poster"))
+def test_without_an_active_camera_nothing_is_framed(session: LiveSession) -> None:
+    finding = the_finding(seen(session, "sheet('Poster', -1, 1, -1, 1)\nscene.camera = None", "Poster"))
     assert (finding.outcome, finding.message) == ("broken", "The scene has no active camera.")
 
 
@@ -196,15 +198,15 @@ def test_without_an_active_camera_nothing_is_framed(studio: Studio) -> None:
         ("sheet('Poster', 1, 1, -1, 1)", "no area"),
     ],
 )
-def test_what_cannot_be_told_is_undecided(studio: Studio, script: str, reason: str) -> None:
-    finding = the_finding(seen(studio, script, "Poster"))
+def test_what_cannot_be_told_is_undecided(session: LiveSession, script: str, reason: str) -> None:
+    finding = the_finding(seen(session, script, "Poster"))
     assert finding.outcome == "undecided"
     assert reason in finding.message
 
 
-def test_a_plan_without_subjects_leaves_the_camera_alone(studio: Studio) -> None:
-    build(studio, STAGE)
+def test_a_plan_without_subjects_leaves_the_camera_alone(session: LiveSession) -> None:
+    build(session, STAGE)
     relation = {"kind": "Upright", "a": "Poster"}
-    assert verified(studio, "R14", a_plan(relation)).idle == {
+    assert verified(session, "R14", a_plan(relation)).idle == {
         "R14": "the plan names no subjects of the camera"
     }

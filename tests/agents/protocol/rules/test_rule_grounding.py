@@ -8,7 +8,7 @@ import pytest
 from scenes import a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -29,20 +29,20 @@ def touches(one, *names):
         'touches("Mug", "Slab")\ntouches("Table root", "Cup root")',
     ],
 )
-def test_what_is_connected_to_the_ground_over_any_steps_is_grounded(studio: Studio, said: str) -> None:
-    build(studio, STACK + said)
-    assert verified(studio, "W1").passed == ("W1",)
+def test_what_is_connected_to_the_ground_over_any_steps_is_grounded(session: LiveSession, said: str) -> None:
+    build(session, STACK + said)
+    assert verified(session, "W1").passed == ("W1",)
 
 
-def test_relations_of_contact_connect(studio: Studio) -> None:
-    build(studio, STACK + 'touches("Top", "Slab")')
+def test_relations_of_contact_connect(session: LiveSession) -> None:
+    build(session, STACK + 'touches("Top", "Slab")')
     plan = a_plan({"kind": "SupportedBy", "child": "Cup", "parents": ("Table/Top",)})
-    assert verified(studio, "W1", plan).passed == ("W1",)
+    assert verified(session, "W1", plan).passed == ("W1",)
 
 
-def test_what_nothing_connects_to_the_ground_is_told(studio: Studio) -> None:
-    build(studio, STACK + 'touches("Mug", "Top")')
-    report = verified(studio, "W1")
+def test_what_nothing_connects_to_the_ground_is_told(session: LiveSession) -> None:
+    build(session, STACK + 'touches("Mug", "Top")')
+    report = verified(session, "W1")
     assert [(one.rule, one.severity, one.objects) for one in report.findings] == [
         ("W1", "soft", ("Table",)),
         ("W1", "soft", ("Cup",)),
@@ -51,19 +51,19 @@ def test_what_nothing_connects_to_the_ground_is_told(studio: Studio) -> None:
 
 
 @pytest.mark.parametrize("by_plan", [False, True])
-def test_strict_grounding_makes_it_hard(studio: Studio, by_plan: bool) -> None:
+def test_strict_grounding_makes_it_hard(session: LiveSession, by_plan: bool) -> None:
     build(
-        studio, STACK + 'touches("Top", "Slab")\n' + ("" if by_plan else 'scene["strict_grounding"] = True')
+        session, STACK + 'touches("Top", "Slab")\n' + ("" if by_plan else 'scene["strict_grounding"] = True')
     )
     plan = a_plan({"kind": "Upright", "a": "Cup"}, strict_grounding=by_plan)
-    report = verified(studio, "W1", plan)
+    report = verified(session, "W1", plan)
     assert the_finding(report).severity == "hard"
     assert not report.ok
 
 
-def test_a_ground_that_is_no_object_grounds_nothing(studio: Studio) -> None:
-    build(studio, STACK + 'touches("Mug", "Top")\ntouches("Top", "Slab")\nsystem("ground").name = "floor"')
-    assert len(verified(studio, "W1").findings) == 3
+def test_a_ground_that_is_no_object_grounds_nothing(session: LiveSession) -> None:
+    build(session, STACK + 'touches("Mug", "Top")\ntouches("Top", "Slab")\nsystem("ground").name = "floor"')
+    assert len(verified(session, "W1").findings) == 3
 
 
 # One piece. ε of the bolt and the plate is 2 mm, that of two plates of 1.4 m is 7 mm.
@@ -86,10 +86,10 @@ thing("Rig", plate, box("Bolt", (-0.01, -0.01, 0.02), (0.01, 0.01, 0.05), at=(0,
     ],
 )
 def test_meshes_of_an_object_hang_together_within_the_tolerance(
-    studio: Studio, bolt: float, plate: float, loose: tuple[str, ...]
+    session: LiveSession, bolt: float, plate: float, loose: tuple[str, ...]
 ) -> None:
-    build(studio, PLATES.format(bolt=bolt, plate=plate))
-    report = verified(studio, "W2")
+    build(session, PLATES.format(bolt=bolt, plate=plate))
+    report = verified(session, "W2")
     if not loose:
         assert report.passed == ("W2",)
         return
@@ -102,40 +102,40 @@ def test_meshes_of_an_object_hang_together_within_the_tolerance(
         assert found.objects[1:] == loose
 
 
-def test_an_object_may_be_loose_if_it_says_so(studio: Studio) -> None:
+def test_an_object_may_be_loose_if_it_says_so(session: LiveSession) -> None:
     build(
-        studio, PLATES.format(bolt=1, plate=1) + 'bpy.data.collections["Rig"]["allows_disconnected"] = True'
+        session, PLATES.format(bolt=1, plate=1) + 'bpy.data.collections["Rig"]["allows_disconnected"] = True'
     )
-    assert set(verified(studio, "W2").idle) == {"W2"}
+    assert set(verified(session, "W2").idle) == {"W2"}
 
 
-def test_a_part_within_another_one_hangs_together_with_it(studio: Studio) -> None:
+def test_a_part_within_another_one_hangs_together_with_it(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         'thing("Pendant", box("Amber", (-1, -1, -1), (1, 1, 1)), box("Fly", (-0.1, -0.1, -0.1), (0.1, 0.1, 0.1)))',
     )
-    assert verified(studio, "W2").passed == ("W2",)
+    assert verified(session, "W2").passed == ("W2",)
 
 
-def test_two_halves_of_a_broken_thing_are_two_pieces(studio: Studio) -> None:
+def test_two_halves_of_a_broken_thing_are_two_pieces(session: LiveSession) -> None:
     links = ", ".join(
         f'box("Link {k}", ({k}, 0, 0), ({k} + {1 if k != 4 else 0.9}, 1, 1))' for k in range(10)
     )
-    build(studio, f'thing("Chain", {links})')
-    found = the_finding(verified(studio, "W2"))
+    build(session, f'thing("Chain", {links})')
+    found = the_finding(verified(session, "W2"))
     assert found.measured == 2
     assert len(found.objects) == 6
 
 
-def test_the_smaller_of_two_pieces_is_the_loose_one(studio: Studio) -> None:
+def test_the_smaller_of_two_pieces_is_the_loose_one(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         'thing("Cup", box("Mug", (0, 0, 0), (0.1, 0.1, 0.1)), box("Handle", (0.12, 0.04, 0.02), (0.15, 0.06, 0.08)))',
     )
-    assert the_finding(verified(studio, "W2")).objects == ("Cup", "Handle")
+    assert the_finding(verified(session, "W2")).objects == ("Cup", "Handle")
 
 
-def test_what_cannot_be_measured_is_told(studio: Studio) -> None:
-    build(studio, PLATES.format(bolt=0, plate=0) + 'bpy.data.objects["Bolt"].hide_viewport = True')
-    found = the_finding(verified(studio, "W2"))
+def test_what_cannot_be_measured_is_told(session: LiveSession) -> None:
+    build(session, PLATES.format(bolt=0, plate=0) + 'bpy.data.objects["Bolt"].hide_viewport = True')
+    found = the_finding(verified(session, "W2"))
     assert (found.objects, found.outcome) == (("Rig",), "undecided")

@@ -8,7 +8,7 @@ import pytest
 from scenes import a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.plan.scene import ScenePlan
 
@@ -47,9 +47,11 @@ def plan(*names: str, **roles: str) -> ScenePlan:
         ),
     ],
 )
-def test_what_is_planned_and_there_is_in_order(studio: Studio, more: str, roles: dict[str, str]) -> None:
-    build(studio, SCENE + more)
-    assert verified(studio, "R1", plan("Floor", "Cup", **roles)).passed == ("R1",)
+def test_what_is_planned_and_there_is_in_order(
+    session: LiveSession, more: str, roles: dict[str, str]
+) -> None:
+    build(session, SCENE + more)
+    assert verified(session, "R1", plan("Floor", "Cup", **roles)).passed == ("R1",)
 
 
 @pytest.mark.parametrize(
@@ -71,31 +73,31 @@ def test_what_is_planned_and_there_is_in_order(studio: Studio, more: str, roles:
     ],
 )  # fmt: skip
 def test_what_is_missing_hidden_or_too_much_is_told(
-    studio: Studio,
+    session: LiveSession,
     change: str,
     planned: tuple[str, ...],
     objects: tuple[str, ...],
     measured: float | None,
     why: str,
 ) -> None:
-    build(studio, SCENE + change)
-    found = the_finding(verified(studio, "R1", plan(*planned)))
+    build(session, SCENE + change)
+    found = the_finding(verified(session, "R1", plan(*planned)))
     assert (found.rule, found.severity, found.outcome) == ("R1", "hard", "broken")
     assert (found.objects, found.measured) == (objects, measured)
     assert why in found.message
 
 
-def test_a_duplicate_is_one_object_too_many(studio: Studio) -> None:
-    build(studio, SCENE + 'thing("Cup.001", box("Mug.001", (0.8, 0.5, 0), (0.9, 0.6, 0.1)))')
-    assert the_finding(verified(studio, "R1", plan("Floor", "Cup"))).objects == ("Cup.001",)
+def test_a_duplicate_is_one_object_too_many(session: LiveSession) -> None:
+    build(session, SCENE + 'thing("Cup.001", box("Mug.001", (0.8, 0.5, 0), (0.9, 0.6, 0.1)))')
+    assert the_finding(verified(session, "R1", plan("Floor", "Cup"))).objects == ("Cup.001",)
 
 
 @pytest.mark.parametrize("there", ["", 'bpy.data.objects.new("Wind", None)', FIELD.replace("Wind", "Breeze")])
-def test_a_planned_field_that_does_not_blow_is_told(studio: Studio, there: str) -> None:
-    build(studio, SCENE + there)
-    assert the_finding(verified(studio, "R1", plan("Floor", "Cup", Wind="force"))).objects == ("Wind",)
+def test_a_planned_field_that_does_not_blow_is_told(session: LiveSession, there: str) -> None:
+    build(session, SCENE + there)
+    assert the_finding(verified(session, "R1", plan("Floor", "Cup", Wind="force"))).objects == ("Wind",)
 
 
-def test_without_a_plan_there_is_nothing_to_judge(studio: Studio) -> None:
-    build(studio, SCENE)
-    assert verified(studio, "R1").idle == {"R1": "there is no plan"}
+def test_without_a_plan_there_is_nothing_to_judge(session: LiveSession) -> None:
+    build(session, SCENE)
+    assert verified(session, "R1").idle == {"R1": "there is no plan"}

@@ -8,7 +8,7 @@ import pytest
 from scenes import build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -39,9 +39,9 @@ ALL = ("C1", "C2", "C3", "C4", "C5", "C6")
         'chair.name = "V2.001 chair"',
     ],
 )
-def test_a_scene_in_order_has_nothing_to_find(studio: Studio, more: str) -> None:
-    build(studio, SCENE + more)
-    report = verified(studio, "C")
+def test_a_scene_in_order_has_nothing_to_find(session: LiveSession, more: str) -> None:
+    build(session, SCENE + more)
+    report = verified(session, "C")
     assert report.findings == ()
     assert report.passed == ALL
 
@@ -82,19 +82,19 @@ def test_a_scene_in_order_has_nothing_to_find(studio: Studio, more: str) -> None
     ],
 )  # fmt: skip
 def test_what_is_out_of_order_is_found_by_its_rule(
-    studio: Studio, change: str, rule: str, objects: tuple[str, ...], measured: float | None
+    session: LiveSession, change: str, rule: str, objects: tuple[str, ...], measured: float | None
 ) -> None:
-    build(studio, SCENE + change)
-    found = the_finding(verified(studio, rule))
+    build(session, SCENE + change)
+    found = the_finding(verified(session, rule))
     assert (found.rule, found.severity, found.outcome) == (rule, "hard", "broken")
     assert found.objects == objects
     assert found.measured == measured
     assert found.fix
 
 
-def test_a_scene_without_any_tags_has_homeless_meshes_and_no_ground(studio: Studio) -> None:
-    build(studio, 'for name in "ab":\n    scene.collection.objects.link(box(name, (0, 0, 0), (1, 1, 1)))')
-    report = verified(studio, "C")
+def test_a_scene_without_any_tags_has_homeless_meshes_and_no_ground(session: LiveSession) -> None:
+    build(session, 'for name in "ab":\n    scene.collection.objects.link(box(name, (0, 0, 0), (1, 1, 1)))')
+    report = verified(session, "C")
     assert [(one.rule, one.objects) for one in report.findings] == [
         ("C3", ("a",)),
         ("C3", ("b",)),
@@ -104,22 +104,22 @@ def test_a_scene_without_any_tags_has_homeless_meshes_and_no_ground(studio: Stud
     assert set(report.idle) == {"C1", "C2", "C4", "C5"}
 
 
-def test_meshes_that_no_render_shows_are_in_an_object_as_well(studio: Studio) -> None:
+def test_meshes_that_no_render_shows_are_in_an_object_as_well(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         SCENE
         + 'cutter = box("Cutter", (0, 0, 0), (1, 1, 1))\ncutter.hide_render = cutter.hide_viewport = True\n'
         "scene.collection.objects.link(cutter)",
     )
-    assert the_finding(verified(studio, "C3")).objects == ("Cutter",)
+    assert the_finding(verified(session, "C3")).objects == ("Cutter",)
 
 
-def test_other_scenes_have_their_own_order(studio: Studio) -> None:
+def test_other_scenes_have_their_own_order(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         SCENE
         + 'other = bpy.data.scenes.new("Other")\nother.collection.objects.link(box("Far", (0, 0, 0), (1, 1, 1)))\n'
         'strange = bpy.data.collections.new("Strange.001")\nstrange["protocol_role"] = "system"\n'
         "other.collection.children.link(strange)",
     )
-    assert verified(studio, "C").findings == ()
+    assert verified(session, "C").findings == ()

@@ -10,7 +10,7 @@ from scenes import a_motion, a_plan, build, the_finding, verified
 from agents.blender.tools.bake import TOOL as BAKE
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.protocol.findings import Finding, Report
 
@@ -83,20 +83,22 @@ body.modifiers.clear()
 """
 
 
-def make(studio: Studio, script: str, kind: str = "", motion: str = "bake", *, baked: bool = False) -> None:
+def make(
+    session: LiveSession, script: str, kind: str = "", motion: str = "bake", *, baked: bool = False
+) -> None:
     """An object "Actor" by a script; of a solver's ``kind`` alone, by that of the solver."""
     declared = f"declared('Actor', {kind!r}, {motion!r})" if kind else ""
-    build(studio, f"{DECLARED}\nscene.frame_start, scene.frame_end = 1, {LAST}\n{script}\n{declared}")
+    build(session, f"{DECLARED}\nscene.frame_start, scene.frame_end = 1, {LAST}\n{script}\n{declared}")
     if baked:
-        studio.use(BAKE)
+        session.use(BAKE)
 
 
-def mechanism(studio: Studio) -> Report:
-    return verified(studio, "R15")
+def mechanism(session: LiveSession) -> Report:
+    return verified(session, "R15")
 
 
-def the_breach(studio: Studio) -> Finding:
-    found = the_finding(mechanism(studio))
+def the_breach(session: LiveSession) -> Finding:
+    found = the_finding(mechanism(session))
     assert (found.rule, found.severity, found.outcome) == ("R15", "hard", "broken")
     return found
 
@@ -106,11 +108,11 @@ def the_breach(studio: Studio) -> Finding:
 
 @pytest.mark.parametrize("kind", SOLVED)
 def test_a_baked_simulation_is_what_it_is_declared_to_be_and_its_twin_is_not(
-    studio: Studio, kind: str
+    session: LiveSession, kind: str
 ) -> None:
-    make(studio, SOLVED[kind], kind, baked=True)
-    assert mechanism(studio).passed == ("R15",)
-    studio.run(f"""
+    make(session, SOLVED[kind], kind, baked=True)
+    assert mechanism(session).passed == ("R15",)
+    session.run(f"""
 body = bpy.data.objects["Body"]
 {UNSOLVED}
 for frame in range(1, {LAST + 1}):
@@ -119,24 +121,24 @@ for frame in range(1, {LAST + 1}):
 for one in bpy.data.objects:
     one.modifiers.clear()
 """)
-    found = the_breach(studio)
+    found = the_breach(session)
     assert found.objects == ("Actor",)
     assert f"declared {kind}, but has no {NAMED[kind]} that is on" in found.message
 
 
 @pytest.mark.parametrize("kind", SOLVED)
-def test_what_is_not_baked_is_told(studio: Studio, kind: str) -> None:
-    make(studio, SOLVED[kind], kind)
-    found = the_breach(studio)
+def test_what_is_not_baked_is_told(session: LiveSession, kind: str) -> None:
+    make(session, SOLVED[kind], kind)
+    found = the_breach(session)
     assert found.objects[0] == "Actor"
     assert "is not baked" in found.message
     assert "blender_bake" in found.fix
 
 
 @pytest.mark.parametrize("kind", ["sim_rigid", "sim_cloth", "sim_soft", "sim_fluid"])
-def test_shape_keys_on_what_is_simulated_imitate_it(studio: Studio, kind: str) -> None:
-    make(studio, SOLVED[kind], kind, baked=True)
-    studio.run("""
+def test_shape_keys_on_what_is_simulated_imitate_it(session: LiveSession, kind: str) -> None:
+    make(session, SOLVED[kind], kind, baked=True)
+    session.run("""
 body = bpy.data.objects["Body"]
 body.shape_key_add(name="Basis")
 shape = body.shape_key_add(name="Fallen")
@@ -144,14 +146,14 @@ for value, frame in ((0, 1), (1, 12)):
     shape.value = value
     shape.keyframe_insert("value", frame=frame)
 """)
-    found = next(one for one in mechanism(studio).findings if "shape keys" in one.message)
+    found = next(one for one in mechanism(session).findings if "shape keys" in one.message)
     assert found.objects == ("Body", "Actor")
     assert "'Body' is moved by animated shape keys" in found.message
 
 
-def test_a_simulation_that_may_stand_still_need_not_be_baked(studio: Studio) -> None:
-    make(studio, SOLVED["sim_cloth"], "sim_cloth", "none")
-    assert mechanism(studio).passed == ("R15",)
+def test_a_simulation_that_may_stand_still_need_not_be_baked(session: LiveSession) -> None:
+    make(session, SOLVED["sim_cloth"], "sim_cloth", "none")
+    assert mechanism(session).passed == ("R15",)
 
 
 def keyed(frames: int, last: int, on: str = "Body") -> str:
@@ -165,16 +167,18 @@ for number in range({frames}):
 
 
 @pytest.mark.parametrize(("frames", "last"), [(4, 12), (4, 50), (9, 100)])
-def test_a_few_keys_imitate_nothing(studio: Studio, frames: int, last: int) -> None:
-    make(studio, SOLVED["sim_rigid"] + keyed(frames, last), "sim_rigid", "none")
-    assert mechanism(studio).passed == ("R15",)
+def test_a_few_keys_imitate_nothing(session: LiveSession, frames: int, last: int) -> None:
+    make(session, SOLVED["sim_rigid"] + keyed(frames, last), "sim_rigid", "none")
+    assert mechanism(session).passed == ("R15",)
 
 
 @pytest.mark.parametrize(("frames", "last"), [(5, 12), (5, 50), (10, 100)])
 @pytest.mark.parametrize("on", ["Body", "Actor root"])
-def test_keys_every_few_frames_imitate_the_solver(studio: Studio, frames: int, last: int, on: str) -> None:
-    make(studio, SOLVED["sim_rigid"] + keyed(frames, last, on), "sim_rigid", "none")
-    found = the_breach(studio)
+def test_keys_every_few_frames_imitate_the_solver(
+    session: LiveSession, frames: int, last: int, on: str
+) -> None:
+    make(session, SOLVED["sim_rigid"] + keyed(frames, last, on), "sim_rigid", "none")
+    found = the_breach(session)
     assert found.objects == (on, "Actor")
     assert f"{frames} keyframes on location" in found.message
 
@@ -199,33 +203,33 @@ IMITATIONS = {
 
 @pytest.mark.parametrize(("script", "told"), IMITATIONS.values(), ids=IMITATIONS)
 def test_what_else_plays_a_motion_frame_by_frame_imitates_it_too(
-    studio: Studio, script: str, told: str
+    session: LiveSession, script: str, told: str
 ) -> None:
-    make(studio, SOLVED["sim_rigid"] + keyed(12, 12) + script, "sim_rigid", "none")
-    assert told in the_breach(studio).message
+    make(session, SOLVED["sim_rigid"] + keyed(12, 12) + script, "sim_rigid", "none")
+    assert told in the_breach(session).message
 
 
-def test_an_emitter_may_be_carried_about(studio: Studio) -> None:
-    make(studio, SOLVED["sim_particle"] + keyed(12, 12), "sim_particle", "none")
-    assert mechanism(studio).passed == ("R15",)
+def test_an_emitter_may_be_carried_about(session: LiveSession) -> None:
+    make(session, SOLVED["sim_particle"] + keyed(12, 12), "sim_particle", "none")
+    assert mechanism(session).passed == ("R15",)
 
 
-def test_a_body_that_is_let_go_is_the_solvers(studio: Studio) -> None:
+def test_a_body_that_is_let_go_is_the_solvers(session: LiveSession) -> None:
     let_go = """
 key(body.rigid_body, 1, kinematic=True)
 key(body.rigid_body, 5, kinematic=False)
 scene.frame_set(1)
 """
-    make(studio, SOLVED["sim_rigid"] + let_go, "sim_rigid", baked=True)
-    assert studio.run("bpy.data.objects['Body'].rigid_body.kinematic") is True
-    assert mechanism(studio).passed == ("R15",)
+    make(session, SOLVED["sim_rigid"] + let_go, "sim_rigid", baked=True)
+    assert session.run("bpy.data.objects['Body'].rigid_body.kinematic") is True
+    assert mechanism(session).passed == ("R15",)
 
 
 @pytest.mark.parametrize("how", ["kinematic = True", "enabled = False", "type = 'PASSIVE'"])
-def test_a_body_that_never_is_does_not_count(studio: Studio, how: str) -> None:
-    make(studio, SOLVED["sim_rigid"], "sim_rigid", baked=True)
-    studio.run(f"bpy.data.objects['Body'].rigid_body.{how}")
-    assert "has no active rigid body that is on" in mechanism(studio).findings[0].message
+def test_a_body_that_never_is_does_not_count(session: LiveSession, how: str) -> None:
+    make(session, SOLVED["sim_rigid"], "sim_rigid", baked=True)
+    session.run(f"bpy.data.objects['Body'].rigid_body.{how}")
+    assert "has no active rigid body that is on" in mechanism(session).findings[0].message
 
 
 @pytest.mark.parametrize(
@@ -235,27 +239,27 @@ def test_a_body_that_never_is_does_not_count(studio: Studio, how: str) -> None:
         ("sim_cloth", "bpy.data.objects['Body'].modifiers[0].show_viewport = False"),
     ],
 )
-def test_a_solver_that_is_switched_off_is_told(studio: Studio, kind: str, off: str) -> None:
-    make(studio, SOLVED[kind], kind, baked=True)
-    studio.run(off)
-    assert "switched off" in mechanism(studio).findings[0].message
+def test_a_solver_that_is_switched_off_is_told(session: LiveSession, kind: str, off: str) -> None:
+    make(session, SOLVED[kind], kind, baked=True)
+    session.run(off)
+    assert "switched off" in mechanism(session).findings[0].message
 
 
-def test_a_bake_that_ends_early_is_told_with_its_frames(studio: Studio) -> None:
-    make(studio, SOLVED["sim_cloth"], "sim_cloth", baked=True)
-    studio.run("bpy.context.scene.frame_end = 15")
-    assert "baked for frames 1–12, not for 1–15" in the_breach(studio).message
+def test_a_bake_that_ends_early_is_told_with_its_frames(session: LiveSession) -> None:
+    make(session, SOLVED["sim_cloth"], "sim_cloth", baked=True)
+    session.run("bpy.context.scene.frame_end = 15")
+    assert "baked for frames 1–12, not for 1–15" in the_breach(session).message
 
 
-def test_frames_that_are_gone_from_the_disk_are_counted(studio: Studio) -> None:
-    make(studio, SOLVED["sim_fluid"], "sim_fluid", baked=True)
-    studio.run("""
+def test_frames_that_are_gone_from_the_disk_are_counted(session: LiveSession) -> None:
+    make(session, SOLVED["sim_fluid"], "sim_fluid", baked=True)
+    session.run("""
 import os
 folder = bpy.path.abspath(bpy.data.objects["Body"].modifiers[0].domain_settings.cache_directory)
 for name in sorted(os.listdir(os.path.join(folder, "data")))[-3:]:
     os.remove(os.path.join(folder, "data", name))
 """)
-    assert "3 of its frames are missing" in the_breach(studio).message
+    assert "3 of its frames are missing" in the_breach(session).message
 
 
 REOPEN = """
@@ -266,11 +270,11 @@ bpy.ops.wm.open_mainfile(filepath=path)
 """
 
 
-def test_a_bake_is_as_good_when_its_file_is_opened_again(studio: Studio) -> None:
-    make(studio, SOLVED["sim_rigid"], "sim_rigid", baked=True)
-    studio.run(REOPEN)
-    assert studio.run("bpy.context.scene.rigidbody_world.point_cache.is_outdated") is True  # Blender's view
-    assert mechanism(studio).passed == ("R15",)
+def test_a_bake_is_as_good_when_its_file_is_opened_again(session: LiveSession) -> None:
+    make(session, SOLVED["sim_rigid"], "sim_rigid", baked=True)
+    session.run(REOPEN)
+    assert session.run("bpy.context.scene.rigidbody_world.point_cache.is_outdated") is True  # Blender's view
+    assert mechanism(session).passed == ("R15",)
 
 
 CHANGES = (
@@ -285,13 +289,15 @@ RESHAPED = "bpy.data.objects['Slab'].data.vertices[0].co.z += 0.1"  # which Blen
 @pytest.mark.parametrize(
     ("change", "reopened"), [*((one, again) for one in CHANGES for again in (False, True)), (RESHAPED, True)]
 )
-def test_a_bake_is_outdated_by_what_it_depends_on_alone(studio: Studio, change: str, reopened: bool) -> None:
-    make(studio, SOLVED["sim_rigid"], "sim_rigid", baked=True)
-    studio.run(REOPEN if reopened else "")
-    studio.run("bpy.data.objects['Body'].hide_render = True\nbpy.context.view_layer.update()")
-    assert mechanism(studio).passed == ("R15",)
-    studio.run(f"body = bpy.data.objects['Body']\n{change}\nbpy.context.view_layer.update()")
-    assert "baked, but outdated" in the_breach(studio).message
+def test_a_bake_is_outdated_by_what_it_depends_on_alone(
+    session: LiveSession, change: str, reopened: bool
+) -> None:
+    make(session, SOLVED["sim_rigid"], "sim_rigid", baked=True)
+    session.run(REOPEN if reopened else "")
+    session.run("bpy.data.objects['Body'].hide_render = True\nbpy.context.view_layer.update()")
+    assert mechanism(session).passed == ("R15",)
+    session.run(f"body = bpy.data.objects['Body']\n{change}\nbpy.context.view_layer.update()")
+    assert "baked, but outdated" in the_breach(session).message
 
 
 # What is not simulated
@@ -331,9 +337,11 @@ post.particle_systems[0].settings.type = "HAIR"
         ("none", "none", "key(post, 1, location=(0, 0, 0))\nkey(post, 9, location=(0, 0, 0))"),
     ],
 )
-def test_what_is_declared_and_done_is_right(studio: Studio, kind: str, motion: str, script: str) -> None:
-    make(studio, POST + script, kind, motion)
-    assert mechanism(studio).passed == ("R15",)
+def test_what_is_declared_and_done_is_right(
+    session: LiveSession, kind: str, motion: str, script: str
+) -> None:
+    make(session, POST + script, kind, motion)
+    assert mechanism(session).passed == ("R15",)
 
 
 @pytest.mark.parametrize(
@@ -350,59 +358,59 @@ def test_what_is_declared_and_done_is_right(studio: Studio, kind: str, motion: s
     ],
 )
 def test_what_is_declared_and_not_done_is_told(
-    studio: Studio, kind: str, motion: str, script: str, told: str
+    session: LiveSession, kind: str, motion: str, script: str, told: str
 ) -> None:
-    make(studio, POST + script, kind, motion)
-    found = the_breach(studio)
+    make(session, POST + script, kind, motion)
+    found = the_breach(session)
     assert found.objects[0] == "Actor"
     assert told in found.message
 
 
-def test_what_declares_nothing_is_not_judged(studio: Studio) -> None:
-    make(studio, POST + KEYS)
-    assert mechanism(studio).idle == {"R15": "no object declares how it is deformed or moved"}
+def test_what_declares_nothing_is_not_judged(session: LiveSession) -> None:
+    make(session, POST + KEYS)
+    assert mechanism(session).idle == {"R15": "no object declares how it is deformed or moved"}
 
 
-def test_the_plan_declares_for_what_has_no_tags(studio: Studio) -> None:
-    make(studio, POST)
+def test_the_plan_declares_for_what_has_no_tags(session: LiveSession) -> None:
+    make(session, POST)
     plan = a_motion(
         {"actor": "Actor", "kind": "topple", "start": 1, "end": 9}, last=LAST, roles={"Actor": "rigid"}
     )
-    found = the_finding(verified(studio, "R15", plan))
+    found = the_finding(verified(session, "R15", plan))
     assert "declared sim_rigid, but has no active rigid body" in found.message
 
 
-def test_tags_that_say_something_else_than_the_plan_are_told(studio: Studio) -> None:
-    make(studio, POST + KEYS, "none", "keyframe")
+def test_tags_that_say_something_else_than_the_plan_are_told(session: LiveSession) -> None:
+    make(session, POST + KEYS, "none", "keyframe")
     plan = a_motion(
         {"actor": "Actor", "kind": "topple", "start": 1, "end": 9}, last=LAST, roles={"Actor": "rigid"}
     )
-    found = verified(studio, "R15", plan).findings
+    found = verified(session, "R15", plan).findings
     assert [one.objects for one in found] == [("Actor",)] * 2
     assert "tagged deformation_kind='none'; its planned role 'rigid' is 'sim_rigid'" in found[0].message
     assert "tagged motion_kind='keyframe'" in found[1].message
 
 
-def test_only_the_planned_phases_must_be_baked(studio: Studio) -> None:
-    make(studio, SOLVED["sim_cloth"], "sim_cloth", baked=True)
-    studio.run("bpy.context.scene.frame_end = 15")
+def test_only_the_planned_phases_must_be_baked(session: LiveSession) -> None:
+    make(session, SOLVED["sim_cloth"], "sim_cloth", baked=True)
+    session.run("bpy.context.scene.frame_end = 15")
     phase = {"actor": "Actor", "kind": "deform", "start": 1}
     for end, breaks in ((12, False), (13, True)):
         plan = a_motion({**phase, "end": end}, last=15, roles={"Actor": "cloth"})
-        assert bool(verified(studio, "R15", plan).findings) == breaks
+        assert bool(verified(session, "R15", plan).findings) == breaks
 
 
 # T1
 
 
-def timeline(studio: Studio, last: int = LAST, **more: Any) -> Report:
+def timeline(session: LiveSession, last: int = LAST, **more: Any) -> Report:
     phase = {"actor": "Actor", "kind": "deform", "start": 1, "end": 9}
-    return verified(studio, "T1", a_motion(phase, last=last, roles={"Actor": "cloth"}, **more))
+    return verified(session, "T1", a_motion(phase, last=last, roles={"Actor": "cloth"}, **more))
 
 
-def test_a_baked_timeline_that_is_the_planned_one_passes(studio: Studio) -> None:
-    make(studio, SOLVED["sim_cloth"], baked=True)
-    assert timeline(studio).passed == ("T1",)
+def test_a_baked_timeline_that_is_the_planned_one_passes(session: LiveSession) -> None:
+    make(session, SOLVED["sim_cloth"], baked=True)
+    assert timeline(session).passed == ("T1",)
 
 
 @pytest.mark.parametrize(
@@ -418,33 +426,33 @@ def test_a_baked_timeline_that_is_the_planned_one_passes(studio: Studio) -> None
         ("scene.frame_end = 11", "last frame is 11; planned is 12", 11),
     ],
 )
-def test_another_timeline_is_told(studio: Studio, change: str, told: str, measured: float) -> None:
-    make(studio, SOLVED["sim_cloth"], baked=True)
-    studio.run(f"scene = bpy.context.scene\n{change}")
-    found = the_finding(timeline(studio))
+def test_another_timeline_is_told(session: LiveSession, change: str, told: str, measured: float) -> None:
+    make(session, SOLVED["sim_cloth"], baked=True)
+    session.run(f"scene = bpy.context.scene\n{change}")
+    found = the_finding(timeline(session))
     assert (found.rule, found.severity, found.tolerance) == ("T1", "hard", 0)
     assert found.measured == pytest.approx(measured)
     assert told in found.message
 
 
-def test_a_cache_must_reach_to_the_last_frame(studio: Studio) -> None:
-    make(studio, SOLVED["sim_cloth"], baked=True)
-    studio.run("bpy.context.scene.frame_end = 13")
-    found = the_finding(timeline(studio, last=13))
+def test_a_cache_must_reach_to_the_last_frame(session: LiveSession) -> None:
+    make(session, SOLVED["sim_cloth"], baked=True)
+    session.run("bpy.context.scene.frame_end = 13")
+    found = the_finding(timeline(session, last=13))
     assert found.objects == ("Body",)
     assert "baked for frames 1–12, not for 1–13" in found.message
 
 
-def test_a_cache_that_is_not_baked_is_told_but_not_of_a_solver_that_is_off(studio: Studio) -> None:
-    make(studio, SOLVED["sim_cloth"])
-    assert "The cloth cache of 'Body' is not baked" in the_finding(timeline(studio)).message
-    studio.run("bpy.data.objects['Body'].modifiers[0].show_viewport = False")
-    assert timeline(studio).passed == ("T1",)
+def test_a_cache_that_is_not_baked_is_told_but_not_of_a_solver_that_is_off(session: LiveSession) -> None:
+    make(session, SOLVED["sim_cloth"])
+    assert "The cloth cache of 'Body' is not baked" in the_finding(timeline(session)).message
+    session.run("bpy.data.objects['Body'].modifiers[0].show_viewport = False")
+    assert timeline(session).passed == ("T1",)
 
 
-def test_an_animation_without_phases_has_a_timeline_and_a_still_has_none(studio: Studio) -> None:
-    make(studio, POST)
+def test_an_animation_without_phases_has_a_timeline_and_a_still_has_none(session: LiveSession) -> None:
+    make(session, POST)
     relation = {"kind": "Upright", "a": "Actor"}
     film = a_plan(relation, frame_end=20, render={"kind": "animation"})
-    assert the_finding(verified(studio, "T1", film)).measured == LAST
-    assert verified(studio, "T1", a_plan(relation)).idle == {"T1": "the plan has no motion"}
+    assert the_finding(verified(session, "T1", film)).measured == LAST
+    assert verified(session, "T1", a_plan(relation)).idle == {"T1": "the plan has no motion"}

@@ -12,7 +12,7 @@ from agents.protocol.measures.measure import Gap
 from agents.protocol.measures.motion import Touches
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.protocol.findings import Finding, Report
 
@@ -60,11 +60,11 @@ def phase(actor: str, kind: str, start: int, end: int, **more: Any) -> dict[str,
     return {"actor": actor, "kind": kind, "start": start, "end": end, **more}
 
 
-def judged(studio: Studio, rule: str, script: str, *phases: dict[str, Any], **plan: Any) -> Report:
-    build(studio, script)
+def judged(session: LiveSession, rule: str, script: str, *phases: dict[str, Any], **plan: Any) -> Report:
+    build(session, script)
     if "rigid(" in script or "CLOTH" in script:
-        studio.use(BAKE)
-    return verified(studio, rule, a_motion(*phases, **{"last": 120} | plan))
+        session.use(BAKE)
+    return verified(session, rule, a_motion(*phases, **{"last": 120} | plan))
 
 
 def broken(found: Report, rule: str, holds: bool) -> Finding | None:
@@ -84,52 +84,52 @@ def broken(found: Report, rule: str, holds: bool) -> Finding | None:
     [(22, 40, True), (23, 40, False), (18, 40, True), (17, 40, False), (24, 100, True), (25, 100, False)],
 )
 def test_a_phase_begins_within_two_frames_or_a_twentieth(
-    studio: Studio, really: int, end: int, holds: bool
+    session: LiveSession, really: int, end: int, holds: bool
 ) -> None:
-    found = judged(studio, "T2", f"{SLED}\nslide({really}, {end})", phase("Sled", "translate", 20, end))
+    found = judged(session, "T2", f"{SLED}\nslide({really}, {end})", phase("Sled", "translate", 20, end))
     if finding := broken(found, "T2", holds):
         assert finding.objects == ("Sled",)
         assert (finding.measured, finding.frame) == (really - 20, really)
         assert finding.tolerance == max(2, 0.05 * (end - 20))
 
 
-def test_what_never_moves_is_told_with_its_speed(studio: Studio) -> None:
-    finding = the_finding(judged(studio, "T2", SLED, phase("Sled", "translate", 20, 40, extent=1)))
+def test_what_never_moves_is_told_with_its_speed(session: LiveSession) -> None:
+    finding = the_finding(judged(session, "T2", SLED, phase("Sled", "translate", 20, 40, extent=1)))
     assert (finding.measured, finding.unit) == (0.0, "m/s")
     assert "does not move from frame 20 to 40" in finding.message
 
 
-def test_a_knob_that_turns_on_the_spot_moves(studio: Studio) -> None:
+def test_a_knob_that_turns_on_the_spot_moves(session: LiveSession) -> None:
     script = f"{SLED}\nkey(sled, 20, rotation_euler=(0, 0, 0))\nkey(sled, 60, rotation_euler=(0, 0, 3))\nlinear(sled)"
-    assert judged(studio, "T2", script, phase("Sled", "rotate", 20, 60)).passed == ("T2",)
+    assert judged(session, "T2", script, phase("Sled", "rotate", 20, 60)).passed == ("T2",)
 
 
-def test_a_slow_hand_of_a_clock_moves_where_the_plan_wants_it_so_slow(studio: Studio) -> None:
+def test_a_slow_hand_of_a_clock_moves_where_the_plan_wants_it_so_slow(session: LiveSession) -> None:
     script = f"{SLED}\nslide(20, 100, way=0.02)"  # 6 mm/s
-    assert judged(studio, "T2", script, phase("Sled", "translate", 20, 100, extent=0.02)).passed == ("T2",)
-    studio.empty()
-    assert judged(studio, "T2", script, phase("Sled", "translate", 20, 100)).findings
+    assert judged(session, "T2", script, phase("Sled", "translate", 20, 100, extent=0.02)).passed == ("T2",)
+    session.empty()
+    assert judged(session, "T2", script, phase("Sled", "translate", 20, 100)).findings
 
 
-def test_a_motion_that_goes_on_from_phase_to_phase_is_on_time(studio: Studio) -> None:
+def test_a_motion_that_goes_on_from_phase_to_phase_is_on_time(session: LiveSession) -> None:
     script = f"{SLED}\nslide(10, 60, way=5)"
     halves = phase("Sled", "translate", 10, 35), phase("Sled", "translate", 35, 60)
-    assert judged(studio, "T2", script, *halves).passed == ("T2",)
+    assert judged(session, "T2", script, *halves).passed == ("T2",)
     pause = (
         phase("Sled", "translate", 10, 20),
         phase("Sled", "hold", 20, 40),
         phase("Sled", "translate", 40, 60),
     )
-    studio.empty()
-    finding = the_finding(judged(studio, "T2", script, *pause))
+    session.empty()
+    finding = the_finding(judged(session, "T2", script, *pause))
     assert (finding.measured, finding.frame) == (-20, 20)
 
 
-def test_a_body_falls_from_the_first_frame_on(studio: Studio) -> None:
+def test_a_body_falls_from_the_first_frame_on(session: LiveSession) -> None:
     script = DROP.replace("HEIGHT", "3") + RIGID
-    report = judged(studio, "T2", script, phase("Crate", "fall", 1, 16), roles=ROLES, last=60)
+    report = judged(session, "T2", script, phase("Crate", "fall", 1, 16), roles=ROLES, last=60)
     assert report.passed == ("T2",)
-    finding = the_finding(verified(studio, "T2", a_motion(phase("Crate", "fall", 10, 16), roles=ROLES)))
+    finding = the_finding(verified(session, "T2", a_motion(phase("Crate", "fall", 10, 16), roles=ROLES)))
     assert (finding.measured, finding.frame) == (
         -8,
         2,
@@ -137,7 +137,7 @@ def test_a_body_falls_from_the_first_frame_on(studio: Studio) -> None:
 
 
 @pytest.mark.parametrize(("really", "holds"), [(20, True), (30, False)])
-def test_an_emitter_begins_with_its_first_particle(studio: Studio, really: int, holds: bool) -> None:
+def test_an_emitter_begins_with_its_first_particle(session: LiveSession, really: int, holds: bool) -> None:
     script = f"""
 scene.frame_start, scene.frame_end = 1, 60
 nozzle = plane("Nozzle", (-0.1, -0.1), (0.1, 0.1))
@@ -147,7 +147,7 @@ drops = nozzle.particle_systems[0].settings
 drops.count, drops.frame_start, drops.frame_end = 100, {really}, 50
 """
     found = judged(
-        studio, "T2", script, phase("Fountain", "emit", 20, 50), roles={"Fountain": "emitter"}, last=60
+        session, "T2", script, phase("Fountain", "emit", 20, 50), roles={"Fountain": "emitter"}, last=60
     )
     if finding := broken(found, "T2", holds):
         assert finding.measured == pytest.approx(really - 20, abs=1)
@@ -172,9 +172,9 @@ CAUSED = ({"name": "push", **phase("Rod", "translate", 10, 30)}, phase("Tile", "
 
 
 @pytest.mark.parametrize(("onset", "holds"), [(32, True), (29, True), (28, False)])
-def test_a_target_waits_for_the_contact(studio: Studio, onset: int, holds: bool) -> None:
+def test_a_target_waits_for_the_contact(session: LiveSession, onset: int, holds: bool) -> None:
     # The rod comes 5 cm nearer a frame, and touches at frame 30.
-    found = judged(studio, "T3", PUSH.replace("ONSET", str(onset)), *CAUSED)
+    found = judged(session, "T3", PUSH.replace("ONSET", str(onset)), *CAUSED)
     if finding := broken(found, "T3", holds):
         assert finding.objects == ("Tile", "Rod")
         assert (finding.measured, finding.tolerance, finding.frame) == (30 - onset, 1, onset)
@@ -182,16 +182,16 @@ def test_a_target_waits_for_the_contact(studio: Studio, onset: int, holds: bool)
 
 
 @pytest.mark.parametrize(("onset", "holds"), [(9, True), (8, False)])
-def test_without_a_contact_the_cause_moves_first(studio: Studio, onset: int, holds: bool) -> None:
+def test_without_a_contact_the_cause_moves_first(session: LiveSession, onset: int, holds: bool) -> None:
     script = PUSH.replace("ONSET", str(onset)).replace(
         "(0, -0.1, -0.5), (0.1, 0.1, 0.5)", "(0, 4, 0), (0.1, 5, 1)"
     )
-    found = judged(studio, "T3", script, CAUSED[0], phase("Tile", "slide", 10, 20, cause="push"))
+    found = judged(session, "T3", script, CAUSED[0], phase("Tile", "slide", 10, 20, cause="push"))
     if finding := broken(found, "T3", holds):
         assert (finding.measured, finding.frame) == (10 - onset, onset)
 
 
-def test_a_fast_ball_that_rebounds_between_frames_has_hit(studio: Studio) -> None:
+def test_a_fast_ball_that_rebounds_between_frames_has_hit(session: LiveSession) -> None:
     script = """
 scene.frame_start, scene.frame_end = 1, 60
 shot, tile = ball("Shot", 0.1, at=(-4, 0, 1)), box("Face", (-0.05, -0.2, -0.5), (0.05, 0.2, 0.5), at=(0, 0, 1))
@@ -208,43 +208,45 @@ shot.rigid_body.keyframe_insert("kinematic", frame=3)
 shot.rigid_body.kinematic = False
 shot.rigid_body.keyframe_insert("kinematic", frame=4)
 """
-    build(studio, script)
-    studio.use(BAKE)
+    build(session, script)
+    session.use(BAKE)
     # It comes 0.4 m nearer a frame, stops where it hits between two frames, and the tile flies on before the second.
-    (first, *_) = measured(studio, Touches(("Shot",), ("Face",), 1, 40, 0.002)).frames
+    (first, *_) = measured(session, Touches(("Shot",), ("Face",), 1, 40, 0.002)).frames
     assert first == 11
-    gaps = [measured(studio, Gap(("Shot",), ("Face",), frame)).distance for frame in (10, 11)]
+    gaps = [measured(session, Gap(("Shot",), ("Face",), frame)).distance for frame in (10, 11)]
     assert min(gaps) > 0.05
     shot = {"name": "shot", **phase("Ball", "translate", 1, 12)}
     roles = {"Ball": "rigid", "Tile": "rigid"}
     hit = phase("Tile", "slide", 11, 40, cause="shot")
-    assert verified(studio, "T3", a_motion(shot, hit, roles=roles)).passed == ("T3",)
+    assert verified(session, "T3", a_motion(shot, hit, roles=roles)).passed == ("T3",)
 
 
 # T4: extent
 
 
 @pytest.mark.parametrize(("way", "holds"), [(1.09, True), (1.11, False), (0.91, True), (0.89, False)])
-def test_a_way_is_a_tenth_longer_or_shorter_at_most(studio: Studio, way: float, holds: bool) -> None:
+def test_a_way_is_a_tenth_longer_or_shorter_at_most(session: LiveSession, way: float, holds: bool) -> None:
     found = judged(
-        studio, "T4", f"{SLED}\nslide(20, 40, way={way})", phase("Sled", "translate", 20, 40, extent=1)
+        session, "T4", f"{SLED}\nslide(20, 40, way={way})", phase("Sled", "translate", 20, 40, extent=1)
     )
     if finding := broken(found, "T4", holds):
         assert (finding.objects, finding.unit) == (("Sled",), "m")
         assert (finding.measured, finding.tolerance) == pytest.approx((way, 0.1))
 
 
-def test_a_phase_that_is_two_frames_late_is_measured_whole(studio: Studio) -> None:
-    found = judged(studio, "T4", f"{SLED}\nslide(22, 32)", phase("Sled", "translate", 20, 30, extent=1))
+def test_a_phase_that_is_two_frames_late_is_measured_whole(session: LiveSession) -> None:
+    found = judged(session, "T4", f"{SLED}\nslide(22, 32)", phase("Sled", "translate", 20, 30, extent=1))
     assert found.passed == ("T4",)
 
 
 @pytest.mark.parametrize(("off", "holds"), [(9.5, True), (10.5, False)])
-def test_a_way_goes_ten_degrees_beside_its_direction_at_most(studio: Studio, off: float, holds: bool) -> None:
+def test_a_way_goes_ten_degrees_beside_its_direction_at_most(
+    session: LiveSession, off: float, holds: bool
+) -> None:
     script = f"{SLED}\nslide(20, 40)\n"
     turned = f"(math.cos(math.radians({off})), math.sin(math.radians({off})), 0)"
     script += f"key(sled, 40, location={turned})"
-    found = judged(studio, "T4", script, phase("Sled", "translate", 20, 40, direction=(2, 0, 0)))
+    found = judged(session, "T4", script, phase("Sled", "translate", 20, 40, direction=(2, 0, 0)))
     if finding := broken(found, "T4", holds):
         assert (finding.measured, finding.tolerance) == (pytest.approx(off, abs=0.01), 10)
 
@@ -253,33 +255,35 @@ def test_a_way_goes_ten_degrees_beside_its_direction_at_most(studio: Studio, off
     ("planned", "turned", "holds"),
     [(720, 655, True), (720, 640, False), (90, 81, True), (90, 78, False), (10, 6, True), (10, 4, False)],
 )
-def test_turns_are_counted_over_whole_ones(studio: Studio, planned: int, turned: int, holds: bool) -> None:
+def test_turns_are_counted_over_whole_ones(
+    session: LiveSession, planned: int, turned: int, holds: bool
+) -> None:
     script = f"{SLED}\nkey(sled, 20, rotation_euler=(0, 0, 0))\n" + (
         f"key(sled, 60, rotation_euler=(0, 0, math.radians({turned})))\nlinear(sled)"
     )
-    found = judged(studio, "T4", script, phase("Sled", "rotate", 20, 60, turn=planned))
+    found = judged(session, "T4", script, phase("Sled", "rotate", 20, 60, turn=planned))
     if finding := broken(found, "T4", holds):
         assert (finding.measured, finding.unit) == (pytest.approx(turned, abs=0.01), "°")
 
 
-def test_a_swing_is_measured_where_it_is_farthest(studio: Studio) -> None:
+def test_a_swing_is_measured_where_it_is_farthest(session: LiveSession) -> None:
     script = f"{SLED}\nbpy.data.objects['Runner'].data.transform(Matrix.Translation((0, 0, -2)))\n" + (
         "for frame, turn in ((1, 0), (20, 0.5), (40, 0), (60, -0.5), (80, 0)):\n"
         "    key(sled, frame, rotation_euler=(0, turn, 0))"
     )
     far = 2 * 2 * 0.2474  # the chord of half a radian about a point two metres above
     swing = phase("Sled", "swing", 1, 80, amplitude=far, turn=28.65, direction=(-0.97, 0, 0.25))
-    assert judged(studio, "T4", script, swing).passed == ("T4",)
-    report = verified(studio, "T4", a_motion({**swing, "amplitude": 1.2, "turn": 45}, last=120))
+    assert judged(session, "T4", script, swing).passed == ("T4",)
+    report = verified(session, "T4", a_motion({**swing, "amplitude": 1.2, "turn": 45}, last=120))
     amplitude, turn = report.findings
     assert amplitude.measured == pytest.approx(far, rel=0.01)
     assert turn.measured == pytest.approx(28.65, abs=0.1)
 
 
-def test_a_cloth_goes_as_far_as_its_points_on_average(studio: Studio) -> None:
+def test_a_cloth_goes_as_far_as_its_points_on_average(session: LiveSession) -> None:
     drape = phase("Flag", "deform", 1, 20, extent=5)
-    finding = the_finding(judged(studio, "T4", CURTAIN, drape, roles={"Flag": "cloth"}, last=20))
-    way = studio.run(
+    finding = the_finding(judged(session, "T4", CURTAIN, drape, roles={"Flag": "cloth"}, last=20))
+    way = session.run(
         """
 import numpy
 def places(frame):
@@ -298,9 +302,9 @@ float(numpy.linalg.norm(last - first, axis=1).mean()), float(numpy.linalg.norm((
 
 
 @pytest.mark.parametrize("height", [1.2, 3, 12])
-def test_a_body_falls_as_gravity_has_it(studio: Studio, height: float) -> None:
+def test_a_body_falls_as_gravity_has_it(session: LiveSession, height: float) -> None:
     script = DROP.replace("HEIGHT", str(height)) + RIGID
-    found = judged(studio, "T6", script, phase("Crate", "fall", 1, 50), roles=ROLES, last=60)
+    found = judged(session, "T6", script, phase("Crate", "fall", 1, 50), roles=ROLES, last=60)
     assert found.passed == ("T6",), [one.message for one in found.findings]
 
 
@@ -313,20 +317,20 @@ def keyed_fall(share: float) -> str:
 
 
 @pytest.mark.parametrize(("share", "holds"), [(0.91, True), (0.89, False), (1.09, True), (1.11, False)])
-def test_a_fall_is_a_tenth_faster_or_slower_at_most(studio: Studio, share: float, holds: bool) -> None:
-    found = judged(studio, "T6", keyed_fall(share), phase("Crate", "fall", 1, 21), roles=ROLES, last=60)
+def test_a_fall_is_a_tenth_faster_or_slower_at_most(session: LiveSession, share: float, holds: bool) -> None:
+    found = judged(session, "T6", keyed_fall(share), phase("Crate", "fall", 1, 21), roles=ROLES, last=60)
     if finding := broken(found, "T6", holds):
         assert (finding.measured, finding.unit) == (pytest.approx(share * G, rel=0.01), "m/s²")
         assert finding.tolerance == pytest.approx(G / 10, rel=1e-4)
 
 
 @pytest.mark.parametrize("interpolation", ["LINEAR", "BEZIER"])
-def test_two_keys_make_no_fall(studio: Studio, interpolation: str) -> None:
+def test_two_keys_make_no_fall(session: LiveSession, interpolation: str) -> None:
     script = DROP.replace("HEIGHT", "5") + (
         "key(crate, 1, location=(0, 0, 5))\nkey(crate, 24, location=(0, 0, 0.5))\n"
         + ("linear(crate)" if interpolation == "LINEAR" else "")
     )
-    finding = the_finding(judged(studio, "T6", script, phase("Crate", "fall", 1, 24), roles=ROLES, last=60))
+    finding = the_finding(judged(session, "T6", script, phase("Crate", "fall", 1, 24), roles=ROLES, last=60))
     assert finding.objects == ("Crate",)
     if interpolation == "LINEAR":
         assert finding.measured == pytest.approx(0, abs=0.01)
@@ -335,16 +339,16 @@ def test_two_keys_make_no_fall(studio: Studio, interpolation: str) -> None:
         assert abs(finding.measured - G) > 0.2 * G
 
 
-def test_on_the_moon_things_fall_as_on_the_moon(studio: Studio) -> None:
+def test_on_the_moon_things_fall_as_on_the_moon(session: LiveSession) -> None:
     script = DROP.replace("HEIGHT", "2") + RIGID + "scene.gravity = (0, 0, -1.62)"
-    found = judged(studio, "T6", script, phase("Crate", "fall", 1, 30), roles=ROLES, last=60)
+    found = judged(session, "T6", script, phase("Crate", "fall", 1, 30), roles=ROLES, last=60)
     assert found.passed == ("T6",)
 
 
-def test_a_fall_that_is_too_short_to_be_told_is_undecided(studio: Studio) -> None:
+def test_a_fall_that_is_too_short_to_be_told_is_undecided(session: LiveSession) -> None:
     script = DROP.replace("HEIGHT", "0.51") + RIGID
     fall = phase("Crate", "fall", 1, 10)
-    found = judged(studio, "T6", script, fall, roles=ROLES, last=60)
+    found = judged(session, "T6", script, fall, roles=ROLES, last=60)
     finding = the_finding(found)
     assert (finding.outcome, finding.objects) == ("undecided", ("Crate",))
 
@@ -353,13 +357,13 @@ def test_a_fall_that_is_too_short_to_be_told_is_undecided(studio: Studio) -> Non
 
 
 @pytest.mark.parametrize(("depth", "holds"), [(0.045, True), (0.055, False)])
-def test_what_lands_may_be_a_twentieth_deep(studio: Studio, depth: float, holds: bool) -> None:
+def test_what_lands_may_be_a_twentieth_deep(session: LiveSession, depth: float, holds: bool) -> None:
     script = DROP.replace("HEIGHT", "2") + (
         f"key(crate, 1, location=(0, 0, 2))\nkey(crate, 21, location=(0, 0, {0.5 - depth}))\n"
         "key(crate, 25, location=(0, 0, 0.5))"
     )
     land = phase("Crate", "translate", 1, 25)
-    found = judged(studio, "T6", script, land, roles=ROLES, last=60)
+    found = judged(session, "T6", script, land, roles=ROLES, last=60)
     if finding := broken(found, "T6", holds):
         assert finding.objects == ("Crate", "Floor")
         assert (finding.measured, finding.frame) == (pytest.approx(depth, abs=1e-3), 21)
@@ -367,7 +371,9 @@ def test_what_lands_may_be_a_twentieth_deep(studio: Studio, depth: float, holds:
 
 
 @pytest.mark.parametrize("floor", ["plane", "slab"])
-def test_what_is_above_at_one_frame_and_below_at_the_next_went_through(studio: Studio, floor: str) -> None:
+def test_what_is_above_at_one_frame_and_below_at_the_next_went_through(
+    session: LiveSession, floor: str
+) -> None:
     made = 'plane("Slab", (-9, -9), (9, 9))' if floor == "plane" else 'box("Slab", (-9, -9, -0.1), (9, 9, 0))'
     script = f"""
 scene.frame_start, scene.frame_end = 1, 60
@@ -378,7 +384,7 @@ key(bpy.data.objects["Shot root"], 11, location=(0, 0, -7.3))
 linear(bpy.data.objects["Shot root"])
 """
     found = judged(
-        studio, "T6", script, phase("Shot", "translate", 1, 11), roles={"Floor": "ground", "Shot": "rigid"}
+        session, "T6", script, phase("Shot", "translate", 1, 11), roles={"Floor": "ground", "Shot": "rigid"}
     )
     finding = the_finding(found)
     assert finding.objects == ("Shot", "Floor")
@@ -387,7 +393,7 @@ linear(bpy.data.objects["Shot root"])
     assert 0.98 <= (finding.measured or 0) <= 1.4
 
 
-def test_what_sinks_slowly_through_a_plane_is_in_it(studio: Studio) -> None:
+def test_what_sinks_slowly_through_a_plane_is_in_it(session: LiveSession) -> None:
     script = """
 scene.frame_start, scene.frame_end = 1, 60
 thing("Floor", plane("Slab", (-9, -9), (9, 9)), system_name="ground")
@@ -397,12 +403,12 @@ key(root, 60, location=(0, 0, -1))
 """
     roles = {"Floor": "ground", "Shot": "rigid"}
     finding = the_finding(
-        judged(studio, "T6", script, phase("Shot", "translate", 1, 60), roles=roles, last=60)
+        judged(session, "T6", script, phase("Shot", "translate", 1, 60), roles=roles, last=60)
     )
     assert finding.measured == pytest.approx(0.2, abs=0.03)  # half of it on either side
 
 
-def test_a_marble_in_a_bowl_is_in_its_hollow_and_not_in_its_clay(studio: Studio) -> None:
+def test_a_marble_in_a_bowl_is_in_its_hollow_and_not_in_its_clay(session: LiveSession) -> None:
     script = """
 scene.frame_start, scene.frame_end = 1, 60
 bowl = lathe("Clay", [(0, -0.1), (0.6, 0), (1, 0.5), (0.9, 0.5), (0.55, 0.1), (0, 0)])
@@ -415,28 +421,28 @@ scene.rigidbody_world.substeps_per_frame = 30
 """
     roles = {"Bowl": "ground", "Marble": "rigid"}
     roll = phase("Marble", "roll", 1, 60)
-    found = judged(studio, "T6", script, roll, roles=roles, last=60)
+    found = judged(session, "T6", script, roll, roles=roles, last=60)
     assert found.passed == ("T6",), [one.message for one in found.findings]
 
 
-def test_what_the_plan_sinks_into_a_ground_may_be_in_it(studio: Studio) -> None:
+def test_what_the_plan_sinks_into_a_ground_may_be_in_it(session: LiveSession) -> None:
     script = f"{SLED}\n{FLOOR}\nslide(20, 40)"
     roles = {"Floor": "ground", "Sled": "keyframed"}
     slide = phase("Sled", "translate", 20, 40)
-    finding = the_finding(judged(studio, "T6", script, slide, roles=roles))
+    finding = the_finding(judged(session, "T6", script, slide, roles=roles))
     assert finding.measured == pytest.approx(0.5, abs=0.02)
     sunk = {"kind": "EmbeddedIn", "part": "Sled", "host": "Floor", "depth": 0.5}
     plan = a_motion(slide, last=120, roles=roles, relations=(sunk,))
-    assert verified(studio, "T6", plan).passed == ("T6",)
+    assert verified(session, "T6", plan).passed == ("T6",)
 
 
-def test_a_wall_that_is_to_be_touched_stops_what_touches_it(studio: Studio) -> None:
+def test_a_wall_that_is_to_be_touched_stops_what_touches_it(session: LiveSession) -> None:
     script = f'{SLED}\nthing("Wall", box("Bricks", (2, -1, -1), (2.2, 1, 1)))\nslide(20, 40, way=2)'
     slide, roles = phase("Sled", "translate", 20, 40), {"Wall": "static", "Sled": "keyframed"}
-    assert judged(studio, "T6", script, slide, roles=roles).passed == ("T6",)
+    assert judged(session, "T6", script, slide, roles=roles).passed == ("T6",)
     leans = {"kind": "StableAgainst", "child": "Sled", "parent": "Wall"}
     plan = a_motion(slide, last=120, roles=roles, relations=(leans,))
-    finding = the_finding(verified(studio, "T6", plan))
+    finding = the_finding(verified(session, "T6", plan))
     assert finding.objects == ("Sled", "Wall")
     assert finding.measured == pytest.approx(0.5, abs=0.05)  # the wall is halfway into it
 
@@ -445,10 +451,12 @@ def test_a_wall_that_is_to_be_touched_stops_what_touches_it(studio: Studio) -> N
 
 
 @pytest.mark.parametrize(("jump", "holds"), [(0.24, True), (0.26, False)])
-def test_a_step_is_half_as_long_again_as_planned_at_most(studio: Studio, jump: float, holds: bool) -> None:
+def test_a_step_is_half_as_long_again_as_planned_at_most(
+    session: LiveSession, jump: float, holds: bool
+) -> None:
     # At 4 m/s and 24 frames a second a step is a sixth of a metre.
     script = f"{SLED}\nslide(20, 29)\nkey(sled, 30, location=(1 + {jump}, 0, 0))\nlinear(sled)"
-    found = judged(studio, "T6", script, phase("Sled", "translate", 20, 40, top_speed=4))
+    found = judged(session, "T6", script, phase("Sled", "translate", 20, 40, top_speed=4))
     if finding := broken(found, "T6", holds):
         assert (finding.measured, finding.tolerance, finding.frame) == (
             pytest.approx(jump, abs=1e-4),
@@ -457,10 +465,10 @@ def test_a_step_is_half_as_long_again_as_planned_at_most(studio: Studio, jump: f
         )
 
 
-def test_a_leap_is_more_than_any_planned_way_explains(studio: Studio) -> None:
+def test_a_leap_is_more_than_any_planned_way_explains(session: LiveSession) -> None:
     script = f"{SLED}\nslide(20, 39, way=0.5)\nkey(sled, 40, location=(3, 0, 0))\nlinear(sled)"
     slide = phase("Sled", "translate", 20, 60, extent=3)
-    finding = the_finding(judged(studio, "T6", script, slide))
+    finding = the_finding(judged(session, "T6", script, slide))
     assert (finding.measured, finding.frame) == (pytest.approx(2.5, abs=1e-3), 40)
     assert finding.tolerance == pytest.approx(1.5 * 2 * 3 / 40)  # twice the mean speed, half as much again
 
@@ -469,66 +477,68 @@ def test_a_leap_is_more_than_any_planned_way_explains(studio: Studio) -> None:
 
 
 @pytest.mark.parametrize(("speed", "holds"), [(0.009, True), (0.011, False)])
-def test_what_settles_is_slower_than_a_centimetre_a_second(studio: Studio, speed: float, holds: bool) -> None:
+def test_what_settles_is_slower_than_a_centimetre_a_second(
+    session: LiveSession, speed: float, holds: bool
+) -> None:
     script = f"{SLED}\nslide(1, 120, way={speed} * 119 / 24)"
-    found = judged(studio, "T7", script, phase("Sled", "settle", 20, 120))
+    found = judged(session, "T7", script, phase("Sled", "settle", 20, 120))
     if finding := broken(found, "T7", holds):
         assert finding.objects == ("Sled",)
         assert (finding.measured, finding.tolerance) == (pytest.approx(speed, rel=1e-3), pytest.approx(0.01))
 
 
-def test_a_large_thing_may_be_faster_in_proportion(studio: Studio) -> None:
+def test_a_large_thing_may_be_faster_in_proportion(session: LiveSession) -> None:
     script = f"{SLED}\nbpy.data.objects['Runner'].data.transform(Matrix.Scale(3, 4))\nslide(1, 120, way=0.1)"
-    assert judged(studio, "T7", script, phase("Sled", "settle", 20, 120)).passed == ("T7",)
+    assert judged(session, "T7", script, phase("Sled", "settle", 20, 120)).passed == ("T7",)
 
 
 @pytest.mark.parametrize(("stops", "holds"), [(96, True), (99, False)])
-def test_rest_is_asked_for_in_the_last_second_only(studio: Studio, stops: int, holds: bool) -> None:
-    found = judged(studio, "T7", f"{SLED}\nslide(20, {stops})", phase("Sled", "settle", 20, 120))
+def test_rest_is_asked_for_in_the_last_second_only(session: LiveSession, stops: int, holds: bool) -> None:
+    found = judged(session, "T7", f"{SLED}\nslide(20, {stops})", phase("Sled", "settle", 20, 120))
     if finding := broken(found, "T7", holds):
         assert finding.frame in range(97, 100)
 
 
 @pytest.mark.parametrize(("stops", "holds"), [(55, True), (58, False)])
 def test_rest_is_asked_for_in_the_last_quarter_of_a_short_phase(
-    studio: Studio, stops: int, holds: bool
+    session: LiveSession, stops: int, holds: bool
 ) -> None:
-    found = judged(studio, "T7", f"{SLED}\nslide(20, {stops})", phase("Sled", "settle", 40, 60))
+    found = judged(session, "T7", f"{SLED}\nslide(20, {stops})", phase("Sled", "settle", 40, 60))
     broken(found, "T7", holds)
 
 
 @pytest.mark.parametrize(("rate", "holds"), [(0.095, True), (0.105, False)])
 def test_what_settles_turns_by_a_tenth_of_a_radian_a_second_at_most(
-    studio: Studio, rate: float, holds: bool
+    session: LiveSession, rate: float, holds: bool
 ) -> None:
     script = f"{SLED}\nkey(sled, 1, rotation_euler=(0, 0, 0))\n" + (
         f"key(sled, 120, rotation_euler=(0, 0, {rate} * 119 / 24))\nlinear(sled)"
     )
-    found = judged(studio, "T7", script, phase("Sled", "settle", 20, 120))
+    found = judged(session, "T7", script, phase("Sled", "settle", 20, 120))
     if finding := broken(found, "T7", holds):
         assert (finding.measured, finding.unit) == (pytest.approx(rate, rel=1e-3), "rad/s")
 
 
-def test_a_body_that_lands_comes_to_rest_but_not_while_it_falls(studio: Studio) -> None:
+def test_a_body_that_lands_comes_to_rest_but_not_while_it_falls(session: LiveSession) -> None:
     script = DROP.replace("HEIGHT", "2") + RIGID
-    found = judged(studio, "T7", script, phase("Crate", "settle", 13, 60), roles=ROLES, last=60)
+    found = judged(session, "T7", script, phase("Crate", "settle", 13, 60), roles=ROLES, last=60)
     assert found.passed == ("T7",)
-    early = verified(studio, "T7", a_motion(phase("Crate", "settle", 5, 13), roles=ROLES))
+    early = verified(session, "T7", a_motion(phase("Crate", "settle", 5, 13), roles=ROLES))
     assert the_finding(early).measured == pytest.approx(
         G * 11.5 / 24, rel=0.03
     )  # it has fallen for half a second
 
 
-def test_a_cloth_that_still_swings_is_not_at_rest(studio: Studio) -> None:
+def test_a_cloth_that_still_swings_is_not_at_rest(session: LiveSession) -> None:
     settle = phase("Flag", "settle", 1, 20)
-    finding = the_finding(judged(studio, "T7", CURTAIN, settle, roles={"Flag": "cloth"}, last=20))
+    finding = the_finding(judged(session, "T7", CURTAIN, settle, roles={"Flag": "cloth"}, last=20))
     assert "its points move with" in finding.message
     assert (finding.measured or 0) > 0.5
 
 
 @pytest.mark.parametrize(("way", "holds"), [(0.008, True), (0.03, False)])
-def test_what_is_held_does_not_drift(studio: Studio, way: float, holds: bool) -> None:
-    found = judged(studio, "T7", f"{SLED}\nslide(20, 119, way={way})", phase("Sled", "hold", 20, 119))
+def test_what_is_held_does_not_drift(session: LiveSession, way: float, holds: bool) -> None:
+    found = judged(session, "T7", f"{SLED}\nslide(20, 119, way={way})", phase("Sled", "hold", 20, 119))
     if finding := broken(found, "T7", holds):
         assert finding.measured == pytest.approx(way, abs=1e-4)
         assert "drifts" in finding.message
@@ -537,41 +547,41 @@ def test_what_is_held_does_not_drift(studio: Studio, way: float, holds: bool) ->
 # What cannot be told
 
 
-def test_a_missing_actor_is_named_and_no_other_one_is_hidden_by_it(studio: Studio) -> None:
+def test_a_missing_actor_is_named_and_no_other_one_is_hidden_by_it(session: LiveSession) -> None:
     script = f"{SLED}\nslide(30, 40)"
     phases = phase("Ghost", "translate", 20, 40), phase("Sled", "translate", 20, 40)
-    ghost, sled = judged(studio, "T2", script, *phases).findings
+    ghost, sled = judged(session, "T2", script, *phases).findings
     assert (ghost.outcome, ghost.objects) == ("undecided", ("Ghost",))
     assert (sled.outcome, sled.measured) == ("broken", 10)
 
 
-def test_half_a_turn_a_frame_cannot_be_told_from_the_other_way_round(studio: Studio) -> None:
+def test_half_a_turn_a_frame_cannot_be_told_from_the_other_way_round(session: LiveSession) -> None:
     script = f"{SLED}\nkey(sled, 1, rotation_euler=(0, 0, 0))\nkey(sled, 21, rotation_euler=(0, 0, 60))\nlinear(sled)"
-    finding = the_finding(judged(studio, "T4", script, phase("Sled", "rotate", 1, 21, turn=3438)))
+    finding = the_finding(judged(session, "T4", script, phase("Sled", "rotate", 1, 21, turn=3438)))
     assert finding.outcome == "undecided"
     assert "turns so far in a frame" in finding.message
 
 
-def test_a_timeline_that_is_too_long_is_refused_and_not_passed(studio: Studio) -> None:
-    found = judged(studio, "T2", f"{SLED}\nslide(20, 40)", phase("Sled", "translate", 20, 40), last=9000)
+def test_a_timeline_that_is_too_long_is_refused_and_not_passed(session: LiveSession) -> None:
+    found = judged(session, "T2", f"{SLED}\nslide(20, 40)", phase("Sled", "translate", 20, 40), last=9000)
     finding = the_finding(found)
     assert finding.outcome == "undecided"
     assert "9000 frames would have to be visited" in finding.message
 
 
-def test_what_is_not_baked_is_stepped_and_the_scene_left_at_its_frame(studio: Studio) -> None:
-    build(studio, DROP.replace("HEIGHT", "3") + RIGID + "scene.frame_set(5)")
+def test_what_is_not_baked_is_stepped_and_the_scene_left_at_its_frame(session: LiveSession) -> None:
+    build(session, DROP.replace("HEIGHT", "3") + RIGID + "scene.frame_set(5)")
     plan = a_motion(phase("Crate", "fall", 1, 30), phase("Crate", "settle", 31, 60), roles=ROLES)
-    found = verified(studio, "T2,T6,T7", plan)
+    found = verified(session, "T2,T6,T7", plan)
     assert found.passed == ("T2", "T6", "T7"), [one.message for one in found.findings]
-    assert studio.run("bpy.context.scene.frame_current") == 5
+    assert session.run("bpy.context.scene.frame_current") == 5
 
 
-def test_what_a_jump_left_behind_is_not_taken_for_a_simulation(studio: Studio) -> None:
+def test_what_a_jump_left_behind_is_not_taken_for_a_simulation(session: LiveSession) -> None:
     plan = a_motion(phase("Flag", "deform", 1, 20, extent=5), roles={"Flag": "cloth"}, last=20)
     ways: list[float | None] = []
     for jump in ("", "scene.frame_set(1)\nscene.frame_set(20)"):
-        studio.empty()
-        build(studio, f"{CURTAIN}\nbpy.context.view_layer.update()\n{jump}")
-        ways.append(the_finding(verified(studio, "T4", plan)).measured)
+        session.empty()
+        build(session, f"{CURTAIN}\nbpy.context.view_layer.update()\n{jump}")
+        ways.append(the_finding(verified(session, "T4", plan)).measured)
     assert ways[0] == pytest.approx(ways[1], rel=1e-3)

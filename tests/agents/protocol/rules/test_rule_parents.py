@@ -8,7 +8,7 @@ import pytest
 from scenes import build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -34,9 +34,9 @@ root, seat, leg = (bpy.data.objects[name] for name in ("Chair root", "Seat", "Le
         'leg.parent, leg.parent_type, leg.parent_bone = rig, "BONE", "Bone"',
     ],
 )
-def test_meshes_whose_parents_lead_to_their_root_are_in_order(studio: Studio, more: str) -> None:
-    build(studio, SCENE + more)
-    report = verified(studio, "G")
+def test_meshes_whose_parents_lead_to_their_root_are_in_order(session: LiveSession, more: str) -> None:
+    build(session, SCENE + more)
+    report = verified(session, "G")
     assert report.findings == ()
     assert report.passed == ("G1", "G2", "G3")
 
@@ -73,20 +73,20 @@ def test_meshes_whose_parents_lead_to_their_root_are_in_order(studio: Studio, mo
     ],
 )  # fmt: skip
 def test_what_is_not_anchored_is_found_by_its_rule(
-    studio: Studio, change: str, rule: str, objects: tuple[str, ...]
+    session: LiveSession, change: str, rule: str, objects: tuple[str, ...]
 ) -> None:
-    build(studio, SCENE + change)
-    found = the_finding(verified(studio, rule))
+    build(session, SCENE + change)
+    found = the_finding(verified(session, rule))
     assert (found.rule, found.severity, found.outcome) == (rule, "hard", "broken")
     assert found.objects == objects
 
 
-def test_every_mesh_of_an_object_without_a_root_is_told(studio: Studio) -> None:
-    build(studio, SCENE + "bpy.data.objects.remove(root)")
-    report = verified(studio, "G")
+def test_every_mesh_of_an_object_without_a_root_is_told(session: LiveSession) -> None:
+    build(session, SCENE + "bpy.data.objects.remove(root)")
+    report = verified(session, "G")
     assert {one.objects for one in report.findings} == {("Seat", "Chair"), ("Leg", "Chair")}
     assert report.passed == ("G2", "G3")
 
 
-def test_without_objects_there_is_nothing_to_judge(studio: Studio) -> None:
-    assert set(verified(studio, "G").idle) == {"G1", "G2", "G3"}
+def test_without_objects_there_is_nothing_to_judge(session: LiveSession) -> None:
+    assert set(verified(session, "G").idle) == {"G1", "G2", "G3"}

@@ -8,7 +8,7 @@ import pytest
 from scenes import a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -37,12 +37,14 @@ def crate(depth: float, side: float = 0.2) -> str:
         ("a sheet", 1.0, 0.001),
     ],
 )
-def test_a_depth_is_noise_up_to_the_tolerance(studio: Studio, floor: str, side: float, noise: float) -> None:
-    build(studio, FLOORS[floor] + crate(0.95 * noise, side))
-    assert verified(studio, "V2").passed == ("V2",)
-    studio.empty()
-    build(studio, FLOORS[floor] + crate(1.05 * noise, side))
-    found = the_finding(verified(studio, "V2"))
+def test_a_depth_is_noise_up_to_the_tolerance(
+    session: LiveSession, floor: str, side: float, noise: float
+) -> None:
+    build(session, FLOORS[floor] + crate(0.95 * noise, side))
+    assert verified(session, "V2").passed == ("V2",)
+    session.empty()
+    build(session, FLOORS[floor] + crate(1.05 * noise, side))
+    found = the_finding(verified(session, "V2"))
     assert (found.rule, found.severity, found.outcome) == ("V2", "hard", "broken")
     assert set(found.objects) == {"Planks", "Ground"}
     assert found.measured == pytest.approx(1.05 * noise, abs=3e-5)
@@ -52,13 +54,13 @@ def test_a_depth_is_noise_up_to_the_tolerance(studio: Studio, floor: str, side: 
     assert found.at[2] == pytest.approx(0, abs=2 * noise)
 
 
-def test_a_plan_may_ask_for_less(studio: Studio) -> None:
-    build(studio, FLOOR + crate(0.0015))
-    assert verified(studio, "V2").passed == ("V2",)
+def test_a_plan_may_ask_for_less(session: LiveSession) -> None:
+    build(session, FLOOR + crate(0.0015))
+    assert verified(session, "V2").passed == ("V2",)
     plan = a_plan(
         {"kind": "Upright", "a": "Crate"}, tolerances={"penetration": 5e-4, "penetration_share": 0.001}
     )
-    assert the_finding(verified(studio, "V2", plan)).tolerance == pytest.approx(5e-4)
+    assert the_finding(verified(session, "V2", plan)).tolerance == pytest.approx(5e-4)
 
 
 @pytest.mark.parametrize("floor", FLOORS.values(), ids=FLOORS)
@@ -72,9 +74,9 @@ def test_a_plan_may_ask_for_less(studio: Studio) -> None:
     ],
     ids=["a point", "a face", "an edge", "a rim"],
 )
-def test_what_just_touches_does_not_go_through(studio: Studio, floor: str, shape: str) -> None:
-    build(studio, floor + shape)
-    assert verified(studio, "V2").passed == ("V2",)
+def test_what_just_touches_does_not_go_through(session: LiveSession, floor: str, shape: str) -> None:
+    build(session, floor + shape)
+    assert verified(session, "V2").passed == ("V2",)
 
 
 @pytest.mark.parametrize(
@@ -84,9 +86,9 @@ def test_what_just_touches_does_not_go_through(studio: Studio, floor: str, shape
         'bpy.data.objects["Floor root"]["contact_with"] = ["Crate root"]',
     ],
 )
-def test_what_is_declared_may_be_in_each_other(studio: Studio, said: str) -> None:
-    build(studio, FLOOR + crate(0.05) + said)
-    assert verified(studio, "V2").passed == ("V2",)
+def test_what_is_declared_may_be_in_each_other(session: LiveSession, said: str) -> None:
+    build(session, FLOOR + crate(0.05) + said)
+    assert verified(session, "V2").passed == ("V2",)
 
 
 @pytest.mark.parametrize(
@@ -100,19 +102,19 @@ def test_what_is_declared_may_be_in_each_other(studio: Studio, said: str) -> Non
     ],
 )
 def test_relations_that_join_declare_it(
-    studio: Studio, relation: dict[str, object], is_declared: bool
+    session: LiveSession, relation: dict[str, object], is_declared: bool
 ) -> None:
-    build(studio, FLOOR + crate(0.05))
-    report = verified(studio, "V2", a_plan(relation))
+    build(session, FLOOR + crate(0.05))
+    report = verified(session, "V2", a_plan(relation))
     assert report.passed == (("V2",) if is_declared else ())
 
 
-def test_parts_of_one_object_are_no_exception(studio: Studio) -> None:
+def test_parts_of_one_object_are_no_exception(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         'thing("Cup", box("Mug", (0, 0, 0), (0.1, 0.1, 0.1)), box("Handle", (0.095, 0.04, 0.02), (0.15, 0.06, 0.08)))',
     )
-    found = the_finding(verified(studio, "V2"))
+    found = the_finding(verified(session, "V2"))
     assert set(found.objects) == {"Mug", "Handle"}
     assert found.measured == pytest.approx(0.005, abs=3e-5)
 
@@ -122,26 +124,26 @@ def test_parts_of_one_object_are_no_exception(studio: Studio) -> None:
     ["crate.hide_render = True", 'bpy.data.collections["Crate"].hide_render = True',
      'bpy.context.view_layer.layer_collection.children["set"].exclude = True'],
 )  # fmt: skip
-def test_what_no_render_shows_is_in_nothings_way(studio: Studio, hidden: str) -> None:
-    build(studio, FLOOR + crate(0.05) + hidden)
-    assert set(verified(studio, "V2").idle) == {"V2"}
+def test_what_no_render_shows_is_in_nothings_way(session: LiveSession, hidden: str) -> None:
+    build(session, FLOOR + crate(0.05) + hidden)
+    assert set(verified(session, "V2").idle) == {"V2"}
 
 
-def test_what_is_rendered_but_not_evaluated_is_undecided(studio: Studio) -> None:
-    build(studio, FLOOR + crate(0.05) + "crate.hide_viewport = True")
-    found = the_finding(verified(studio, "V2"))
+def test_what_is_rendered_but_not_evaluated_is_undecided(session: LiveSession) -> None:
+    build(session, FLOOR + crate(0.05) + "crate.hide_viewport = True")
+    found = the_finding(verified(session, "V2"))
     assert (found.objects, found.outcome, found.severity) == (("Planks",), "undecided", "hard")
 
 
 @pytest.mark.parametrize("kind", ["box", "ball", "plane"])
-def test_something_that_is_there_twice_is_found(studio: Studio, kind: str) -> None:
+def test_something_that_is_there_twice_is_found(session: LiveSession, kind: str) -> None:
     made = {
         "box": 'box("{}", (-0.2, -0.2, 0), (0.2, 0.2, 0.4))',
         "ball": 'ball("{}", 0.2)',
         "plane": 'plane("{}", (-0.2, -0.2), (0.2, 0.2), turn=(10, 20, 0))',
     }[kind]
-    build(studio, f'thing("One", {made.format("A")})\nthing("Other", {made.format("B")})')
-    found = the_finding(verified(studio, "V2"))
+    build(session, f'thing("One", {made.format("A")})\nthing("Other", {made.format("B")})')
+    found = the_finding(verified(session, "V2"))
     assert set(found.objects) == {"A", "B"}
     if kind == "plane":
         assert found.outcome == "undecided"
@@ -161,19 +163,19 @@ INSIDE_OUT = "shell.data.flip_normals()"
 
 
 @pytest.mark.parametrize("turned", [INSIDE_OUT, "camera((2, -2, 1.5), (0, 0, 1))"])
-def test_a_room_made_of_one_box_is_hollow(studio: Studio, turned: str) -> None:
-    build(studio, ROOM.format(turned=turned, through=0))
-    assert verified(studio, "V2").passed == ("V2",)
-    studio.empty()
-    build(studio, ROOM.format(turned=turned, through=0.02))
-    found = the_finding(verified(studio, "V2"))
+def test_a_room_made_of_one_box_is_hollow(session: LiveSession, turned: str) -> None:
+    build(session, ROOM.format(turned=turned, through=0))
+    assert verified(session, "V2").passed == ("V2",)
+    session.empty()
+    build(session, ROOM.format(turned=turned, through=0.02))
+    found = the_finding(verified(session, "V2"))
     assert set(found.objects) == {"Shell", "Frame"}
     assert found.measured == pytest.approx(0.02, abs=3e-5)
 
 
-def test_what_is_hidden_in_something_solid_is_found(studio: Studio) -> None:
-    build(studio, ROOM.format(turned="", through=0))
-    found = verified(studio, "V2").findings
+def test_what_is_hidden_in_something_solid_is_found(session: LiveSession) -> None:
+    build(session, ROOM.format(turned="", through=0))
+    found = verified(session, "V2").findings
     assert {frozenset(one.objects) for one in found} == {
         frozenset(("Shell", "Seat")),
         frozenset(("Shell", "Frame")),
@@ -190,10 +192,10 @@ thing("Post", box("Wood", (2, 2, -0.2), (2.1, 2.1, 1)))
 
 @pytest.mark.parametrize(("first", "last", "frame"), [(0.3, -0.05, 20), (-0.05, 0.3, 1)])
 def test_what_moves_is_looked_at_at_both_ends_of_the_timeline(
-    studio: Studio, first: float, last: float, frame: int
+    session: LiveSession, first: float, last: float, frame: int
 ) -> None:
-    build(studio, FLOOR + crate(0) + MOVING.format(first, last) + "scene.frame_set(10)")
-    report = verified(studio, "V2")
+    build(session, FLOOR + crate(0) + MOVING.format(first, last) + "scene.frame_set(10)")
+    report = verified(session, "V2")
     # What stands still is told once.
     by_name = {frozenset(one.objects): one for one in report.findings}
     assert set(by_name) == {frozenset(("Wood", "Ground")), frozenset(("Planks", "Ground"))}
@@ -201,29 +203,29 @@ def test_what_moves_is_looked_at_at_both_ends_of_the_timeline(
     moving = by_name[frozenset(("Planks", "Ground"))]
     assert moving.frame == frame
     assert moving.measured == pytest.approx(0.05, abs=3e-5)
-    assert studio.run("bpy.context.scene.frame_current") == 10
+    assert session.run("bpy.context.scene.frame_current") == 10
 
 
-def test_a_fluids_domain_is_around_what_is_in_it(studio: Studio) -> None:
+def test_a_fluids_domain_is_around_what_is_in_it(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         FLOOR + 'tank = box("Tank", (-1, -1, -0.2), (1, 1, 1))\nthing("Water", tank)\n'
         'domain = tank.modifiers.new("Fluid", "FLUID")\ndomain.fluid_type = "DOMAIN"',
     )
-    assert verified(studio, "V2").passed == ("V2",)
+    assert verified(session, "V2").passed == ("V2",)
 
 
-def test_particles_are_no_surface_of_what_emits_them(studio: Studio) -> None:
+def test_particles_are_no_surface_of_what_emits_them(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         FLOOR + 'lawn = plane("Lawn", (-1, -1), (1, 1))\nthing("Garden", lawn)\n'
         'blade = box("Blade", (0, 0, -0.1), (0.01, 0.01, 0.1), at=(9, 9, 1))\nthing("Grass", blade)\n'
         'lawn.modifiers.new("Hair", "PARTICLE_SYSTEM")\nsettings = lawn.particle_systems[0].settings\n'
         'settings.type, settings.count, settings.render_type = "HAIR", 50, "OBJECT"\nsettings.instance_object = blade',
     )
-    assert verified(studio, "V2").passed == ("V2",)
+    assert verified(session, "V2").passed == ("V2",)
 
 
-def test_one_mesh_alone_goes_through_nothing(studio: Studio) -> None:
-    build(studio, FLOOR)
-    assert set(verified(studio, "V2").idle) == {"V2"}
+def test_one_mesh_alone_goes_through_nothing(session: LiveSession) -> None:
+    build(session, FLOOR)
+    assert set(verified(session, "V2").idle) == {"V2"}

@@ -8,7 +8,7 @@ import pytest
 from scenes import a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
     from agents.plan.scene import ScenePlan
 
@@ -43,13 +43,13 @@ def plan(
 
 
 @pytest.mark.parametrize("axis", range(3))
-def test_an_extent_may_be_a_tenth_off(studio: Studio, axis: int) -> None:
-    build(studio, TABLE)
+def test_an_extent_may_be_a_tenth_off(session: LiveSession, axis: int) -> None:
+    build(session, TABLE)
     size = [1.2, 0.8, 0.7]
     for factor, holds in ((1 / 1.099, True), (1 / 1.101, False), (1 / 0.901, True), (1 / 0.899, False)):
         planned = list(size)
         planned[axis] = size[axis] * factor
-        report = verified(studio, "R2", plan((planned[0], planned[1], planned[2])))
+        report = verified(session, "R2", plan((planned[0], planned[1], planned[2])))
         if holds:
             assert report.passed == ("R2",)
         else:
@@ -60,10 +60,10 @@ def test_an_extent_may_be_a_tenth_off(studio: Studio, axis: int) -> None:
             assert f"along {'XYZ'[axis]}" in found.message
 
 
-def test_a_sheet_may_have_no_thickness(studio: Studio) -> None:
-    build(studio, 'thing("Table", plane("Cloth", (-0.6, -0.4), (0.6, 0.4)))')
-    assert verified(studio, "R2", plan((1.2, 0.8, 0.002))).passed == ("R2",)
-    found = the_finding(verified(studio, "R2", plan((1.2, 0.8, 0.003))))
+def test_a_sheet_may_have_no_thickness(session: LiveSession) -> None:
+    build(session, 'thing("Table", plane("Cloth", (-0.6, -0.4), (0.6, 0.4)))')
+    assert verified(session, "R2", plan((1.2, 0.8, 0.002))).passed == ("R2",)
+    found = the_finding(verified(session, "R2", plan((1.2, 0.8, 0.003))))
     assert found.measured == pytest.approx(0, abs=1e-6)
 
 
@@ -78,9 +78,9 @@ def test_a_sheet_may_have_no_thickness(studio: Studio) -> None:
         'bpy.data.collections["Table"].objects.link(hint)',
     ],
 )
-def test_a_size_is_measured_along_the_objects_own_axes(studio: Studio, change: str) -> None:
-    build(studio, TABLE + change)
-    assert verified(studio, "R2", plan()).passed == ("R2",)
+def test_a_size_is_measured_along_the_objects_own_axes(session: LiveSession, change: str) -> None:
+    build(session, TABLE + change)
+    assert verified(session, "R2", plan()).passed == ("R2",)
 
 
 @pytest.mark.parametrize(
@@ -91,9 +91,11 @@ def test_a_size_is_measured_along_the_objects_own_axes(studio: Studio, change: s
         ("top.data.transform(Matrix.Scale(2, 4, (1, 0, 0)))", 2.4),
     ],
 )
-def test_what_changes_the_size_is_found_wherever_it_is(studio: Studio, change: str, measured: float) -> None:
-    build(studio, TABLE + change)
-    assert the_finding(verified(studio, "R2", plan())).measured == pytest.approx(measured, rel=1e-5)
+def test_what_changes_the_size_is_found_wherever_it_is(
+    session: LiveSession, change: str, measured: float
+) -> None:
+    build(session, TABLE + change)
+    assert the_finding(verified(session, "R2", plan())).measured == pytest.approx(measured, rel=1e-5)
 
 
 WORDS = """
@@ -111,10 +113,10 @@ maker.instance_type, maker.instance_collection, maker.scale = "COLLECTION", grow
 
 
 @pytest.mark.parametrize(("script", "height"), [(WORDS, 0.2), (GROWN, 0.2)], ids=["text", "an instance"])
-def test_sizes_are_those_of_what_is_seen(studio: Studio, script: str, height: float) -> None:
-    build(studio, script)
+def test_sizes_are_those_of_what_is_seen(session: LiveSession, script: str, height: float) -> None:
+    build(session, script)
     wide = (0.6, 0.4, height) if script is GROWN else (9.0, 9.0, height)
-    found = verified(studio, "R2", plan(wide)).findings
+    found = verified(session, "R2", plan(wide)).findings
     assert [one.message.split(" along ")[1][0] for one in found] == ([] if script is GROWN else ["X", "Y"])
 
 
@@ -123,11 +125,11 @@ def test_sizes_are_those_of_what_is_seen(studio: Studio, script: str, height: fl
 
 @pytest.mark.parametrize(("size", "most"), [((1.2, 0.8, 0.7), 0.05 * 1.6031), ((0.05, 0.05, 0.05), 0.01)])
 def test_a_root_may_be_a_little_off_its_place(
-    studio: Studio, size: tuple[float, float, float], most: float
+    session: LiveSession, size: tuple[float, float, float], most: float
 ) -> None:
-    build(studio, TABLE)
-    assert verified(studio, "R3", plan(size, (1, 2 + 0.99 * most, 0))).passed == ("R3",)
-    found = the_finding(verified(studio, "R3", plan(size, (1, 2 + 1.01 * most, 0))))
+    build(session, TABLE)
+    assert verified(session, "R3", plan(size, (1, 2 + 0.99 * most, 0))).passed == ("R3",)
+    found = the_finding(verified(session, "R3", plan(size, (1, 2 + 1.01 * most, 0))))
     assert (found.rule, found.severity, found.objects) == ("R3", "hard", ("Table", "Table root"))
     assert found.measured == pytest.approx(1.01 * most, abs=1e-5)
     assert found.tolerance == pytest.approx(most, abs=1e-5)
@@ -135,53 +137,53 @@ def test_a_root_may_be_a_little_off_its_place(
 
 
 @pytest.mark.parametrize("rotation", [(0, 0, 30 + 4.9), (4.9, 0, 30), (0, 0, 390)])
-def test_a_root_may_be_turned_a_little(studio: Studio, rotation: tuple[float, float, float]) -> None:
-    build(studio, TABLE)
-    assert verified(studio, "R3", plan(rotation=rotation)).passed == ("R3",)
+def test_a_root_may_be_turned_a_little(session: LiveSession, rotation: tuple[float, float, float]) -> None:
+    build(session, TABLE)
+    assert verified(session, "R3", plan(rotation=rotation)).passed == ("R3",)
 
 
 @pytest.mark.parametrize(
     ("rotation", "off"), [((0, 0, 35.1), 5.1), ((0, -5.1, 30), 5.1), ((0, 0, -150), 180), ((180, 0, 30), 180)]
 )
 def test_a_root_that_is_turned_away_is_found(
-    studio: Studio, rotation: tuple[float, float, float], off: float
+    session: LiveSession, rotation: tuple[float, float, float], off: float
 ) -> None:
-    build(studio, TABLE)
-    found = the_finding(verified(studio, "R3", plan(rotation=rotation)))
+    build(session, TABLE)
+    found = the_finding(verified(session, "R3", plan(rotation=rotation)))
     assert (found.measured, found.tolerance) == (pytest.approx(off, abs=0.02), 5)
     assert found.unit == "°"
 
 
-def test_meshes_in_their_place_do_not_stand_for_the_root(studio: Studio) -> None:
+def test_meshes_in_their_place_do_not_stand_for_the_root(session: LiveSession) -> None:
     build(
-        studio, TABLE + "root.location = (0, 0, 0)\nfor one in (top, leg):\n    one.location = (1.2, 1.7, 0)"
+        session, TABLE + "root.location = (0, 0, 0)\nfor one in (top, leg):\n    one.location = (1.2, 1.7, 0)"
     )
-    assert the_finding(verified(studio, "R3", plan())).measured == pytest.approx(5**0.5, abs=1e-5)
+    assert the_finding(verified(session, "R3", plan())).measured == pytest.approx(5**0.5, abs=1e-5)
 
 
-def test_what_moves_is_where_it_is_planned_at_the_first_frame(studio: Studio) -> None:
+def test_what_moves_is_where_it_is_planned_at_the_first_frame(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         TABLE + "scene.frame_start, scene.frame_end = 5, 20\nkey(root, 5, location=(1, 2, 0))\n"
         "key(root, 20, location=(4, 2, 0))\nscene.frame_set(20)",
     )
-    assert verified(studio, "R2,R3", plan()).passed == ("R2", "R3")
-    studio.run("bpy.context.scene.frame_start = 20")
-    assert the_finding(verified(studio, "R3", plan())).measured == pytest.approx(3, abs=1e-5)
+    assert verified(session, "R2,R3", plan()).passed == ("R2", "R3")
+    session.run("bpy.context.scene.frame_start = 20")
+    assert the_finding(verified(session, "R3", plan())).measured == pytest.approx(3, abs=1e-5)
 
 
-def test_a_planned_field_has_a_place_but_no_size(studio: Studio) -> None:
+def test_a_planned_field_has_a_place_but_no_size(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         'wind = bpy.data.objects.new("Table", None)\nscene.collection.objects.link(wind)\nwind.location = (1, 2, 3)',
     )
-    report = verified(studio, "R2,R3", plan(position=(1, 2, 0), rotation=(0, 0, 0), role="force"))
+    report = verified(session, "R2,R3", plan(position=(1, 2, 0), rotation=(0, 0, 0), role="force"))
     assert the_finding(report).measured == pytest.approx(3, abs=1e-6)
 
 
-def test_what_is_not_there_is_never_in_its_place(studio: Studio) -> None:
-    build(studio, 'thing("Chair", box("Seat", (0, 0, 0), (1, 1, 1)))')
-    report = verified(studio, "R2,R3", plan())
+def test_what_is_not_there_is_never_in_its_place(session: LiveSession) -> None:
+    build(session, 'thing("Chair", box("Seat", (0, 0, 0), (1, 1, 1)))')
+    report = verified(session, "R2,R3", plan())
     assert [(one.rule, one.outcome, one.objects) for one in report.findings] == [
         ("R2", "undecided", ("Table",)),
         ("R3", "undecided", ("Table",)),
@@ -208,9 +210,9 @@ CRATE = 'crate = box("Planks", (0, 0, 0), (1, 1, 1))\nroot = thing("Crate", crat
         "rigid(crate, 'PASSIVE')\ncrate.scale = (2, 2, 2)",
     ],
 )
-def test_geometry_that_is_sound_is_passed(studio: Studio, more: str) -> None:
-    build(studio, CRATE + more)
-    assert verified(studio, "R4").passed == ("R4",)
+def test_geometry_that_is_sound_is_passed(session: LiveSession, more: str) -> None:
+    build(session, CRATE + more)
+    assert verified(session, "R4").passed == ("R4",)
 
 
 @pytest.mark.parametrize(
@@ -232,10 +234,10 @@ def test_geometry_that_is_sound_is_passed(studio: Studio, more: str) -> None:
     ],
 )  # fmt: skip
 def test_geometry_that_is_not_sound_is_found(
-    studio: Studio, change: str, objects: tuple[str, ...], measured: float | None, why: str
+    session: LiveSession, change: str, objects: tuple[str, ...], measured: float | None, why: str
 ) -> None:
-    build(studio, CRATE + change)
-    found = the_finding(verified(studio, "R4"))
+    build(session, CRATE + change)
+    found = the_finding(verified(session, "R4"))
     assert (found.rule, found.severity, found.outcome) == ("R4", "hard", "broken")
     assert found.objects == objects
     assert found.measured == (None if measured is None else pytest.approx(measured, abs=1e-6))
@@ -245,9 +247,9 @@ def test_geometry_that_is_not_sound_is_found(
 @pytest.mark.parametrize(
     ("scale", "holds"), [(1.0009, True), (1.0011, False), (0.9991, True), (0.9989, False)]
 )
-def test_a_simulated_body_has_the_scale_of_one(studio: Studio, scale: float, holds: bool) -> None:
-    build(studio, CRATE + f"rigid(crate)\ncrate.scale = ({scale}, 1, 1)")
-    report = verified(studio, "R4")
+def test_a_simulated_body_has_the_scale_of_one(session: LiveSession, scale: float, holds: bool) -> None:
+    build(session, CRATE + f"rigid(crate)\ncrate.scale = ({scale}, 1, 1)")
+    report = verified(session, "R4")
     assert report.passed == (("R4",) if holds else ())
     if not holds:
         assert the_finding(report).tolerance == pytest.approx(1e-3)
@@ -268,40 +270,40 @@ OPENED = {
 
 
 @pytest.mark.parametrize(("change", "edges"), OPENED.values(), ids=OPENED)
-def test_what_holds_a_volume_is_closed(studio: Studio, change: str, edges: int) -> None:
-    build(studio, CRATE)
+def test_what_holds_a_volume_is_closed(session: LiveSession, change: str, edges: int) -> None:
+    build(session, CRATE)
     objects = [{"name": "Crate", "systems": ["set"], "dimensions": (1, 1, 1), "position": (0, 0, 0)}]
     holds = a_plan(objects=[objects[0] | {"holds_volume": True}])
-    assert verified(studio, "R4", holds).passed == ("R4",)
-    studio.empty()
-    build(studio, CRATE + change)
-    assert verified(studio, "R4", a_plan(objects=objects)).passed == ("R4",)
-    found = the_finding(verified(studio, "R4", holds))
+    assert verified(session, "R4", holds).passed == ("R4",)
+    session.empty()
+    build(session, CRATE + change)
+    assert verified(session, "R4", a_plan(objects=objects)).passed == ("R4",)
+    found = the_finding(verified(session, "R4", holds))
     assert (found.objects, found.measured, found.tolerance) == (("Planks",), edges, 0)
 
 
-def test_lengths_in_another_unit_are_not_taken_for_metres(studio: Studio) -> None:
-    build(studio, CRATE + "scene.unit_settings.scale_length = 0.01")
-    found = the_finding(verified(studio, "R4"))
+def test_lengths_in_another_unit_are_not_taken_for_metres(session: LiveSession) -> None:
+    build(session, CRATE + "scene.unit_settings.scale_length = 0.01")
+    found = the_finding(verified(session, "R4"))
     assert (found.objects, found.outcome, found.severity) == ((), "undecided", "hard")
     assert found.measured == pytest.approx(0.01)
 
 
-def test_what_is_rendered_but_not_evaluated_is_undecided(studio: Studio) -> None:
-    build(studio, CRATE + "crate.hide_viewport = True")
-    assert the_finding(verified(studio, "R4")).outcome == "undecided"
+def test_what_is_rendered_but_not_evaluated_is_undecided(session: LiveSession) -> None:
+    build(session, CRATE + "crate.hide_viewport = True")
+    assert the_finding(verified(session, "R4")).outcome == "undecided"
 
 
-def test_a_simulation_that_explodes_is_found_at_the_end(studio: Studio) -> None:
+def test_a_simulation_that_explodes_is_found_at_the_end(session: LiveSession) -> None:
     # A driver stands for the solver: it puts the body's vertices where no numbers are.
     build(
-        studio,
+        session,
         CRATE + "scene.frame_start, scene.frame_end = 1, 10\nrigid(crate)\nscene.gravity = (0, 0, 0)\n"
         'crate.shape_key_add(name="Basis")\nblown = crate.shape_key_add(name="Blown")\n'
         "for point in blown.data:\n    point.co = (1e38, 1e38, 1e38)\nblown.slider_max = 10\n"
         "blown.value = 0\nblown.keyframe_insert('value', frame=1)\n"
         "blown.value = 10\nblown.keyframe_insert('value', frame=10)\nscene.frame_set(1)",
     )
-    found = the_finding(verified(studio, "R4"))
+    found = the_finding(verified(session, "R4"))
     assert (found.objects, found.frame) == (("Planks",), 10)
     assert "not numbers" in found.message

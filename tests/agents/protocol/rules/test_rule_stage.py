@@ -8,7 +8,7 @@ import pytest
 from scenes import build, the_finding, verified
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -50,9 +50,9 @@ def surface(tree):
         'scene.collection.objects.link(light(kind="SUN"))\ncamera((3, -3, 2), (0, 0, 0))',
     ],
 )
-def test_a_stage_that_is_set_has_nothing_to_find(studio: Studio, more: str) -> None:
-    build(studio, SCENE + more)
-    report = verified(studio, "W3,W4,W5")
+def test_a_stage_that_is_set_has_nothing_to_find(session: LiveSession, more: str) -> None:
+    build(session, SCENE + more)
+    report = verified(session, "W3,W4,W5")
     assert report.findings == ()
     assert report.passed == ("W3", "W4", "W5")
 
@@ -75,27 +75,27 @@ def test_a_stage_that_is_set_has_nothing_to_find(studio: Studio, more: str) -> N
     ],
 )  # fmt: skip
 def test_what_does_not_belong_into_an_object_is_told(
-    studio: Studio, change: str, name: str, what: str
+    session: LiveSession, change: str, name: str, what: str
 ) -> None:
-    build(studio, SCENE + change)
-    found = the_finding(verified(studio, "W3"))
+    build(session, SCENE + change)
+    found = the_finding(verified(session, "W3"))
     assert (found.rule, found.severity, found.objects) == ("W3", "soft", (name, "Lamp"))
     assert found.message.startswith(f"The {what} ")
 
 
-def test_a_mesh_that_is_a_force_field_is_told(studio: Studio) -> None:
+def test_a_mesh_that_is_a_force_field_is_told(session: LiveSession) -> None:
     build(
-        studio,
+        session,
         SCENE + 'pole = bpy.data.objects["Pole"]\n'
         "with bpy.context.temp_override(object=pole, active_object=pole, selected_objects=[pole]):\n"
         "    bpy.ops.object.forcefield_toggle()",
     )
-    assert the_finding(verified(studio, "W3")).objects == ("Pole", "Lamp")
+    assert the_finding(verified(session, "W3")).objects == ("Pole", "Lamp")
 
 
-def test_a_scene_without_a_camera_is_warned_of_and_still_ok(studio: Studio) -> None:
-    build(studio, SCENE)
-    report = verified(studio, "W4")
+def test_a_scene_without_a_camera_is_warned_of_and_still_ok(session: LiveSession) -> None:
+    build(session, SCENE)
+    report = verified(session, "W4")
     found = the_finding(report)
     assert (found.rule, found.severity, found.measured) == ("W4", "soft", 0)
     assert report.ok
@@ -135,9 +135,11 @@ tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], surface(tree))
         ("world(5).links.clear()", 0.0),
     ],
 )
-def test_a_world_lights_a_scene_if_it_shines(studio: Studio, world: str, strength: float | None) -> None:
-    build(studio, SCENE + world)
-    report = verified(studio, "W5")
+def test_a_world_lights_a_scene_if_it_shines(
+    session: LiveSession, world: str, strength: float | None
+) -> None:
+    build(session, SCENE + world)
+    report = verified(session, "W5")
     if strength is None:
         assert report.passed == ("W5",)
     else:
@@ -160,8 +162,8 @@ def test_a_world_lights_a_scene_if_it_shines(studio: Studio, world: str, strengt
         ),
     ],
 )
-def test_a_light_lights_a_scene_if_renders_see_it(studio: Studio, light: str, lit: bool) -> None:
-    build(studio, SCENE + light)
-    report = verified(studio, "W5")
+def test_a_light_lights_a_scene_if_renders_see_it(session: LiveSession, light: str, lit: bool) -> None:
+    build(session, SCENE + light)
+    report = verified(session, "W5")
     assert report.passed == (("W5",) if lit else ())
     assert len(report.findings) == (not lit)

@@ -19,7 +19,7 @@ from scenes import build
 from test_verify_tool import PLAN, SCENE
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -46,12 +46,12 @@ for number in range(199):
 Done = subprocess.CompletedProcess[str]
 
 
-def saved(studio: Studio, script: str, path: Path, **options: Any) -> Path:
+def saved(session: LiveSession, script: str, path: Path, **options: Any) -> Path:
     """A .blend of what a script builds."""
-    build(studio, script)
+    build(session, script)
     more = "".join(f", {name}={value!r}" for name, value in options.items())
-    studio.run(f"bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//made.blend'), copy=True{more})")
-    (studio.blender.folder.workspace / "made.blend").replace(path)
+    session.run(f"bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//made.blend'), copy=True{more})")
+    (session.blender.folder.workspace / "made.blend").replace(path)
     return path
 
 
@@ -78,8 +78,8 @@ def verify(tmp_path: Path, *words: object) -> Done:
     return done
 
 
-def test_a_sound_scene_is_0_and_says_what_was_checked(studio: Studio, tmp_path: Path) -> None:
-    saved(studio, SOUND, tmp_path / "sound.blend")
+def test_a_sound_scene_is_0_and_says_what_was_checked(session: LiveSession, tmp_path: Path) -> None:
+    saved(session, SOUND, tmp_path / "sound.blend")
     before = (tmp_path / "sound.blend").read_bytes()
     done = verify(tmp_path, "sound.blend", "--sarif")
     assert (done.returncode, json.loads(done.stdout)["runs"][0]["results"]) == (0, [])
@@ -92,8 +92,8 @@ def test_a_sound_scene_is_0_and_says_what_was_checked(studio: Studio, tmp_path: 
     assert "there is no plan" in done.stdout
 
 
-def test_findings_are_1_and_come_as_table_json_and_picture(studio: Studio, tmp_path: Path) -> None:
-    saved(studio, SCENE, tmp_path / "broken.blend")
+def test_findings_are_1_and_come_as_table_json_and_picture(session: LiveSession, tmp_path: Path) -> None:
+    saved(session, SCENE, tmp_path / "broken.blend")
     done = verify(tmp_path, "broken.blend", "--json", "--image", "seen.png")
     assert done.returncode == 1
     data = json.loads(done.stdout)
@@ -109,8 +109,8 @@ def test_findings_are_1_and_come_as_table_json_and_picture(studio: Studio, tmp_p
     assert "V2" not in done.stdout
 
 
-def test_a_plan_is_judged_by(studio: Studio, tmp_path: Path) -> None:
-    saved(studio, SCENE, tmp_path / "room.blend")
+def test_a_plan_is_judged_by(session: LiveSession, tmp_path: Path) -> None:
+    saved(session, SCENE, tmp_path / "room.blend")
     (tmp_path / "plan.json").write_text(json.dumps(PLAN))
     done = verify(tmp_path, "room.blend", "--plan", "plan.json", "--rules", "R1,R2,R10", "--json")
     data = json.loads(done.stdout)
@@ -124,9 +124,9 @@ def test_a_plan_is_judged_by(studio: Studio, tmp_path: Path) -> None:
 
 
 def test_two_hundred_unorganised_primitives_get_a_useful_report_in_seconds(
-    studio: Studio, tmp_path: Path
+    session: LiveSession, tmp_path: Path
 ) -> None:
-    saved(studio, UNORGANISED, tmp_path / "baseline.blend")
+    saved(session, UNORGANISED, tmp_path / "baseline.blend")
     began = time.perf_counter()
     done = verify(tmp_path, "baseline.blend", "--json")
     assert time.perf_counter() - began < 30  # a few seconds where nothing else runs
@@ -144,8 +144,8 @@ def test_two_hundred_unorganised_primitives_get_a_useful_report_in_seconds(
     assert any("blender_group" in line for line in lines)
 
 
-def test_numbered_meshes_that_are_in_no_object_are_one_row(studio: Studio, tmp_path: Path) -> None:
-    saved(studio, f"{UNORGANISED}\nsystem('ground')", tmp_path / "tagged.blend")
+def test_numbered_meshes_that_are_in_no_object_are_one_row(session: LiveSession, tmp_path: Path) -> None:
+    saved(session, f"{UNORGANISED}\nsystem('ground')", tmp_path / "tagged.blend")
     done = verify(tmp_path, "tagged.blend", "--rules", "C3")
     assert done.returncode == 1
     assert "Cube … Cube.049 (50)" in done.stdout
@@ -157,9 +157,9 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(studio: Studio, tmp_p
     ("words", "why"),
     [
         (["absent.blend"], "There is no file absent.blend."),
-        (["text.blend"], "text.blend is no .blend file."),
+        (["text.blend"], "text.blend is not a .blend file."),
         (["empty.blend"], "empty.blend is empty."),
-        (["folder.blend"], "it is a link, or no plain file"),
+        (["folder.blend"], "it is a link or not a regular file"),
         (["text.blend", "--rules", "X"], "--rules: There is no rule 'X'. There are: C1"),
         (["text.blend", "--rules", ","], "--rules: No rule is named."),
         (["text.blend", "--plan", "absent.json"], "The plan absent.json cannot be read: No such file"),
@@ -170,7 +170,7 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(studio: Studio, tmp_p
         ),
         (["text.blend", "--plan", "loose.json"], "tolerances: contact cannot be loosened"),
         (["text.blend", "--image", "nowhere/seen.png"], "nowhere to put seen.png into"),
-        (["text.blend", "--blender-exe", "nowhere/blender"], "No Blender to work in"),
+        (["text.blend", "--blender-exe", "nowhere/blender"], "No Blender was found"),
     ],
 )
 def test_what_cannot_be_checked_is_2_with_a_sentence(tmp_path: Path, words: list[str], why: str) -> None:
@@ -188,8 +188,8 @@ def test_what_cannot_be_checked_is_2_with_a_sentence(tmp_path: Path, words: list
     assert json.loads(done.stdout)["error"]
 
 
-def test_torn_newer_and_hostile_files_are_2_with_a_sentence(studio: Studio, tmp_path: Path) -> None:
-    whole = saved(studio, SOUND, tmp_path / "whole.blend", compress=False).read_bytes()
+def test_torn_newer_and_hostile_files_are_2_with_a_sentence(session: LiveSession, tmp_path: Path) -> None:
+    whole = saved(session, SOUND, tmp_path / "whole.blend", compress=False).read_bytes()
     assert whole[12:17] == b"v0501"
     files = {
         "torn": (whole[: len(whole) // 2], "torn.blend could not be checked: torn.blend cannot be opened"),
@@ -211,24 +211,28 @@ def test_torn_newer_and_hostile_files_are_2_with_a_sentence(studio: Studio, tmp_
     assert "garbled.blend could not be checked" in done.stderr
 
 
-def test_scripts_in_a_file_do_not_run(studio: Studio, tmp_path: Path) -> None:
+def test_scripts_in_a_file_do_not_run(session: LiveSession, tmp_path: Path) -> None:
     script = (
         f"{SOUND}\n"
         "text = bpy.data.texts.new('start.py')\n"
         "text.write(\"import bpy\\nbpy.data.objects.remove(bpy.data.objects['Sun'])\")\n"
         "text.use_module = True\n"
     )
-    saved(studio, script, tmp_path / "script.blend")
+    saved(session, script, tmp_path / "script.blend")
     data = json.loads(verify(tmp_path, "script.blend", "--rules", "W5", "--json").stdout)
     assert data["rules"][0]["state"] == "holds"
 
 
-def test_what_links_files_that_cannot_be_read_is_not_judged_by_halves(studio: Studio, tmp_path: Path) -> None:
+def test_what_links_files_that_cannot_be_read_is_not_judged_by_halves(
+    session: LiveSession, tmp_path: Path
+) -> None:
     (tmp_path / "lib").mkdir()
-    saved(studio, SOUND, tmp_path / "lib" / "parts.blend")
-    studio.empty()
-    (studio.blender.folder.workspace / "parts.blend").write_bytes((tmp_path / "lib/parts.blend").read_bytes())
-    studio.run(
+    saved(session, SOUND, tmp_path / "lib" / "parts.blend")
+    session.empty()
+    (session.blender.folder.workspace / "parts.blend").write_bytes(
+        (tmp_path / "lib/parts.blend").read_bytes()
+    )
+    session.run(
         "with bpy.data.libraries.load(bpy.path.abspath('//parts.blend'), link=True) as (has, takes):\n"
         "    takes.collections = ['ground', 'set']\n"
         "for one in takes.collections:\n"
@@ -237,7 +241,7 @@ def test_what_links_files_that_cannot_be_read_is_not_judged_by_halves(studio: St
         "bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//made.blend'), copy=True, "
         "relative_remap=False)"
     )
-    (studio.blender.folder.workspace / "made.blend").replace(tmp_path / "linking.blend")
+    (session.blender.folder.workspace / "made.blend").replace(tmp_path / "linking.blend")
     done = verify(tmp_path, "linking.blend", "--rules", "C")
     assert done.returncode == 2
     assert "parts.blend, which cannot be read: give its folder with --read" in done.stderr
@@ -245,14 +249,16 @@ def test_what_links_files_that_cannot_be_read_is_not_judged_by_halves(studio: St
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_another_frame_is_reached_by_steps_where_nothing_is_baked(studio: Studio, tmp_path: Path) -> None:
+def test_another_frame_is_reached_by_steps_where_nothing_is_baked(
+    session: LiveSession, tmp_path: Path
+) -> None:
     script = f"""{SOUND}
 bpy.ops.rigidbody.world_add()
 bpy.ops.mesh.primitive_cube_add(size=0.2, location=(0, 0, 5))
 bpy.ops.rigidbody.object_add()
 bpy.context.object.name = "Falls"
 """
-    saved(studio, script, tmp_path / "falls.blend")
+    saved(session, script, tmp_path / "falls.blend")
     done = verify(tmp_path, "falls.blend", "--frame", "40", "--rules", "V2", "--json")
     # After 39 frames at 24 a second it is 12.9 m down, and on its way through floor and table.
     data = json.loads(done.stdout)
@@ -261,13 +267,13 @@ bpy.context.object.name = "Falls"
     assert done.returncode in {0, 1}
 
 
-def test_geometry_that_is_no_numbers_is_no_pass(studio: Studio, tmp_path: Path) -> None:
+def test_geometry_that_is_no_numbers_is_no_pass(session: LiveSession, tmp_path: Path) -> None:
     script = f"""{SOUND}
 bad = box("Bad", (0, 0, 1), (1, 1, 2))
 bad.data.vertices[0].co.x = float("nan")
 thing("Broken", bad)
 """
-    saved(studio, script, tmp_path / "nan.blend")
+    saved(session, script, tmp_path / "nan.blend")
     done = verify(tmp_path, "nan.blend", "--json")
     found = {one["rule"] for one in json.loads(done.stdout)["findings"]}
     assert "R4" in found
@@ -275,13 +281,15 @@ thing("Broken", bad)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupt_leaves_nothing_behind(studio: Studio, tmp_path: Path, number: signal.Signals) -> None:
+def test_an_interrupt_leaves_nothing_behind(
+    session: LiveSession, tmp_path: Path, number: signal.Signals
+) -> None:
     script = f"""{SOUND}
 bpy.ops.mesh.primitive_grid_add(x_subdivisions=150, y_subdivisions=150, location=(0, 0, 3))
 bpy.ops.object.modifier_add(type="CLOTH")
 bpy.context.object.modifiers[0].point_cache.frame_end = 4000
 """
-    saved(studio, script, tmp_path / "slow.blend")
+    saved(session, script, tmp_path / "slow.blend")
     process = subprocess.Popen(
         [*COMMAND, "slow.blend", "--frame", "4000"],
         cwd=tmp_path,

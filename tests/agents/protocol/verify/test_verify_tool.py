@@ -14,7 +14,7 @@ from agents.blender.tools.verify import TOOL as VERIFY
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from studio import Studio
+    from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
@@ -56,9 +56,9 @@ def redness(png: bytes, box: tuple[int, int, int, int]) -> int:
     return int(((pixels[..., 0] > 150) & (pixels[..., 1] < 70) & (pixels[..., 2] < 70)).sum())
 
 
-def test_findings_come_as_data_and_as_words_that_say_what_to_do(studio: Studio) -> None:
-    build(studio, SCENE)
-    result = studio.use(VERIFY)
+def test_findings_come_as_data_and_as_words_that_say_what_to_do(session: LiveSession) -> None:
+    build(session, SCENE)
+    result = session.use(VERIFY)
     assert not result.failed
     assert result.pictures == ()
     assert result.data["ok"] is False
@@ -73,16 +73,16 @@ def test_findings_come_as_data_and_as_words_that_say_what_to_do(studio: Studio) 
     assert "there is no plan" in result.text
 
 
-def test_chosen_rules_alone_are_run(studio: Studio) -> None:
-    build(studio, SCENE)
-    data = studio.use(VERIFY, rules=["v1", "C"]).data
+def test_chosen_rules_alone_are_run(session: LiveSession) -> None:
+    build(session, SCENE)
+    data = session.use(VERIFY, rules=["v1", "C"]).data
     assert [rule["id"] for rule in data["rules"]] == ["C1", "C2", "C3", "C4", "C5", "C6", "V1"]
     assert {one["rule"] for one in data["findings"]} == {"V1"}
 
 
-def test_a_plan_is_judged_by(studio: Studio) -> None:
-    build(studio, SCENE)
-    data = studio.use(VERIFY, plan=PLAN, rules=["R1", "R10"]).data
+def test_a_plan_is_judged_by(session: LiveSession) -> None:
+    build(session, SCENE)
+    data = session.use(VERIFY, plan=PLAN, rules=["R1", "R10"]).data
     assert data["plan"] == "A table"
     ((objects, measured),) = found(data, "R10")
     assert objects == ["Lamp", "Table"]
@@ -90,21 +90,21 @@ def test_a_plan_is_judged_by(studio: Studio) -> None:
     assert {rule["id"]: rule["state"] for rule in data["rules"]} == {"R1": "holds", "R10": "broken"}
 
 
-def test_the_scene_stays_as_it_is(studio: Studio) -> None:
-    build(studio, f"{SCENE}\nscene.frame_set(17)")
+def test_the_scene_stays_as_it_is(session: LiveSession) -> None:
+    build(session, f"{SCENE}\nscene.frame_set(17)")
     look = (
         "(bpy.context.scene.frame_current, sorted(bpy.data.objects.keys()), len(bpy.data.meshes), "
         "len(bpy.data.scenes), len(bpy.data.materials))"
     )
-    before = studio.run(look)
-    studio.use(VERIFY, image=True)
-    assert studio.run(look) == before
+    before = session.run(look)
+    session.use(VERIFY, image=True)
+    assert session.run(look) == before
 
 
-def test_the_picture_shows_what_is_at_fault_in_red_and_names_it(studio: Studio) -> None:
-    build(studio, SCENE)
-    plain = studio.use(VERIFY, image=True, rules=["W4"])
-    (picture,) = studio.use(VERIFY, image=True, rules=["V"]).pictures
+def test_the_picture_shows_what_is_at_fault_in_red_and_names_it(session: LiveSession) -> None:
+    build(session, SCENE)
+    plain = session.use(VERIFY, image=True, rules=["W4"])
+    (picture,) = session.use(VERIFY, image=True, rules=["V"]).pictures
     width, height = Image.open(io.BytesIO(picture.png)).size
     assert width < 1000
     assert redness(picture.png, (0, 60, width, height)) > 5000
@@ -112,13 +112,13 @@ def test_the_picture_shows_what_is_at_fault_in_red_and_names_it(studio: Studio) 
     assert plain.pictures  # that a camera is absent has no place, but its own line
     assert redness(plain.pictures[0].png, (0, 60, width, 400)) < 500  # axes, and no more
     assert len(picture.png) < 400_000
-    left = list(studio.blender.folder.workspace.glob(".*.png"))
+    left = list(session.blender.folder.workspace.glob(".*.png"))
     assert left == []
 
 
-def test_places_in_the_picture_are_those_of_the_world(studio: Studio) -> None:
-    build(studio, SCENE)
-    reply = studio.blender.call(
+def test_places_in_the_picture_are_those_of_the_world(session: LiveSession) -> None:
+    build(session, SCENE)
+    reply = session.blender.call(
         "findings_image",
         {
             "findings": [
@@ -142,7 +142,7 @@ def test_places_in_the_picture_are_those_of_the_world(studio: Studio) -> None:
                     "marked": True,
                 }
             ],
-            "folder": str(studio.blender.folder.workspace),
+            "folder": str(session.blender.folder.workspace),
             "size": 200,
             "close": 100,
         },
@@ -160,12 +160,12 @@ def test_places_in_the_picture_are_those_of_the_world(studio: Studio) -> None:
     assert right["marks"][1] == pytest.approx(right["marks"][0], abs=1e-3)
     assert top["marks"][2] == pytest.approx(top["marks"][0], abs=1e-3)
     for view in reply["views"]:
-        (studio.blender.folder.workspace / view["file"]).unlink()
+        (session.blender.folder.workspace / view["file"]).unlink()
 
 
-def test_a_close_up_shows_the_gap_as_wide_as_it_is(studio: Studio) -> None:
-    build(studio, SCENE)
-    reply = studio.blender.call(
+def test_a_close_up_shows_the_gap_as_wide_as_it_is(session: LiveSession) -> None:
+    build(session, SCENE)
+    reply = session.blender.call(
         "findings_image",
         {
             "findings": [
@@ -178,7 +178,7 @@ def test_a_close_up_shows_the_gap_as_wide_as_it_is(studio: Studio) -> None:
                     "marked": True,
                 }
             ],
-            "folder": str(studio.blender.folder.workspace),
+            "folder": str(session.blender.folder.workspace),
             "size": 200,
             "close": 240,
         },
@@ -187,12 +187,12 @@ def test_a_close_up_shows_the_gap_as_wide_as_it_is(studio: Studio) -> None:
     (close,) = reply["close"]
     assert close["name"] == "front"
     assert close["metres_per_pixel"] * 240 == pytest.approx(12 * 0.012)
-    file = studio.blender.folder.workspace / close["file"]
+    file = session.blender.folder.workspace / close["file"]
     column = np.asarray(Image.open(file).convert("RGBA").resize((240, 240)))[:, 120, 3] > 40
     (edges,) = np.nonzero(np.diff(column.astype(int)))
     assert edges[1] - edges[0] == pytest.approx(20, abs=3)  # the gap, from the leg's end to the floor
     for view in (*reply["views"], close):
-        (studio.blender.folder.workspace / view["file"]).unlink()
+        (session.blender.folder.workspace / view["file"]).unlink()
 
 
 @pytest.mark.parametrize(
@@ -213,29 +213,29 @@ def test_a_close_up_shows_the_gap_as_wide_as_it_is(studio: Studio) -> None:
     ],
 )
 def test_what_cannot_be_asked_is_refused_with_all_its_faults(
-    studio: Studio, arguments: dict[str, Any], why: str
+    session: LiveSession, arguments: dict[str, Any], why: str
 ) -> None:
     with pytest.raises(Refusal) as error:
-        studio.use(VERIFY, **arguments)
+        session.use(VERIFY, **arguments)
     assert why in str(error.value)
 
 
-def test_an_empty_scene_is_no_pass_without_a_word(studio: Studio) -> None:
-    result = studio.use(VERIFY)
+def test_an_empty_scene_is_no_pass_without_a_word(session: LiveSession) -> None:
+    result = session.use(VERIFY)
     assert {one["rule"] for one in result.data["findings"]} == {"C6", "W4", "W5"}
     assert "Not checked: C1, C2, C4, C5" in result.text
 
 
-def test_where_there_is_nothing_to_see_the_findings_come_without_a_picture(studio: Studio) -> None:
-    result = studio.use(VERIFY, image=True)
+def test_where_there_is_nothing_to_see_the_findings_come_without_a_picture(session: LiveSession) -> None:
+    result = session.use(VERIFY, image=True)
     assert result.pictures == ()
     assert "The scene has no camera." in result.text
     assert "There is no picture:" in result.text
 
 
-def test_without_findings_the_picture_shows_the_scene_as_it_is(studio: Studio) -> None:
-    build(studio, SCENE)
-    result = studio.use(VERIFY, image=True, rules=["C"])
+def test_without_findings_the_picture_shows_the_scene_as_it_is(session: LiveSession) -> None:
+    build(session, SCENE)
+    result = session.use(VERIFY, image=True, rules=["C"])
     assert result.data["findings"] == []
     (picture,) = result.pictures
     assert redness(picture.png, (0, 60, 900, 900)) < 500  # axes, and no more

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
-from agents.blender.tools.base import Call, Result, Session, Tool, parse, perform
+from agents.blender.tools.base import BlenderTool, Call, Result, ToolContext, parse, perform
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from simworlds.sandbox.confinement import Sandbox
+    from simworlds.sandbox.confined_command import Sandbox
 
 
 def no_docs(query: str, *, max_tokens: int = 400) -> str:
@@ -22,7 +22,7 @@ def no_docs(query: str, *, max_tokens: int = 400) -> str:
     return ""
 
 
-class Studio:
+class LiveSession:
     """A session, and short ways to use it."""
 
     def __init__(
@@ -32,11 +32,11 @@ class Studio:
         launch = make_launch(folder.workspace, sandbox=sandbox, blender_exe=blender_exe)
         self.blender = Supervisor(launch, folder)
         self.blender.start()
-        self.session = Session(self.blender, no_docs)
+        self.context = ToolContext(self.blender, no_docs)
 
-    def use(self, tool: Tool, call: Call | None = None, **arguments: Any) -> Result:
+    def use(self, tool: BlenderTool, call: Call | None = None, **arguments: Any) -> Result:
         """Calls a tool as the server does."""
-        return perform(tool, self.session, parse(tool, arguments), call or Call())
+        return perform(tool, self.context, parse(tool, arguments), call or Call())
 
     def run(self, code: str, timeout: float = 120.0) -> Any:
         """Runs code that must not fail; returns the value of its final expression as Python sees it."""

@@ -21,7 +21,7 @@ from glob import glob
 from pathlib import Path
 from typing import Literal
 
-from simworlds.sandbox import confine
+from simworlds.sandbox import confine_self
 from simworlds.sandbox.errors import CannotStart
 
 Kind = Literal["bubblewrap", "landlock", "none"]
@@ -39,7 +39,7 @@ _PROCESS = ("/proc/self", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat", "/proc
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class ResourceLimits:
     """Bytes: memory of the process, one file, and all that it may write; then numbers. 0: no limit."""
 
     memory: int = 0
@@ -49,7 +49,7 @@ class Limits:
     threads: int = 4096
 
     @property
-    def told(self) -> tuple[str, ...]:
+    def in_words(self) -> tuple[str, ...]:
         """In words."""
         each = (
             (self.memory, f"{self.memory / GIB:.1f} GiB of memory"),
@@ -68,7 +68,7 @@ class Sandbox:
     kind: Kind
     holds: tuple[str, ...]
     lacks: tuple[str, ...] = ()
-    limits: Limits = field(default_factory=Limits)
+    limits: ResourceLimits = field(default_factory=ResourceLimits)
 
     def command(self, words: list[str], *, read: list[Path], write: list[Path]) -> list[str]:
         """``words``, confined: only ``read`` (besides the system's programs) is readable, only ``write`` writable.
@@ -76,7 +76,7 @@ class Sandbox:
         Raises CannotStart where that would open the user's whole home folder.
         """
         rights: dict[str, object] = {"memory": self.limits.memory, "file_size": self.limits.file_size}
-        script = Path(confine.__file__)
+        script = Path(confine_self.__file__)
         readable = [str(path) for path in read]
         if self.kind == "landlock":
             _spare_home(readable)
@@ -128,7 +128,7 @@ def _bubblewrap(read: list[str], write: list[Path]) -> list[str]:
     return [*words, "--remount-ro", "/dev", "--remount-ro", "/"]
 
 
-def best_sandbox(wanted: Kind | None = None, limits: Limits | None = None) -> Sandbox:
+def best_sandbox(wanted: Kind | None = None, limits: ResourceLimits | None = None) -> Sandbox:
     """The strongest that works here, or the one that is ``wanted``, whether it works or not."""
     kind = wanted or _best_kind()
     limits = limits or default_limits()
@@ -139,7 +139,7 @@ def best_sandbox(wanted: Kind | None = None, limits: Limits | None = None) -> Sa
     else:
         holds.append("writes to the run's workspace and a private temporary folder alone")
         holds.append("reads these, the system's programs, Blender and Python alone")
-    if confine.has_seccomp():
+    if confine_self.has_seccomp():
         holds.append("opens no network or other socket, starts no process, sends no other one a signal")
     elif kind == "bubblewrap":
         holds.append("opens no network, sends no process outside a signal")
@@ -152,17 +152,17 @@ def best_sandbox(wanted: Kind | None = None, limits: Limits | None = None) -> Sa
         lacks.append("asking whether a path exists, how large and how old it is")
     if kind != "none" and graphics():
         lacks.append("the graphics card")
-    holds.append(f"takes at most {', '.join(limits.told)}")
+    holds.append(f"takes at most {', '.join(limits.in_words)}")
     return Sandbox(kind, tuple(holds), tuple(lacks), limits)
 
 
-def default_limits() -> Limits:
+def default_limits() -> ResourceLimits:
     """Three quarters of the memory that this process can have."""
     try:
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (ValueError, OSError, AttributeError):
-        return Limits()
-    return Limits(memory=min([memory, *_group_limits()]) * 3 // 4)
+        return ResourceLimits()
+    return ResourceLimits(memory=min([memory, *_group_limits()]) * 3 // 4)
 
 
 def _group_limits() -> list[int]:
@@ -181,7 +181,7 @@ def _best_kind() -> Kind:
         return "none"
     if bubblewrap_fault() is None:
         return "bubblewrap"
-    return "landlock" if confine.landlock_abi() else "none"
+    return "landlock" if confine_self.landlock_abi() else "none"
 
 
 @cache

@@ -1,6 +1,6 @@
 """Gives up rights, then becomes the given command. Runs by itself, on the standard library, in the sandboxed process.
 
-``python -I -S confine.py JSON -- COMMAND …``. JSON holds ``memory`` and ``file_size`` (bytes, 0: no limit) and,
+``python -I -S confine_self.py JSON -- COMMAND …``. JSON holds ``memory`` and ``file_size`` (bytes, 0: no limit) and,
 where the file system is to be closed by Landlock, ``read`` and ``write`` (paths). What holds on Linux afterwards, for
 the command and whatever it becomes: it ends with its parent, and is the first to go when memory runs out; no
 capability, no socket, no second process, no signal to others, no change of limits. Elsewhere: the limits.

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from simworlds.sandbox import confine
-from simworlds.sandbox.confine import ARCHITECTURES, NUMBERS, filter_program
+from simworlds.sandbox import confine_self
+from simworlds.sandbox.confine_self import ARCHITECTURES, NUMBERS, filter_program
 
 MACHINES = sorted(ARCHITECTURES)
 OWN = 4321
@@ -198,7 +198,7 @@ def confined(code: str, **rights: object) -> subprocess.CompletedProcess[str]:
         sys.executable,
         "-I",
         "-S",
-        confine.__file__,
+        confine_self.__file__,
         given,
         "--",
         sys.executable,
@@ -224,7 +224,9 @@ def test_limits_hold_and_are_errors_not_deaths(tmp_path: Path) -> None:
 
 @linux
 def test_a_limit_above_what_one_may_have_is_that_limit() -> None:
-    words = f"ulimit -f 8; exec {sys.executable} -I -S {confine.__file__} \"$1\" -- /bin/sh -c 'ulimit -f'"
+    words = (
+        f"ulimit -f 8; exec {sys.executable} -I -S {confine_self.__file__} \"$1\" -- /bin/sh -c 'ulimit -f'"
+    )
     rights = json.dumps({"memory": 0, "file_size": 1 << 40})
     done = subprocess.run(["sh", "-c", words, "sh", rights], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "8"
@@ -245,7 +247,7 @@ def test_it_is_the_first_that_the_kernel_takes_for_its_memory() -> None:
 
 
 @linux
-@pytest.mark.skipif(not confine.landlock_abi(), reason="this kernel has no Landlock")
+@pytest.mark.skipif(not confine_self.landlock_abi(), reason="this kernel has no Landlock")
 def test_a_file_that_may_be_read_cannot_be_cut_short_or_changed(tmp_path: Path) -> None:
     kept = tmp_path / "kept"
     kept.write_text("content")
@@ -284,7 +286,7 @@ def test_what_cannot_be_confined_does_not_run(tmp_path: Path) -> None:
     assert "ran" not in done.stdout
     rights = json.dumps({"memory": 0, "file_size": 0})
     missing = subprocess.run(
-        [sys.executable, "-I", "-S", confine.__file__, rights, "--", str(tmp_path / "none")],
+        [sys.executable, "-I", "-S", confine_self.__file__, rights, "--", str(tmp_path / "none")],
         capture_output=True,
         text=True,
         check=False,

@@ -1,0 +1,28 @@
+"""Counts, lists and sizes as replies to models write them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def format_count(number: int, noun: str) -> str:
+    """``1 frame``, ``1,200 frames``."""
+    return f"{number:,} {noun}" + ("" if number == 1 else "s")
+
+
+def format_list(items: Sequence[str], most: int) -> str:
+    """The first ``most`` items with commas between, and how many more there are."""
+    more = f" and {len(items) - most} more" if len(items) > most else ""
+    return ", ".join(items[:most]) + more
+
+
+def format_size(count: float) -> str:
+    """Bytes in decimal units: ``512 bytes``, ``1.5 MB``."""
+    for unit in ("bytes", "kB", "MB"):
+        if count < 1000:
+            return f"{count:.0f} {unit}" if unit == "bytes" else f"{count:.1f} {unit}"
+        count /= 1000
+    return f"{count:.1f} GB"
