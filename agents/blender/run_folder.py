@@ -6,7 +6,7 @@ import os
 import re
 import secrets
 import stat
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path, PurePosixPath
@@ -18,7 +18,7 @@ from simworlds.sandbox.untrusted_files import copy_file, open_beneath, take_bene
 from simworlds.sandbox.usage import sweep
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
+    from collections.abc import Iterator
 
 _NAME = re.compile(r"[\w .()+-]{1,100}")
 SCENE_FILE = "scene.blend"  # in the workspace: the run's own file, as Blender has it open
@@ -140,16 +140,3 @@ def new_run(runs: Path) -> RunFolder:
             continue
         return RunFolder.make(root)
     raise Refusal(f"{runs} takes no further folder.")
-
-
-@contextmanager
-def locked(root: Path) -> Generator[None]:
-    """Holds a run's folder for one worker. Raises Refusal while another one has it."""
-    import fcntl  # noqa: PLC0415 - not on Windows
-
-    with (root / ".lock").open("w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise Refusal(f"{root} is in use by another SimWorlds. Choose another folder.") from error
-        yield

@@ -13,7 +13,7 @@ from agents.loop.stage import MAX_REPLANS_PER_STAGE, MAX_RETRIES_PER_STAGE
 from bench.blenderbench.errors import NotDone, NotReady
 from bench.blenderbench.making import Made, begun
 from bench.blenderbench.results import round_file
-from bench.blenderbench.task_scenes import Look, render
+from bench.blenderbench.task_scenes import RenderSettings, render
 from bench.sweep.command import called, last_words
 from bench.sweep.systems.simworlds_runs import KEYS
 
@@ -42,7 +42,7 @@ class SimWorlds:
     the command, as of its model; ``limits``: of one sitting at it.
     """
 
-    look: Look
+    rendering: RenderSettings
     reference: Reference = "goal"
     options: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()
@@ -53,7 +53,7 @@ class SimWorlds:
     @property
     def settings(self) -> dict[str, Any]:
         """All that the result depends on."""
-        told = {"samples": self.look.samples, "reference": self.reference, "options": list(self.options)}
+        told = {"samples": self.rendering.samples, "reference": self.reference, "options": list(self.options)}
         return {**told, "budget": BUDGET}
 
     def make(self, task: Task, place: Place, tell: Tell) -> Made:
@@ -62,7 +62,7 @@ class SimWorlds:
         ended = before is not None and before.outcome in _ENDED
         if not ended and not any(os.environ.get(name) for name in KEYS):
             raise NotReady(f"'simworlds edit' asks a language model and needs a key: set {KEYS[0]}.")
-        started, loss = begun(task, place, self.look, tell)
+        started, loss = begun(task, place, self.rendering, tell)
         if not ended:
             tell("editing")
             self._run(task, place)
@@ -71,7 +71,7 @@ class SimWorlds:
             raise NotDone(f"the edit did not begin: {last_words(place.root / _LOG)}")
         file, notes = _result(history, place)
         tell("rendering the result")
-        rendered = render(file, place.root / round_file(1), task.size, self.look)
+        rendered = render(file, place.root / round_file(1), task.size, self.rendering)
         if rendered.camera != started.rendered.camera:
             notes += (f"seen by {rendered.camera!r}, not by {started.rendered.camera!r} as the start was",)
         total = history.total
@@ -84,8 +84,8 @@ class SimWorlds:
         if (place.edit / JOURNAL).exists():
             words = ["resume", *self.limits, "--quiet", "--", str(place.edit)]
         else:
-            look = ["--reference", str(given), "--samples", str(self.look.samples)]
-            words = ["edit", "--run", str(place.edit), *look, *self.options, *self.limits, "--quiet"]
+            picture = ["--reference", str(given), "--samples", str(self.rendering.samples)]
+            words = ["edit", "--run", str(place.edit), *picture, *self.options, *self.limits, "--quiet"]
             words += ["--", str(place.start), task.instruction]
         called(words, place.root / _LOG)
 

@@ -11,7 +11,7 @@ from bench.blenderbench.errors import BadPicture, NotDone
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import read, write
-from bench.blenderbench.task_scenes import Look, Rendered, make_start, render
+from bench.blenderbench.task_scenes import Rendered, RenderSettings, make_start, render
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,17 +71,17 @@ class Started(BaseModel):
     notes: tuple[str, ...]
 
 
-def begun(task: Task, place: Place, look: Look, tell: Tell) -> tuple[Started, float | None]:
+def begun(task: Task, place: Place, rendering: RenderSettings, tell: Tell) -> tuple[Started, float | None]:
     """The scene to be edited, unless it is there already, and how far its render is from the set's own."""
     if place.started.is_file():
         started = read(place.started, Started)
     else:
         tell("running start.py")
         place.start.parent.mkdir(exist_ok=True)
-        notes = make_start(task, place.start, look)
+        notes = make_start(task, place.start, rendering)
         tell("rendering the start")
         started = Started(
-            rendered=render(place.start, place.start_picture, task.size, look),
+            rendered=render(place.start, place.start_picture, task.size, rendering),
             notes=notes,
         )
         write(place.started, started)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
-from agents.blender.run_folder import locked
 from bench.blenderbench.errors import BadResults, NotDone
 from bench.blenderbench.making import Made
 from bench.blenderbench.results import Record, Run, Setup, place_of, read, read_run, write
 from bench.sweep.content_hash import digests
 from bench.sweep.provenance import code_of, provenance
+from simworlds.folder_lock import locked
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -131,4 +131,4 @@ def _done(
 
 
 def _provenance(blender: str | None = None) -> Provenance:
-    return provenance(code_of(__name__, "blenderbench/inside/*.py"), blender)
+    return provenance(code_of(__name__, "blenderbench/inside/*.py", "audit/inside/opening.py"), blender)

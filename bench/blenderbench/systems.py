@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from bench.blenderbench.editing import Reference
     from bench.blenderbench.making import System, Tell
     from bench.blenderbench.results import Place
-    from bench.blenderbench.task_scenes import Look
+    from bench.blenderbench.task_scenes import RenderSettings
     from bench.blenderbench.task_set import Task
 
 MOST_ROUNDS = 100
@@ -32,7 +32,7 @@ _FOLDER = "folder="
 class Unedited:
     """Nobody edits anything: what the scene to be edited scores by itself."""
 
-    look: Look
+    rendering: RenderSettings
     kind: str = "start"
     name: str = "unedited"
     takes_over: bool = False
@@ -40,11 +40,11 @@ class Unedited:
     @property
     def settings(self) -> dict[str, Any]:
         """Of the renders."""
-        return {"samples": self.look.samples}
+        return {"samples": self.rendering.samples}
 
     def make(self, task: Task, place: Place, tell: Tell) -> Made:
         """The render of the scene to be edited."""
-        started, loss = begun(task, place, self.look, tell)
+        started, loss = begun(task, place, self.rendering, tell)
         shutil.copyfile(place.start_picture, place.root / round_file(1))
         return Made((round_file(1),), loss, started.rendered, notes=started.notes)
 
@@ -98,13 +98,17 @@ def _rounds(folder: Path) -> Iterator[Path]:
 
 
 def system_of(
-    asked: str, look: Look, reference: Reference, options: tuple[str, ...], limits: tuple[str, ...]
+    asked: str,
+    rendering: RenderSettings,
+    reference: Reference,
+    options: tuple[str, ...],
+    limits: tuple[str, ...],
 ) -> System:
     """The system of that name: ``start``, ``simworlds`` or ``folder=PATH``. Raises NoTasks, BadResults."""
     if asked == "start":
-        return Unedited(look)
+        return Unedited(rendering)
     if asked == "simworlds":
-        return SimWorlds(look, reference, options, limits)
+        return SimWorlds(rendering, reference, options, limits)
     if asked.startswith(_FOLDER):
         root = Path(asked.removeprefix(_FOLDER)).expanduser().resolve()
         if not root.is_dir():

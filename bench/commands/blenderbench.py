@@ -98,16 +98,18 @@ def run(folder: Path, **given: Any) -> None:
     """
     from bench.blenderbench.run import run as start  # noqa: PLC0415
     from bench.blenderbench.systems import system_of  # noqa: PLC0415
-    from bench.blenderbench.task_scenes import Look  # noqa: PLC0415
+    from bench.blenderbench.task_scenes import RenderSettings  # noqa: PLC0415
     from bench.blenderbench.task_set import chosen, read_set  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
     memory = int(given["memory"] * _GIB) if given["memory"] else None
-    look = Look(given["samples"], given["blender"], given["blender_exe"], given["seconds"], memory)
+    rendering = RenderSettings(
+        given["samples"], given["blender"], given["blender_exe"], given["seconds"], memory
+    )
     options = _words(given, "model", "blender", "blender_exe")
     limits = _words(given, "max_cost", "max_minutes")
     with _told_errors(BlenderError):
-        system = system_of(given["system"], look, given["reference"], options, limits)
+        system = system_of(given["system"], rendering, given["reference"], options, limits)
         found = read_set(folder)
         for fault in found.faults:
             click.echo(f"Cannot be used: {fault}", err=True)

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.blender.run_folder import locked
 from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep.executor import Crew, Done
 from bench.sweep.judging import Judge, judge_all
@@ -18,6 +17,7 @@ from bench.sweep.steps import STEPS
 from bench.sweep.systems.folder import Folder
 from bench.sweep.systems.simworlds_runs import Make, Replay
 from bench.sweep.systems.system import NotReady
+from simworlds.folder_lock import locked
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -25,7 +25,7 @@ from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import Record, Score, place_of, read, read_run
 from bench.blenderbench.run import run
 from bench.blenderbench.systems import Folder, Unedited
-from bench.blenderbench.task_scenes import render
+from bench.blenderbench.task_scenes import make_start, render
 from bench.blenderbench.task_set import read_set
 from simworlds.cli import main
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.blenderbench.task_scenes import Look
+    from bench.blenderbench.task_scenes import RenderSettings
     from bench.blenderbench.task_set import Task, TaskSet
 
 pytestmark = pytest.mark.blender
@@ -71,30 +71,70 @@ def test_every_task_is_rendered_as_its_start_and_by_the_camera_of_the_set(
 
 
 def test_the_raw_file_of_a_camera_task_holds_the_goals_camera_and_start_py_undoes_it(
-    unedited: Path, mini: TaskSet, look: Look, tmp_path: Path
+    unedited: Path, mini: TaskSet, rendering: RenderSettings, tmp_path: Path
 ) -> None:
     task = task_of(mini, "level1/table1")
     untouched = task.code.replace("camera.location =", "ignored =").replace(
         "camera.rotation_euler", "ignored"
     )
     trapped = dataclasses.replace(task, code=untouched)
-    run(mini, [trapped], Unedited(look), tmp_path / "trapped")
+    run(mini, [trapped], Unedited(rendering), tmp_path / "trapped")
     raw = tmp_path / "trapped" / "level1" / "table1" / "renders" / "01.png"
     assert loss(raw, task.goal) == pytest.approx(0, abs=1e-3)
     assert loss(place_of(unedited, task.id).root / "renders" / "01.png", task.goal) > 1
 
 
 def test_what_edits_a_scene_finds_it_whole_and_neither_goal_nor_authors_edit_beside_it(
-    unedited: Path, mini: TaskSet, look: Look, tmp_path: Path
+    unedited: Path, mini: TaskSet, rendering: RenderSettings, tmp_path: Path
 ) -> None:
     place = place_of(unedited, "level2/mug1")
     assert [path.name for path in place.start.parent.iterdir()] == ["start.blend"]
     assert not [path for path in unedited.rglob("*") if path.suffix == ".py"]
     alone = tmp_path / "alone.blend"
     shutil.copy(place.start, alone)
-    made = render(alone, tmp_path / "again.png", (48, 32), look)
+    made = render(alone, tmp_path / "again.png", (48, 32), rendering)
     assert (made.camera, made.samples) == ("Camera1", 4)
     assert loss(tmp_path / "again.png", place.start_picture) == 0
+
+
+FALLING = """\
+import bpy
+
+scene = bpy.context.scene
+bpy.ops.rigidbody.world_add()
+bpy.context.view_layer.objects.active = mug = bpy.data.objects["Mug"]
+bpy.ops.rigidbody.object_add()
+mug.location.z = 1
+scene.frame_set({frame})
+"""
+
+
+def test_motion_that_is_not_baked_is_played_up_to_the_frame(
+    mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+) -> None:
+    task = task_of(mini, "level1/table1")
+    pictures = [tmp_path / "1.png", tmp_path / "10.png"]
+    for frame, picture in zip((1, 10), pictures, strict=True):
+        (tmp_path / str(frame)).mkdir()
+        blend = tmp_path / str(frame) / "start.blend"
+        falling = dataclasses.replace(task, code=task.code + FALLING.format(frame=frame))
+        assert make_start(falling, blend, rendering) == ()
+        render(blend, picture, (48, 32), rendering)
+    assert loss(*pictures) > 0.2
+
+
+def test_a_file_that_cannot_be_packed_is_named(
+    mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+) -> None:
+    task = task_of(mini, "level1/table1")
+    code = "import bpy\nbpy.data.images['Label'].filepath = '//elsewhere.png'\n"
+    (tmp_path / "kept").mkdir()
+    notes = make_start(
+        dataclasses.replace(task, code=task.code + code), tmp_path / "kept" / "start.blend", rendering
+    )
+    assert len(notes) == 1
+    assert notes[0].startswith("not in the scene to be edited: file /")
+    assert notes[0].endswith("elsewhere.png")
 
 
 def test_records_tell_where_results_come_from(unedited: Path, mini: TaskSet) -> None:
@@ -126,13 +166,13 @@ BAD_CODE = {
 
 
 def test_a_task_that_comes_to_nothing_says_why_and_the_others_go_on(
-    one: Path, look: Look, tmp_path: Path
+    one: Path, rendering: RenderSettings, tmp_path: Path
 ) -> None:
     for number, (code, _) in enumerate(BAD_CODE.values(), 2):
         shutil.copytree(one / "level1" / "table1", tmp_path / "set" / "level1" / f"table{number}")
         (tmp_path / "set" / "level1" / f"table{number}" / "start.py").write_text(code)
     found = read_set(tmp_path / "set")
-    records = run(found, found.tasks, Unedited(look), tmp_path / "out")
+    records = run(found, found.tasks, Unedited(rendering), tmp_path / "out")
     for record, (_, told) in zip(records, BAD_CODE.values(), strict=True):
         assert told in (record.why or ""), record.why
         assert record.rounds == ()
@@ -141,7 +181,7 @@ def test_a_task_that_comes_to_nothing_says_why_and_the_others_go_on(
 
 
 def test_start_py_writes_nothing_and_reads_no_secret(
-    one: Path, look: Look, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    one: Path, rendering: RenderSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Held by the sandbox where agents build; here it is shown to be used."""
     root = tmp_path / "set"
@@ -155,16 +195,16 @@ def test_start_py_writes_nothing_and_reads_no_secret(
         "    try:\n        use()\n    except OSError:\n        continue\n    raise SystemExit('it got out')\n"
     )
     found = read_set(root)
-    [record] = run(found, found.tasks, Unedited(look), tmp_path / "out")
+    [record] = run(found, found.tasks, Unedited(rendering), tmp_path / "out")
     assert record.why is None, record.why
     assert not target.exists()
 
 
-def test_code_that_takes_too_long_is_ended(one: Path, look: Look, tmp_path: Path) -> None:
+def test_code_that_takes_too_long_is_ended(one: Path, rendering: RenderSettings, tmp_path: Path) -> None:
     shutil.copytree(one, tmp_path / "set")
     (tmp_path / "set" / "level1" / "table1" / "start.py").write_text("import time\ntime.sleep(600)\n")
     found = read_set(tmp_path / "set")
-    [record] = run(found, found.tasks, Unedited(dataclasses.replace(look, seconds=8)), tmp_path / "out")
+    [record] = run(found, found.tasks, Unedited(dataclasses.replace(rendering, seconds=8)), tmp_path / "out")
     assert "The task's start.py ran past its deadline of 8 s" in (record.why or "")
 
 
@@ -230,12 +270,14 @@ def test_a_task_that_has_changed_since_is_not_passed_off_as_the_same(one: Path, 
         run(found, found.tasks, Folder(theirs), tmp_path / "out")
 
 
-def test_a_folder_of_other_results_is_not_mixed_with(mini: TaskSet, look: Look, tmp_path: Path) -> None:
+def test_a_folder_of_other_results_is_not_mixed_with(
+    mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+) -> None:
     theirs = tmp_path / "theirs"
     picture(theirs / "level1" / "table1" / "1.png", 1)
     run(mini, mini.tasks[:1], Folder(theirs), tmp_path / "out")
     with pytest.raises(BadResults, match=r"holds results of .*folder.*Choose another folder"):
-        run(mini, mini.tasks[:1], Unedited(look), tmp_path / "out")
+        run(mini, mini.tasks[:1], Unedited(rendering), tmp_path / "out")
     with pytest.raises(BadResults, match="is not empty, and holds no results"):
         run(mini, mini.tasks[:1], Folder(theirs), theirs)
 

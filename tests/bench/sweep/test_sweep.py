@@ -13,7 +13,6 @@ from click.testing import CliRunner
 from processes_below import all_end, below
 from sweeping import CHEAP, SCENES, content, record, scores, written
 
-from agents.blender.run_folder import locked
 from bench.audit.untrusted_blend import Means
 from bench.frames.clip_frames import Look
 from bench.sweep.executor import LocalCrew
@@ -22,6 +21,7 @@ from bench.sweep.scene_selection import chosen
 from bench.sweep.sweep import How, tasks_of
 from bench.sweep.systems.folder import Folder
 from simworlds.cli import main
+from simworlds.folder_lock import locked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
