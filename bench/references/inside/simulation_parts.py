@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What makes things move: one function for each part that a thing can play in a simulation, and the bake.
+"""Physics for objects: one function for each part that an object can have in a simulation.
 
-Caches cover the clip. Masses are kilograms, turns radians.
+Caches cover the whole clip. Masses are in kilograms, angles in radians.
 """
 
 import bpy
 from mathutils import Matrix, Vector
 
-from .stage import FPS, keys, last
+from .scene_setup import FPS, keys, last
 
 
-def cloth(thing, *, pins="", mass=0.3, quality=6, self_collision=False, stiffness=15.0, distance=0.012):
-    """Cloth of ``mass`` a point, held by the vertex group ``pins``; keeps ``distance`` from what it meets."""
-    modifier = thing.modifiers.new("Cloth", "CLOTH")
+def cloth(obj, *, pins="", mass=0.3, quality=6, self_collision=False, stiffness=15.0, distance=0.012):
+    """Makes cloth of ``mass`` a point, held by the vertex group ``pins``, at ``distance`` from colliders."""
+    modifier = obj.modifiers.new("Cloth", "CLOTH")
     settings, collisions = modifier.settings, modifier.collision_settings
     settings.quality, settings.mass = quality, mass
     settings.tension_stiffness = settings.compression_stiffness = settings.shear_stiffness = stiffness
@@ -23,23 +23,23 @@ def cloth(thing, *, pins="", mass=0.3, quality=6, self_collision=False, stiffnes
     return modifier
 
 
-def collider(thing, *, thickness=0.01, inner=0.2, friction=20.0, damping=0.5):
+def collider(obj, *, thickness=0.01, inner=0.2, friction=20.0, damping=0.5):
     """Stops cloth, soft bodies and particles. ``thickness``: how far outside of the surface they are stopped.
 
-    ``inner``: how deep a soft body may get and is still pushed back, through the face that it is behind. In a thing
+    ``inner``: how deep a soft body may get and is still pushed back, through the face that it is behind. In an object
     that is thinner than twice that, it is pushed both ways, and falls through.
     """
-    modifier = thing.modifiers.new("Collision", "COLLISION")
-    thing.collision.thickness_outer, thing.collision.thickness_inner = thickness, inner
-    thing.collision.cloth_friction = friction
-    thing.collision.use_culling = False  # else cloth sinks through faces that are not level
-    thing.collision.damping = thing.collision.damping_factor = damping
+    modifier = obj.modifiers.new("Collision", "COLLISION")
+    obj.collision.thickness_outer, obj.collision.thickness_inner = thickness, inner
+    obj.collision.cloth_friction = friction
+    obj.collision.use_culling = False  # else cloth sinks through faces that are not level
+    obj.collision.damping = obj.collision.damping_factor = damping
     return modifier
 
 
-def soft(thing, *, goal="", mass=1.0, stiffness=0.7, bending=0.5, stretch=0.0, damping=5.0, collision=None):
-    """A soft body. What is in the vertex group ``goal``, where one is named, is held fast by a weight of 1."""
-    modifier = thing.modifiers.new("Softbody", "SOFT_BODY")
+def soft(obj, *, goal="", mass=1.0, stiffness=0.7, bending=0.5, stretch=0.0, damping=5.0, collision=None):
+    """Makes a soft body. Points in the vertex group ``goal``, if named, are held in place by their weight."""
+    modifier = obj.modifiers.new("Softbody", "SOFT_BODY")
     settings = modifier.settings
     settings.mass = mass
     settings.use_goal, settings.vertex_group_goal, settings.goal_default = bool(goal), goal, 1.0
@@ -51,30 +51,30 @@ def soft(thing, *, goal="", mass=1.0, stiffness=0.7, bending=0.5, stretch=0.0, d
     return modifier
 
 
-def hook(thing, name, group, at):
-    """An empty that the points in a vertex group follow: they go, turn and stretch with it, from where they are."""
+def hook(obj, name, group, at):
+    """Makes an empty that moves, turns and scales the points of a vertex group."""
     handle = bpy.data.objects.new(name, None)
     bpy.context.scene.collection.objects.link(handle)
     handle.location, handle.empty_display_size = at, 0.1
     bpy.context.view_layer.update()
-    modifier = thing.modifiers.new("Hook", "HOOK")
+    modifier = obj.modifiers.new("Hook", "HOOK")
     modifier.object, modifier.vertex_group = handle, group
-    modifier.matrix_inverse = handle.matrix_world.inverted() @ thing.matrix_world
+    modifier.matrix_inverse = handle.matrix_world.inverted() @ obj.matrix_world
     return handle
 
 
 def body(
-    thing, kind="ACTIVE", *, shape="CONVEX_HULL", mass=1.0, friction=0.6, bounce=0.0, moved=False, margin=0.0
+    obj, kind="ACTIVE", *, shape="CONVEX_HULL", mass=1.0, friction=0.6, bounce=0.0, moved=False, margin=0.0
 ):
-    """A rigid body; the world comes with the first. ``moved``: by its keys rather than by the simulation."""
+    """Makes a rigid body, and the world with the first. ``moved``: by its keys instead of the simulation."""
     scene = bpy.context.scene
     if scene.rigidbody_world is None:
         bpy.ops.rigidbody.world_add()
         scene.rigidbody_world.point_cache.frame_end = last()
         scene.rigidbody_world.substeps_per_frame = 20
-    bpy.context.view_layer.objects.active = thing
+    bpy.context.view_layer.objects.active = obj
     bpy.ops.rigidbody.object_add(type=kind)
-    settings = thing.rigid_body
+    settings = obj.rigid_body
     settings.collision_shape, settings.mass = shape, mass
     settings.friction, settings.restitution, settings.kinematic = friction, bounce, moved
     settings.use_margin, settings.collision_margin = True, margin
@@ -82,47 +82,47 @@ def body(
 
 
 def joint(name, kind, one, two, at=(0, 0, 0), *, turn=(0, 0, 0), collide=False):
-    """A constraint of two bodies, as an empty whose axes it has."""
-    thing = bpy.data.objects.new(name, None)
-    bpy.context.scene.collection.objects.link(thing)
-    thing.location, thing.rotation_euler, thing.empty_display_size = at, turn, 0.1
+    """Makes a constraint between two bodies: an empty whose axes are those of the constraint."""
+    obj = bpy.data.objects.new(name, None)
+    bpy.context.scene.collection.objects.link(obj)
+    obj.location, obj.rotation_euler, obj.empty_display_size = at, turn, 0.1
     bpy.context.view_layer.update()
-    bpy.context.view_layer.objects.active = thing
+    bpy.context.view_layer.objects.active = obj
     bpy.ops.rigidbody.constraint_add(type=kind)
-    tie = thing.rigid_body_constraint
+    tie = obj.rigid_body_constraint
     tie.object1, tie.object2, tie.disable_collisions = one, two, not collide
     return tie
 
 
 def limits(tie, **axes):
-    """How far a joint gives along or around its axes: ``lin_x=(0, 0)`` not at all, ``ang_z=(-1, 1)`` in radians."""
+    """Limits a joint along or around its axes: ``lin_x=(0, 0)`` locks one, ``ang_z=(-1, 1)`` is in radians."""
     for axis, (low, high) in axes.items():
         setattr(tie, f"use_limit_{axis}", True)
         setattr(tie, f"limit_{axis}_lower", low)
         setattr(tie, f"limit_{axis}_upper", high)
 
 
-def thrown(thing, velocity, spin=(0, 0, 0), *, until=4):
-    """A hand moves a rigid body at ``velocity`` (m/s) and ``spin`` (radians a second) until that frame, and lets go.
+def thrown(obj, velocity, spin=(0, 0, 0), *, until=4):
+    """Throws a rigid body: keys move it at ``velocity`` (m/s) and ``spin`` (radians a second) until that frame.
 
-    It begins at the second frame: where a body was at the first or at the second is where Blender makes it, as it
-    happens. Let go before the fourth, it falls.
+    Keys begin at frame 2: Blender may take a body's start from frame 1 or from frame 2. A body that is released before
+    frame 4 does not keep its speed and just falls.
     """
-    time, start = (until - 2) / FPS, thing.rotation_euler.copy()
+    time, start = (until - 2) / FPS, obj.rotation_euler.copy()
     turned = Matrix.Rotation(Vector(spin).length * time, 3, Vector(spin) if any(spin) else Vector((0, 0, 1)))
     end = (turned @ start.to_matrix()).to_euler(start.order, start)
-    place = thing.location.copy()
-    keys(thing, "location", {2: place, until: place + Vector(velocity) * time}, even=True)
-    keys(thing, "rotation_euler", {2: start, until: end}, even=True)
-    keys(thing, "rigid_body.kinematic", {1: True, until: False})
+    place = obj.location.copy()
+    keys(obj, "location", {2: place, until: place + Vector(velocity) * time}, even=True)
+    keys(obj, "rotation_euler", {2: start, until: end}, even=True)
+    keys(obj, "rigid_body.kinematic", {1: True, until: False})
 
 
 def particles(
-    thing, name, count, *, first=1, until=None, lifetime=50, size=0.02, shown=None, source="FACE", speed=1.0
+    obj, name, count, *, first=1, until=None, lifetime=50, size=0.02, shown=None, source="FACE", speed=1.0
 ):
-    """Particles that a thing emits, shown as the object ``shown``, which is then hidden itself (else as halos that
+    """Particles that an object emits, shown as the object ``shown``, which is then hidden itself (else as halos that
     renders leave out)."""
-    modifier = thing.modifiers.new(name, "PARTICLE_SYSTEM")
+    modifier = obj.modifiers.new(name, "PARTICLE_SYSTEM")
     system = modifier.particle_system
     settings = system.settings
     settings.name = name
@@ -136,9 +136,9 @@ def particles(
     return settings
 
 
-def hair(thing, name, count, *, length=0.2, dynamic=True):
-    """Hair on a thing, which moves where ``dynamic``."""
-    modifier = thing.modifiers.new(name, "PARTICLE_SYSTEM")
+def hair(obj, name, count, *, length=0.2, dynamic=True):
+    """Hair on an object; it is simulated if ``dynamic``."""
+    modifier = obj.modifiers.new(name, "PARTICLE_SYSTEM")
     system = modifier.particle_system
     settings = system.settings
     settings.name = name
@@ -149,17 +149,17 @@ def hair(thing, name, count, *, length=0.2, dynamic=True):
 
 
 def field(name, kind, strength, at=(0, 0, 0), *, turn=(0, 0, 0), noise=0.0, size=1.0):
-    """A field of force, as an empty; wind blows along its Z."""
+    """Makes a force field: an empty; wind blows along its Z."""
     bpy.ops.object.effector_add(type=kind, location=at, rotation=turn)
-    thing = bpy.context.object
-    thing.name = name
-    thing.field.strength, thing.field.noise, thing.field.size = strength, noise, size
-    return thing
+    obj = bpy.context.object
+    obj.name = name
+    obj.field.strength, obj.field.noise, obj.field.size = strength, noise, size
+    return obj
 
 
-def domain(thing, kind="LIQUID", *, resolution=40, mesh=True, adaptive=False):
-    """The space in which a fluid is. A liquid is shown as its surface where ``mesh``."""
-    modifier = thing.modifiers.new("Fluid", "FLUID")
+def domain(obj, kind="LIQUID", *, resolution=40, mesh=True, adaptive=False):
+    """Makes a fluid domain. ``mesh``: a liquid is shown as its surface."""
+    modifier = obj.modifiers.new("Fluid", "FLUID")
     modifier.fluid_type = "DOMAIN"
     settings = modifier.domain_settings
     settings.domain_type, settings.resolution_max = kind, resolution
@@ -171,12 +171,13 @@ def domain(thing, kind="LIQUID", *, resolution=40, mesh=True, adaptive=False):
     return settings
 
 
-def flow(thing, kind="LIQUID", *, behavior="INFLOW", speed=None):
-    """Where a fluid comes from, or (``behavior`` GEOMETRY) is at the start: then it is not rendered, as what is there
-    is the fluid. ``speed``: of what comes out, m/s.
+def flow(obj, kind="LIQUID", *, behavior="INFLOW", speed=None):
+    """Makes a source of fluid. ``behavior`` GEOMETRY: the fluid's shape at the start, which itself is not rendered.
+
+    ``speed``: of the fluid that comes out, in m/s.
     """
-    thing.hide_render = behavior == "GEOMETRY"
-    modifier = thing.modifiers.new("Fluid", "FLUID")
+    obj.hide_render = behavior == "GEOMETRY"
+    modifier = obj.modifiers.new("Fluid", "FLUID")
     modifier.fluid_type = "FLOW"
     settings = modifier.flow_settings
     settings.flow_type, settings.flow_behavior = kind, behavior
@@ -185,40 +186,10 @@ def flow(thing, kind="LIQUID", *, behavior="INFLOW", speed=None):
     return settings
 
 
-def effector(thing, kind="COLLISION", *, thickness=0.0, planar=False):
-    """What a fluid meets (or is guided by). ``planar``: an open mesh."""
-    modifier = thing.modifiers.new("Fluid", "FLUID")
+def effector(obj, kind="COLLISION", *, thickness=0.0, planar=False):
+    """Makes an obstacle or a guide of a fluid. ``planar``: an open mesh."""
+    modifier = obj.modifiers.new("Fluid", "FLUID")
     modifier.fluid_type = "EFFECTOR"
     settings = modifier.effector_settings
     settings.effector_type, settings.surface_distance, settings.use_plane_init = kind, thickness, planar
     return settings
-
-
-def bake(fluids_in):
-    """Bakes all that there is. Fluids keep their caches below the folder ``fluids_in`` (``//…``), each in its own."""
-    scene = bpy.context.scene
-    domains = [thing for thing in scene.objects if any(_is_domain(one) for one in thing.modifiers)]
-    if scene.rigidbody_world is not None or _cached(scene):
-        bpy.ops.ptcache.bake_all(bake=True)
-    for hairs in _moving_hair(scene):  # which Blender leaves out when it bakes all
-        with bpy.context.temp_override(point_cache=hairs.point_cache):
-            bpy.ops.ptcache.bake(bake=True)
-    for number, thing in enumerate(domains):
-        settings = next(one for one in thing.modifiers if _is_domain(one)).domain_settings
-        settings.cache_directory = f"{fluids_in}/{number}"
-        with bpy.context.temp_override(object=thing, active_object=thing):
-            bpy.ops.fluid.bake_all()
-
-
-def _is_domain(modifier):
-    return modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN"
-
-
-def _moving_hair(scene):
-    systems = [system for thing in scene.objects for system in thing.particle_systems]
-    return [system for system in systems if system.settings.type == "HAIR" and system.use_hair_dynamics]
-
-
-def _cached(scene):
-    kinds = {"CLOTH", "SOFT_BODY", "PARTICLE_SYSTEM", "DYNAMIC_PAINT"}
-    return any(modifier.type in kinds for thing in scene.objects for modifier in thing.modifiers)
