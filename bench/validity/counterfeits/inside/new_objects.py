@@ -4,9 +4,9 @@
 import bpy
 
 
-def put(name, data, matrix):
-    """An object with that data, where ``matrix`` has it."""
-    thing = bpy.data.objects.new(name, data)
-    bpy.context.scene.collection.objects.link(thing)
-    thing.matrix_world = matrix
-    return thing
+def add_object(name, data, matrix):
+    """Adds an object with that data to the scene."""
+    obj = bpy.data.objects.new(name, data)
+    bpy.context.scene.collection.objects.link(obj)
+    obj.matrix_world = matrix
+    return obj

@@ -1,92 +1,79 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What must not be there: recorded motion, stored shapes, physics in a still scene; and fields without force."""
+"""Adds what a scene must not have: keyed motion, animated shapes, mesh caches, physics in a static scene."""
 
 import bpy
-
-from .lookup import mute_keys
 
 _STEP = 0.0005  # of the scene's units: enough to be motion, too little for anyone to see
 _NEAR = 1e-3
 
 
-def calm(things):
-    """Takes the force out of fields: of these, or of all."""
-    found = [
-        thing for thing in things or bpy.context.scene.objects if thing.field and thing.field.type != "NONE"
-    ]
-    for thing in found:
-        mute_keys(thing, "field.strength")
-        thing.field.strength = 0.0
-    return found
-
-
-def record(things):
-    """Keys the place of a thing at every frame, on a path of half a millimetre a step."""
-    thing = things[0]
-    place = thing.location.copy()
+def key_every_frame(objects):
+    """Keys the location of an object at every frame, half a millimetre a step."""
+    obj = objects[0]
+    place = obj.location.copy()
     for frame in _clip():
-        thing.location.z = place.z + _STEP * (frame % 8)
-        thing.keyframe_insert("location", frame=frame)
-    return [thing]
+        obj.location.z = place.z + _STEP * (frame % 8)
+        obj.keyframe_insert("location", frame=frame)
+    return [obj]
 
 
-def reshape(things):
-    """Blends the surface of a thing into another shape, by two keys."""
-    thing = next((each for each in things if each.type in {"MESH", "CURVE", "SURFACE", "LATTICE"}), None)
-    if thing is None:
+def animate_shape_key(objects):
+    """Blends a mesh into another shape key by two keys."""
+    obj = next((each for each in objects if each.type in {"MESH", "CURVE", "SURFACE", "LATTICE"}), None)
+    if obj is None:
         return []
-    if thing.data.shape_keys is None:
-        thing.shape_key_add(name="Basis")
-    shape = thing.shape_key_add(name="Other", from_mix=False)
+    if obj.data.shape_keys is None:
+        obj.shape_key_add(name="Basis")
+    shape = obj.shape_key_add(name="Other", from_mix=False)
     shape.data[0].co.z += _NEAR
     first, *_, last = _clip()
     for frame, value in ((first, 0.0), (last, 1.0)):
         shape.value = value
         shape.keyframe_insert("value", frame=frame)
-    return [thing]
+    return [obj]
 
 
-def play_mesh(things):
-    """Has the surface of a thing be played from a file."""
-    thing = next((each for each in things if each.type == "MESH"), None)
-    if thing is None:
+def add_mesh_cache(objects):
+    """Adds a mesh cache modifier that plays a file."""
+    obj = next((each for each in objects if each.type == "MESH"), None)
+    if obj is None:
         return []
-    thing.modifiers.new("Recorded", "MESH_CACHE").filepath = "//recorded.pc2"
-    return [thing]
+    obj.modifiers.new("Recorded", "MESH_CACHE").filepath = "//recorded.pc2"
+    return [obj]
 
 
-def add_bake(things):
-    """Bakes a rigid-body world, and takes its only body out of it again."""
-    del things
-    thing = _some_mesh()
-    bpy.context.view_layer.objects.active = thing
+def add_bake(objects):
+    """Bakes a rigid-body world, then removes its only body."""
+    del objects
+    obj = _some_mesh()
+    bpy.context.view_layer.objects.active = obj
     bpy.ops.rigidbody.object_add(type="PASSIVE")
     world = bpy.context.scene.rigidbody_world
     with bpy.context.temp_override(point_cache=world.point_cache):
         bpy.ops.ptcache.bake(bake=True)
-    world.collection.objects.unlink(thing)
-    return [thing]
+    world.collection.objects.unlink(obj)
+    return [obj]
 
 
-def add_body(things):
-    """Makes a thing a passive rigid body."""
-    del things
-    thing = _some_mesh()
-    bpy.context.view_layer.objects.active = thing
+def add_body(objects):
+    """Makes a mesh a passive rigid body."""
+    del objects
+    obj = _some_mesh()
+    bpy.context.view_layer.objects.active = obj
     bpy.ops.rigidbody.object_add(type="PASSIVE")
-    return [thing]
+    return [obj]
 
 
-def add_solver(things):
-    """Makes a thing a soft body."""
-    del things
-    thing = _some_mesh()
-    thing.modifiers.new("Softbody", "SOFT_BODY")
-    return [thing]
+def add_solver(objects):
+    """Makes a mesh a soft body."""
+    del objects
+    obj = _some_mesh()
+    obj.modifiers.new("Softbody", "SOFT_BODY")
+    return [obj]
 
 
 def _some_mesh():
-    return next(thing for thing in bpy.context.scene.objects if thing.type == "MESH")
+    return next(obj for obj in bpy.context.scene.objects if obj.type == "MESH")
 
 
 def _clip():
