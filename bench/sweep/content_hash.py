@@ -1,4 +1,4 @@
-"""Digests of files and of data, which are what steps and results are known by."""
+"""Digests of files and of data, by which steps and results are identified."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def digests(folder: Path, files: Iterable[Path]) -> dict[str, str]:
 
 @cache
 def _digest(path: Path, size: int, changed: int) -> str:
-    """Of a file that many scenes share, found once by one process."""
+    """The digest of a file, computed once in each process: many scenes share files."""
     del size, changed
     return digest_of_file(path)
 
