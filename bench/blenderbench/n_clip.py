@@ -82,7 +82,7 @@ class Tower:
 
     def embed(self, pictures: Iterable[Image.Image]) -> Array:
         """The embeddings of RGB pictures, one a row, of length 1. Raises NoWeights for weights that come to nothing."""
-        pixels = np.stack([prepared(picture) for picture in pictures])
+        pixels = np.stack([preprocess(picture) for picture in pictures])
         states = self._normed("vision_model.pre_layrnorm", self._embedded(pixels))
         for number in range(LAYERS):
             states = self._layer(f"vision_model.encoder.layers.{number}", states)
@@ -136,7 +136,7 @@ def _quick_gelu(values: Array) -> Array:
     return values / (1 + np.exp(np.float32(-1.702) * values))
 
 
-def prepared(picture: Image.Image) -> Array:
+def preprocess(picture: Image.Image) -> Array:
     """An RGB picture as CLIP sees it: channels, rows, columns."""
     width, height = picture.size
     short = min(width, height)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict
 
 from bench.audit.untrusted_blend import AUDITOR
-from bench.blenderbench.errors import BadPicture, NotDone
+from bench.blenderbench.errors import BadPicture, TaskFailed
 from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confinement import Limits, best_sandbox, default_limits
@@ -29,7 +29,7 @@ from simworlds.sandbox.usage import sweep
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from bench.blenderbench.task_set import Task
+    from bench.blenderbench.task_set import EditTask
 
 SAMPLES = 512
 """Of Cycles, as the set's own renders have."""
@@ -73,10 +73,10 @@ class Rendered(BaseModel):
     samples: int
 
 
-def make_start(task: Task, blend: Path, settings: RenderSettings) -> tuple[str, ...]:
+def make_start(task: EditTask, blend: Path, settings: RenderSettings) -> tuple[str, ...]:
     """Runs a task's ``start.py`` on its raw file, and saves the scene as ``blend`` with all that can be packed.
 
-    Returns, in words, what could not be packed. Raises NotDone for what is the task's fault, CannotStart where no
+    Returns, in words, what could not be packed. Raises TaskFailed for what is the task's fault, CannotStart where no
     Blender works.
     """
     with _opened(task.blend, (task.folder,), blend.parent.parent, settings) as scene:
@@ -88,7 +88,7 @@ def make_start(task: Task, blend: Path, settings: RenderSettings) -> tuple[str, 
 
 
 def render(blend: Path, picture: Path, size: tuple[int, int], settings: RenderSettings) -> Rendered:
-    """Renders a scene through its own camera, as ``picture``. Raises NotDone, CannotStart."""
+    """Renders a scene through its own camera, as ``picture``. Raises TaskFailed, CannotStart."""
     with _opened(blend, (blend,), picture.parent, settings) as scene:
         return scene.render(picture, size, settings.samples)
 
@@ -107,12 +107,12 @@ class _Scene:
         return self._process.call(job, arguments, timeout=self._seconds, what=doing).value
 
     def execute(self, code: str, name: str) -> None:
-        """Runs the task's code. Raises NotDone where that fails, with the line."""
+        """Runs the task's code. Raises TaskFailed where that fails, with the line."""
         failure = self.ask("execute", f"the task's {name}", code=code, name=name)
         if failure is not None:
             line = f", line {failure['line']}" if failure["line"] else ""
             message = " ".join(str(failure["message"]).split())[:300]
-            raise NotDone(f"{name} fails{line}: {failure['type']}: {message}")
+            raise TaskFailed(f"{name} fails{line}: {failure['type']}: {message}")
 
     def save(self, target: Path) -> tuple[str, ...]:
         """Saves the scene with all that can be packed; returns, in words, what it still needs from elsewhere."""
@@ -135,7 +135,7 @@ class _Scene:
 def _opened(blend: Path, read: tuple[Path, ...], beside: Path, settings: RenderSettings) -> Generator[_Scene]:
     """A file, open. The process has its folder in ``beside``, on the disk of what is made.
 
-    Raises NotDone, CannotStart.
+    Raises TaskFailed, CannotStart.
     """
     for left in beside.glob(f"{_SCRATCH}*"):  # by a process that was killed
         _remove(left)
@@ -156,9 +156,9 @@ def _opened(blend: Path, read: tuple[Path, ...], beside: Path, settings: RenderS
     except CannotStart:
         raise
     except (BlenderError, BadPicture) as error:
-        raise NotDone(f"{blend.name}: {error}") from error
+        raise TaskFailed(f"{blend.name}: {error}") from error
     except (LookupError, TypeError, ValueError) as error:  # code in it may answer in the worker's name
-        raise NotDone(f"{blend.name}: Blender's reply was not valid ({error})") from error
+        raise TaskFailed(f"{blend.name}: Blender's reply was not valid ({error})") from error
     finally:
         _remove(place)
 

@@ -16,7 +16,8 @@ def save(path):
     Returns what stays outside of it, in words: files that cannot be packed, and baked caches on the disk.
     """
     for image in _local(bpy.data.images):
-        if image.source != "VIEWER" and (image.is_dirty or image.filepath):
+        has_file = image.source in {"FILE", "TILED"} and image.filepath
+        if has_file or (image.is_dirty and image.source != "VIEWER"):
             _pack(image)
     for block in (*_local(bpy.data.sounds), *_local(bpy.data.fonts)):
         if block.filepath not in {"", "<builtin>"}:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from bench.blenderbench.run import run
-from bench.blenderbench.systems import Unedited
+from bench.blenderbench.systems import UneditedStart
 from bench.blenderbench.task_scenes import RenderSettings
 from bench.blenderbench.task_set import TaskSet, read_set
 from simworlds.sandbox.runtime import clean_environment, installed_bpy
@@ -48,7 +48,7 @@ def rendering() -> RenderSettings:
 def unedited(mini: TaskSet, rendering: RenderSettings, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The results of a system that edits nothing. Never write to them."""
     out = tmp_path_factory.mktemp("results") / "unedited"
-    run(mini, mini.tasks, Unedited(rendering), out)
+    run(mini, mini.tasks, UneditedStart(rendering), out)
     return out
 
 

@@ -1,4 +1,4 @@
-"""What a system is, what it makes of a task, and the scene that it begins with."""
+"""The interface of systems that edit scenes, their output, and the scene that they start from."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from pydantic import BaseModel, ConfigDict
 
-from bench.blenderbench.errors import BadPicture, NotDone
+from bench.blenderbench.errors import BadPicture, TaskFailed
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import read, write
@@ -16,15 +16,15 @@ from bench.blenderbench.task_scenes import Rendered, RenderSettings, make_start,
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from bench.blenderbench.results import Place
-    from bench.blenderbench.task_set import Task
+    from bench.blenderbench.results import TaskFolder
+    from bench.blenderbench.task_set import EditTask
 
     Tell = Callable[[str], object]
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
-    """What a system made of a task: ``rounds`` below the task's folder, oldest first. See Record for the rest."""
+class EditOutput:
+    """A system's result for a task. ``rounds``: files below the task's folder, oldest first. Others: see TaskRecord."""
 
     rounds: tuple[str, ...]
     start_loss: float | None = None
@@ -34,36 +34,36 @@ class Made:
     notes: tuple[str, ...] = ()
 
 
-class System(Protocol):
-    """Whom tasks are given to."""
+class EditSystem(Protocol):
+    """A system that edits scenes."""
 
     @property
     def kind(self) -> str:
-        """What it is asked for as."""
+        """Its name on the command line."""
         ...
 
     @property
     def name(self) -> str:
-        """What tables call it, unless they are told otherwise."""
+        """Its default name in tables."""
         ...
 
     @property
     def settings(self) -> dict[str, Any]:
-        """All that its results depend on."""
+        """Everything that its results depend on."""
         ...
 
     @property
     def takes_over(self) -> bool:
-        """Whether it only takes over what others made, and so may have changed: that is done anew each time."""
+        """Whether it only copies results of others, which may have changed: it then runs every time."""
         ...
 
-    def make(self, task: Task, place: Place, tell: Tell) -> Made:
-        """Renders of the edited scene. Raises NotDone, NotReady, CannotStart."""
+    def make(self, task: EditTask, place: TaskFolder, tell: Tell) -> EditOutput:
+        """Edits a scene and returns its renders. Raises TaskFailed, EditSystemNotReady, CannotStart."""
         ...
 
 
-class Started(BaseModel):
-    """A scene to be edited was made: how it was rendered, and in words what did not come along."""
+class PreparedStart(BaseModel):
+    """A start scene: how it was rendered, and in words what could not be packed."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -71,16 +71,18 @@ class Started(BaseModel):
     notes: tuple[str, ...]
 
 
-def begun(task: Task, place: Place, rendering: RenderSettings, tell: Tell) -> tuple[Started, float | None]:
-    """The scene to be edited, unless it is there already, and how far its render is from the set's own."""
+def prepare_start(
+    task: EditTask, place: TaskFolder, rendering: RenderSettings, tell: Tell
+) -> tuple[PreparedStart, float | None]:
+    """Makes the start scene if it is missing. Returns it, and the PL of its render against the set's own."""
     if place.started.is_file():
-        started = read(place.started, Started)
+        started = read(place.started, PreparedStart)
     else:
         tell("running start.py")
         place.start.parent.mkdir(exist_ok=True)
         notes = make_start(task, place.start, rendering)
         tell("rendering the start")
-        started = Started(
+        started = PreparedStart(
             rendered=render(place.start, place.start_picture, task.size, rendering),
             notes=notes,
         )
@@ -90,4 +92,4 @@ def begun(task: Task, place: Place, rendering: RenderSettings, tell: Tell) -> tu
     try:
         return started, photometric_loss(read_picture(place.start_picture), read_picture(task.start))
     except BadPicture as error:
-        raise NotDone(str(error)) from error
+        raise TaskFailed(str(error)) from error
