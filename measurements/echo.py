@@ -1,4 +1,4 @@
-"""The least that an MCP server over stdio can be: one tool that answers with its argument."""
+"""A minimal MCP server over stdio: one tool that returns its argument."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The verifier, through the command that anybody has: what a check costs, how that grows, and what it finds.
+"""Measures the verifier by its command: the cost of a check, how it grows, and what it finds.
 
-Scenes are built in a Blender of their own, saved, and checked by ``simworlds verify --json``. How many of two hundred
-random breaches are found is measured by the tests' own script.
+Scenes are built in a Blender of their own, saved, and checked by ``simworlds verify --json``. The share of random
+breaches that are found is measured by a script of the tests.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from agents.blender.supervisor import Supervisor
 from bench.markdown_tables import Table
 from bench.setting import REPO, environment, percentile, say, simworlds
 from measurements import verifier_scenes
-from measurements.report import Figure, Part, in_steps
+from measurements.report import Figure, Part, run_steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -40,7 +40,7 @@ _MUTATIONS, _FEW = 200, 30
 
 
 class _Failed(Exception):  # noqa: N818 - reads as the state it names
-    """A check did not come out as the scene was made to."""
+    """A check did not give the result that the scene was built for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +60,9 @@ class _Check:
 
 
 def measure(setting: Setting) -> Part:
-    """Everything that is measured of the verifier; each step in a folder of its own."""
+    """Measures all steps, each in a folder of its own."""
     steps = {"growth": _growth, "motion": _motion, "loose": _loose, "mutations": _mutations}
-    return in_steps("verifier", {name: partial(_in_a_folder, step, setting) for name, step in steps.items()})
+    return run_steps("verifier", {name: partial(_in_a_folder, step, setting) for name, step in steps.items()})
 
 
 def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Part:
@@ -70,7 +70,7 @@ def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Par
         return step(setting, Path(place).resolve())
 
 
-# What a check costs
+# Cost
 
 
 def _growth(setting: Setting, place: Path) -> Part:
@@ -132,7 +132,7 @@ def _motion(setting: Setting, place: Path) -> Part:
 
 
 def _loose(setting: Setting, place: Path) -> Part:
-    say("verifier: primitives that nobody tagged")
+    say("verifier: untagged primitives")
     scene = place / "loose.blend"
     _built(place, verifier_scenes.LOOSE, scene)
     check = _checked(setting, scene)
@@ -142,7 +142,7 @@ def _loose(setting: Setting, place: Path) -> Part:
 
 
 def _built(place: Path, script: str, target: Path) -> dict[str, Any]:
-    """Builds a scene by a script in a Blender of its own and saves it; gives what the script's last value tells."""
+    """Builds a scene by a script in a Blender of its own and saves it. Returns the script's last value."""
     folder = RunFolder.make(place / f"{target.stem} run")
     with Supervisor(make_launch(folder.workspace), folder) as blender:
         saved = folder.workspace / "scene.blend"
@@ -172,10 +172,10 @@ def _ran(command: Sequence[str], setting: Setting, good: Sequence[int] = (0,)) -
 
 def _expect(found: list[str], wanted: list[str]) -> None:
     if found != wanted:
-        raise _Failed(f"{len(found)} that were not expected, as: {found[0] if found else ''}")
+        raise _Failed(f"{len(found)} unexpected, such as: {found[0] if found else ''}")
 
 
-# What it finds
+# Findings
 
 
 def _mutations(setting: Setting, _place: Path) -> Part:
