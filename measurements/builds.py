@@ -61,8 +61,8 @@ def run_build(home: Path, *arguments: str) -> BuildTime:
         raise BuildFailed(f"{' '.join(command[-5:])}: {error}") from error
     took = BuildTime(time.perf_counter() - began, _children_cpu() - used)
     if done.returncode != 0:
-        said = (done.stderr or done.stdout).strip().splitlines()
-        raise BuildFailed(f"exit code {done.returncode}: {said[-1] if said else 'it printed nothing'}")
+        lines = (done.stderr or done.stdout).strip().splitlines()
+        raise BuildFailed(f"exit code {done.returncode}: {lines[-1] if lines else 'it printed nothing'}")
     return took
 
 
@@ -147,9 +147,11 @@ def _html(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> N
         raise FileNotFoundError(f"no {HTML}.tar.xz among the documentation sources")
     say(f"builds: unpacking {archive.name}")
     began, used = time.perf_counter(), time.process_time()
-    found, _ = find_sources(_HTML_VERSION, cache=folder / "cache", manual=archive, allow_download=False)
+    found_sources, _ = find_sources(
+        _HTML_VERSION, cache=folder / "cache", manual=archive, allow_download=False
+    )
     unpacked = BuildTime(time.perf_counter() - began, time.process_time() - used)
-    html = next(source for source in found if source.role == "manual")
+    html = next(source for source in found_sources if source.role == "manual")
     size = sum(path.stat().st_size for path in html.path.rglob("*") if path.is_file()) / 1e6
     say("builds: reading the manual's HTML form")
     between, used = time.perf_counter(), time.process_time() + _children_cpu()

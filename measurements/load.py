@@ -98,11 +98,11 @@ def _server(serve: Sequence[str], setting: Setting) -> Generator[tuple[str, int]
 def _address(stream: IO[str]) -> str:
     """Reads the address that the server prints on stderr; later output is read and dropped."""
     addresses: queue.Queue[str] = queue.Queue()
-    said: list[str] = []
+    lines: list[str] = []
 
     def read() -> None:
         for line in stream:
-            said.append(line.strip())
+            lines.append(line.strip())
             if "http://" in line:
                 addresses.put("http://" + line.split("http://", 1)[1].split()[0])
         addresses.put("")
@@ -114,7 +114,7 @@ def _address(stream: IO[str]) -> str:
         url = ""
     if not url:
         raise NoServer(
-            f"simworlds serve --http printed no address: {' '.join(said[-3:]) or 'it printed nothing'}"
+            f"simworlds serve --http printed no address: {' '.join(lines[-3:]) or 'it printed nothing'}"
         )
     return url
 

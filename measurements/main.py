@@ -32,7 +32,7 @@ def _parts(text: str) -> list[str]:
     return names
 
 
-def _arguments(given: Sequence[str] | None) -> argparse.Namespace:
+def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m measurements", description=__doc__)
     parser.add_argument(
         "--only", type=_parts, default=list(PARTS), metavar="PARTS", help=f"of {','.join(PARTS)}"
@@ -50,7 +50,7 @@ def _arguments(given: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument("--misses", action="store_true", help="list the queries without a correct answer")
     parser.add_argument("--output", type=Path, default=REPO / "reports", help="folder of the reports")
-    return parser.parse_args(given)
+    return parser.parse_args(words)
 
 
 def _base(home: Path) -> Path:

@@ -94,8 +94,9 @@ def _unusable(setting: Setting) -> str:
         _docs(setting, _FIRST)
         return ""
     except subprocess.CalledProcessError as error:
-        said = (error.stderr or error.stdout or "").strip().splitlines()
-        return f"simworlds docs failed with exit code {error.returncode}: {said[-1] if said else 'it printed nothing'}"
+        lines = (error.stderr or error.stdout or "").strip().splitlines()
+        output = lines[-1] if lines else "it printed nothing"
+        return f"simworlds docs failed with exit code {error.returncode}: {output}"
     except (OSError, subprocess.SubprocessError) as error:
         return f"simworlds docs could not be run: {error}"
 
@@ -111,13 +112,13 @@ def _cold(setting: Setting) -> Part:
     """Measures seconds of whole processes."""
     say("server: simworlds docs, cold")
     times: dict[str, list[float]] = {query: [] for query in _COLD}
-    for query, found in times.items():
+    for query, seconds in times.items():
         for _ in range(3 if setting.quick else COLD_RUNS):
             began = time.perf_counter()
             _docs(setting, query)
-            found.append(time.perf_counter() - began)
-    named, asked = (percentile(times[query], 0.5) for query in _COLD)
-    return Part("simworlds docs", (Figure("docs", named, f"a question {asked:.2f} s"),), data=times)
+            seconds.append(time.perf_counter() - began)
+    named, question = (percentile(times[query], 0.5) for query in _COLD)
+    return Part("simworlds docs", (Figure("docs", named, f"a question {question:.2f} s"),), data=times)
 
 
 async def _stdio(command: Sequence[str], tool: str, queries: Sequence[str], setting: Setting) -> _Stdio:

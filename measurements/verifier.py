@@ -80,7 +80,7 @@ def _growth(setting: Setting, place: Path) -> Part:
     for count in _SIZES:
         say(f"verifier: {count} objects")
         scene = place / f"{count}.blend"
-        told = _built(place, verifier_scenes.furniture(count, _TRIANGLES), scene)
+        counts = _built(place, verifier_scenes.furniture(count, _TRIANGLES), scene)
         checks = [
             _checked(setting, scene, "--rules", ",".join(_STILL))
             for _ in range(1 if setting.quick or count > _JUDGED else 3)
@@ -91,15 +91,15 @@ def _growth(setting: Setting, place: Path) -> Part:
         rows.append(
             (
                 f"{count:,}",
-                f"{told['meshes']:,}",
-                f"{told['triangles']:,}",
+                f"{counts['meshes']:,}",
+                f"{counts['triangles']:,}",
                 f"{took:.2f}",
                 f"{took / count * 1000:.1f}",
                 f"{whole:.1f}",
             )
         )
         if count == _JUDGED:
-            judged = f"{told['triangles']:,} triangles; median of {len(checks)}"
+            judged = f"{counts['triangles']:,} triangles; median of {len(checks)}"
         scene.unlink()
     each = {count: percentile(times, 0.5) / count for count, times in costs.items()}
     growth = each[_SIZES[-1]] / each[_SIZES[0]]
@@ -170,9 +170,9 @@ def _ran(command: Sequence[str], setting: Setting, good: Sequence[int] = (0,)) -
     return done.stdout
 
 
-def _expect(found: list[str], wanted: list[str]) -> None:
-    if found != wanted:
-        raise _Failed(f"{len(found)} unexpected, such as: {found[0] if found else ''}")
+def _expect(findings: list[str], wanted: list[str]) -> None:
+    if findings != wanted:
+        raise _Failed(f"{len(findings)} unexpected, such as: {findings[0] if findings else ''}")
 
 
 # Findings
@@ -181,18 +181,22 @@ def _expect(found: list[str], wanted: list[str]) -> None:
 def _mutations(setting: Setting, _place: Path) -> Part:
     count = _FEW if setting.quick else _MUTATIONS
     say(f"verifier: {count} random breaches of valid scenes")
-    told = json.loads(_ran([sys.executable, str(_MUTATING), str(count)], setting))
-    rows = [(kind, str(made), str(found), by) for kind, made, found, by in told["kinds"]]
-    rows.append(("all", str(told["made"]), str(told["found"]), ""))
+    result = json.loads(_ran([sys.executable, str(_MUTATING), str(count)], setting))
+    rows = [(kind, str(made), str(found), by) for kind, made, found, by in result["kinds"]]
+    rows.append(("all", str(result["made"]), str(result["found"]), ""))
     note = (
-        f"One breach at a time, at random, of three valid scenes: a furnished room of 20 objects, a table of dominoes, "
-        f"a cloth over a table. The valid scenes were looked at {told['looks']} times by all {told['rules']} rules: "
-        f"{len(told['alarms'])} findings. A breach counts as found if a rule that owns its kind names what was broken; "
+        "One random breach at a time of three valid scenes: a furnished room of 20 objects, a table of dominoes, "
+        f"a cloth over a table. All {result['rules']} rules checked the valid scenes {result['looks']} times: "
+        f"{len(result['alarms'])} findings. A breach counts as found if a rule of its kind names what was broken; "
         "two rules may find one."
     )
     figures = (
-        Figure("mutations", told["found"] / told["made"], f"{told['found']} of {told['made']}"),
-        Figure("false_alarms", float(len(told["alarms"])), f"{told['looks']} looks by {told['rules']} rules"),
+        Figure("mutations", result["found"] / result["made"], f"{result['found']} of {result['made']}"),
+        Figure(
+            "false_alarms",
+            float(len(result["alarms"])),
+            f"{result['looks']} checks by {result['rules']} rules",
+        ),
     )
     table = Table("Breaches of valid scenes", ("breach", "made", "found", "by"), tuple(rows), note)
-    return Part("mutations", figures, (table,), data=told)
+    return Part("mutations", figures, (table,), data=result)

@@ -58,16 +58,16 @@ class SetResults:
 def read_results(out: Path) -> SetResults:
     """Reads a folder. Raises BadResults if it is not scored, or in different ways."""
     run = read_run(out)
-    found = list(records(out))
-    if unscored := [record.task for place, record in found if not place.scores.is_file()]:
+    finished = list(records(out))
+    if unscored := [record.task for place, record in finished if not place.scores.is_file()]:
         raise BadResults(f"{out}: {', '.join(unscored)} not scored yet. Run 'blenderbench score {out}'.")
-    scores = tuple(read(place.scores, Score) for place, _ in found)
+    scores = tuple(read(place.scores, Score) for place, _ in finished)
     if not scores:
         raise BadResults(f"{out} has no finished task.")
     ways = {(result.convention, result.best_round, str(result.clip), _judge(result)) for result in scores}
     if len({way[:3] for way in ways}) > 1 or len({way[3] for way in ways if way[3]}) > 1:
         raise BadResults(f"{out}: tasks were scored with different options. Score them again, all at once.")
-    return SetResults(run, tuple(record for _, record in found), scores, _rows(scores))
+    return SetResults(run, tuple(record for _, record in finished), scores, _rows(scores))
 
 
 def _judge(result: Score) -> tuple[str, str, str] | None:
@@ -86,27 +86,27 @@ def _cell(metric: str, scores: Sequence[Score]) -> Cell:
     return Cell(fmean(values) if values else None, len(values))
 
 
-def as_markdown(found: Sequence[SetResults], *, published: bool = False) -> str:
+def as_markdown(results: Sequence[SetResults], *, published: bool = False) -> str:
     """The table and notes on how to read it. Raises BadResults for results that cannot be compared."""
-    if len({result.convention for result in found}) > 1:
+    if len({result.convention for result in results}) > 1:
         raise BadResults(
             "Results of both conventions cannot be in one table. Score them with the same convention."
         )
-    if published and found[0].convention != "paper":
+    if published and results[0].convention != "paper":
         raise BadResults("The published figures use the paper's convention. Score without --peer.")
-    digits = _DIGITS[found[0].convention]
-    systems = [result.name for result in found] + (list(PUBLISHED) if published else [])
+    digits = _DIGITS[results[0].convention]
+    systems = [result.name for result in results] + (list(PUBLISHED) if published else [])
     head = ("", *(f"{system} {_HEADS[metric]}" for system in systems for metric in METRICS))
     body = tuple(
-        (_label(row), *_figures(found, row, digits), *(_published(row) if published else ()))
+        (_label(row), *_figures(results, row, digits), *(_published(row) if published else ()))
         for row in (*LEVELS, OVERALL)
-        if any(row in result.rows for result in found)
+        if any(row in result.rows for result in results)
     )
-    notes = "\n".join(f"- {note}" for result in found for note in _notes(result))
+    notes = "\n".join(f"- {note}" for result in results for note in _notes(result))
     return f"{table(Table('BlenderBench', head, body))}\n\n{notes}"
 
 
-def as_data(found: Sequence[SetResults]) -> list[dict[str, Any]]:
+def as_data(results: Sequence[SetResults]) -> list[dict[str, Any]]:
     """The same for programs."""
     return [
         {
@@ -121,7 +121,7 @@ def as_data(found: Sequence[SetResults]) -> list[dict[str, Any]]:
             "scores": [score.model_dump(mode="json") for score in result.scores],
             "notes": list(_notes(result)),
         }
-        for result in found
+        for result in results
     ]
 
 
@@ -129,8 +129,8 @@ def _label(row: str) -> str:
     return "Overall" if row == OVERALL else f"Level {row[-1]}"
 
 
-def _figures(found: Sequence[SetResults], row: str, digits: int) -> Iterator[str]:
-    for result in found:
+def _figures(results: Sequence[SetResults], row: str, digits: int) -> Iterator[str]:
+    for result in results:
         cells = result.rows.get(row, {})
         of = sum(row in (score.level, OVERALL) for score in result.scores)
         for metric in METRICS:

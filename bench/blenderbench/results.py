@@ -169,8 +169,8 @@ def task_folder(out: Path, task: str) -> TaskFolder:
 def records(out: Path) -> Iterator[tuple[TaskFolder, TaskRecord]]:
     """All tasks that have ended, in order. Raises BadResults for an invalid record."""
     for level in LEVELS:
-        found = (out / level).glob("*/record.json")
-        for path in sorted(found, key=lambda path: natural_key(path.parent.name)):
+        paths = (out / level).glob("*/record.json")
+        for path in sorted(paths, key=lambda path: natural_key(path.parent.name)):
             record = read(path, TaskRecord)
             if record.task != f"{level}/{path.parent.name}":
                 raise BadResults(f"{path} is the record of {record.task[:100]!r}.")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def run(  # noqa: PLR0913
-    found: TaskSet,
+    task_set: TaskSet,
     tasks: Sequence[EditTask],
     system: EditSystem,
     out: Path,
@@ -41,7 +41,7 @@ def run(  # noqa: PLR0913
     BadResults for a folder of other content, EditSystemNotReady for a system that cannot run,
     CannotStart where no Blender works, OSError where nothing can be written.
     """
-    called = {"name": name or system.name, "system": system.kind, "set": str(found.root)}
+    called = {"name": name or system.name, "system": system.kind, "set": str(task_set.root)}
     try:
         setup = RunSetup(**called, settings=system.settings)
     except ValidationError as error:
@@ -51,13 +51,13 @@ def run(  # noqa: PLR0913
     try:
         out.mkdir(parents=True, exist_ok=True)
         with locked(out):
-            _begin(found, setup, out)
+            _begin(task_set, setup, out)
             return [_kept(task, system, out, tell) for task in tasks]
     except Refusal as error:
         raise BadResults(str(error)) from error
 
 
-def _begin(found: TaskSet, setup: RunSetup, out: Path) -> None:
+def _begin(task_set: TaskSet, setup: RunSetup, out: Path) -> None:
     """Writes ``run.json``; the setup must be the same as before."""
     if (out / "run.json").exists():
         before = read_run(out).setup
@@ -68,8 +68,8 @@ def _begin(found: TaskSet, setup: RunSetup, out: Path) -> None:
             )
     elif any(path.name != ".lock" for path in out.iterdir()):
         raise BadResults(f"{out} is not empty and has no results. Choose another folder.")
-    ids = tuple(task.id for task in found.tasks)
-    write(out / "run.json", SetRun(setup=setup, tasks=ids, faults=found.faults, provenance=_provenance()))
+    ids = tuple(task.id for task in task_set.tasks)
+    write(out / "run.json", SetRun(setup=setup, tasks=ids, faults=task_set.faults, provenance=_provenance()))
 
 
 def _kept(task: EditTask, system: EditSystem, out: Path, tell: Callable[[str], object]) -> TaskRecord:
@@ -114,23 +114,23 @@ def _done(
     began = time.monotonic()
     why: str | None = None
     try:
-        made = system.make(task, place, tell)
+        output = system.make(task, place, tell)
     except TaskFailed as error:
-        made, why = EditOutput((), cost=None), str(error)
+        output, why = EditOutput((), cost=None), str(error)
     return TaskRecord(
         task=task.id,
         level=task.level,
         instruction=task.instruction,
         why=why,
-        rounds=made.rounds,
-        start_loss=made.start_loss,
-        rendered=made.rendered,
-        models=made.models,
-        cost=made.cost,
+        rounds=output.rounds,
+        start_loss=output.start_loss,
+        rendered=output.rendered,
+        models=output.models,
+        cost=output.cost,
         seconds=round(time.monotonic() - began, 3),
-        notes=made.notes,
+        notes=output.notes,
         inputs=inputs,
-        provenance=_provenance(made.rendered.blender if made.rendered else None),
+        provenance=_provenance(output.rendered.blender if output.rendered else None),
     )
 
 

@@ -46,8 +46,8 @@ class ScoringRule:
     @property
     def metrics(self) -> tuple[str, ...]:
         """The requested metrics."""
-        given = {"pl": True, "n_clip": self.clip is not None, "vlm": self.provider is not None}
-        return tuple(name for name in METRICS if given[name])
+        wanted = {"pl": True, "n_clip": self.clip is not None, "vlm": self.provider is not None}
+        return tuple(name for name in METRICS if wanted[name])
 
 
 def score(out: Path, rule: ScoringRule, tell: Callable[[str], object] = lambda _: None) -> list[Score]:

@@ -92,26 +92,26 @@ def _rounds(folder: Path) -> Iterator[Path]:
     """The renders of a task's rounds; if a folder has both kinds, those directly in it."""
     if not folder.is_dir():
         return
-    found = [path for path in folder.glob("*.png") if path.is_file()]
-    found = found or [path for path in folder.glob("renders/*/render1.png") if path.is_file()]
-    yield from sorted(found, key=lambda path: natural_key(path.relative_to(folder).as_posix()))
+    paths = [path for path in folder.glob("*.png") if path.is_file()]
+    paths = paths or [path for path in folder.glob("renders/*/render1.png") if path.is_file()]
+    yield from sorted(paths, key=lambda path: natural_key(path.relative_to(folder).as_posix()))
 
 
 def system_of(
-    asked: str,
+    name: str,
     rendering: RenderSettings,
     reference: Reference,
     options: tuple[str, ...],
     limits: tuple[str, ...],
 ) -> EditSystem:
     """The system of that name: ``start``, ``simworlds`` or ``folder=PATH``. Raises NoTasks, BadResults."""
-    if asked == "start":
+    if name == "start":
         return UneditedStart(rendering)
-    if asked == "simworlds":
+    if name == "simworlds":
         return SimWorldsEdit(rendering, reference, options, limits)
-    if asked.startswith(_FOLDER):
-        root = Path(asked.removeprefix(_FOLDER)).expanduser().resolve()
+    if name.startswith(_FOLDER):
+        root = Path(name.removeprefix(_FOLDER)).expanduser().resolve()
         if not root.is_dir():
             raise NoTasks(f"{root} is not a folder of renders.")
         return RendersFolder(root)
-    raise BadResults(f"There is no system {asked[:100]!r}: give start, simworlds or folder=DIR.")
+    raise BadResults(f"There is no system {name[:100]!r}: give start, simworlds or folder=DIR.")

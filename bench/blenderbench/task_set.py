@@ -86,17 +86,17 @@ def read_set(root: Path) -> TaskSet:
     return TaskSet(root, tuple(tasks), tuple(faults))
 
 
-def select_tasks(found: TaskSet, names: Sequence[str]) -> tuple[EditTask, ...]:
+def select_tasks(task_set: TaskSet, names: Sequence[str]) -> tuple[EditTask, ...]:
     """The tasks with these levels (``level2``) or ids (``level1/attic``); all without names. Raises NoTasks."""
     if not names:
-        return found.tasks
-    known = {name for task in found.tasks for name in (task.level, task.id)}
+        return task_set.tasks
+    known = {name for task in task_set.tasks for name in (task.level, task.id)}
     if unknown := [name for name in names if name not in known]:
         raise NoTasks(
-            f"{found.root} has no usable {', '.join(unknown)}. Tasks: "
-            f"{', '.join(task.id for task in found.tasks)}."
+            f"{task_set.root} has no usable {', '.join(unknown)}. Tasks: "
+            f"{', '.join(task.id for task in task_set.tasks)}."
         )
-    return tuple(task for task in found.tasks if {task.level, task.id} & set(names))
+    return tuple(task for task in task_set.tasks if {task.level, task.id} & set(names))
 
 
 def natural_key(name: str) -> list[tuple[int, str]]:
@@ -107,8 +107,8 @@ def natural_key(name: str) -> list[tuple[int, str]]:
 
 def _folders(level: Path) -> Iterator[Path]:
     """The folders of a level that are not hidden, in natural order."""
-    found = (path for path in level.iterdir() if path.is_dir() and not path.name.startswith("."))
-    yield from sorted(found, key=lambda path: natural_key(path.name))
+    folders = (path for path in level.iterdir() if path.is_dir() and not path.name.startswith("."))
+    yield from sorted(folders, key=lambda path: natural_key(path.name))
 
 
 def _task(root: Path, folder: Path) -> EditTask:

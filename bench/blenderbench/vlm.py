@@ -129,13 +129,13 @@ def _reader(data: Any) -> tuple[Marks | None, list[str]]:
     marks, faults = fits(Marks)(data)
     if marks is None:
         return None, [str(fault) for fault in faults]
-    given = {name: getattr(marks, name).mark for name in CRITERIA}
-    wrong = [
+    by_name = {name: getattr(marks, name).mark for name in CRITERIA}
+    out_of_range = [
         f"{name}.mark: {mark} is not from 0 to {BEST}."
-        for name, mark in given.items()
+        for name, mark in by_name.items()
         if not 0 <= mark <= BEST
     ]
-    return (None, wrong) if wrong else (marks, [])
+    return (None, out_of_range) if out_of_range else (marks, [])
 
 
 def _plain(picture: Image.Image) -> Image.Image:

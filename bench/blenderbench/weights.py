@@ -42,12 +42,12 @@ class Clip:
         return {"source": self.source, "sha256": self.sha256, "openai": self.sha256 == SHA256}
 
 
-def load_clip(asked: str, tell: Callable[[str], object]) -> Clip:
+def load_clip(name: str, tell: Callable[[str], object]) -> Clip:
     """Loads the weights from a folder or file; ``hub``: from the hub or its cache.
 
     Raises NoWeights, and says how to get them.
     """
-    file, source = _fetched(tell) if asked == HUB else _found(Path(asked).expanduser())
+    file, source = _fetched(tell) if name == HUB else _found(Path(name).expanduser())
     tell(f"reading {file}")
     return Clip(Tower(_read(file)), source, _digest(file))
 
@@ -72,8 +72,8 @@ def _fetched(tell: Callable[[str], object]) -> tuple[Path, str]:
         try:
             kept = hf_hub_download(REPO, FILE, revision=REVISION)
         except Exception as error:
-            said = next(iter(str(error).splitlines()), "") or type(error).__name__
-            raise NoWeights(f"{source} cannot be fetched: {said} {_WITHOUT_NETWORK}") from error
+            reason = next(iter(str(error).splitlines()), "") or type(error).__name__
+            raise NoWeights(f"{source} cannot be fetched: {reason} {_WITHOUT_NETWORK}") from error
     return Path(kept), source
 
 

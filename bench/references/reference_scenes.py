@@ -89,10 +89,10 @@ def _build(scene: str, blend: Path, runtime: Runtime) -> None:
 
 def _key(scene: str, runtime: Runtime) -> str:
     """A digest of what a scene depends on: its script, the modules that it imports, Blender's version."""
-    made = hashlib.sha256(runtime.version.encode())
+    digest = hashlib.sha256(runtime.version.encode())
     for path in sorted({*_used(INSIDE / "make.py"), *_used(script_of(scene))}):
-        made.update(path.read_bytes())
-    return made.hexdigest()[:16]
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def _used(script: Path) -> Iterator[Path]:
@@ -105,6 +105,6 @@ def _used(script: Path) -> Iterator[Path]:
             if not isinstance(node, ast.ImportFrom) or not node.level:
                 continue
             names = [node.module] if node.module else [alias.name for alias in node.names]
-            found = {INSIDE / f"{name}.py" for name in names} - seen
-            seen |= found
-            waiting += [module for module in found if module.is_file()]
+            imported = {INSIDE / f"{name}.py" for name in names} - seen
+            seen |= imported
+            waiting += [module for module in imported if module.is_file()]

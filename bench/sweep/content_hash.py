@@ -31,11 +31,11 @@ def digest_of_file(path: Path) -> str:
 
 def digests(folder: Path, files: Iterable[Path]) -> dict[str, str]:
     """{path below ``folder``: SHA-256} of its ``files``, sorted. Raises OSError."""
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for path in sorted(files):
         stat = path.stat()
-        found[path.relative_to(folder).as_posix()] = _digest(path, stat.st_size, stat.st_mtime_ns)
-    return found
+        result[path.relative_to(folder).as_posix()] = _digest(path, stat.st_size, stat.st_mtime_ns)
+    return result
 
 
 @cache

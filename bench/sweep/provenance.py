@@ -60,14 +60,14 @@ def provenance(code: str, blender: str | None = None) -> Provenance:
 
 def _closure(module: str) -> set[Path]:
     """The files of a module and of all modules of ``bench`` that it imports, directly or not."""
-    found: set[Path] = set()
+    files: set[Path] = set()
     waiting = [module]
     while waiting:
         path = _file_of(waiting.pop())
-        if path is not None and path not in found:
-            found.add(path)
+        if path is not None and path not in files:
+            files.add(path)
             waiting += _imported(ast.parse(path.read_bytes()))
-    return found
+    return files
 
 
 def _imported(tree: ast.Module) -> Iterator[str]:

@@ -28,19 +28,19 @@ def select_scenes(names: Iterable[str]) -> tuple[Spec, ...]:
     """
     wanted = [name.strip() for several in names for name in several.split(",") if name.strip()]
     every = specs()
-    found = {spec.id for name in wanted for spec in _matching(name, every)}
-    return tuple(spec for spec in every if spec.id in found)
+    selected = {spec.id for name in wanted for spec in _matching(name, every)}
+    return tuple(spec for spec in every if spec.id in selected)
 
 
 def _matching(name: str, every: Sequence[Spec]) -> list[Spec]:
     if name in SETS:
         return [spec for spec in every if SETS[name](spec)]
-    found = [
+    matches = [
         spec for spec in every if name in (spec.category, spec.level, spec.cell) or fnmatchcase(spec.id, name)
     ]
-    if not found:
+    if not matches:
         sets = ", ".join(SETS)
         raise BadSpec(
             f"{name[:80]!r} matches no scene: give an id, a category, a level, a pattern, or one of {sets}."
         )
-    return found
+    return matches

@@ -64,18 +64,18 @@ def _produce_due(task: SceneTask, record: SceneRecord) -> DueStep | None:
 
 def _produce(task: SceneTask, record: SceneRecord, due: DueStep, tell: Tell) -> dict[str, Any]:
     del record
-    made = task.system.produce(task.spec, task.folder / WORK / due.key[:12], tell)
+    output = task.system.produce(task.spec, task.folder / WORK / due.key[:12], tell)
     return {
-        "outcome": made.outcome,
-        "why": made.why,
-        "prompt": made.prompt,
-        "blend": _file(task, made.blend),
+        "outcome": output.outcome,
+        "why": output.why,
+        "prompt": output.prompt,
+        "blend": _file(task, output.blend),
         "beside": due.content,
-        "video": _file(task, made.video),
-        "models": made.models,
-        "cost": made.cost,
-        "minutes": made.minutes,
-        "tokens": made.tokens,
+        "video": _file(task, output.video),
+        "models": output.models,
+        "cost": output.cost,
+        "minutes": output.minutes,
+        "tokens": output.tokens,
     }
 
 
@@ -109,11 +109,11 @@ def _audit(task: SceneTask, record: SceneRecord, due: DueStep, tell: Tell) -> di
     blend = _blend(task, record)
     if blend is None:
         return {"why": _no_file(record), "spec": _spec(task)}
-    found = audit(blend, task.spec, task.means, tell)
-    content = found.as_json().encode() + b"\n"
+    result = audit(blend, task.spec, task.means, tell)
+    content = result.as_json().encode() + b"\n"
     write_whole(task.folder / AUDIT, content)
     file = File(path=AUDIT, sha256=digest_of_bytes(content), bytes=len(content))
-    return {"why": found.not_scored, "spec": _spec(task), "mpr": found.mpr, "spr": found.spr, "file": file}
+    return {"why": result.not_scored, "spec": _spec(task), "mpr": result.mpr, "spr": result.spr, "file": file}
 
 
 def _spec(task: SceneTask) -> str:

@@ -132,7 +132,7 @@ def _check_same(folder: Path, system: SceneSystem) -> None:
 
 def make_rescore_tasks(out: Path, how: ScoringOptions) -> list[list[SceneTask]]:
     """Makes tasks for all results below ``out``, system by system, which run no system again. Raises BadSceneRecord."""
-    found: dict[str, list[SceneTask]] = {}
+    tasks: dict[str, list[SceneTask]] = {}
     for folder in scene_folders(out):
         record = read_record(folder)
         assert record is not None
@@ -146,8 +146,8 @@ def make_rescore_tasks(out: Path, how: ScoringOptions) -> list[list[SceneTask]]:
             name for name in STEPS if (name != "produce" or takes) and (name != "frames" or how.frames)
         )
         task = SceneTask(spec, system, folder, how.means, how.look, steps, how.from_video)
-        found.setdefault(str(folder.parent), []).append(task)
-    return list(found.values())
+        tasks.setdefault(str(folder.parent), []).append(task)
+    return list(tasks.values())
 
 
 def system_from_record(info: SystemInfo) -> SceneSystem:

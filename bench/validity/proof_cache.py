@@ -37,11 +37,11 @@ def proofs_folder() -> Path:
 
 def key_of(spec: Spec, blend: Path, blender: str) -> str:
     """The digest that a scene's proofs are kept by. ``blender``: its version."""
-    made = hashlib.sha256(f"{blender}\n{_code()}\n{spec.model_dump_json()}\n".encode())
-    made.update(blend.read_bytes())
+    digest = hashlib.sha256(f"{blender}\n{_code()}\n{spec.model_dump_json()}\n".encode())
+    digest.update(blend.read_bytes())
     for name, size in sorted(_beside(blend)):
-        made.update(f"{name}\0{size}\n".encode())
-    return made.hexdigest()
+        digest.update(f"{name}\0{size}\n".encode())
+    return digest.hexdigest()
 
 
 def kept_proof(scene: str, about: Property, key: str) -> Proof | None:
@@ -64,11 +64,11 @@ def _path(scene: str, about: Property) -> Path:
 
 @cache
 def _code() -> str:
-    made = hashlib.sha256()
+    digest = hashlib.sha256()
     for path in sorted({path for pattern in _CODE for path in _BENCH.glob(pattern)}):
-        made.update(f"{path.relative_to(_BENCH)}\0".encode())
-        made.update(path.read_bytes())
-    return made.hexdigest()
+        digest.update(f"{path.relative_to(_BENCH)}\0".encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def _beside(blend: Path) -> Iterator[tuple[str, int]]:

@@ -49,8 +49,8 @@ def as_markdown(proofs: Sequence[Proof]) -> str:
     parts = [_HEAD, _summary({about: own for about, own in by_property.items() if own})]
     for about, own in by_property.items():
         if own:
-            asked = PROPERTY_PROOFS[about]
-            parts.append(f"## {asked.title}\n\n{asked.claim}\n\n{_SECTIONS[about](own)}")
+            info = PROPERTY_PROOFS[about]
+            parts.append(f"## {info.title}\n\n{info.claim}\n\n{_SECTIONS[about](own)}")
     faults = list(_faults(proofs))
     parts.append("## Failures\n\n" + ("\n".join(f"- {line}" for line in faults) or "Nothing."))
     return "\n".join(part.rstrip() + "\n" for part in parts)
@@ -170,11 +170,11 @@ def _by_predicate(rows: Sequence[ProofRow]) -> str:
 
 
 def _reasons() -> str:
-    found: dict[tuple[str, str], list[str]] = {}
+    predicates: dict[tuple[str, str], list[str]] = {}
     for mutations in MUTATIONS.values():
         for mutation in mutations:
             for each in mutation.consequences:
-                names = found.setdefault((each.why, each.who), [])
+                names = predicates.setdefault((each.why, each.who), [])
                 names += [name for name in each.predicates if name not in names]
     whose = {
         "changed": "those whose objects were changed",
@@ -183,7 +183,8 @@ def _reasons() -> str:
         "all": "all",
     }
     rows = [
-        [why, ", ".join(f"`{name}`" for name in names), whose[who]] for (why, who), names in found.items()
+        [why, ", ".join(f"`{name}`" for name in names), whose[who]]
+        for (why, who), names in predicates.items()
     ]
     return _table(["reason", "checks that may fail", "of which actors"], rows)
 

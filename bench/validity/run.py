@@ -80,13 +80,13 @@ def prove(task: ProofTask, tell: Callable[[str], None] = lambda _: None) -> Prov
         key = key_of(task.spec, blend, find_blender().version)
         built = time.monotonic()
         kept = [] if task.again else [kept_proof(scene, each, key) for each in task.properties]
-        found = {proof.about: proof for proof in kept if proof is not None}
-        missing: list[Property] = [each for each in task.properties if each not in found]
-        made = {proof.about: proof for proof in _proofs(task, blend, missing, key, tell)}
+        kept_proofs = {proof.about: proof for proof in kept if proof is not None}
+        missing: list[Property] = [each for each in task.properties if each not in kept_proofs]
+        new_proofs = {proof.about: proof for proof in _proofs(task, blend, missing, key, tell)}
     except (CannotBuild, BlenderError, OSError) as error:
         return _unproven(task, str(error) or type(error).__name__)
-    proofs = tuple((found | made)[each] for each in task.properties)
-    return ProvenScene(scene, proofs, len(found), built - started, time.monotonic() - built)
+    proofs = tuple((kept_proofs | new_proofs)[each] for each in task.properties)
+    return ProvenScene(scene, proofs, len(kept_proofs), built - started, time.monotonic() - built)
 
 
 def _unproven(task: ProofTask, why: str) -> ProvenScene:

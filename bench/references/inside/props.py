@@ -49,8 +49,8 @@ def prism(name, outline, width, at=(0, 0, 0), *, turn=(0, 0, 0), **look):
     near, far = ([bm.verts.new((x, y, z)) for x, z in outline] for y in (-width / 2, width / 2))
     bm.faces.new(near)
     bm.faces.new(far)
-    for one, after in pairwise([*range(len(outline)), 0]):
-        bm.faces.new((near[one], near[after], far[after], far[one]))
+    for this, after in pairwise([*range(len(outline)), 0]):
+        bm.faces.new((near[this], near[after], far[after], far[this]))
     bmesh.ops.recalc_face_normals(bm, faces=bm.faces)
     return _from_bmesh(name, bm, at, turn, look)
 
@@ -112,9 +112,9 @@ def revolved(name, profile, at=(0, 0, 0), *, sides=32, **look):
         turns = (2 * math.pi * number / sides for number in range(sides))
         rings.append([bm.verts.new((radius * math.cos(t), radius * math.sin(t), height)) for t in turns])
     for low, high in pairwise(rings):
-        for one in range(sides):
-            two = (one + 1) % sides
-            bm.faces.new(dict.fromkeys((low[one], low[two], high[two], high[one])))
+        for side in range(sides):
+            after = (side + 1) % sides
+            bm.faces.new(dict.fromkeys((low[side], low[after], high[after], high[side])))
     bmesh.ops.recalc_face_normals(bm, faces=bm.faces)
     return smooth(_from_bmesh(name, bm, at, (0, 0, 0), look))
 
@@ -135,9 +135,9 @@ def tube(name, points, radius, at=(0, 0, 0), *, sides=12, **look):
             ]
         )
     for low, high in pairwise(rings):
-        for one in range(sides):
-            two = (one + 1) % sides
-            bm.faces.new((low[one], low[two], high[two], high[one]))
+        for this in range(sides):
+            after = (this + 1) % sides
+            bm.faces.new((low[this], low[after], high[after], high[this]))
     bm.faces.new(rings[0][::-1])
     bm.faces.new(rings[-1])
     bmesh.ops.recalc_face_normals(bm, faces=bm.faces)
@@ -170,12 +170,12 @@ def smooth(obj):
     return obj
 
 
-def weigh(obj, group, chosen, weight=1.0):
+def weigh(obj, group, condition, weight=1.0):
     """Makes a vertex group of the points for which ``chosen(point)`` holds, in local space. Returns its name."""
-    found = [point.index for point in obj.data.vertices if chosen(point.co)]
-    if not found:
+    indices = [point.index for point in obj.data.vertices if condition(point.co)]
+    if not indices:
         raise ValueError(f"no point of {obj.name} is in its group {group}")
-    obj.vertex_groups.new(name=group).add(found, weight, "REPLACE")
+    obj.vertex_groups.new(name=group).add(indices, weight, "REPLACE")
     return group
 
 

@@ -81,7 +81,7 @@ def body(
     return settings
 
 
-def joint(name, kind, one, two, at=(0, 0, 0), *, turn=(0, 0, 0), collide=False):
+def joint(name, kind, first, second, at=(0, 0, 0), *, turn=(0, 0, 0), collide=False):
     """Makes a constraint between two bodies: an empty whose axes are those of the constraint."""
     obj = bpy.data.objects.new(name, None)
     bpy.context.scene.collection.objects.link(obj)
@@ -89,9 +89,9 @@ def joint(name, kind, one, two, at=(0, 0, 0), *, turn=(0, 0, 0), collide=False):
     bpy.context.view_layer.update()
     bpy.context.view_layer.objects.active = obj
     bpy.ops.rigidbody.constraint_add(type=kind)
-    tie = obj.rigid_body_constraint
-    tie.object1, tie.object2, tie.disable_collisions = one, two, not collide
-    return tie
+    constraint = obj.rigid_body_constraint
+    constraint.object1, constraint.object2, constraint.disable_collisions = first, second, not collide
+    return constraint
 
 
 def limits(tie, **axes):

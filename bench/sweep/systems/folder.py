@@ -93,8 +93,8 @@ class FolderSystem:
         """The scene's file, or None. Raises ValueError if several are possible."""
         own = self.source / spec.id
         named = (self.source / f"{spec.id}.blend", own / f"{spec.id}.blend", own / "scene.blend")
-        if (found := _first(named)) is not None:
-            return found
+        if (path := _first(named)) is not None:
+            return path
         several = sorted(path for path in own.glob("*.blend") if path.is_file())
         if len(several) > 1:
             raise ValueError(f"several .blend files, none of them called {spec.id}.blend or scene.blend")

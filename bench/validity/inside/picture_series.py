@@ -38,7 +38,7 @@ def render(path, cycles, seed):
 def compare(first, second):
     """The mean absolute difference of red, green and blue (0 to 1) over both series, as they were saved."""
     pairs = [(_pixels(f"{first}-{number}.png"), _pixels(f"{second}-{number}.png")) for number in range(3)]
-    return float(numpy.mean([numpy.abs(one - two).mean() for one, two in pairs]))
+    return float(numpy.mean([numpy.abs(a - b).mean() for a, b in pairs]))
 
 
 def _pixels(path):

@@ -48,21 +48,23 @@ class PlannedMutation:
 
 def checks_of(audit: Audit) -> dict[CheckPlace, Checked]:
     """All checks of an audit, by place."""
-    found = {
+    checks = {
         CheckPlace(actor.name, number, check.predicate): check
         for actor in audit.actors
         for number, check in enumerate(actor.checks)
     }
-    found |= {CheckPlace("", number, check.predicate): check for number, check in enumerate(audit.assertions)}
-    return found
+    checks |= {
+        CheckPlace("", number, check.predicate): check for number, check in enumerate(audit.assertions)
+    }
+    return checks
 
 
-def planned_mutations(audit: Audit, found: Mapping[str, Found]) -> Iterator[PlannedMutation]:
+def planned_mutations(audit: Audit, actors: Mapping[str, Found]) -> Iterator[PlannedMutation]:
     """Yields the mutations of every check that passes in a scene."""
     for place, check in checks_of(audit).items():
         if check.outcome != "passed":
             continue
-        own = found[place.actor] if place.actor else None
+        own = actors[place.actor] if place.actor else None
         role = own.actor.role if own is not None else ""
         for mutation in MUTATIONS[place.predicate]:
             if mutation.roles and role not in mutation.roles:
@@ -70,12 +72,12 @@ def planned_mutations(audit: Audit, found: Mapping[str, Found]) -> Iterator[Plan
             options = dict(mutation.options)
             if mutation.given is not None:
                 options |= mutation.given(check.params, check.seen)
-            for objects in _objects(mutation, check, own, found):
+            for objects in _objects(mutation, check, own, actors):
                 yield PlannedMutation(place, mutation, objects, options)
 
 
 def _objects(
-    mutation: Mutation, check: Checked, own: Found | None, found: Mapping[str, Found]
+    mutation: Mutation, check: Checked, own: Found | None, actors: Mapping[str, Found]
 ) -> Iterator[tuple[str, ...]]:
     """Yields the objects to change: one choice for each partner where there are several."""
     if own is None or mutation.on == "scene":
@@ -83,9 +85,9 @@ def _objects(
     elif mutation.on == "partner":
         named = check.params.get("partners")
         if named:
-            yield from (_of_actor(found[name]) for name in named)
+            yield from (_of_actor(actors[name]) for name in named)
         else:
-            others = (actor for actor in found.values() if actor is not own)
+            others = (actor for actor in actors.values() if actor is not own)
             yield tuple(name for actor in others for name in _of_actor(actor))
     else:
         yield tuple(obj.name for unit in own.units[: _units_to_break(check)] for obj in unit.objects)

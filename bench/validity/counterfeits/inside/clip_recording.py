@@ -71,23 +71,23 @@ def _are_equal(first, second):
 
 
 def _particles(graph):
-    found = {}
+    particles = {}
     for instance in graph.object_instances:
         if instance.is_instance and instance.particle_system is not None:
             key = (instance.parent.original.name, instance.particle_system.name, instance.persistent_id[0])
-            found[key] = (instance.object.original.name, numpy.array(instance.matrix_world))
-    return found
+            particles[key] = (instance.object.original.name, numpy.array(instance.matrix_world))
+    return particles
 
 
 def _hair(scene, graph):
-    found = {}
+    strands = {}
     for obj in scene.objects:
         evaluated = obj.evaluated_get(graph)
         for system in evaluated.particle_systems:
             settings = system.settings
             if settings.type == "HAIR" and settings.render_type == "PATH":
-                found[obj.name, system.name] = _strands(evaluated, system)
-    return found
+                strands[obj.name, system.name] = _strands(evaluated, system)
+    return strands
 
 
 def _strands(evaluated, system):

@@ -93,12 +93,12 @@ class _Counterfeit:
         )
 
     def _each_frame(self, obj):
-        found = []
+        meshes = []
         for frame in self._recording.frames:
             bpy.context.scene.frame_set(frame)
             graph = bpy.context.evaluated_depsgraph_get()
-            found.append(bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph))
-        return found
+            meshes.append(bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph))
+        return meshes
 
     # Without solvers
 
@@ -156,28 +156,32 @@ class _Counterfeit:
         """Keys an object for each particle; of many, or by files, joins all that show the same object to one mesh."""
         alive = {}
         for number, now in enumerate(self._recording.particles):
-            for key, (shown, pose) in now.items():
-                alive.setdefault((shown, key), {})[number] = pose
+            for key, (instanced, pose) in now.items():
+                alive.setdefault((instanced, key), {})[number] = pose
         frames = self._recording.frames
         tracks = {}
-        for (shown, _), poses in sorted(alive.items()):
+        for (instanced, _), poses in sorted(alive.items()):
             gone = _nowhere(poses[min(poses)])
-            tracks.setdefault(shown, []).append([poses.get(number, gone) for number in range(len(frames))])
-        for shown, several in tracks.items():
+            tracks.setdefault(instanced, []).append(
+                [poses.get(number, gone) for number in range(len(frames))]
+            )
+        for instanced, several in tracks.items():
             if self._by_files or len(several) > _MOST_KEYED:
-                self._join(bpy.data.objects[shown], several)
+                self._join(bpy.data.objects[instanced], several)
                 continue
             for poses in several:
-                keyframes.move(add_object(shown, bpy.data.objects[shown].data, Matrix()), frames, poses)
+                keyframes.move(
+                    add_object(instanced, bpy.data.objects[instanced].data, Matrix()), frames, poses
+                )
 
-    def _join(self, shown, tracks):
-        mesh = self._mesh(shown)
+    def _join(self, instanced, tracks):
+        mesh = self._mesh(instanced)
         points = points_of(mesh)
         shapes = [
             numpy.concatenate([_through(poses[number], points) for poses in tracks])
             for number in range(len(self._recording.frames))
         ]
-        obj = add_object(f"{shown.name} particles", _repeated(mesh, len(tracks)), Matrix())
+        obj = add_object(f"{instanced.name} particles", _repeated(mesh, len(tracks)), Matrix())
         if self._by_files:
             played_files.play(obj, self._recording.frames, shapes, self._file(obj.name, "pc2"))
         else:
@@ -226,7 +230,7 @@ def _repeated(mesh, count):
     for material in mesh.materials:
         data.materials.append(material)
     for several, name in (("polygons", "use_smooth"), ("edges", "use_edge_sharp")):
-        found = numpy.empty(len(getattr(mesh, several)), dtype=bool)
-        getattr(mesh, several).foreach_get(name, found)
-        getattr(data, several).foreach_set(name, numpy.tile(found, count))
+        flags = numpy.empty(len(getattr(mesh, several)), dtype=bool)
+        getattr(mesh, several).foreach_get(name, flags)
+        getattr(data, several).foreach_set(name, numpy.tile(flags, count))
     return data

@@ -42,8 +42,8 @@ def imported(path):
     """Imports the mesh object of an Alembic file, which it then plays."""
     before = set(bpy.data.objects)
     bpy.ops.wm.alembic_import(filepath=path, set_frame_range=False, as_background_job=False)
-    found = [obj for obj in bpy.data.objects if obj not in before and obj.type == "MESH"]
-    obj = found[0]
+    meshes = [obj for obj in bpy.data.objects if obj not in before and obj.type == "MESH"]
+    obj = meshes[0]
     obj.modifiers[0].cache_file.filepath = beside(path)
     flat = obj.modifiers.new("Flat faces", "EDGE_SPLIT")  # as a fluid's are; Alembic would have them smooth
     flat.split_angle = 0.0

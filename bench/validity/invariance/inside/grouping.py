@@ -32,12 +32,12 @@ def group(actors):
     for actor in actors:
         names = [*(name for unit in actor["units"] for name in unit), *actor["parts"]]
         objects = [bpy.data.objects[name] for name in names]
-        made = bpy.data.collections.new(actor["name"])
-        bpy.context.scene.collection.children.link(made)
+        collection = bpy.data.collections.new(actor["name"])
+        bpy.context.scene.collection.children.link(collection)
         for obj in objects:
             number += 1
             bpy.context.scene.collection.objects.unlink(obj)
-            made.objects.link(obj)
+            collection.objects.link(obj)
             _rename(obj, f"Mesh.{number:03d}")
     return number
 
@@ -128,18 +128,18 @@ def _out_of_collections(objects):
 
 def _needed_collections():
     """Collections that physics or instances refer to."""
-    found = set()
+    needed = set()
     scene = bpy.context.scene
     if scene.rigidbody_world is not None:
-        found |= {scene.rigidbody_world.collection, scene.rigidbody_world.constraints}
+        needed |= {scene.rigidbody_world.collection, scene.rigidbody_world.constraints}
     for obj in bpy.data.objects:
-        found.add(obj.instance_collection)
+        needed.add(obj.instance_collection)
         for modifier in obj.modifiers:
             for block in (modifier, *(getattr(modifier, name, None) for name in _SETTINGS)):
-                found |= _collections_of(block)
+                needed |= _collections_of(block)
     for settings in bpy.data.particles:
-        found |= _collections_of(settings) | _collections_of(settings.effector_weights)
-    return found - {None}
+        needed |= _collections_of(settings) | _collections_of(settings.effector_weights)
+    return needed - {None}
 
 
 _SETTINGS = ("settings", "collision_settings", "domain_settings")
@@ -149,10 +149,12 @@ def _collections_of(block):
     """The collections that a block of settings names, and its weights of fields."""
     if block is None:
         return set()
-    found = {getattr(block, each.identifier) for each in block.bl_rna.properties if _names_collection(each)}
+    collections = {
+        getattr(block, each.identifier) for each in block.bl_rna.properties if _names_collection(each)
+    }
     weights = getattr(block, "effector_weights", None)
-    return found | ({weights.collection} if weights is not None else set())
+    return collections | ({weights.collection} if weights is not None else set())
 
 
-def _names_collection(one):
-    return one.type == "POINTER" and one.fixed_type.identifier == "Collection"
+def _names_collection(prop):
+    return prop.type == "POINTER" and prop.fixed_type.identifier == "Collection"

@@ -42,9 +42,9 @@ def _show(objects, name):
             each.objects.unlink(obj)
         parts.objects.link(obj)
     objects[0].name = f"{name} itself"
-    shown = bpy.data.objects.new(name, None)
-    shown.instance_type, shown.instance_collection = "COLLECTION", parts
-    bpy.context.scene.collection.objects.link(shown)
+    instance = bpy.data.objects.new(name, None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", parts
+    bpy.context.scene.collection.objects.link(instance)
 
 
 def _are_plain(objects):

@@ -100,14 +100,14 @@ def _paths_of_bodies(scene):
     if world is None or not world.point_cache.is_baked:
         return {}
     bodies = [obj for obj in world.collection.objects if obj.rigid_body.type == "ACTIVE"]
-    found = {obj.name: [] for obj in bodies}
+    paths = {obj.name: [] for obj in bodies}
     for frame in range(scene.frame_start, scene.frame_end + 1):
         scene.frame_set(frame)
         graph = bpy.context.evaluated_depsgraph_get()
         for obj in bodies:
-            found[obj.name].append(numpy.array(obj.evaluated_get(graph).matrix_world))
+            paths[obj.name].append(numpy.array(obj.evaluated_get(graph).matrix_world))
     scene.frame_set(scene.frame_start)
-    return found
+    return paths
 
 
 def _bake_bodies(scene, paths):

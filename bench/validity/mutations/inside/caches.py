@@ -8,10 +8,10 @@ from .lookup import fluids_of, modifiers_of
 
 def free_bake(objects, types):
     """Frees the bakes of modifiers."""
-    found = modifiers_of(objects, types)
-    for _, modifier in found:
+    simulated = modifiers_of(objects, types)
+    for _, modifier in simulated:
         _free(_cache_of(modifier))
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in simulated]
 
 
 def free_world_bake(objects):
@@ -23,10 +23,10 @@ def free_world_bake(objects):
 
 def shorten_cache(objects, types):
     """Lets the caches of modifiers end in the middle of the clip."""
-    found = modifiers_of(objects, types)
-    for _, modifier in found:
+    simulated = modifiers_of(objects, types)
+    for _, modifier in simulated:
         _cache_of(modifier).frame_end = _middle()
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in simulated]
 
 
 def shorten_world_cache(objects):
@@ -39,20 +39,20 @@ def shorten_world_cache(objects):
 def lose_fluid_files(objects):
     """Points all fluids to folders without files; their flags still say that they are baked."""
     del objects
-    found = fluids_of("DOMAIN")
-    for number, (_, settings) in enumerate(found):
+    domains = fluids_of("DOMAIN")
+    for number, (_, settings) in enumerate(domains):
         settings.cache_directory = f"//lost/{number}"
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in domains]
 
 
 def clear_fluid_bake(objects):
     """Clears the flags that fluids are baked; their files stay. A cache of type REPLAY has no such flag."""
     del objects
-    found = [(obj, settings) for obj, settings in fluids_of("DOMAIN") if settings.cache_type != "REPLAY"]
-    for _, settings in found:
+    domains = [(obj, settings) for obj, settings in fluids_of("DOMAIN") if settings.cache_type != "REPLAY"]
+    for _, settings in domains:
         # Blender clears the flags when the resolution is set, to whatever value.
         settings.resolution_max = settings.resolution_max
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in domains]
 
 
 def _cache_of(modifier):

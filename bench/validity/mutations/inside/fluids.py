@@ -14,15 +14,15 @@ _LEAST_RESOLUTION = 6
 
 def swap_fluid_type(objects, kind):
     """Gives fluid modifiers of that kind (DOMAIN, FLOW, EFFECTOR) another type, such as smoke for liquid."""
-    found = fluids_of(kind, objects)
-    for _, settings in found:
+    fluids = fluids_of(kind, objects)
+    for _, settings in fluids:
         if kind == "FLOW":
             settings.flow_type = _OTHER[settings.flow_type]
         elif kind == "DOMAIN":
             settings.domain_type = _OTHER_DOMAIN[settings.domain_type]
         else:
             settings.effector_type = _OTHER_EFFECTOR[settings.effector_type]
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in fluids]
 
 
 def close_flows(objects, flows, least):
@@ -40,52 +40,52 @@ def close_flows(objects, flows, least):
 def remove_domains(objects):
     """Removes all fluid domains of the scene."""
     del objects
-    found = modifiers_of(bpy.context.scene.objects, {"FLUID"}, "DOMAIN")
-    for obj, modifier in found:
+    domains = modifiers_of(bpy.context.scene.objects, {"FLUID"}, "DOMAIN")
+    for obj, modifier in domains:
         obj.modifiers.remove(modifier)
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in domains]
 
 
 def move_out_of_domain(objects):
     """Moves flows and effectors far out of any domain, whatever their keys say."""
-    found = modifiers_of(objects, {"FLUID"}, "FLOW") + modifiers_of(objects, {"FLUID"}, "EFFECTOR")
-    for obj, _ in found:
+    moved = modifiers_of(objects, {"FLUID"}, "FLOW") + modifiers_of(objects, {"FLUID"}, "EFFECTOR")
+    for obj, _ in moved:
         obj.delta_location.x += _FAR
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in moved]
 
 
 def disable_effector(objects):
     """Disables effectors: these, or all."""
-    found = fluids_of("EFFECTOR", objects or None)
-    for _, settings in found:
+    effectors = fluids_of("EFFECTOR", objects or None)
+    for _, settings in effectors:
         settings.use_effector = False
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in effectors]
 
 
 def remove_keys(objects):
     """Removes the keys of effectors and of their parents."""
-    found = [obj for obj, _ in fluids_of("EFFECTOR", objects)]
-    moving = [each for obj in found for each in _led_by(obj) if each.animation_data is not None]
+    effectors = [obj for obj, _ in fluids_of("EFFECTOR", objects)]
+    moving = [each for obj in effectors for each in _led_by(obj) if each.animation_data is not None]
     for obj in moving:
         obj.animation_data_clear()
-    return found if moving else []
+    return effectors if moving else []
 
 
 def disable_guiding(objects):
     """Turns guiding off in all domains."""
     del objects
-    found = fluids_of("DOMAIN")
-    for _, settings in found:
+    domains = fluids_of("DOMAIN")
+    for _, settings in domains:
         settings.use_guide = False
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in domains]
 
 
 def lower_resolution(objects, least):
     """Lowers the resolution of domains below ``least``."""
-    found = fluids_of("DOMAIN", objects)
-    for _, settings in found:
+    domains = fluids_of("DOMAIN", objects)
+    for _, settings in domains:
         settings.resolution_max = max(_LEAST_RESOLUTION, least - 1)
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in domains]
 
 
 def _led_by(obj):

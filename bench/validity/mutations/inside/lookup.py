@@ -34,8 +34,8 @@ def kind_of(modifier):
 
 def fluids_of(kind, objects=None):
     """(object, settings) for each fluid modifier of that kind; without ``objects``, in the scene."""
-    found = modifiers_of(bpy.context.scene.objects if objects is None else objects, {"FLUID"}, kind)
-    return [(obj, getattr(modifier, f"{kind.lower()}_settings")) for obj, modifier in found]
+    pairs = modifiers_of(bpy.context.scene.objects if objects is None else objects, {"FLUID"}, kind)
+    return [(obj, getattr(modifier, f"{kind.lower()}_settings")) for obj, modifier in pairs]
 
 
 def mute_keys(obj, path):

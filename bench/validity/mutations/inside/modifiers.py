@@ -15,26 +15,26 @@ def hide_in_render(objects):
 
 def switch_off(objects, types, where="show_render", kind=None):
     """Switches modifiers off, in renders or (``show_viewport``) in the viewport."""
-    found = modifiers_of(objects, types, kind)
-    for _, modifier in found:
+    pairs = modifiers_of(objects, types, kind)
+    for _, modifier in pairs:
         setattr(modifier, where, False)
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in pairs]
 
 
 def remove_modifier(objects, types, kind=None):
     """Removes modifiers."""
-    found = [(obj, modifier.name) for obj, modifier in modifiers_of(objects, types, kind)]
-    for obj, name in found:
+    pairs = [(obj, modifier.name) for obj, modifier in modifiers_of(objects, types, kind)]
+    for obj, name in pairs:
         obj.modifiers.remove(obj.modifiers[name])
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in pairs]
 
 
 def move_first(objects, types):
     """Moves modifiers to the top of the stack, so that they get the undeformed mesh."""
-    found = modifiers_of(objects, types)
-    for obj, modifier in found:
+    pairs = modifiers_of(objects, types)
+    for obj, modifier in pairs:
         obj.modifiers.move(obj.modifiers.find(modifier.name), 0)
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in pairs]
 
 
 def set_value(objects, types, path, value, kind=None):
@@ -62,21 +62,21 @@ def clear_group(objects, types, path):
 
 def collide_with_nothing(objects, types, path):
     """Limits collisions of modifiers to an empty collection."""
-    found = modifiers_of(objects, types)
+    pairs = modifiers_of(objects, types)
     nothing = bpy.data.collections.new("Nothing")
     bpy.context.scene.collection.children.link(
         nothing
     )  # cloth does not count as a user: it would not be saved
-    for _, modifier in found:
+    for _, modifier in pairs:
         block, attribute = split(modifier, path)
         setattr(block, attribute, nothing)
-    return [obj for obj, _ in found]
+    return [obj for obj, _ in pairs]
 
 
 def remove_field_strength(objects):
     """Sets the strength of force fields to 0: of these objects, or of all."""
-    found = [obj for obj in objects or bpy.context.scene.objects if obj.field and obj.field.type != "NONE"]
-    for obj in found:
+    fields = [obj for obj in objects or bpy.context.scene.objects if obj.field and obj.field.type != "NONE"]
+    for obj in fields:
         mute_keys(obj, "field.strength")
         obj.field.strength = 0.0
-    return found
+    return fields
