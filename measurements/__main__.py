@@ -1,4 +1,4 @@
-"""``python -m bench``: measures this project."""
+"""``python -m measurements``: measures this project."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The audit, through the command that anybody has: what a scene costs, with its caches, and all of them together.
+"""Measures the audit by its command: each reference scene with its caches, and all of them together.
 
-Looked at are the reference scenes, which are built first where they are not there; that is not measured.
+Missing reference scenes are built first; that is not measured.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from bench.markdown_tables import Table
 from bench.references.reference_scenes import build, has_reference
 from bench.scenes.spec import specs
 from bench.setting import environment, percentile, say, simworlds
-from measurements.report import Figure, Part, in_steps
+from measurements.report import Figure, Part, run_steps
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,8 +44,8 @@ class _Failed(Exception):  # noqa: N818 - reads as the state it names
 
 
 def measure(setting: Setting) -> Part:
-    """One scene after the other, then all on two cores."""
-    return in_steps("audits", {"reference scenes": partial(_measured, setting)})
+    """Measures one scene after another, then all on two cores."""
+    return run_steps("audits", {"reference scenes": partial(_measured, setting)})
 
 
 def _measured(setting: Setting) -> Part:
@@ -53,28 +53,28 @@ def _measured(setting: Setting) -> Part:
     if setting.quick:
         scenes = [scene for scene in scenes if scene.endswith("_01")]
     blends = {scene: _built(scene, setting) for scene in scenes}
-    say(f"audits: {len(scenes)} scenes, one after the other")
+    say(f"audits: {len(scenes)} scenes, one after another")
     alone = [_audited(scene, blends[scene], setting) for scene in scenes]
     say(f"audits: {len(scenes)} scenes, {_JOBS} at once")
     began = time.perf_counter()
     with ThreadPoolExecutor(_JOBS) as pool:
         list(pool.map(_audited, scenes, blends.values(), [setting] * len(scenes)))
     together = time.perf_counter() - began
-    slowest = max(alone, key=lambda one: one.seconds)
-    times = [one.seconds for one in alone]
+    slowest = max(alone, key=lambda audited: audited.seconds)
+    times = [audited.seconds for audited in alone]
     figures = (
         Figure("audit", slowest.seconds, f"{slowest.scene}; median {percentile(times, 0.5):.2f} s"),
         Figure("audit_all", together, f"{len(scenes)} scenes, {_JOBS} at once"),
     )
     rows = tuple(
         (
-            one.scene,
-            f"{one.size:.1f}",
-            f"{one.seconds:.2f}",
-            _share(one.mpr),
-            _share(one.spr),
+            audited.scene,
+            f"{audited.size:.1f}",
+            f"{audited.seconds:.2f}",
+            _share(audited.mpr),
+            _share(audited.spr),
         )
-        for one in alone
+        for audited in alone
     )
     header = ("scene", "MB with caches", "s", "MPR", "SPR")
     note = (
@@ -97,9 +97,9 @@ def _audited(scene: str, blend: Path, setting: Setting) -> _Audited:
     seconds = time.perf_counter() - began
     if process.returncode != 0:
         raise _Failed(f"{scene} was not scored (exit code {process.returncode})")
-    found = json.loads(process.stdout)
+    audit = json.loads(process.stdout)
     files = sum(path.stat().st_size for path in blend.parent.rglob("*") if path.is_file())
-    return _Audited(scene, seconds, found["mpr"], found["spr"], files / 1e6)
+    return _Audited(scene, seconds, audit["mpr"], audit["spr"], files / 1e6)
 
 
 def _share(value: float | None) -> str:

@@ -1,7 +1,7 @@
-"""The live Blender: how soon it answers, what a call costs, what reading and seeing a scene takes, and a restart.
+"""Measures the live Blender: start, calls, reading and previewing a scene, restart.
 
-Calls go through the real MCP client and the real command, beside a tool that only echoes. Figures of tools that a
-version does not have are left out, and named.
+Calls use the real MCP client and command, next to an echo tool. Tools that a version does not have are skipped and
+named.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from agents.blender.tool_catalogue import BY_NAME
 from bench.markdown_tables import Table
 from bench.setting import REPO, environment, percentile, say, simworlds
 from measurements.echo import TOOL as ECHO
-from measurements.report import Figure, Part, in_steps
+from measurements.report import Figure, Part, run_steps
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Sequence
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 EXECUTE, STATE, PREVIEW = "blender_execute", "blender_scene_state", "blender_scene_layout_preview"
 _ONE = {"code": "1+1"}
 _OBJECTS, _SEEN, _KEPT = 500, 50, 100
-# Objects as scenes have them: of a few kinds, with materials and modifiers, some of them moving.
+# Typical objects: a few kinds, with materials and modifiers, some of them animated.
 _SCENE = """
 import math
 materials = [bpy.data.materials.new(f"Paint {number}") for number in range(8)]
@@ -59,8 +59,8 @@ len(bpy.data.objects)
 
 
 def measure(setting: Setting) -> Part:
-    """Everything that an agent waits for."""
-    return in_steps(
+    """Measures all that an agent waits for."""
+    return run_steps(
         "blender",
         {
             "worker": lambda: _worker(setting),
@@ -90,10 +90,10 @@ def _worker(setting: Setting) -> Part:
                 assert pid is not None
                 began = time.perf_counter()
                 os.kill(pid, signal.SIGKILL)
-                found = _run(blender, "len(bpy.data.objects)")
+                count = _run(blender, "len(bpy.data.objects)")
                 restarts.append(time.perf_counter() - began)
-                if found != str(_KEPT):
-                    raise RuntimeError(f"{found} objects of {_KEPT} came back")
+                if count != str(_KEPT):
+                    raise RuntimeError(f"{count} of {_KEPT} objects were restored")
     figures = (
         Figure("worker_start", percentile(starts, 0.5), f"median of {len(starts)}"),
         Figure("restart", percentile(restarts, 0.5), f"slowest {max(restarts):.2f} s"),
@@ -122,7 +122,7 @@ async def _client(setting: Setting, command: Sequence[str]) -> AsyncGenerator[Cl
 
 
 async def _call(client: Client, tool: str, **arguments: Any) -> float:
-    """Seconds that a call takes. Raises RuntimeError if it fails."""
+    """Times a call in seconds. Raises RuntimeError if it fails."""
     began = time.perf_counter()
     result = await client.call_tool(tool, arguments)
     seconds = time.perf_counter() - began
@@ -133,7 +133,7 @@ async def _call(client: Client, tool: str, **arguments: Any) -> float:
 
 async def _over_mcp(setting: Setting) -> Part:
     starts, calls = await _timed(setting, [*simworlds(), "mcp"], EXECUTE, **_ONE)
-    say("blender: an echo tool, side by side")
+    say("blender: an echo tool for comparison")
     echo_starts, echoes = await _timed(
         setting, [sys.executable, "-m", "measurements.echo"], ECHO, query="1+1"
     )
@@ -162,7 +162,7 @@ async def _over_mcp(setting: Setting) -> Part:
 async def _timed(
     setting: Setting, command: Sequence[str], tool: str, **arguments: Any
 ) -> tuple[list[float], list[float]]:
-    """Seconds to the first answer of several starts, of which the first does not count, and ms a call."""
+    """Times several starts, in seconds to the first answer (the first is not counted), and calls in ms."""
     say(f"blender: calls of {tool} over stdio")
     starts: list[float] = []
     calls: list[float] = []

@@ -1,6 +1,6 @@
-"""How long builds take: from nothing with all pages, without pages, and when nothing has changed.
+"""Measures builds: with all pages, without pages, and when nothing has changed.
 
-Every build is a process of ``simworlds kb build`` in a home folder that was empty before.
+Every build is a process of ``simworlds kb build`` in an empty home folder.
 """
 
 from __future__ import annotations
@@ -32,18 +32,18 @@ _HEADER = ("what", "seconds", "CPU seconds", "gives")
 
 
 class BuildFailed(Exception):  # noqa: N818 - reads as the state it names
-    """A build ended with an error, or not as it must; the message says how."""
+    """A build failed or gave a wrong result; the message says how."""
 
 
 @dataclass(frozen=True, slots=True)
-class Took:
-    """Wall time, and the processors' time of all processes, in seconds."""
+class BuildTime:
+    """Wall time and CPU time of all processes, in seconds."""
 
     wall: float
     cpu: float
 
 
-def run_build(home: Path, *arguments: str) -> Took:
+def run_build(home: Path, *arguments: str) -> BuildTime:
     """Builds in ``home``. Raises BuildFailed."""
     command = [*simworlds(), "kb", "build", BLENDER, "--offline", *arguments]
     began, used = time.perf_counter(), _children_cpu()
@@ -59,10 +59,10 @@ def run_build(home: Path, *arguments: str) -> Took:
         )
     except (OSError, subprocess.SubprocessError) as error:
         raise BuildFailed(f"{' '.join(command[-5:])}: {error}") from error
-    took = Took(time.perf_counter() - began, _children_cpu() - used)
+    took = BuildTime(time.perf_counter() - began, _children_cpu() - used)
     if done.returncode != 0:
-        said = (done.stderr or done.stdout).strip().splitlines()
-        raise BuildFailed(f"exit code {done.returncode}: {said[-1] if said else 'it said nothing'}")
+        lines = (done.stderr or done.stdout).strip().splitlines()
+        raise BuildFailed(f"exit code {done.returncode}: {lines[-1] if lines else 'it printed nothing'}")
     return took
 
 
@@ -72,7 +72,7 @@ def _children_cpu() -> float:
 
 
 def measure(setting: Setting) -> Part:
-    """Builds in temporary folders; with ``quick`` neither the whole one nor the manual's HTML form."""
+    """Builds in temporary folders; ``quick`` skips the full build and the manual from HTML."""
     figures: list[Figure] = []
     rows: list[tuple[str, ...]] = []
     skipped: list[str] = []
@@ -89,24 +89,26 @@ def measure(setting: Setting) -> Part:
             except (UserError, FileNotFoundError) as error:
                 skipped.append(f"manual from HTML: {error}")
     if not any(figure.key == "size" for figure in figures):
-        figures.append(Figure("size", setting.base.stat().st_size / 1e6, "the base that is measured"))
+        figures.append(Figure("size", setting.base.stat().st_size / 1e6, "the measured base"))
     tables = (Table("Builds", _HEADER, tuple(rows)),) if rows else ()
     data: dict[str, Any] = {"builds": [dict(zip(_HEADER, row, strict=True)) for row in rows]}
     return Part("builds", tuple(figures), tables, tuple(skipped), data)
 
 
-def _again(home: Path, *arguments: str) -> Took:
-    """The median of three builds that have nothing to do."""
+def _again(home: Path, *arguments: str) -> BuildTime:
+    """The median of three builds without changes."""
     base = base_path(home, BLENDER)
     before = base.stat()
-    took = sorted((run_build(home, *arguments) for _ in range(3)), key=lambda one: one.wall)[1]
+    took = sorted((run_build(home, *arguments) for _ in range(3)), key=lambda time: time.wall)[1]
     after = base.stat()
     if (before.st_ino, before.st_mtime_ns) != (after.st_ino, after.st_mtime_ns):
-        raise BuildFailed("it was built again, though nothing but perhaps SimWorlds itself had changed")
+        raise BuildFailed(
+            "the base was built again although nothing had changed, unless SimWorlds itself did"
+        )
     return took
 
 
-def _row(what: str, took: Took, gives: str) -> tuple[str, ...]:
+def _row(what: str, took: BuildTime, gives: str) -> tuple[str, ...]:
     return what, f"{took.wall:.2f}", f"{took.cpu:.2f}", gives
 
 
@@ -121,7 +123,7 @@ def _api(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> No
 
 def _whole(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> None:
     if corpora() is None:
-        raise BuildFailed("no documentation sources here; set SIMWORLDS_CORPORA to a folder that has them")
+        raise BuildFailed("there are no documentation sources; set SIMWORLDS_CORPORA to their folder")
     say(f"builds: {BLENDER} with manual and guides")
     home = folder / "whole"
     took = run_build(home, "--require", "manual,guides")
@@ -145,14 +147,16 @@ def _html(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> N
         raise FileNotFoundError(f"no {HTML}.tar.xz among the documentation sources")
     say(f"builds: unpacking {archive.name}")
     began, used = time.perf_counter(), time.process_time()
-    found, _ = find_sources(_HTML_VERSION, cache=folder / "cache", manual=archive, allow_download=False)
-    unpacked = Took(time.perf_counter() - began, time.process_time() - used)
-    html = next(source for source in found if source.role == "manual")
+    found_sources, _ = find_sources(
+        _HTML_VERSION, cache=folder / "cache", manual=archive, allow_download=False
+    )
+    unpacked = BuildTime(time.perf_counter() - began, time.process_time() - used)
+    html = next(source for source in found_sources if source.role == "manual")
     size = sum(path.stat().st_size for path in html.path.rglob("*") if path.is_file()) / 1e6
     say("builds: reading the manual's HTML form")
     between, used = time.perf_counter(), time.process_time() + _children_cpu()
     pages = read_html(html.path, source="manual", version=_HTML_VERSION, jobs=_JOBS)
-    took = Took(time.perf_counter() - between, time.process_time() + _children_cpu() - used)
+    took = BuildTime(time.perf_counter() - between, time.process_time() + _children_cpu() - used)
     figures.append(Figure("html", took.wall, f"{size:,.0f} MB, {_JOBS} processes"))
     rows.append(_row(f"{archive.name}: unpacking", unpacked, f"{size:,.0f} MB"))
     rows.append(_row(f"{archive.name}: reading", took, f"{len(pages):,} pages"))

@@ -1,4 +1,4 @@
-"""The least that an MCP server over stdio can be: one tool that answers with its argument."""
+"""A minimal MCP server over stdio: one tool that returns its argument."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ async def _list_tools(_context: object, _page: object) -> types.ListToolsResult:
     return types.ListToolsResult(tools=[types.Tool(name=TOOL, input_schema={"type": "object"})])
 
 
-async def _call_tool(_context: object, asked: types.CallToolRequestParams) -> types.CallToolResult:
-    text = str((asked.arguments or {}).get("query", ""))
+async def _call_tool(_context: object, request: types.CallToolRequestParams) -> types.CallToolResult:
+    text = str((request.arguments or {}).get("query", ""))
     return types.CallToolResult(content=[types.TextContent(text=text)])
 
 

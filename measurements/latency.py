@@ -1,7 +1,7 @@
-"""How long an answer takes in process.
+"""Measures the latency of answers in process.
 
-Every pass opens the base anew, warms it with queries of each sort that are in no set, and then asks every dev query
-once: no answer was given before, so none can be repeated from memory. The whole answer counts, text included.
+Every pass opens the base anew, warms it with queries of each kind that are in no set, and then sends every dev query
+once, so that no answer is cached. The whole answer counts, text included.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ EXACT = frozenset({"exact", "member"})
 
 
 def measure(setting: Setting) -> Part:
-    """Percentiles over the first set of queries."""
+    """Measures percentiles over the first set of queries."""
     queries = read_queries(setting.queries[0])
     fresh: dict[str, list[float]] = {}
     again: dict[str, list[float]] = {}
@@ -62,8 +62,8 @@ def measure(setting: Setting) -> Part:
         for name, (times, repeated) in groups.items()
     ]
     note = (
-        "Milliseconds. Asked the first time in a warm base; “again” is the same query once more. exact: full names "
-        f"and members; ranked: all that is neither that nor an expression. Opening a base and its first answer: "
+        "Milliseconds. First answers of a warm base; “again”: the same query once more. exact: full names and "
+        f"members; ranked: neither these nor expressions. Opening a base and its first answer: "
         f"{percentile(opening, 0.5):.0f} ms."
     )
     header = ("queries", "n", "p50", "p95", "slowest", "again p50")

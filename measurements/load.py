@@ -1,7 +1,7 @@
-"""Many clients at once over HTTP: does every one get the right answer?
+"""Measures many clients at once over HTTP, and whether each gets the correct answer.
 
-What is right is what the server tells a single client before the others come, and that must name the same ids as
-the base asked in process.
+An answer is correct if it equals that to a single client before the others start, which must name the same ids as the
+base in process.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ _KEPT = 20  # errors and wrong answers that the report quotes
 
 
 class NoServer(Exception):  # noqa: N818 - reads as the state it names
-    """The HTTP server did not start; the message holds what it said."""
+    """The HTTP server did not start; the message has its output."""
 
 
 @dataclass(slots=True)
-class Loaded:
-    """What came of it: ms for every call that was answered, and a line for each error and each wrong answer.
+class LoadResult:
+    """ms of every answered call, and a line for each error and each wrong answer.
 
-    ``alone`` are the ms of a single client's calls before the others come.
+    ``alone``: ms of a single client's calls before the others start.
     """
 
     alone: list[float] = field(default_factory=list[float])
@@ -54,20 +54,22 @@ class Loaded:
     wrong: list[str] = field(default_factory=list[str])
 
 
-def measure(setting: Setting, serve: Sequence[str], queries: Sequence[str]) -> tuple[Loaded, float | None]:
-    """Serves over HTTP, lets the clients ask, returns what came of it and the server's memory in MB.
+def measure(
+    setting: Setting, serve: Sequence[str], queries: Sequence[str]
+) -> tuple[LoadResult, float | None]:
+    """Starts a server and all clients. Returns the result and the server's memory in MB.
 
     Raises NoServer.
     """
     seconds = min(5.0, setting.load_seconds) if setting.quick else setting.load_seconds
     say(f"load: {CLIENTS} HTTP clients for {seconds:g} s")
-    loaded = Loaded()
+    result = LoadResult()
     with _server(serve, setting) as (url, pid):
-        right = anyio.run(_alone, url, queries, loaded)
-        anyio.run(_together, url, right, seconds, loaded)
+        right = anyio.run(_alone, url, queries, result)
+        anyio.run(_together, url, right, seconds, result)
         memory = resident_mb(pid)
-    loaded.wrong += _not_as_in_process(setting, right)
-    return loaded, memory
+    result.wrong += _not_as_in_process(setting, right)
+    return result, memory
 
 
 @contextlib.contextmanager
@@ -94,24 +96,26 @@ def _server(serve: Sequence[str], setting: Setting) -> Generator[tuple[str, int]
 
 
 def _address(stream: IO[str]) -> str:
-    """The address that the server tells on stderr; what follows there is read on, and dropped."""
-    told: queue.Queue[str] = queue.Queue()
-    said: list[str] = []
+    """Reads the address that the server prints on stderr; later output is read and dropped."""
+    addresses: queue.Queue[str] = queue.Queue()
+    lines: list[str] = []
 
     def read() -> None:
         for line in stream:
-            said.append(line.strip())
+            lines.append(line.strip())
             if "http://" in line:
-                told.put("http://" + line.split("http://", 1)[1].split()[0])
-        told.put("")
+                addresses.put("http://" + line.split("http://", 1)[1].split()[0])
+        addresses.put("")
 
     threading.Thread(target=read, daemon=True).start()
     try:
-        url = told.get(timeout=_START_SECONDS)
+        url = addresses.get(timeout=_START_SECONDS)
     except queue.Empty:
         url = ""
     if not url:
-        raise NoServer(f"simworlds serve --http told no address: {' '.join(said[-3:]) or 'it said nothing'}")
+        raise NoServer(
+            f"simworlds serve --http printed no address: {' '.join(lines[-3:]) or 'it printed nothing'}"
+        )
     return url
 
 
@@ -125,12 +129,12 @@ async def _connected(url: str) -> AsyncGenerator[Client]:
         yield client
 
 
-async def _alone(url: str, queries: Sequence[str], loaded: Loaded) -> dict[str, dict[str, Any]]:
+async def _alone(url: str, queries: Sequence[str], result: LoadResult) -> dict[str, dict[str, Any]]:
     """query → structured answer, asked by one client."""
     right: dict[str, dict[str, Any]] = {}
     async with _connected(url) as client:
         for query in queries:
-            right[query] = await _ask(client, query, loaded.alone)
+            right[query] = await _ask(client, query, result.alone)
     return right
 
 
@@ -143,18 +147,20 @@ async def _ask(client: Client, query: str, times: list[float]) -> dict[str, Any]
     return result.structured_content
 
 
-async def _together(url: str, right: Mapping[str, dict[str, Any]], seconds: float, loaded: Loaded) -> None:
+async def _together(
+    url: str, right: Mapping[str, dict[str, Any]], seconds: float, result: LoadResult
+) -> None:
     began = time.monotonic()
     async with anyio.create_task_group() as tasks:
         for number in range(CLIENTS):
-            tasks.start_soon(_client, url, right, number, began + seconds, loaded)
-    loaded.seconds = time.monotonic() - began
+            tasks.start_soon(_client, url, right, number, began + seconds, result)
+    result.seconds = time.monotonic() - began
 
 
 async def _client(
-    url: str, right: Mapping[str, dict[str, Any]], number: int, until: float, loaded: Loaded
+    url: str, right: Mapping[str, dict[str, Any]], number: int, until: float, result: LoadResult
 ) -> None:
-    """Asks one query after the other, each client from another place; connects again after an error."""
+    """Sends one query after another, each client from another start; reconnects after an error."""
     queries = list(right)
     place = number * len(queries) // CLIENTS
     while time.monotonic() < until:
@@ -163,10 +169,12 @@ async def _client(
                 while time.monotonic() < until:
                     query = queries[place % len(queries)]
                     place += 1
-                    if await _ask(client, query, loaded.times) != right[query]:
-                        loaded.wrong.append(f"{query[:60]!r} was answered otherwise than to a client alone")
+                    if await _ask(client, query, result.times) != right[query]:
+                        result.wrong.append(
+                            f"{query[:60]!r} was answered differently than to a single client"
+                        )
         except Exception as error:  # every failure counts, whatever its type
-            loaded.errors.append(brief(error))
+            result.errors.append(brief(error))
             await anyio.sleep(0.1)
 
 
@@ -181,42 +189,42 @@ def _not_as_in_process(setting: Setting, right: Mapping[str, dict[str, Any]]) ->
     return wrong
 
 
-def table(loaded: Loaded, memory: float | None) -> Table:
-    """What came of it, as a table."""
+def table(result: LoadResult, memory: float | None) -> Table:
+    """The result as a table."""
     alone = (
-        (f"{percentile(loaded.alone, share):.1f}" for share in (0.5, 0.95)) if loaded.alone else ("–", "–")
+        (f"{percentile(result.alone, share):.1f}" for share in (0.5, 0.95)) if result.alone else ("–", "–")
     )
-    times = loaded.times or [0.0]
+    times = result.times or [0.0]
     together = (
         str(CLIENTS),
-        f"{len(loaded.times):,}",
-        str(len(loaded.errors)),
-        str(len(loaded.wrong)),
-        f"{len(loaded.times) / loaded.seconds:.0f}" if loaded.seconds else "–",
+        f"{len(result.times):,}",
+        str(len(result.errors)),
+        str(len(result.wrong)),
+        f"{len(result.times) / result.seconds:.0f}" if result.seconds else "–",
         f"{percentile(times, 0.5):.1f}",
         f"{percentile(times, 0.95):.1f}",
         f"{memory:.0f}" if memory is not None else "–",
     )
-    rows = (("1", f"{len(loaded.alone):,}", "0", "0", "–", *alone, "–"), together)
+    rows = (("1", f"{len(result.alone):,}", "0", "0", "–", *alone, "–"), together)
     header = ("clients", "calls", "errors", "wrong", "calls/s", "p50 ms", "p95 ms", "server MB")
     note = (
-        f"{loaded.seconds:.0f} s. All clients run in one process on the server's machine: calls a second are theirs "
+        f"{result.seconds:.0f} s. All clients run in one process on the server's machine: calls a second are theirs "
         "as much as the server's."
     )
-    examples = list(dict.fromkeys([*loaded.errors, *loaded.wrong]))[:5]
+    examples = list(dict.fromkeys([*result.errors, *result.wrong]))[:5]
     return Table("HTTP load", header, rows, "\n".join([note, *(f"- {example}" for example in examples)]))
 
 
-def as_data(loaded: Loaded) -> dict[str, Any]:
-    """What came of it, as data."""
-    times, alone = loaded.times or [0.0], loaded.alone or [0.0]
+def as_data(result: LoadResult) -> dict[str, Any]:
+    """The result as data."""
+    times, alone = result.times or [0.0], result.alone or [0.0]
     return {
         "clients": CLIENTS,
-        "seconds": loaded.seconds,
-        "calls": len(loaded.times),
+        "seconds": result.seconds,
+        "calls": len(result.times),
         "alone_p50_ms": percentile(alone, 0.5),
         "p50_ms": percentile(times, 0.5),
         "p95_ms": percentile(times, 0.95),
-        "errors": loaded.errors[:_KEPT],
-        "wrong": loaded.wrong[:_KEPT],
+        "errors": result.errors[:_KEPT],
+        "wrong": result.wrong[:_KEPT],
     }

@@ -1,4 +1,4 @@
-"""``python -m bench``: retrieval, latency, servers, builds, Blender, the verifier and audits, beside targets."""
+"""``python -m measurements``: measures retrieval, latency, servers, builds, Blender, verifier and audits."""
 
 from __future__ import annotations
 
@@ -28,33 +28,33 @@ _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")
 def _parts(text: str) -> list[str]:
     names = [name.strip() for name in text.split(",") if name.strip()]
     if unknown := [name for name in names if name not in PARTS]:
-        raise argparse.ArgumentTypeError(f"{', '.join(unknown)}: parts are {', '.join(PARTS)}")
+        raise argparse.ArgumentTypeError(f"{', '.join(unknown)}: the parts are {', '.join(PARTS)}")
     return names
 
 
-def _arguments(given: Sequence[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m bench", description=__doc__)
+def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m measurements", description=__doc__)
     parser.add_argument(
         "--only", type=_parts, default=list(PARTS), metavar="PARTS", help=f"of {','.join(PARTS)}"
     )
     parser.add_argument(
         "--queries", type=Path, action="append", metavar="FILE",
-        help="labelled queries (JSON Lines); may be repeated, the first is judged (default: dev and check)",
+        help="labelled queries (JSON Lines), repeatable; the first has targets (default: dev, check, blind)",
     )  # fmt: skip
     parser.add_argument(
         "--home", type=Path, help="folder of the bases (default: SIMWORLDS_HOME or the user's)"
     )
-    parser.add_argument("--quick", action="store_true", help="measure less often, leave out what takes long")
+    parser.add_argument("--quick", action="store_true", help="measure less often, skip what takes long")
     parser.add_argument(
         "--load-seconds", type=float, default=30.0, help="length of the HTTP load (default: 30)"
     )
-    parser.add_argument("--misses", action="store_true", help="list the queries without a right answer")
+    parser.add_argument("--misses", action="store_true", help="list the queries without a correct answer")
     parser.add_argument("--output", type=Path, default=REPO / "reports", help="folder of the reports")
-    return parser.parse_args(given)
+    return parser.parse_args(words)
 
 
 def _base(home: Path) -> Path:
-    """The base that is measured, built if it is not there."""
+    """The base to measure; it is built if missing."""
     base = base_path(home, BLENDER)
     if not base.is_file():
         say(f"no base of Blender {BLENDER} in {home}: building it")
@@ -63,10 +63,10 @@ def _base(home: Path) -> Path:
 
 
 def measure(name: str, setting: Setting) -> report.Part:
-    """One part, by name; what a part needs is loaded when it is measured."""
+    """Measures one part; its modules are loaded only then."""
     from importlib import import_module  # noqa: PLC0415 - a part that is left out costs nothing
 
-    # What earlier parts left behind neither is looked through nor still goes to disk while this one is measured.
+    # Keeps the garbage collector and pending disk writes of earlier parts out of this measurement.
     gc.collect()
     gc.freeze()
     if hasattr(os, "sync"):
@@ -77,9 +77,9 @@ def measure(name: str, setting: Setting) -> report.Part:
 
 
 def main(given: Sequence[str] | None = None) -> int:
-    """Measures what is asked for, prints the report, writes it. Returns 0, or 2 when something could not be done.
+    """Measures the requested parts, prints and writes the report. Returns 0, or 2 after an error.
 
-    Targets that are not reached are shown, and are no error.
+    A missed target is reported, but is not an error.
     """
     options = _arguments(given)
     home = (options.home or home_folder()).expanduser().absolute()

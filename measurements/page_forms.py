@@ -32,17 +32,19 @@ def main() -> None:
     report(compare(sources, download), options.show)
 
 
-def report(found: Comparison, show: int) -> None:
+def report(comparison: Comparison, show: int) -> None:
     """Print a comparison and its ``show`` least similar pages."""
-    shared = len(found.shared)
-    print(f"shared pages: {shared}; only RST: {list(found.only_first)}; only HTML: {list(found.only_second)}")
-    print(f"title and section titles agree: {found.outline_share:.2%}")
+    shared = len(comparison.shared)
     print(
-        f"mean token similarity: {found.similarity:.4f}; equal text: {found.identical / max(1, shared):.2%}"
+        f"shared pages: {shared}; only RST: {list(comparison.only_first)}; only HTML: {list(comparison.only_second)}"
+    )
+    print(f"title and section titles agree: {comparison.outline_share:.2%}")
+    print(
+        f"mean token similarity: {comparison.similarity:.4f}; equal text: {comparison.identical / max(1, shared):.2%}"
     )
     for name in ("children", "breadcrumbs", "links", "anchors"):
-        print(f"same {name}: {getattr(found, f'same_{name}') / max(1, shared):.2%}")
-    for row in found.differences[:show]:
+        print(f"same {name}: {getattr(comparison, f'same_{name}') / max(1, shared):.2%}")
+    for row in comparison.differences[:show]:
         print(f"- {row.slug}: {row.similarity:.3f}")
         if not row.outline_agrees:
             first, second = (set(outline) for outline in row.outlines)

@@ -1,4 +1,4 @@
-"""What was measured, as Markdown for people and as JSON for later comparison."""
+"""Reports of measurements: Markdown for people, JSON for later comparison."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table, table
 from bench.setting import REPO, brief
-from measurements.targets import TARGETS, shown
+from measurements.targets import TARGETS, format_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -29,7 +29,7 @@ _REACHED = {True: "reached", False: "NOT reached", None: ""}
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A measured value of the target ``key``, in the target's unit; ``note`` says how it came about."""
+    """A measured value of the target ``key``, in its unit; ``note`` says how it was measured."""
 
     key: str
     value: float
@@ -38,7 +38,7 @@ class Figure:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What one part of the benchmark found. ``skipped`` names what could not be measured, and why."""
+    """The results of one part. ``skipped``: what could not be measured, and why."""
 
     name: str
     figures: tuple[Figure, ...] = ()
@@ -47,9 +47,9 @@ class Part:
     data: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
-def in_steps(name: str, steps: Mapping[str, Callable[[], Part]]) -> Part:
-    """A part that is measured step by step. A step that does not work is skipped, and named with the reason."""
-    parts = [_tried(each, step) for each, step in steps.items()]
+def run_steps(name: str, steps: Mapping[str, Callable[[], Part]]) -> Part:
+    """Measures a part step by step. A step that fails is skipped, with the reason."""
+    parts = [_run_step(each, step) for each, step in steps.items()]
     return Part(
         name,
         tuple(figure for part in parts for figure in part.figures),
@@ -59,10 +59,10 @@ def in_steps(name: str, steps: Mapping[str, Callable[[], Part]]) -> Part:
     )
 
 
-def _tried(name: str, step: Callable[[], Part]) -> Part:
+def _run_step(name: str, step: Callable[[], Part]) -> Part:
     try:
         return step()
-    except Exception as error:  # whatever a broken server, Blender or command leads to
+    except Exception as error:  # a broken server, Blender or command may raise anything
         return Part(name, skipped=(brief(error),))
 
 
@@ -73,7 +73,7 @@ def markdown(parts: Sequence[Part], facts: Mapping[str, str]) -> str:
     if figures:
         blocks.append(table(targets_table(figures)))
         if _BUSY in facts.get("machine", ""):
-            blocks.append("**The machine had other work when this began: times are more than they need be.**")
+            blocks.append("**The machine was busy at the start: times are longer than on an idle one.**")
     for part in parts:
         blocks += [table(one) for one in part.tables]
     skipped = [f"- {part.name}: {reason}" for part in parts for reason in part.skipped]
@@ -83,14 +83,21 @@ def markdown(parts: Sequence[Part], facts: Mapping[str, str]) -> str:
 
 
 def targets_table(figures: Iterable[Figure]) -> Table:
-    """Each figure beside its target and the peers' figures, in the order of the targets."""
+    """A table of figures with their targets and the peers' figures, in the order of the targets."""
     order = list(TARGETS)
     rows: list[tuple[str, ...]] = []
     for figure in sorted(figures, key=lambda one: order.index(one.key)):
         target = TARGETS[figure.key]
         verdict = _REACHED[target.reached(figure.value)]
         rows.append(
-            (target.what, shown(figure.value, target.unit), target.goal, verdict, target.peers, figure.note)
+            (
+                target.what,
+                format_value(figure.value, target.unit),
+                target.goal,
+                verdict,
+                target.peers,
+                figure.note,
+            )
         )
     counted = sum(row[3] != "" for row in rows)
     reached = sum(row[3] == _REACHED[True] for row in rows)
@@ -110,7 +117,7 @@ def _facts(facts: Mapping[str, str]) -> str:
 
 
 def machine_facts(base_meta: Mapping[str, str], base: Path) -> dict[str, str]:
-    """What a figure depends on: date, commit, machine, versions, the base."""
+    """The conditions of the figures: date, commit, machine, versions, base."""
     versions = [f"CPython {platform.python_version()}", f"SQLite {sqlite3.sqlite_version}"]
     versions += [f"{name} {_version(name)}" for name in _PACKAGES]
     blender = base_meta.get("blender") or base_meta.get("version", "unknown")
@@ -166,7 +173,7 @@ def _memory() -> str:
 
 
 def _busy() -> str:
-    """A warning where others keep the machine busy: the times then say little."""
+    """The load of the machine, with a warning if it is busy: times are then unreliable."""
     if not hasattr(os, "getloadavg"):
         return ""
     load = os.getloadavg()[0]
@@ -184,7 +191,7 @@ def _lines(path: Path) -> Iterator[str]:
 
 
 def as_json(parts: Sequence[Part], facts: Mapping[str, str]) -> dict[str, Any]:
-    """The report as data: every figure with its target, and what lies behind it."""
+    """The report as data: every figure with its target, and the data of each part."""
     figures = [
         {
             "key": figure.key,

@@ -1,7 +1,7 @@
-"""The server from outside: start, calls over stdio beside a tool that only echoes, the cold command, HTTP load.
+"""Measures the server from outside: start, calls over stdio next to an echo tool, the cold command, HTTP load.
 
-Everything goes through the real MCP client and the real command. Byte code is written by a run that does not count;
-the files are then in the system's cache, as on any machine that is in use.
+Everything uses the real MCP client and command. A first run that does not count writes byte code and fills the system's
+file cache.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from bench.setting import BLENDER, REPO, environment, percentile, say, simworlds
 from measurements import load
 from measurements.echo import TOOL as ECHO
 from measurements.memory import children, resident_mb
-from measurements.report import Figure, Part, in_steps
+from measurements.report import Figure, Part, run_steps
 from measurements.retrieval import read_queries
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ _COLD = ("ClothSettings.quality", "how do I bake a rigid body simulation")
 
 @dataclass(slots=True)
 class _Stdio:
-    """What several starts of one server gave: seconds to the first answer, ms a call, MB at the end."""
+    """Several starts of one server: seconds to the first answer, ms per call, MB at the end."""
 
     starts: list[float] = field(default_factory=list[float])
     calls: list[float] = field(default_factory=list[float])
@@ -49,11 +49,11 @@ class _Stdio:
 
 
 def measure(setting: Setting) -> Part:
-    """Everything that a client or a shell sees."""
+    """Measures all that a client or a shell experiences."""
     if reason := _unusable(setting):
         return Part("server", skipped=(reason,))
     steps = {"over stdio": _over_stdio, "simworlds docs": _cold, "under HTTP load": _under_load}
-    part = in_steps("server", {name: partial(step, setting) for name, step in steps.items()})
+    part = run_steps("server", {name: partial(step, setting) for name, step in steps.items()})
     memory = sorted((size, name) for name, data in part.data.items() for size in data.get("resident_mb", ()))
     return replace(part, figures=(*part.figures, *(Figure("memory", *most) for most in memory[-1:])))
 
@@ -74,28 +74,29 @@ def _over_stdio(setting: Setting) -> Part:
 
 
 def _under_load(setting: Setting) -> Part:
-    """All sets' queries: more than the server keeps answers of."""
+    """Sends the queries of all sets: more than the server caches."""
     queries = dict.fromkeys(query.query for path in setting.queries for query in read_queries(path))
-    loaded, resident = load.measure(setting, _serve(), list(queries))
-    note = f"of {len(loaded.times):,} calls"
-    figures = Figure("load_errors", len(loaded.errors), note), Figure("load_wrong", len(loaded.wrong), note)
-    data = load.as_data(loaded) | {"resident_mb": [resident] if resident is not None else []}
-    return Part("under HTTP load", figures, (load.table(loaded, resident),), data=data)
+    result, resident = load.measure(setting, _serve(), list(queries))
+    note = f"of {len(result.times):,} calls"
+    figures = Figure("load_errors", len(result.errors), note), Figure("load_wrong", len(result.wrong), note)
+    data = load.as_data(result) | {"resident_mb": [resident] if resident is not None else []}
+    return Part("under HTTP load", figures, (load.table(result, resident),), data=data)
 
 
 def _serve() -> list[str]:
-    """A base is not to be rebuilt in the background while it is measured."""
+    """The command that serves; it must not rebuild the base in the background."""
     return [*simworlds(), "serve", "--blender", BLENDER, "--no-rebuild"]
 
 
 def _unusable(setting: Setting) -> str:
-    """Why the command cannot be measured; empty when it answers. Leaves byte code behind."""
+    """The reason why the command cannot be measured; "" if it answers. Writes byte code."""
     try:
         _docs(setting, _FIRST)
         return ""
     except subprocess.CalledProcessError as error:
-        said = (error.stderr or error.stdout or "").strip().splitlines()
-        return f"simworlds docs failed with exit code {error.returncode}: {said[-1] if said else 'it said nothing'}"
+        lines = (error.stderr or error.stdout or "").strip().splitlines()
+        output = lines[-1] if lines else "it printed nothing"
+        return f"simworlds docs failed with exit code {error.returncode}: {output}"
     except (OSError, subprocess.SubprocessError) as error:
         return f"simworlds docs could not be run: {error}"
 
@@ -108,21 +109,21 @@ def _docs(setting: Setting, query: str) -> None:
 
 
 def _cold(setting: Setting) -> Part:
-    """Seconds of whole processes."""
+    """Measures seconds of whole processes."""
     say("server: simworlds docs, cold")
     times: dict[str, list[float]] = {query: [] for query in _COLD}
-    for query, found in times.items():
+    for query, seconds in times.items():
         for _ in range(3 if setting.quick else COLD_RUNS):
             began = time.perf_counter()
             _docs(setting, query)
-            found.append(time.perf_counter() - began)
-    named, asked = (percentile(times[query], 0.5) for query in _COLD)
-    return Part("simworlds docs", (Figure("docs", named, f"a question {asked:.2f} s"),), data=times)
+            seconds.append(time.perf_counter() - began)
+    named, question = (percentile(times[query], 0.5) for query in _COLD)
+    return Part("simworlds docs", (Figure("docs", named, f"a question {question:.2f} s"),), data=times)
 
 
 async def _stdio(command: Sequence[str], tool: str, queries: Sequence[str], setting: Setting) -> _Stdio:
-    """Starts the server, asks it every query once, and again with a new process; the first start does not count."""
-    found = _Stdio()
+    """Starts the server several times and sends every query; the first start does not count."""
+    times = _Stdio()
     parameters = StdioServerParameters(
         command=command[0], args=list(command[1:]), cwd=REPO, env=environment(setting.home)
     )
@@ -134,15 +135,15 @@ async def _stdio(command: Sequence[str], tool: str, queries: Sequence[str], sett
                 await _call(client, tool, _FIRST)
                 if number == 0:
                     continue
-                found.starts.append(time.perf_counter() - began)
+                times.starts.append(time.perf_counter() - began)
                 for query in queries:
                     began = time.perf_counter()
                     await _call(client, tool, query)
-                    found.calls.append((time.perf_counter() - began) * 1e3)
+                    times.calls.append((time.perf_counter() - began) * 1e3)
                 for pid in children() - before:
                     if (memory := resident_mb(pid)) is not None:
-                        found.memory.append(memory)
-    return found
+                        times.memory.append(memory)
+    return times
 
 
 async def _call(client: Client, tool: str, query: str) -> None:
@@ -155,11 +156,11 @@ def _stdio_table(servers: dict[str, _Stdio]) -> Table:
     rows = tuple(
         (
             name,
-            f"{percentile(one.starts, 0.5):.2f}",
-            *(f"{percentile(one.calls, share):.1f}" for share in (0.5, 0.95, 1.0)),
-            f"{max(one.memory):.0f}" if one.memory else "–",
+            f"{percentile(server.starts, 0.5):.2f}",
+            *(f"{percentile(server.calls, share):.1f}" for share in (0.5, 0.95, 1.0)),
+            f"{max(server.memory):.0f}" if server.memory else "–",
         )
-        for name, one in servers.items()
+        for name, server in servers.items()
     )
     header = ("server", "first answer s", "call p50 ms", "p95", "slowest", "resident MB")
     note = (

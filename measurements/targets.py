@@ -1,4 +1,4 @@
-"""What is to be reached, and what others reach: one row for each figure that the benchmark judges.
+"""Targets of the measurements, with the figures of peers.
 
 Peers' figures were measured on one machine (2 cores, no GPU) with 240 labelled queries, of which
 ``corpora/queries/dev.jsonl`` is a third; *FTS5* is SQLite's, one flat index of 25,000 documents with the name
@@ -15,9 +15,9 @@ Unit = Literal["share", "ms", "s", "MB", "tokens", "count", "times"]
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One figure: what it is, the bound it must keep (None: only shown), and what peers reach.
+    """One figure: what it is, its bound (None: only reported), and the peers' figures.
 
-    ``at_least`` tells which side of ``bound`` is the good one. MB are 10⁶ bytes.
+    ``at_least``: ``bound`` is a minimum, else a maximum. MB are 10⁶ bytes.
     """
 
     key: str
@@ -28,7 +28,7 @@ class Target:
     peers: str = ""
 
     def reached(self, value: float) -> bool | None:
-        """Whether a measured value keeps the bound; None where there is none."""
+        """Whether a value is within the bound; None without a bound."""
         if self.bound is None:
             return None
         return value >= self.bound if self.at_least else value <= self.bound
@@ -41,8 +41,8 @@ class Target:
         return f"{'≥' if self.at_least else '≤'} {_number(self.bound, self.unit)}"
 
 
-def shown(value: float, unit: Unit) -> str:
-    """A measured value, in no more digits than it deserves."""
+def format_value(value: float, unit: Unit) -> str:
+    """Formats a measured value with sensible precision."""
     if unit == "share":
         return f"{value:.3f}"
     if unit == "count":

@@ -1,7 +1,7 @@
-"""The verifier, through the command that anybody has: what a check costs, how that grows, and what it finds.
+"""Measures the verifier by its command: the cost of a check, how it grows, and what it finds.
 
-Scenes are built in a Blender of their own, saved, and checked by ``simworlds verify --json``. How many of two hundred
-random breaches are found is measured by the tests' own script.
+Scenes are built in a Blender of their own, saved, and checked by ``simworlds verify --json``. The share of random
+breaches that are found is measured by a script of the tests.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from agents.blender.supervisor import Supervisor
 from bench.markdown_tables import Table
 from bench.setting import REPO, environment, percentile, say, simworlds
 from measurements import verifier_scenes
-from measurements.report import Figure, Part, in_steps
+from measurements.report import Figure, Part, run_steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -40,7 +40,7 @@ _MUTATIONS, _FEW = 200, 30
 
 
 class _Failed(Exception):  # noqa: N818 - reads as the state it names
-    """A check did not come out as the scene was made to."""
+    """A check did not give the result that the scene was built for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +60,9 @@ class _Check:
 
 
 def measure(setting: Setting) -> Part:
-    """Everything that is measured of the verifier; each step in a folder of its own."""
+    """Measures all steps, each in a folder of its own."""
     steps = {"growth": _growth, "motion": _motion, "loose": _loose, "mutations": _mutations}
-    return in_steps("verifier", {name: partial(_in_a_folder, step, setting) for name, step in steps.items()})
+    return run_steps("verifier", {name: partial(_in_a_folder, step, setting) for name, step in steps.items()})
 
 
 def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Part:
@@ -70,7 +70,7 @@ def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Par
         return step(setting, Path(place).resolve())
 
 
-# What a check costs
+# Cost
 
 
 def _growth(setting: Setting, place: Path) -> Part:
@@ -80,7 +80,7 @@ def _growth(setting: Setting, place: Path) -> Part:
     for count in _SIZES:
         say(f"verifier: {count} objects")
         scene = place / f"{count}.blend"
-        told = _built(place, verifier_scenes.furniture(count, _TRIANGLES), scene)
+        counts = _built(place, verifier_scenes.furniture(count, _TRIANGLES), scene)
         checks = [
             _checked(setting, scene, "--rules", ",".join(_STILL))
             for _ in range(1 if setting.quick or count > _JUDGED else 3)
@@ -91,15 +91,15 @@ def _growth(setting: Setting, place: Path) -> Part:
         rows.append(
             (
                 f"{count:,}",
-                f"{told['meshes']:,}",
-                f"{told['triangles']:,}",
+                f"{counts['meshes']:,}",
+                f"{counts['triangles']:,}",
                 f"{took:.2f}",
                 f"{took / count * 1000:.1f}",
                 f"{whole:.1f}",
             )
         )
         if count == _JUDGED:
-            judged = f"{told['triangles']:,} triangles; median of {len(checks)}"
+            judged = f"{counts['triangles']:,} triangles; median of {len(checks)}"
         scene.unlink()
     each = {count: percentile(times, 0.5) / count for count, times in costs.items()}
     growth = each[_SIZES[-1]] / each[_SIZES[0]]
@@ -132,7 +132,7 @@ def _motion(setting: Setting, place: Path) -> Part:
 
 
 def _loose(setting: Setting, place: Path) -> Part:
-    say("verifier: primitives that nobody tagged")
+    say("verifier: untagged primitives")
     scene = place / "loose.blend"
     _built(place, verifier_scenes.LOOSE, scene)
     check = _checked(setting, scene)
@@ -142,7 +142,7 @@ def _loose(setting: Setting, place: Path) -> Part:
 
 
 def _built(place: Path, script: str, target: Path) -> dict[str, Any]:
-    """Builds a scene by a script in a Blender of its own and saves it; gives what the script's last value tells."""
+    """Builds a scene by a script in a Blender of its own and saves it. Returns the script's last value."""
     folder = RunFolder.make(place / f"{target.stem} run")
     with Supervisor(make_launch(folder.workspace), folder) as blender:
         saved = folder.workspace / "scene.blend"
@@ -170,29 +170,33 @@ def _ran(command: Sequence[str], setting: Setting, good: Sequence[int] = (0,)) -
     return done.stdout
 
 
-def _expect(found: list[str], wanted: list[str]) -> None:
-    if found != wanted:
-        raise _Failed(f"{len(found)} that were not expected, as: {found[0] if found else ''}")
+def _expect(findings: list[str], wanted: list[str]) -> None:
+    if findings != wanted:
+        raise _Failed(f"{len(findings)} unexpected, such as: {findings[0] if findings else ''}")
 
 
-# What it finds
+# Findings
 
 
 def _mutations(setting: Setting, _place: Path) -> Part:
     count = _FEW if setting.quick else _MUTATIONS
     say(f"verifier: {count} random breaches of valid scenes")
-    told = json.loads(_ran([sys.executable, str(_MUTATING), str(count)], setting))
-    rows = [(kind, str(made), str(found), by) for kind, made, found, by in told["kinds"]]
-    rows.append(("all", str(told["made"]), str(told["found"]), ""))
+    result = json.loads(_ran([sys.executable, str(_MUTATING), str(count)], setting))
+    rows = [(kind, str(made), str(found), by) for kind, made, found, by in result["kinds"]]
+    rows.append(("all", str(result["made"]), str(result["found"]), ""))
     note = (
-        f"One breach at a time, at random, of three valid scenes: a furnished room of 20 objects, a table of dominoes, "
-        f"a cloth over a table. The valid scenes were looked at {told['looks']} times by all {told['rules']} rules: "
-        f"{len(told['alarms'])} findings. A breach counts as found if a rule that owns its kind names what was broken; "
+        "One random breach at a time of three valid scenes: a furnished room of 20 objects, a table of dominoes, "
+        f"a cloth over a table. All {result['rules']} rules checked the valid scenes {result['looks']} times: "
+        f"{len(result['alarms'])} findings. A breach counts as found if a rule of its kind names what was broken; "
         "two rules may find one."
     )
     figures = (
-        Figure("mutations", told["found"] / told["made"], f"{told['found']} of {told['made']}"),
-        Figure("false_alarms", float(len(told["alarms"])), f"{told['looks']} looks by {told['rules']} rules"),
+        Figure("mutations", result["found"] / result["made"], f"{result['found']} of {result['made']}"),
+        Figure(
+            "false_alarms",
+            float(len(result["alarms"])),
+            f"{result['looks']} checks by {result['rules']} rules",
+        ),
     )
     table = Table("Breaches of valid scenes", ("breach", "made", "found", "by"), tuple(rows), note)
-    return Part("mutations", figures, (table,), data=told)
+    return Part("mutations", figures, (table,), data=result)

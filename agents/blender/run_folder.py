@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import secrets
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path, PurePosixPath
@@ -17,7 +17,7 @@ from simworlds.sandbox.untrusted_files import copy_file, open_beneath, take_bene
 from simworlds.sandbox.usage import remove
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
+    from collections.abc import Iterator
 
 _NAME = re.compile(r"[\w .()+-]{1,100}")
 SCENE_FILE = "scene.blend"  # in the workspace: the run's own file, as Blender has it open
@@ -130,15 +130,3 @@ def new_run(runs: Path) -> RunFolder:
         return RunFolder.make(root)
     raise Refusal(f"No folder could be made in {runs}: 999 runs were started in one second.")
 
-
-@contextmanager
-def locked(root: Path) -> Generator[None]:
-    """Locks a run's folder for one process. Raises Refusal while another one holds it."""
-    import fcntl  # noqa: PLC0415 - not on Windows
-
-    with (root / ".lock").open("w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise Refusal(f"{root} is in use by another SimWorlds process. Choose another folder.") from error
-        yield

@@ -8,7 +8,8 @@ from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.checkpoints import WRITTEN, Checkpoint, Checkpoints
-from agents.blender.run_folder import SCENE_FILE, RunFolder, locked
+from agents.blender.run_folder import SCENE_FILE, RunFolder
+from simworlds.folder_lock import locked
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.errors import (
     BlenderError,

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 from pydantic import ValidationError
 
 from agents.blender.blender_sessions import SessionSetup
-from agents.blender.run_folder import locked
 from agents.loop.algorithm import make, result_so_far
 from agents.loop.answer_source import Line, answering
 from agents.loop.edit.edit_mode import edit
@@ -22,6 +21,7 @@ from agents.loop.journal import NAME, Journal, read_rows
 from agents.loop.options import ROLES, Limits, Options
 from agents.loop.run import Run
 from agents.loop.toolbox import Toolbox
+from simworlds.folder_lock import locked
 from simworlds.llm.errors import ModelError, OverBudget
 from simworlds.llm.spending import Spending
 from simworlds.sandbox.confined_command import best_sandbox

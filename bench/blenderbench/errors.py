@@ -1,23 +1,23 @@
-"""What can go wrong between a set of tasks and its scores.
+"""Errors of BlenderBench.
 
 BlenderBenchError
-├── NoTasks      a folder that is no BlenderBench, or a task that it does not have
-├── BadPicture   a picture that cannot be compared: no PNG, broken, or too large
-├── NoWeights    CLIP's weights are not there, or are something else
-├── BadResults   a folder of results that cannot be gone on with, or read
-├── NotReady     a system that cannot be run here; no task could be
-└── NotDone      a task that came to nothing; its record says why, and the others go on
+├── NoTasks      the folder is not a BlenderBench, or has no such task
+├── BadPicture   a picture that cannot be compared: not a PNG, broken, or too large
+├── NoWeights    CLIP's weights are missing or invalid
+├── BadResults   a folder of results that cannot be continued or read
+├── EditSystemNotReady     a system that cannot run here; no task was started
+└── TaskFailed      a task that failed; its record says why, and the others go on
 """
 
 from __future__ import annotations
 
 
 class BlenderBenchError(Exception):
-    """Anything below. The message says what was wrong, where, and what can be done."""
+    """Base class. The message says what is wrong, where, and what to do."""
 
 
 class NoTasks(BlenderBenchError):  # noqa: N818 - these read as the states they name
-    """There is no such set, or no such task in it."""
+    """The set or the task does not exist."""
 
 
 class BadPicture(BlenderBenchError):  # noqa: N818
@@ -25,16 +25,16 @@ class BadPicture(BlenderBenchError):  # noqa: N818
 
 
 class NoWeights(BlenderBenchError):  # noqa: N818
-    """CLIP's weights cannot be had."""
+    """CLIP's weights are missing or invalid."""
 
 
 class BadResults(BlenderBenchError):  # noqa: N818
-    """Results cannot be gone on with, or read."""
+    """Results cannot be continued or read."""
 
 
-class NotReady(BlenderBenchError):  # noqa: N818
-    """A system cannot be run here."""
+class EditSystemNotReady(BlenderBenchError):  # noqa: N818
+    """A system cannot run here."""
 
 
-class NotDone(BlenderBenchError):  # noqa: N818
-    """A task came to nothing."""
+class TaskFailed(BlenderBenchError):  # noqa: N818
+    """A task failed."""

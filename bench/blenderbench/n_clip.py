@@ -72,17 +72,17 @@ class Tower:
 
     def __post_init__(self) -> None:
         for name, shape in SHAPES.items():
-            found = self.weights.get(name)
-            if found is None:
+            tensor = self.weights.get(name)
+            if tensor is None:
                 raise NoWeights(f"These are no weights of CLIP ViT-B/32: {name} is missing.")
-            if found.shape != shape:
+            if tensor.shape != shape:
                 raise NoWeights(
-                    f"These are no weights of CLIP ViT-B/32: {name} has the shape {found.shape}, not {shape}."
+                    f"These are no weights of CLIP ViT-B/32: {name} has the shape {tensor.shape}, not {shape}."
                 )
 
     def embed(self, pictures: Iterable[Image.Image]) -> Array:
         """The embeddings of RGB pictures, one a row, of length 1. Raises NoWeights for weights that come to nothing."""
-        pixels = np.stack([prepared(picture) for picture in pictures])
+        pixels = np.stack([preprocess(picture) for picture in pictures])
         states = self._normed("vision_model.pre_layrnorm", self._embedded(pixels))
         for number in range(LAYERS):
             states = self._layer(f"vision_model.encoder.layers.{number}", states)
@@ -119,8 +119,8 @@ class Tower:
 
     def _heads(self, name: str, states: Array) -> Array:
         """A projection, split into heads: picture, head, token, value."""
-        found = self._linear(name, states).reshape(*states.shape[:2], HEADS, _HEAD)
-        return found.swapaxes(1, 2)
+        values = self._linear(name, states).reshape(*states.shape[:2], HEADS, _HEAD)
+        return values.swapaxes(1, 2)
 
     def _linear(self, name: str, states: Array) -> Array:
         return states @ self.weights[f"{name}.weight"].T + self.weights[f"{name}.bias"]
@@ -136,7 +136,7 @@ def _quick_gelu(values: Array) -> Array:
     return values / (1 + np.exp(np.float32(-1.702) * values))
 
 
-def prepared(picture: Image.Image) -> Array:
+def preprocess(picture: Image.Image) -> Array:
     """An RGB picture as CLIP sees it: channels, rows, columns."""
     width, height = picture.size
     short = min(width, height)

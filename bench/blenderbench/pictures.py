@@ -1,4 +1,4 @@
-"""Renders as they are compared: PNGs, read as RGB. Whoever made them is not trusted with memory."""
+"""Reads renders to compare: PNGs as RGB. The files are untrusted: their size is limited."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _opened(path: Path) -> Generator[Image.Image]:
                 _check(path, picture)
                 yield picture
     except UnidentifiedImageError as error:
-        raise BadPicture(f"{path} is no PNG.") from error
+        raise BadPicture(f"{path} is not a PNG.") from error
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
         raise BadPicture(f"{path} is larger than {MOST_PIXELS:,} pixels.") from error
     except (OSError, ValueError, SyntaxError, MemoryError) as error:  # what Pillow raises for broken files

@@ -1,11 +1,11 @@
-"""A folder of results: what made it, and for each task what came of it and how it scored.
+"""A folder of results: its system and settings, and the record and scores of each task.
 
-OUT/run.json                     which system, on what, with which settings; holds for all that is in it
-OUT/level1/TASK/goal.png         a copy, so that scoring needs neither the set nor the system
-OUT/level1/TASK/start/           the scene to be edited, alone: what edits it may read its folder
-OUT/level1/TASK/renders/01.png   the rounds of the result, oldest first
-OUT/level1/TASK/record.json      the task is done: written last, whole or not at all
-OUT/level1/TASK/scores.json      its distances and marks; written anew by each scoring
+OUT/run.json                     the system, the set and the settings of all results
+OUT/level1/TASK/goal.png         a copy, so that scoring needs neither set nor system
+OUT/level1/TASK/start/           the scene to be edited, in a folder of its own that the system may read
+OUT/level1/TASK/renders/01.png   the rounds of the edit, oldest first
+OUT/level1/TASK/record.json      written last: the task has ended
+OUT/level1/TASK/scores.json      distances and marks; rewritten by each scoring
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from bench.blenderbench.errors import BadResults
 from bench.blenderbench.photometric import Convention
 from bench.blenderbench.task_scenes import Rendered
-from bench.blenderbench.task_set import LEVELS, in_order
-from bench.blenderbench.vlm import Judged
+from bench.blenderbench.task_set import LEVELS, natural_key
+from bench.blenderbench.vlm import EditJudgement
 from bench.sweep.records import Provenance
 from simworlds.files import write_whole
 
@@ -35,10 +35,10 @@ class _Kept(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class Setup(_Kept):
-    """What a folder of results is made by: a system, with settings of its own, on a set (its folder).
+class RunSetup(_Kept):
+    """The system of a folder of results, its settings, and the set (a folder).
 
-    ``name``: what it is called in tables.
+    ``name``: of the system in tables.
     """
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._+ -]{0,39}$")
@@ -47,21 +47,21 @@ class Setup(_Kept):
     settings: dict[str, Any] = Field(default_factory=dict[str, Any])
 
 
-class Run(_Kept):
-    """``run.json``: the setup, the tasks of the set, and how it came to be."""
+class SetRun(_Kept):
+    """``run.json``: the setup, the tasks of the set and their faults, the provenance."""
 
-    setup: Setup
+    setup: RunSetup
     tasks: tuple[str, ...]
     faults: tuple[str, ...]
     provenance: Provenance
 
 
-class Record(_Kept):
-    """What came of a task. ``why``: it came to nothing (no ``rounds``), and for which reason; it is tried again.
+class TaskRecord(_Kept):
+    """The record of a task. ``why``: the reason why it failed (then it has no ``rounds``, and is tried again).
 
-    ``start_loss``: PL of our render of the scene to be edited against the set's own: what machine and Blender make of
-    it, before anybody has edited anything. ``inputs``: SHA-256 of the task's files. ``cost``: US dollars, None where a
-    price is not known.
+    ``start_loss``: PL of our render of the start scene against the set's own: the effect of machine and Blender before
+    any edit. ``inputs``: SHA-256 of the task's files. ``cost``: US dollars, None where a
+    price is unknown.
     """
 
     task: str
@@ -88,10 +88,10 @@ class RoundScore(_Kept):
 
 
 class Score(_Kept):
-    """How a task scored, by the round that was ``chosen``.
+    """The scores of a task, by the round that was ``chosen``.
 
-    What was asked for and could not be scored is None, and ``missing`` says why. ``best_round``: the round was chosen
-    by N-CLIP, not the last one. ``clip``: which weights.
+    A requested score that is missing is None; ``missing`` says why. ``best_round``: it was chosen by N-CLIP, else
+    it is the last one. ``clip``: the weights.
     """
 
     task: str
@@ -103,14 +103,14 @@ class Score(_Kept):
     pl: float | None = None
     n_clip: float | None = None
     vlm: float | None = None
-    judged: Judged | None = None
+    judged: EditJudgement | None = None
     clip: dict[str, str | bool] | None = None
     missing: dict[str, str] = Field(default_factory=dict[str, str])
     provenance: Provenance
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class TaskFolder:
     """A task's folder in the results."""
 
     root: Path
@@ -132,7 +132,7 @@ class Place:
 
     @property
     def started(self) -> Path:
-        """Says that both are there."""
+        """Written when both exist."""
         return self.root / "start.json"
 
     @property
@@ -142,12 +142,12 @@ class Place:
 
     @property
     def record(self) -> Path:
-        """What came of it."""
+        """Its record."""
         return self.root / "record.json"
 
     @property
     def scores(self) -> Path:
-        """How it scored."""
+        """Its scores."""
         return self.root / "scores.json"
 
     @property
@@ -157,45 +157,45 @@ class Place:
 
 
 def round_file(number: int) -> str:
-    """Where the render of a round (from 1) lies, below a task's folder."""
+    """The render of a round (from 1), relative to the task's folder."""
     return f"renders/{number:02}.png"
 
 
-def place_of(out: Path, task: str) -> Place:
+def task_folder(out: Path, task: str) -> TaskFolder:
     """The folder of a task, by its id."""
-    return Place(out / task)
+    return TaskFolder(out / task)
 
 
-def records(out: Path) -> Iterator[tuple[Place, Record]]:
-    """All tasks that are done, in order. Raises BadResults for a record that is none."""
+def records(out: Path) -> Iterator[tuple[TaskFolder, TaskRecord]]:
+    """All tasks that have ended, in order. Raises BadResults for an invalid record."""
     for level in LEVELS:
-        found = (out / level).glob("*/record.json")
-        for path in sorted(found, key=lambda path: in_order(path.parent.name)):
-            record = read(path, Record)
+        paths = (out / level).glob("*/record.json")
+        for path in sorted(paths, key=lambda path: natural_key(path.parent.name)):
+            record = read(path, TaskRecord)
             if record.task != f"{level}/{path.parent.name}":
                 raise BadResults(f"{path} is the record of {record.task[:100]!r}.")
-            yield Place(path.parent), record
+            yield TaskFolder(path.parent), record
 
 
-def read_run(out: Path) -> Run:
-    """What a folder was made by. Raises BadResults."""
+def read_run(out: Path) -> SetRun:
+    """Reads ``run.json``. Raises BadResults."""
     if not (out / "run.json").is_file():
-        raise BadResults(f"{out} holds no results: it has no run.json. 'blenderbench run' makes some.")
-    return read(out / "run.json", Run)
+        raise BadResults(f"{out} has no results: there is no run.json. Make some with 'blenderbench run'.")
+    return read(out / "run.json", SetRun)
 
 
 def read(path: Path, shape: type[_Model]) -> _Model:
-    """What is kept in a file. Raises BadResults."""
+    """Reads a model from a file. Raises BadResults."""
     try:
         return shape.model_validate_json(path.read_bytes())
     except OSError as error:
         raise BadResults(f"{path} cannot be read: {error.strerror or error}.") from error
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
-        where = ".".join(map(str, first["loc"])) or "the whole"
-        raise BadResults(f"{path} is not what it should be: {where}: {first['msg']}.") from error
+        where = ".".join(map(str, first["loc"])) or "the file"
+        raise BadResults(f"{path} is not valid: {where}: {first['msg']}.") from error
 
 
 def write(path: Path, kept: BaseModel) -> None:
-    """Keeps it, whole or not at all. Raises OSError."""
+    """Writes a model to a file, whole or not at all. Raises OSError."""
     write_whole(path, kept.model_dump_json(indent=1).encode() + b"\n")

@@ -1,4 +1,4 @@
-"""Runs a system on tasks: a record of each, kept as soon as it is done, so that a run that was killed goes on."""
+"""Runs a system on tasks. Each record is kept as soon as its task has ended, so that a killed run can go on."""
 
 from __future__ import annotations
 
@@ -8,76 +8,76 @@ from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
-from agents.blender.run_folder import locked
-from bench.blenderbench.errors import BadResults, NotDone
-from bench.blenderbench.making import Made
-from bench.blenderbench.results import Record, Run, Setup, place_of, read, read_run, write
+from bench.blenderbench.edit_system import EditOutput
+from bench.blenderbench.errors import BadResults, TaskFailed
+from bench.blenderbench.results import RunSetup, SetRun, TaskRecord, read, read_run, task_folder, write
 from bench.sweep.content_hash import digests
 from bench.sweep.provenance import code_of, provenance
+from simworlds.folder_lock import locked
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from bench.blenderbench.making import System
-    from bench.blenderbench.results import Place
-    from bench.blenderbench.task_set import Task, TaskSet
+    from bench.blenderbench.edit_system import EditSystem
+    from bench.blenderbench.results import TaskFolder
+    from bench.blenderbench.task_set import EditTask, TaskSet
     from bench.sweep.records import Provenance
 
 
 def run(  # noqa: PLR0913
-    found: TaskSet,
-    tasks: Sequence[Task],
-    system: System,
+    task_set: TaskSet,
+    tasks: Sequence[EditTask],
+    system: EditSystem,
     out: Path,
     *,
     name: str = "",
     tell: Callable[[str], object] = lambda _: None,
-) -> list[Record]:
-    """Has a system edit tasks; returns their records. What is done already is not done again.
+) -> list[TaskRecord]:
+    """Lets a system edit tasks; returns their records. Finished tasks are not run again.
 
-    Tasks that came to nothing are tried once more. ``name``: what the system is called in tables. ``tell`` hears what
-    is being done. Raises BadResults for a folder that holds something else, NotReady for a system that cannot be run,
+    Failed tasks are tried once more. ``name``: of the system in tables. ``tell`` is called with the progress. Raises
+    BadResults for a folder of other content, EditSystemNotReady for a system that cannot run,
     CannotStart where no Blender works, OSError where nothing can be written.
     """
-    called = {"name": name or system.name, "system": system.kind, "set": str(found.root)}
+    called = {"name": name or system.name, "system": system.kind, "set": str(task_set.root)}
     try:
-        setup = Setup(**called, settings=system.settings)
+        setup = RunSetup(**called, settings=system.settings)
     except ValidationError as error:
         raise BadResults(
-            f"{called['name']!r} cannot stand in a table: give 40 letters, digits, spaces and ._+- at most (--name)."
+            f"{called['name']!r} cannot be a name in tables: use at most 40 letters, digits, spaces and ._+- (--name)."
         ) from error
     try:
         out.mkdir(parents=True, exist_ok=True)
         with locked(out):
-            _begin(found, setup, out)
+            _begin(task_set, setup, out)
             return [_kept(task, system, out, tell) for task in tasks]
     except Refusal as error:
         raise BadResults(str(error)) from error
 
 
-def _begin(found: TaskSet, setup: Setup, out: Path) -> None:
-    """Writes down what the folder is made by, which has to be the same as before."""
+def _begin(task_set: TaskSet, setup: RunSetup, out: Path) -> None:
+    """Writes ``run.json``; the setup must be the same as before."""
     if (out / "run.json").exists():
         before = read_run(out).setup
         if before != setup:
             raise BadResults(
-                f"{out} holds results of {before.model_dump_json()}, and these would be of {setup.model_dump_json()}. "
+                f"{out} holds results of another setup: {before.model_dump_json()}, now {setup.model_dump_json()}. "
                 "Choose another folder."
             )
     elif any(path.name != ".lock" for path in out.iterdir()):
-        raise BadResults(f"{out} is not empty, and holds no results. Choose another folder.")
-    ids = tuple(task.id for task in found.tasks)
-    write(out / "run.json", Run(setup=setup, tasks=ids, faults=found.faults, provenance=_provenance()))
+        raise BadResults(f"{out} is not empty and has no results. Choose another folder.")
+    ids = tuple(task.id for task in task_set.tasks)
+    write(out / "run.json", SetRun(setup=setup, tasks=ids, faults=task_set.faults, provenance=_provenance()))
 
 
-def _kept(task: Task, system: System, out: Path, tell: Callable[[str], object]) -> Record:
-    """The record of a task, from before or made now."""
-    place = place_of(out, task.id)
+def _kept(task: EditTask, system: EditSystem, out: Path, tell: Callable[[str], object]) -> TaskRecord:
+    """The record of a task: the kept one, or a new one."""
+    place = task_folder(out, task.id)
     inputs = digests(task.folder, _files(task))
     if place.record.is_file():
-        record = read(place.record, Record)
+        record = read(place.record, TaskRecord)
         if record.inputs != inputs:
             raise BadResults(
                 f"{task.folder} has changed since {place.record} was made. Choose another folder."
@@ -90,45 +90,49 @@ def _kept(task: Task, system: System, out: Path, tell: Callable[[str], object]) 
     return record
 
 
-def _files(task: Task) -> list[Path]:
-    """What a task is."""
+def _files(task: EditTask) -> list[Path]:
+    """The files that a task consists of."""
     return [task.blend, task.folder / "start.py", task.folder / "task.txt", task.goal]
 
 
-def _clear(place: Place) -> None:
-    """Removes what a try left that came to nothing. An edit stays: it may be gone on with."""
+def _clear(place: TaskFolder) -> None:
+    """Removes the files of a failed attempt. An edit stays: it may be resumed."""
     for path in (place.record, place.scores):
         path.unlink(missing_ok=True)
     shutil.rmtree(place.renders, ignore_errors=True)
 
 
 def _done(
-    task: Task, inputs: dict[str, str], system: System, place: Place, tell: Callable[[str], object]
-) -> Record:
+    task: EditTask,
+    inputs: dict[str, str],
+    system: EditSystem,
+    place: TaskFolder,
+    tell: Callable[[str], object],
+) -> TaskRecord:
     place.renders.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(task.goal, place.goal)
     began = time.monotonic()
     why: str | None = None
     try:
-        made = system.make(task, place, tell)
-    except NotDone as error:
-        made, why = Made((), cost=None), str(error)
-    return Record(
+        output = system.make(task, place, tell)
+    except TaskFailed as error:
+        output, why = EditOutput((), cost=None), str(error)
+    return TaskRecord(
         task=task.id,
         level=task.level,
         instruction=task.instruction,
         why=why,
-        rounds=made.rounds,
-        start_loss=made.start_loss,
-        rendered=made.rendered,
-        models=made.models,
-        cost=made.cost,
+        rounds=output.rounds,
+        start_loss=output.start_loss,
+        rendered=output.rendered,
+        models=output.models,
+        cost=output.cost,
         seconds=round(time.monotonic() - began, 3),
-        notes=made.notes,
+        notes=output.notes,
         inputs=inputs,
-        provenance=_provenance(made.rendered.blender if made.rendered else None),
+        provenance=_provenance(output.rendered.blender if output.rendered else None),
     )
 
 
 def _provenance(blender: str | None = None) -> Provenance:
-    return provenance(code_of(__name__, "blenderbench/inside/*.py"), blender)
+    return provenance(code_of(__name__, "blenderbench/inside/*.py", "audit/inside/opening.py"), blender)

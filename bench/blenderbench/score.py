@@ -1,4 +1,4 @@
-"""Scores what a system made: distances to the goals, and marks. Nothing is run again for it, and no set is needed."""
+"""Scores a system's results: distances to the goals, and marks. Needs neither the system nor the set."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from bench.blenderbench.photometric import Convention
-    from bench.blenderbench.results import Place, Record
-    from bench.blenderbench.vlm import Judged
+    from bench.blenderbench.results import TaskFolder, TaskRecord
+    from bench.blenderbench.vlm import EditJudgement
     from bench.blenderbench.weights import Clip
     from bench.judge.providers import Provider
 
@@ -30,11 +30,11 @@ METRICS = ("pl", "n_clip", "vlm")
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
-    """How is scored: by which convention, with which weights (None: no N-CLIP), by which judge (None: no marks).
+class ScoringRule:
+    """How to score: convention, weights (None: no N-CLIP), judge (None: no marks).
 
-    ``best_round``: by the round that N-CLIP likes best, as the peer does, instead of the last one. ``cache``: the
-    folder that marks are kept in.
+    ``best_round``: score the round with the best N-CLIP, as the peer does, instead of the last one. ``cache``: the
+    folder of kept marks.
     """
 
     convention: Convention = "paper"
@@ -45,37 +45,37 @@ class Rule:
 
     @property
     def metrics(self) -> tuple[str, ...]:
-        """What is asked for."""
-        given = {"pl": True, "n_clip": self.clip is not None, "vlm": self.provider is not None}
-        return tuple(name for name in METRICS if given[name])
+        """The requested metrics."""
+        wanted = {"pl": True, "n_clip": self.clip is not None, "vlm": self.provider is not None}
+        return tuple(name for name in METRICS if wanted[name])
 
 
-def score(out: Path, rule: Rule, tell: Callable[[str], object] = lambda _: None) -> list[Score]:
-    """Scores every task that is done, and keeps it. ``tell`` hears what is being done.
+def score(out: Path, rule: ScoringRule, tell: Callable[[str], object] = lambda _: None) -> list[Score]:
+    """Scores every finished task, and keeps the scores. ``tell`` is called with the progress.
 
-    Raises BadResults for a folder that holds none, and for a rule that cannot be followed.
+    Raises BadResults for a folder without results, and for a rule that cannot be applied.
     """
     if rule.best_round and rule.clip is None:
-        raise BadResults("The best round is chosen by N-CLIP, which needs weights: name them by --clip.")
+        raise BadResults("The best round is chosen by N-CLIP, which needs weights: give --clip.")
     read_run(out)
-    found: list[Score] = []
+    scores: list[Score] = []
     for place, record in records(out):
         tell(f"{record.task}: scoring")
-        made = _scored(place, record, rule)
-        write(place.scores, made)
-        found.append(made)
-    if not found:
-        raise BadResults(f"{out} holds no task that is done.")
-    return found
+        score = _scored(place, record, rule)
+        write(place.scores, score)
+        scores.append(score)
+    if not scores:
+        raise BadResults(f"{out} has no finished task.")
+    return scores
 
 
-def _scored(place: Place, record: Record, rule: Rule) -> Score:
+def _scored(place: TaskFolder, record: TaskRecord, rule: ScoringRule) -> Score:
     bare = Score(
         task=record.task,
         level=record.level,
         convention=rule.convention,
         best_round=rule.best_round,
-        clip=rule.clip.told if rule.clip else None,
+        clip=rule.clip.identity if rule.clip else None,
         provenance=provenance(code_of(__name__, "blenderbench/prompts/*.md")),
     )
     if record.why is not None:
@@ -103,19 +103,21 @@ def _scored(place: Place, record: Record, rule: Rule) -> Score:
     )
 
 
-def _round(file: str, picture: Image, goal: Image, rule: Rule) -> RoundScore:
+def _round(file: str, picture: Image, goal: Image, rule: ScoringRule) -> RoundScore:
     n_clip = clip_distance(rule.clip.tower, picture, goal, rule.convention) if rule.clip else None
     return RoundScore(file=file, pl=photometric_loss(picture, goal, rule.convention), n_clip=n_clip)
 
 
 def _chosen(rounds: Sequence[RoundScore], *, best: bool) -> int:
-    """The place of the round that counts: the last; or the nearest to the goal by N-CLIP, of equals the first."""
+    """The index of the round that counts: the last; or the first of those with the best N-CLIP."""
     if not best:
         return len(rounds) - 1
     return min(range(len(rounds)), key=lambda at: rounds[at].n_clip or 0.0)
 
 
-def _judged(instruction: str, goal: Image, picture: Image, rule: Rule) -> tuple[Judged | None, str]:
+def _judged(
+    instruction: str, goal: Image, picture: Image, rule: ScoringRule
+) -> tuple[EditJudgement | None, str]:
     """The marks, or why there are none."""
     if rule.provider is None:
         return None, ""

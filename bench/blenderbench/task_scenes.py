@@ -1,9 +1,8 @@
-"""A task's scenes in a confined Blender: the one to be edited is made of the raw file, and results are rendered.
+"""A task's scenes in a confined Blender: makes the one to be edited from the raw file, and renders results.
 
-Nothing looks at a raw file before its ``start.py`` has run: that of a camera task already holds the goal's camera.
-Both the code and the files come from strangers. They are run and opened where the scenes that agents build are, which
-``simworlds/sandbox/confined_command.py`` describes: no network, nothing written but into a folder that goes with the
-process, a deadline, limits of memory and disk.
+A raw file must not be used before its ``start.py`` has run: that of a camera task already holds the goal's camera.
+Both the code and the files are untrusted. They run and are opened in a sandbox (``simworlds/sandbox/confined_command.py``):
+no network, nothing written but to a folder that goes with the process, a deadline, limits of memory and disk.
 """
 
 from __future__ import annotations
@@ -16,31 +15,35 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict
 
-from agents.blender.launch import make_launch
-from bench.blenderbench.errors import BadPicture, NotDone
+from bench.audit.untrusted_blend import AUDITOR
+from bench.blenderbench.errors import BadPicture, TaskFailed
 from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox, default_limits
 from simworlds.sandbox.errors import BlenderError, CannotStart
+from simworlds.sandbox.launch import PRIVATE, Launch, find_blender
+from simworlds.sandbox.program import Program
 from simworlds.sandbox.untrusted_files import take_beneath
 from simworlds.sandbox.usage import empty_folder
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from bench.blenderbench.task_set import Task
-    from simworlds.sandbox.launch import Launch
+    from bench.blenderbench.task_set import EditTask
 
 SAMPLES = 512
 """Of Cycles, as the set's own renders have."""
-_SETUP = Path(__file__).parent / "inside" / "render_setup.py"
+_WORKER = Program(
+    "bench.blenderbench.inside.task_worker",
+    {**AUDITOR.packages, "bench.blenderbench.inside": Path(__file__).parent / "inside"},
+)
 _SAVED, _RENDERED = "start.blend", "render.png"
 _SCRATCH = ".blender-"
 _LISTED = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class RenderSettings:
     """How scenes are rendered, and in what: Cycles with so many ``samples``.
 
     Which Blender (by default this environment's), how long one step in it may take (seconds), how much memory (bytes;
@@ -70,23 +73,24 @@ class Rendered(BaseModel):
     samples: int
 
 
-def make_start(task: Task, blend: Path, look: Look) -> tuple[str, ...]:
-    """Runs a task's ``start.py`` on its raw file, and keeps the scene as ``blend`` with all that can be packed.
+def make_start(task: EditTask, blend: Path, settings: RenderSettings) -> tuple[str, ...]:
+    """Runs a task's ``start.py`` on its raw file, and saves the scene as ``blend`` with all that can be packed.
 
-    Returns, in words, what did not come along. Raises NotDone for what is the task's fault, CannotStart where no
+    Returns, in words, what could not be packed. Raises TaskFailed for what is the task's fault, CannotStart where no
     Blender works.
     """
-    with _opened(task.blend, (task.folder,), blend.parent.parent, look) as scene:
-        scene.run(f"settle({task.size[0]}, {task.size[1]}, {look.samples})", "setting it up")
-        scene.execute(task.code, "start.py", "the task's start.py")
-        scene.run("look_through()", "choosing its camera")
+    with _opened(task.blend, (task.folder,), blend.parent.parent, settings) as scene:
+        width, height = task.size
+        scene.ask("prepare", "setting it up", width=width, height=height, samples=settings.samples)
+        scene.execute(task.code, "start.py")
+        scene.ask("choose_camera", "choosing its camera")
         return scene.save(blend)
 
 
-def render(blend: Path, picture: Path, size: tuple[int, int], look: Look) -> Rendered:
-    """Renders a scene through its own camera, as ``picture``. Raises NotDone, CannotStart."""
-    with _opened(blend, (blend,), picture.parent, look) as scene:
-        return scene.render(picture, size, look)
+def render(blend: Path, picture: Path, size: tuple[int, int], settings: RenderSettings) -> Rendered:
+    """Renders a scene through its own camera, as ``picture``. Raises TaskFailed, CannotStart."""
+    with _opened(blend, (blend,), picture.parent, settings) as scene:
+        return scene.render(picture, size, settings.samples)
 
 
 class _Scene:
@@ -98,93 +102,69 @@ class _Scene:
         self._workspace = launch.workspace
         self._seconds = seconds
 
-    def ask(self, tool: str, what: str, **arguments: Any) -> Any:
-        """What a tool of the worker answers. Raises BlenderError."""
-        return self._process.call(tool, arguments, timeout=self._seconds, what=what).value
+    def ask(self, job: str, doing: str, **arguments: Any) -> Any:
+        """The answer of ``bench/blenderbench/inside/task_worker.py``. Raises BlenderError."""
+        return self._process.call(job, arguments, timeout=self._seconds, what=doing).value
 
-    def run(self, call: str, what: str) -> None:
-        """Calls a function of inside/render_setup.py."""
-        self.execute(f"{_SETUP.read_text(encoding='utf-8')}\n{call}\n", _SETUP.name, what)
-
-    def execute(self, code: str, name: str, what: str) -> None:
-        """Runs code. Raises NotDone where that fails, with the line."""
-        failure = self.ask("execute", what, code=code)["error"]
+    def execute(self, code: str, name: str) -> None:
+        """Runs the task's code. Raises TaskFailed where that fails, with the line."""
+        failure = self.ask("execute", f"the task's {name}", code=code, name=name)
         if failure is not None:
             line = f", line {failure['line']}" if failure["line"] else ""
-            said = " ".join(str(failure["message"]).split())[:300]
-            raise NotDone(f"{name} fails{line}: {failure['type']}: {said}")
+            message = " ".join(str(failure["message"]).split())[:300]
+            raise TaskFailed(f"{name} fails{line}: {failure['type']}: {message}")
 
     def save(self, target: Path) -> tuple[str, ...]:
-        """Keeps the scene with all that can be packed; in words, what it still wants from elsewhere."""
-        written = self.ask(
-            "save",
-            "saving it",
-            path=str(self._workspace / _SAVED),
-            beside=f"blendcache_{target.stem}",
-            workspace=str(self._workspace),
-            pack=True,
-        )
+        """Saves the scene with all that can be packed; returns, in words, what it still needs from elsewhere."""
+        outside = [str(item) for item in self.ask("save", "saving it", path=str(self._workspace / _SAVED))]
         take_beneath(self._workspace, _SAVED, target)
-        outside = [f"{one['what']} ({one['path']})" for one in written["external"]]
-        outside += [f"cache {below}" for _, below in written["files"]]
         more = [f"and {len(outside) - _LISTED} more"] if len(outside) > _LISTED else []
-        return tuple(f"not in the scene to be edited: {one}" for one in (*outside[:_LISTED], *more))
+        return tuple(f"not in the scene to be edited: {item}" for item in (*outside[:_LISTED], *more))
 
-    def render(self, target: Path, size: tuple[int, int], look: Look) -> Rendered:
-        """The current frame, through the scene's camera."""
-        width, height = size
-        asked = {"engine": "cycles", "samples": look.samples, "denoise": None, "camera": None}
-        asked |= {"width": width, "height": height, "percentage": None, "even": False}
-        plan = self.ask("render_plan", "looking at it", **asked)
-        frame, shot = plan["current"], plan["shot"]
-        starts = [one["start"] for one in plan["unbaked"]]
-        if starts and min(starts) < frame:  # motion that is not baked is never jumped to
-            steps = {"first": min(starts), "last": frame - 1, "seconds": self._seconds}
-            self.ask("render_step", "playing it", **steps)
-        made = {"shot": shot, "frame": frame, "samples": shot["samples"]}
-        self.ask("render_frame", "rendering it", path=str(self._workspace / _RENDERED), **made)
+    def render(self, target: Path, size: tuple[int, int], samples: int) -> Rendered:
+        """Renders the current frame through the scene's camera."""
+        path, (width, height) = str(self._workspace / _RENDERED), size
+        answer = self.ask("render", "rendering it", path=path, width=width, height=height, samples=samples)
         take_beneath(self._workspace, _RENDERED, target)
         read_picture(target)
-        camera, device = str(shot["camera"]), str(shot["device"])
-        return Rendered(blender=self._blender, camera=camera, device=device, samples=look.samples)
+        camera, device = str(answer["camera"]), str(answer["device"])
+        return Rendered(blender=self._blender, camera=camera, device=device, samples=samples)
 
 
 @contextmanager
-def _opened(blend: Path, read: tuple[Path, ...], beside: Path, look: Look) -> Generator[_Scene]:
+def _opened(blend: Path, read: tuple[Path, ...], beside: Path, settings: RenderSettings) -> Generator[_Scene]:
     """A file, open. The process has its folder in ``beside``, on the disk of what is made.
 
-    Raises NotDone, CannotStart.
+    Raises TaskFailed, CannotStart.
     """
     for left in beside.glob(f"{_SCRATCH}*"):  # by a process that was killed
         _remove(left)
     place = Path(tempfile.mkdtemp(prefix=_SCRATCH, dir=beside)).resolve()
     try:
-        launch = make_launch(
-            place / "workspace",
-            version=look.version,
-            blender_exe=look.blender_exe,
-            sandbox=best_sandbox(limits=look.limits),
-            read=read,
-        )
+        workspace = place / "workspace"
+        workspace.mkdir()
+        runtime = find_blender(settings.version, settings.blender_exe)
+        sandbox = best_sandbox(limits=settings.limits)
+        launch = Launch(runtime, workspace, place / PRIVATE, sandbox, _WORKER, read)
         process = BlenderProcess(launch)
         try:
-            scene = _Scene(process, launch, look.seconds)
-            scene.ask("load", "opening it", path=str(blend), workspace=str(launch.workspace), lent=False)
+            scene = _Scene(process, launch, settings.seconds)
+            scene.ask("open", "opening it", path=str(blend))
             yield scene
         finally:
             process.close()
     except CannotStart:
         raise
     except (BlenderError, BadPicture) as error:
-        raise NotDone(f"{blend.name}: {error}") from error
+        raise TaskFailed(f"{blend.name}: {error}") from error
     except (LookupError, TypeError, ValueError) as error:  # code in it may answer in the worker's name
-        raise NotDone(f"{blend.name}: Blender answered what it was not asked ({error})") from error
+        raise TaskFailed(f"{blend.name}: Blender's reply was not valid ({error})") from error
     finally:
         _remove(place)
 
 
 def _remove(place: Path) -> None:
-    """Whatever code has made of it."""
+    """Removes a folder, whatever code has made of it."""
     empty_folder(place)
     with suppress(OSError):
         place.rmdir()

@@ -1,13 +1,13 @@
-"""BlenderBench's layout on disk: which tasks there are, and what is wrong with those that cannot be used.
+"""Reads BlenderBench's layout on disk: the usable tasks, and the faults of the others.
 
-    SET/level1/TASK/blender_file.blend         the raw scene; its camera may be the goal's: start.py comes first
-    SET/level1/TASK/start.py                   code that makes the scene to be edited of it
+    SET/level1/TASK/blender_file.blend         the raw scene; its camera may be the goal's until start.py has run
+    SET/level1/TASK/start.py                   code that makes the start scene from it
     SET/level1/TASK/task.txt                   the instruction
-    SET/level1/TASK/renders/goal/render1.png   what is asked for; visprompt1.png beside it, in some tasks
-    SET/level1/TASK/renders/start/render1.png  the scene to be edited (may be missing)
+    SET/level1/TASK/renders/goal/render1.png   the goal; in some tasks with visprompt1.png beside it
+    SET/level1/TASK/renders/start/render1.png  the start scene (may be missing)
 
-``goal.py``, the authors' own edit, may lie there; it is never read. Nothing is executed here, and nothing leads out
-of the set: a task one of whose files is a link to elsewhere is left out, and named.
+``goal.py``, the authors' own edit, is never read. Nothing is executed here, and links out of the set are not followed:
+such a task is left out and reported.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ _SHORTEST_SIDE = 16  # pixels of a goal
 
 
 class _Fault(Exception):  # noqa: N818 - reads as what it is
-    """Why a task cannot be used."""
+    """The reason why a task cannot be used."""
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
-    """A task whose files are there. ``size``: the goal's, in pixels. ``start``, ``visprompt``: None where missing."""
+class EditTask:
+    """A usable task. ``size``: the goal's, in pixels. ``start``, ``visprompt``: None where missing."""
 
     level: str
     name: str
@@ -59,22 +59,22 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class TaskSet:
-    """What a folder holds: tasks in order, and in words what cannot be used, each with its path."""
+    """The tasks of a folder in order, and in words the faults of others, each with its path."""
 
     root: Path
-    tasks: tuple[Task, ...]
+    tasks: tuple[EditTask, ...]
     faults: tuple[str, ...]
 
 
 def read_set(root: Path) -> TaskSet:
-    """The tasks in a folder. Raises NoTasks where there is none, with all that is wrong."""
+    """Reads the tasks in a folder. Raises NoTasks, with all faults, where there is none."""
     root = root.expanduser().resolve()
     if not root.is_dir():
-        raise NoTasks(f"{root} is no folder. Give the folder that holds level1, level2 and level3.")
+        raise NoTasks(f"{root} is not a folder. Give the folder that holds level1, level2 and level3.")
     levels = [root / level for level in LEVELS if (root / level).is_dir()]
     if not levels:
-        raise NoTasks(f"{root} is no BlenderBench: it has none of {', '.join(LEVELS)}.")
-    tasks: list[Task] = []
+        raise NoTasks(f"{root} is not a BlenderBench: it has none of {', '.join(LEVELS)}.")
+    tasks: list[EditTask] = []
     faults: list[str] = []
     for folder in (folder for level in levels for folder in _folders(level)):
         try:
@@ -82,36 +82,36 @@ def read_set(root: Path) -> TaskSet:
         except _Fault as fault:
             faults.append(str(fault))
     if not tasks:
-        raise NoTasks("\n".join([f"{root} has no task that can be used.", *faults]))
+        raise NoTasks("\n".join([f"{root} has no usable task.", *faults]))
     return TaskSet(root, tuple(tasks), tuple(faults))
 
 
-def chosen(found: TaskSet, names: Sequence[str]) -> tuple[Task, ...]:
-    """The tasks that are named, by level (``level2``) or id (``level1/attic``); all, if none is. Raises NoTasks."""
+def select_tasks(task_set: TaskSet, names: Sequence[str]) -> tuple[EditTask, ...]:
+    """The tasks with these levels (``level2``) or ids (``level1/attic``); all without names. Raises NoTasks."""
     if not names:
-        return found.tasks
-    known = {name for task in found.tasks for name in (task.level, task.id)}
+        return task_set.tasks
+    known = {name for task in task_set.tasks for name in (task.level, task.id)}
     if unknown := [name for name in names if name not in known]:
         raise NoTasks(
-            f"{found.root} has no {', '.join(unknown)} that can be used. Tasks: "
-            f"{', '.join(task.id for task in found.tasks)}."
+            f"{task_set.root} has no usable {', '.join(unknown)}. Tasks: "
+            f"{', '.join(task.id for task in task_set.tasks)}."
         )
-    return tuple(task for task in found.tasks if {task.level, task.id} & set(names))
+    return tuple(task for task in task_set.tasks if {task.level, task.id} & set(names))
 
 
-def in_order(name: str) -> list[tuple[int, str]]:
-    """To sort names by, as people count: ``room9`` before ``room10``."""
+def natural_key(name: str) -> list[tuple[int, str]]:
+    """A key for natural sorting: ``room9`` before ``room10``."""
     parts = re.split(r"(\d+)", name)  # every second one is a number
     return [(int(part), "") if place % 2 else (-1, part) for place, part in enumerate(parts)]
 
 
 def _folders(level: Path) -> Iterator[Path]:
-    """What may be tasks: folders that are not hidden."""
-    found = (path for path in level.iterdir() if path.is_dir() and not path.name.startswith("."))
-    yield from sorted(found, key=lambda path: in_order(path.name))
+    """The folders of a level that are not hidden, in natural order."""
+    folders = (path for path in level.iterdir() if path.is_dir() and not path.name.startswith("."))
+    yield from sorted(folders, key=lambda path: natural_key(path.name))
 
 
-def _task(root: Path, folder: Path) -> Task:
+def _task(root: Path, folder: Path) -> EditTask:
     if not _NAME.fullmatch(folder.name):
         raise _Fault(f"{str(folder)!r} cannot be a task's name: use letters, digits, spaces and .()+-")
     goal = _within(root, folder / "renders" / "goal" / "render1.png")
@@ -125,7 +125,7 @@ def _task(root: Path, folder: Path) -> Task:
         raise _Fault(str(error)) from error
     if min(size) < _SHORTEST_SIDE:
         raise _Fault(f"{goal} is {size[0]} × {size[1]}; a goal has at least {_SHORTEST_SIDE} pixels a side.")
-    return Task(
+    return EditTask(
         folder.parent.name,
         folder.name,
         folder,
@@ -140,7 +140,7 @@ def _task(root: Path, folder: Path) -> Task:
 
 
 def _within(root: Path, path: Path) -> Path:
-    """The path, if a plain file of the set lies there."""
+    """The path, if it is a plain file of the set. Raises _Fault."""
     if not path.exists():
         broken = path.is_symlink()
         raise _Fault(f"{path} {'is a link to nothing' if broken else 'is missing'}.")
@@ -150,7 +150,7 @@ def _within(root: Path, path: Path) -> Path:
             "folder of its own has no links)."
         )
     if not path.is_file():
-        raise _Fault(f"{path} is no plain file.")
+        raise _Fault(f"{path} is not a plain file.")
     return path
 
 
@@ -166,15 +166,15 @@ def _text(path: Path, longest: int) -> str:
             raise _Fault(f"{path} has more than {longest:,} bytes.")
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise _Fault(f"{path} is no UTF-8 text: {error}.") from error
+        raise _Fault(f"{path} is not UTF-8 text: {error}.") from error
     except OSError as error:
         raise _Fault(f"{path} cannot be read: {error.strerror or error}.") from error
 
 
 def _instruction(path: Path) -> str:
-    found = _text(path, _LONGEST_INSTRUCTION).replace("\r\n", "\n").strip()
-    if not found:
-        raise _Fault(f"{path} is empty: there is nothing to ask for.")
-    if _UNPRINTED.search(found):
-        raise _Fault(f"{path} holds characters that no text has.")
-    return found
+    text = _text(path, _LONGEST_INSTRUCTION).replace("\r\n", "\n").strip()
+    if not text:
+        raise _Fault(f"{path} is empty; it must hold the instruction.")
+    if _UNPRINTED.search(text):
+        raise _Fault(f"{path} contains control characters.")
+    return text

@@ -64,8 +64,8 @@ class Marks(_Part):
         return sum(getattr(self, name).mark for name in CRITERIA) / len(CRITERIA)
 
 
-class Judged(_Part):
-    """Marks, who was asked for them and who answered, by which wording, and what that used up, once."""
+class EditJudgement(_Part):
+    """The marks of an edit: with the model that was asked and the one that answered, the prompt's version, the cost."""
 
     provider: str
     model: str
@@ -77,8 +77,8 @@ class Judged(_Part):
 
 def judge_edit(
     instruction: str, goal: Image.Image, result: Image.Image, provider: Provider, cache_folder: Path | None
-) -> Judged:
-    """The marks of an edit. Raises NotJudged: nothing was judged, and the reason; never a low mark."""
+) -> EditJudgement:
+    """Judges an edit. Raises NotJudged with the reason where that fails, rather than a low mark."""
     plain = [_plain(picture) for picture in (goal, result)]
     ingredients = {
         "instruction": instruction,
@@ -88,31 +88,31 @@ def judge_edit(
         "prompt": prompt_version(),
     }
 
-    def ask() -> Judged:
-        found = asked(provider, _ask(instruction, [_encoded(picture) for picture in plain]), _reader)
-        return Judged(
+    def ask() -> EditJudgement:
+        answer = asked(provider, _ask(instruction, [_encoded(picture) for picture in plain]), _reader)
+        return EditJudgement(
             provider=provider.name,
             model=provider.model,
-            answered_by=found.by or provider.model,
+            answered_by=answer.by or provider.model,
             prompt_version=prompt_version(),
-            marks=found.value,
-            spent=found.spent,
+            marks=answer.value,
+            spent=answer.spent,
         )
 
-    return Store(cache_folder).once("edits", key_of(ingredients), Judged, ask)
+    return Store(cache_folder).once("edits", key_of(ingredients), EditJudgement, ask)
 
 
 @cache
 def prompt_version() -> str:
-    """Another one whenever the question is worded otherwise."""
+    """A digest of the question: it changes with the wording."""
     blank = Picture(b"")
     return form_of(_ask("An example.", (blank, blank))).digest[:_VERSION_DIGITS]
 
 
-def _ask(instruction: str, shown: Sequence[Picture]) -> Ask:
-    """The model's name is the provider's to fill in."""
-    goal, result = shown
-    said = (
+def _ask(instruction: str, pictures: Sequence[Picture]) -> Ask:
+    """The question. The provider fills in the model's name."""
+    goal, result = pictures
+    content = (
         Text(f"The request, as a JSON string:\n\n{json.dumps(instruction, ensure_ascii=False)}"),
         Text("The goal:"),
         goal,
@@ -121,32 +121,32 @@ def _ask(instruction: str, shown: Sequence[Picture]) -> Ask:
     )
     tool = Tool(_STAGE, f"Gives the answer. {Marks.__doc__}", schema_of(Marks))
     prompt = _PROMPT.read_text(encoding="utf-8").strip()
-    return Ask("judge", _STAGE, "", (prompt,), (user(*said),), (tool,), _MAX_TOKENS)
+    return Ask("judge", _STAGE, "", (prompt,), (user(*content),), (tool,), _MAX_TOKENS)
 
 
 def _reader(data: Any) -> tuple[Marks | None, list[str]]:
-    """Marks within the scale. The schema has no bounds, which not all providers take."""
+    """Checks the marks' bounds, which the schema omits because some providers reject them."""
     marks, faults = fits(Marks)(data)
     if marks is None:
         return None, [str(fault) for fault in faults]
-    given = {name: getattr(marks, name).mark for name in CRITERIA}
-    wrong = [
+    by_name = {name: getattr(marks, name).mark for name in CRITERIA}
+    out_of_range = [
         f"{name}.mark: {mark} is not from 0 to {BEST}."
-        for name, mark in given.items()
+        for name, mark in by_name.items()
         if not 0 <= mark <= BEST
     ]
-    return (None, wrong) if wrong else (marks, [])
+    return (None, out_of_range) if out_of_range else (marks, [])
 
 
 def _plain(picture: Image.Image) -> Image.Image:
-    """Pixels and nothing else, at a size that models see: no path and no name of a system comes along."""
+    """Only the pixels, at a size that models see: without metadata, which might name a system."""
     plain = Image.frombytes("RGB", picture.size, picture.tobytes())
     plain.thumbnail((_LARGEST, _LARGEST), Image.Resampling.LANCZOS)
     return plain
 
 
 def _digest(picture: Image.Image) -> str:
-    """Of what is shown; encoders differ in how they pack it."""
+    """A digest of the pixels: encoders pack them differently."""
     return hashlib.sha256(f"{picture.width} {picture.height}\n".encode() + picture.tobytes()).hexdigest()
 
 

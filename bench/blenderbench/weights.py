@@ -1,4 +1,4 @@
-"""Where CLIP's weights come from: a folder of the user's, or the hub, and only if that is asked for by name."""
+"""Loads CLIP's weights from a folder, or from the hub if that is requested by name."""
 
 from __future__ import annotations
 
@@ -30,24 +30,24 @@ _NO_PACKAGES = "N-CLIP needs the packages of the extra 'clip': pip install 'simw
 
 @dataclass(frozen=True, slots=True)
 class Clip:
-    """A tower, and which weights it has: where they are from, their SHA-256, whether they are OpenAI's."""
+    """A vision tower with its weights: their source and SHA-256."""
 
     tower: Tower
     source: str
     sha256: str
 
     @property
-    def told(self) -> dict[str, str | bool]:
-        """For a record."""
+    def identity(self) -> dict[str, str | bool]:
+        """The weights in a record. ``openai``: they are OpenAI's."""
         return {"source": self.source, "sha256": self.sha256, "openai": self.sha256 == SHA256}
 
 
-def load_clip(asked: str, tell: Callable[[str], object]) -> Clip:
-    """The weights in a folder or file; ``hub``: from the hub, or what was fetched from there before.
+def load_clip(name: str, tell: Callable[[str], object]) -> Clip:
+    """Loads the weights from a folder or file; ``hub``: from the hub or its cache.
 
     Raises NoWeights, and says how to get them.
     """
-    file, source = _fetched(tell) if asked == HUB else _found(Path(asked).expanduser())
+    file, source = _fetched(tell) if name == HUB else _found(Path(name).expanduser())
     tell(f"reading {file}")
     return Clip(Tower(_read(file)), source, _digest(file))
 
@@ -72,8 +72,8 @@ def _fetched(tell: Callable[[str], object]) -> tuple[Path, str]:
         try:
             kept = hf_hub_download(REPO, FILE, revision=REVISION)
         except Exception as error:
-            said = next(iter(str(error).splitlines()), "") or type(error).__name__
-            raise NoWeights(f"{source} cannot be fetched: {said} {_WITHOUT_NETWORK}") from error
+            reason = next(iter(str(error).splitlines()), "") or type(error).__name__
+            raise NoWeights(f"{source} cannot be fetched: {reason} {_WITHOUT_NETWORK}") from error
     return Path(kept), source
 
 

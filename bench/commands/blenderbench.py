@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
     from bench.blenderbench.results import Score
-    from bench.blenderbench.score import Rule
+    from bench.blenderbench.score import ScoringRule
     from bench.judge.providers import Provider
 
 _PATH = click.Path(path_type=Path)
@@ -42,7 +42,7 @@ def tasks(folder: Path) -> None:
     """
     from bench.blenderbench.task_set import read_set  # noqa: PLC0415 - not for --help
 
-    with _told_errors():
+    with _errors():
         found = read_set(folder)
     for task in found.tasks:
         extra = ", with a visual prompt" if task.visprompt else ""
@@ -98,20 +98,22 @@ def run(folder: Path, **given: Any) -> None:
     """
     from bench.blenderbench.run import run as start  # noqa: PLC0415
     from bench.blenderbench.systems import system_of  # noqa: PLC0415
-    from bench.blenderbench.task_scenes import Look  # noqa: PLC0415
-    from bench.blenderbench.task_set import chosen, read_set  # noqa: PLC0415
+    from bench.blenderbench.task_scenes import RenderSettings  # noqa: PLC0415
+    from bench.blenderbench.task_set import read_set, select_tasks  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
     memory = int(given["memory"] * _GIB) if given["memory"] else None
-    look = Look(given["samples"], given["blender"], given["blender_exe"], given["seconds"], memory)
+    rendering = RenderSettings(
+        given["samples"], given["blender"], given["blender_exe"], given["seconds"], memory
+    )
     options = _words(given, "model", "blender", "blender_exe")
     limits = _words(given, "max_cost", "max_minutes")
-    with _told_errors(BlenderError):
-        system = system_of(given["system"], look, given["reference"], options, limits)
+    with _errors(BlenderError):
+        system = system_of(given["system"], rendering, given["reference"], options, limits)
         found = read_set(folder)
         for fault in found.faults:
             click.echo(f"Cannot be used: {fault}", err=True)
-        wanted = chosen(found, given["names"])
+        wanted = select_tasks(found, given["names"])
         records = start(found, wanted, system, given["out"], name=given["name"] or "", tell=_tell)
     for record in records:
         for note in record.notes:
@@ -149,7 +151,7 @@ def score(out: Path, **given: Any) -> None:
     """
     from bench.blenderbench.score import score as start  # noqa: PLC0415 - not for --help
 
-    with _told_errors():
+    with _errors():
         scores = start(out, _rule(given), _tell)
     for one in scores:
         click.echo(_line(one))
@@ -166,7 +168,7 @@ def report(outs: tuple[Path, ...], *, paper: bool, as_json: bool) -> None:
     """Print the table of one or several systems' RESULTS: means a level, and over all tasks."""
     from bench.blenderbench.report import as_data, as_markdown, read_results  # noqa: PLC0415 - not for --help
 
-    with _told_errors():
+    with _errors():
         found = [read_results(out) for out in outs]
         text = as_markdown(found, published=paper)
     click.echo(json.dumps(as_data(found), indent=1, ensure_ascii=False) if as_json else text)
@@ -178,9 +180,9 @@ def _words(given: dict[str, Any], *names: str) -> tuple[str, ...]:
     return tuple(word for pair in pairs for word in pair)
 
 
-def _rule(given: dict[str, Any]) -> Rule:
+def _rule(given: dict[str, Any]) -> ScoringRule:
     from bench.blenderbench.errors import BadResults  # noqa: PLC0415 - not for --help
-    from bench.blenderbench.score import Rule  # noqa: PLC0415
+    from bench.blenderbench.score import ScoringRule  # noqa: PLC0415
     from bench.blenderbench.weights import load_clip  # noqa: PLC0415
     from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415
 
@@ -189,7 +191,7 @@ def _rule(given: dict[str, Any]) -> Rule:
     clip = load_clip(given["clip"], _tell) if given["clip"] else None
     cache = given["cache"] or cache_folder(home_folder()) / "judge"
     convention = "peer" if given["peer"] else "paper"
-    return Rule(convention, clip, given["best_round"], _provider(given), cache)
+    return ScoringRule(convention, clip, given["best_round"], _provider(given), cache)
 
 
 def _provider(given: dict[str, Any]) -> Provider | None:
@@ -221,7 +223,7 @@ def _tell(doing: object) -> None:
 
 
 @contextmanager
-def _told_errors(*kinds: type[Exception]) -> Generator[None]:
+def _errors(*kinds: type[Exception]) -> Generator[None]:
     """Errors as words and an exit code; being ended by somebody is being interrupted."""
     from bench.blenderbench.errors import BlenderBenchError  # noqa: PLC0415 - not for --help
     from bench.judge.errors import NotJudged  # noqa: PLC0415

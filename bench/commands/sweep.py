@@ -15,10 +15,10 @@ from bench.commands.system_options import of_systems, system_of, together
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
 
-    from bench.sweep.executor import Crew
-    from bench.sweep.judging import Judge
-    from bench.sweep.sweep import How, Summary
-    from bench.sweep.systems.system import System
+    from bench.sweep.executor import Executor
+    from bench.sweep.judging import SweepJudge
+    from bench.sweep.sweep import ScoringOptions, SweepSummary
+    from bench.sweep.systems.system import SceneSystem
 
 _PATH = click.Path(path_type=Path)
 
@@ -109,15 +109,15 @@ def run(**given: Any) -> None:
     what depends on something that changed. Exit code 0: each scene is scored, or it is told why not. 1: some could not
     be done here. 2: nothing could be begun. 130: it was interrupted.
     """
-    from bench.sweep.sweep import sweep, tasks_of  # noqa: PLC0415 - not for --help
+    from bench.sweep.sweep import make_tasks, sweep  # noqa: PLC0415 - not for --help
     from bench.sweep.sweep_view import make_view  # noqa: PLC0415
 
     with _errors():
         system = system_of(given)
         specs = _specs(given["scenes"], system)
-        tasks = tasks_of(system, specs, given["out"].expanduser().resolve(), _how(given))
+        tasks = make_tasks(system, specs, given["out"].expanduser().resolve(), _scoring_options(given))
         system.ready()
-        summary = sweep(tasks, _judge(given), _crew(given), make_view(sys.stderr, len(tasks)))
+        summary = sweep(tasks, _judge(given), _executor(given), make_view(sys.stderr, len(tasks)))
     _conclude([summary], given["out"])
 
 
@@ -129,19 +129,19 @@ def rescore(results: Path, **given: Any) -> None:
 
     No system is run again. What was scored stays where its file is gone. Exit codes as of 'run'.
     """
-    from bench.sweep.sweep import sweep, tasks_again  # noqa: PLC0415 - not for --help
+    from bench.sweep.sweep import make_rescore_tasks, sweep  # noqa: PLC0415 - not for --help
     from bench.sweep.sweep_view import make_view  # noqa: PLC0415
 
-    summaries: list[Summary] = []
+    summaries: list[SweepSummary] = []
     with _errors():
-        systems = tasks_again(results.expanduser().resolve(), _how(given))
+        systems = make_rescore_tasks(results.expanduser().resolve(), _scoring_options(given))
         if not systems:
             raise click.UsageError(f"There are no results in {results}.")
         judge = _judge(given)
         for tasks in systems:
             click.echo(f"{tasks[0].system.info.name}:", err=True)
             view = make_view(sys.stderr, len(tasks))
-            summaries.append(sweep(tasks, judge, _crew(given), view))
+            summaries.append(sweep(tasks, judge, _executor(given), view))
     _conclude(summaries, results)
 
 
@@ -149,13 +149,13 @@ def rescore(results: Path, **given: Any) -> None:
 def _errors() -> Generator[None]:
     """Ends the command with what is wrong in one sentence."""
     from bench.scenes.spec import BadSpec  # noqa: PLC0415
-    from bench.sweep.records import BadRecord  # noqa: PLC0415
-    from bench.sweep.systems.system import NotReady  # noqa: PLC0415
+    from bench.sweep.records import BadSceneRecord  # noqa: PLC0415
+    from bench.sweep.systems.system import SystemNotReady  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError, Refusal  # noqa: PLC0415 - not for --help
 
     try:
         yield
-    except (BadSpec, BadRecord, NotReady, Refusal, BlenderError, OSError) as error:
+    except (BadSpec, BadSceneRecord, SystemNotReady, Refusal, BlenderError, OSError) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(2)
     except KeyboardInterrupt:
@@ -166,20 +166,20 @@ def _errors() -> Generator[None]:
 # What was asked for
 
 
-def _specs(names: Sequence[str], system: System) -> Any:
+def _specs(names: Sequence[str], system: SceneSystem) -> Any:
     from bench.scenes.spec import specs  # noqa: PLC0415 - not for --help
-    from bench.sweep.scene_selection import chosen  # noqa: PLC0415
+    from bench.sweep.scene_selection import select_scenes  # noqa: PLC0415
 
-    found = chosen(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
+    found = select_scenes(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
     if not found:
         raise click.UsageError("--scenes names no scene.")
     return found
 
 
-def _how(given: dict[str, Any]) -> How:
+def _scoring_options(given: dict[str, Any]) -> ScoringOptions:
     from bench.audit.untrusted_blend import GIB, Means  # noqa: PLC0415
     from bench.frames.clip_frames import Look  # noqa: PLC0415 - not for --help
-    from bench.sweep.sweep import How  # noqa: PLC0415
+    from bench.sweep.sweep import ScoringOptions  # noqa: PLC0415
 
     means = Means(
         given["blender"],
@@ -189,7 +189,7 @@ def _how(given: dict[str, Any]) -> How:
         tuple(folder.expanduser().resolve() for folder in given["read"]),
     )
     look = Look(_pixels(given["frame_size"]), given["frame_samples"])
-    return How(means, look, given["frames"] != "none", given["frames"] == "video")
+    return ScoringOptions(means, look, given["frames"] != "none", given["frames"] == "video")
 
 
 def _pixels(size: str) -> int:
@@ -199,40 +199,40 @@ def _pixels(size: str) -> int:
     return int(width) * int(height)
 
 
-def _judge(given: dict[str, Any]) -> Judge:
-    from bench.sweep.judging import Judging, judge_of  # noqa: PLC0415 - not for --help
+def _judge(given: dict[str, Any]) -> SweepJudge:
+    from bench.sweep.judging import JudgeOptions, judge_of  # noqa: PLC0415 - not for --help
     from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415
 
     cache = given["judge_cache"] or cache_folder(home_folder()) / "judge"
     who = (given["judge"], given["judge_model"], given["judge_url"], given["judge_max_cost"], cache)
-    return judge_of(Judging(*who))
+    return judge_of(JudgeOptions(*who))
 
 
-def _crew(given: dict[str, Any]) -> Crew:
+def _executor(given: dict[str, Any]) -> Executor:
     if given.get("ray"):
-        from bench.sweep.ray_executor import RayCrew  # noqa: PLC0415 - an optional extra
+        from bench.sweep.ray_executor import RayExecutor  # noqa: PLC0415 - an optional extra
 
-        return RayCrew(given["ray"])
-    from bench.sweep.executor import LocalCrew  # noqa: PLC0415 - not for --help
+        return RayExecutor(given["ray"])
+    from bench.sweep.executor import LocalExecutor  # noqa: PLC0415 - not for --help
 
-    return LocalCrew(given["jobs"])
+    return LocalExecutor(given["jobs"])
 
 
 # How it ended
 
 
-def _conclude(summaries: Sequence[Summary], out: Path) -> None:
-    from bench.sweep.sweep_view import plain  # noqa: PLC0415 - not for --help
+def _conclude(summaries: Sequence[SweepSummary], out: Path) -> None:
+    from bench.sweep.sweep_view import printable  # noqa: PLC0415 - not for --help
 
     for one in summaries:
         click.echo(f"{_counted(one.asked, 'scene')}: {one.scored} scored, {one.judged} judged")
         for why, count in sorted(one.why_not_scored.items(), key=lambda item: -item[1]):
-            click.echo(f"  {count} not scored: {plain(why)}")
+            click.echo(f"  {count} not scored: {printable(why)}")
         for why, count in sorted(one.why_not_judged.items(), key=lambda item: -item[1]):
-            click.echo(f"  {count} not judged: {plain(why)}")
+            click.echo(f"  {count} not judged: {printable(why)}")
     faults = [fault for one in summaries for fault in one.faults]
     for scene, why in faults:
-        click.echo(f"  {scene} could not be done: {plain(why)}", err=True)
+        click.echo(f"  {scene} could not be done: {printable(why)}", err=True)
     click.echo(f"Tables and page: simworlds bench report {out}")
     sys.exit(1 if faults else 0)
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from bench.sweep.records import Ablation, SystemInfo
-    from bench.sweep.systems.system import System
+    from bench.sweep.systems.system import SceneSystem
 
     Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -56,10 +56,10 @@ of_systems = together(
 )
 
 
-def system_of(given: dict[str, Any]) -> System:
+def system_of(given: dict[str, Any]) -> SceneSystem:
     """The system that the options mean. Raises UsageError."""
-    from bench.sweep.systems.folder import Folder  # noqa: PLC0415 - not for --help
-    from bench.sweep.systems.simworlds_runs import Make, Replay  # noqa: PLC0415
+    from bench.sweep.systems.folder import FolderSystem  # noqa: PLC0415 - not for --help
+    from bench.sweep.systems.simworlds_runs import ReplaySystem, SimWorldsSystem  # noqa: PLC0415
 
     kind, _, folder = str(given["system"]).partition("=")
     if kind == "folder" and folder:
@@ -76,7 +76,7 @@ def system_of(given: dict[str, Any]) -> System:
             "no_stages",
         )
         source = Path(folder).expanduser().resolve()
-        return Folder(
+        return FolderSystem(
             _info("folder", given["name"] or _plain(source.name), (), {"folder": str(source)}), source
         )
     if folder or kind not in ("simworlds", "replay"):
@@ -87,11 +87,13 @@ def system_of(given: dict[str, Any]) -> System:
     )
     if kind == "replay":
         _refuse(given, "replay", "model", "role_model", "max_cost", "no_verifier", "no_stages")
-        return Replay(
+        return ReplaySystem(
             _info("replay", given["name"] or "replay", (), _settings(given)), _options(given), _limits(given)
         )
     name = given["name"] or "+".join(("simworlds", *ablations))
-    return Make(_info("simworlds", name, ablations, _settings(given)), _options(given), _limits(given))
+    return SimWorldsSystem(
+        _info("simworlds", name, ablations, _settings(given)), _options(given), _limits(given)
+    )
 
 
 def _refuse(given: dict[str, Any], kind: str, *names: str) -> None:

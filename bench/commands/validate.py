@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bench.validity.proof import PROPERTIES
+from bench.validity.proof import OLD_NAMES, PROPERTIES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from bench.scenes.spec import Spec
     from bench.validity.proof import Proof, Property
-    from bench.validity.run import Done
+    from bench.validity.run import ProvenScene
 
 _PATH = click.Path(path_type=Path, file_okay=False)
 _MARKS = {True: "✓", False: "✗", None: "–"}
@@ -32,25 +32,27 @@ _FAULTS_SHOWN = 12
     help="Which reference scenes; subset: the first of each category and level.",
 )
 @click.option(
-    "--properties", default=",".join(PROPERTIES), show_default=True, metavar="NAME,…", help="What is proven."
+    "--properties",
+    default=",".join(PROPERTIES),
+    show_default=True,
+    metavar="NAME,…",
+    help="Properties to prove.",
 )
 @click.option("--jobs", default=1, show_default=True, type=click.IntRange(1, 64), help="Scenes at a time.")
-@click.option(
-    "--output", type=_PATH, help="Where the report goes. Default: the folder that proofs are kept in."
-)
-@click.option("--again", is_flag=True, help="Prove anew what was proven of the same scenes by the same code.")
+@click.option("--output", type=_PATH, help="Folder of the report. Default: that of the kept proofs.")
+@click.option("--again", is_flag=True, help="Ignore kept proofs.")
 def validate(scenes: str, properties: str, jobs: int, output: Path | None, again: bool) -> None:
-    """Prove of the benchmark itself that its scenes can be met, and that its checks see what they should.
+    """Prove that the benchmark's scenes can be satisfied, and that its checks detect what they should.
 
-    Reference scenes are built where they are not there yet. A proof is kept until a scene or the code changes. Exit
-    code 0: all holds; 1: something does not; 2: something could not be looked into.
+    Missing reference scenes are built first. A proof is kept until its scene or the code changes. Exit code 0: all
+    properties hold; 1: one does not; 2: one could not be tested.
     """
     from bench.validity.report import write_report  # noqa: PLC0415 - not for --help
-    from bench.validity.run import Task, prove_all  # noqa: PLC0415
+    from bench.validity.run import ProofTask, prove_all  # noqa: PLC0415
 
     asked, chosen = _properties(properties), _scenes(scenes)
-    tasks = [Task(spec, asked, again) for spec in chosen]
-    found: dict[str, Done] = {}
+    tasks = [ProofTask(spec, asked, again) for spec in chosen]
+    found: dict[str, ProvenScene] = {}
     started = time.monotonic()
     click.echo(f"{len(tasks)} scenes, {', '.join(asked)}", err=True)
     try:
@@ -58,7 +60,7 @@ def validate(scenes: str, properties: str, jobs: int, output: Path | None, again
             found[done.scene] = done
             click.echo(_line(done, len(found), len(tasks), time.monotonic() - started), err=True)
     except KeyboardInterrupt:
-        click.echo("Interrupted. What was proven is kept; the same command goes on from there.", err=True)
+        click.echo("Interrupted. Proofs are kept; the same command goes on from here.", err=True)
         sys.exit(130)
     proofs = [proof for spec in chosen for proof in found[spec.id].proofs]
     try:
@@ -75,10 +77,10 @@ def validate(scenes: str, properties: str, jobs: int, output: Path | None, again
 
 
 def _properties(names: str) -> tuple[Property, ...]:
-    given = [name.strip() for name in names.split(",") if name.strip()]
+    given = [OLD_NAMES.get(name.strip(), name.strip()) for name in names.split(",") if name.strip()]
     if unknown := [name for name in given if name not in PROPERTIES]:
         raise click.BadParameter(
-            f"{', '.join(unknown)}: there are {', '.join(PROPERTIES)}", param_hint="--properties"
+            f"{', '.join(unknown)}: the properties are {', '.join(PROPERTIES)}", param_hint="--properties"
         )
     return tuple(name for name in PROPERTIES if name in given)
 
@@ -97,20 +99,20 @@ def _scenes(names: str) -> tuple[Spec, ...]:
         raise click.BadParameter(str(error), param_hint="--scenes") from error
 
 
-def _line(done: Done, number: int, count: int, seconds: float) -> str:
-    told = "  ".join(
+def _line(done: ProvenScene, number: int, count: int, seconds: float) -> str:
+    outcomes = "  ".join(
         f"{proof.about} {'unable' if proof.unable else _MARKS[proof.holds]}" for proof in done.proofs
     )
     built = f", built in {done.built:.0f} s" if done.built >= 1 else ""
     spent = "kept" if done.kept == len(done.proofs) else f"{done.proven:.0f} s"
-    return (
-        f"[{seconds:4.0f} s] {number:>{len(str(count))}}/{count} {done.scene:<15} {told}   ({spent}{built})"
-    )
+    return f"[{seconds:4.0f} s] {number:>{len(str(count))}}/{count} {done.scene:<15} {outcomes}   ({spent}{built})"
 
 
 def _faults(proofs: Sequence[Proof]) -> list[str]:
     lines = [
-        f"{proof.scene}: {proof.about}: not looked into: {proof.unable}" for proof in proofs if proof.unable
+        f"{proof.scene}: {proof.about}: could not be tested: {proof.unable}"
+        for proof in proofs
+        if proof.unable
     ]
     lines += [
         f"{proof.scene}: {proof.about}: {row.name}: {row.why}" for proof in proofs for row in proof.faults
@@ -125,6 +127,6 @@ def _summary(proofs: Sequence[Proof], asked: Sequence[Property]) -> str:
         own = [proof for proof in proofs if proof.about == each]
         applies = [proof for proof in own if proof.unable or proof.holds is not None]
         held = sum(proof.holds is True for proof in own)
-        tried = sum(row.holds is not None for proof in own for row in proof.rows)
-        lines.append(f"{each:<14}{held} of {len(applies)} scenes, {tried} tried")
+        tested = sum(row.holds is not None for proof in own for row in proof.rows)
+        lines.append(f"{each:<14}{held} of {len(applies)} scenes, {tested} tests")
     return "\n".join(lines)

@@ -1,7 +1,7 @@
 """Reference scenes: for every spec a scene that meets it, built by its script in ``inside`` and baked.
 
-They show that what the specs ask for can be had, and are what the other properties of the benchmark are proven on. A
-scene that was built is kept until its script, the library, or Blender changes.
+They prove that the specs can be satisfied; the other properties of the benchmark are proven on them. A scene that was
+built is kept until its script, the modules that it imports, or Blender change.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from __future__ import annotations
 import ast
 import hashlib
 import shutil
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simworlds.files import staged_folder
 from simworlds.sandbox.errors import ProgramFailed
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.program import SHARED, Program
@@ -31,7 +31,7 @@ _SECONDS = 900.0
 
 
 class CannotBuild(Exception):  # noqa: N818 - reads as the state it names
-    """A reference scene that could not be built; the message says which, and where Blender's output lies."""
+    """A reference scene that could not be built; the message says which, and where Blender's output is."""
 
 
 def references_folder() -> Path:
@@ -40,7 +40,7 @@ def references_folder() -> Path:
 
 
 def has_reference(scene: str) -> bool:
-    """Whether there is a script for that scene."""
+    """Whether there is a script for the scene."""
     return script_of(scene).is_file()
 
 
@@ -50,7 +50,7 @@ def script_of(scene: str) -> Path:
 
 
 def build(scene: str, folder: Path | None = None, runtime: Runtime | None = None) -> Path:
-    """The baked .blend of a scene, below ``folder``; built unless it is there already. Its caches lie beside it.
+    """The baked .blend of a scene, below ``folder``; it is built if missing. Its caches lie beside it.
 
     Raises CannotBuild, and CannotStart where no Blender works.
     """
@@ -64,41 +64,39 @@ def build(scene: str, folder: Path | None = None, runtime: Runtime | None = None
     try:
         _build(scene, blend, runtime)
     except OSError as error:
-        raise CannotBuild(f"{scene} cannot be kept in {place}: {error.strerror or error}") from error
+        raise CannotBuild(f"{scene} cannot be written to {place}: {error.strerror or error}") from error
     return blend
 
 
 def _build(scene: str, blend: Path, runtime: Runtime) -> None:
-    """Builds into a folder beside, which is then renamed: what lies there is whole."""
-    parent = blend.parent.parent
-    parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=parent, prefix=f".{scene}-", ignore_cleanup_errors=True) as made:
-        log = Path(made) / "blender.log"
+    """Builds into a folder beside, which is then renamed: a reference is complete or missing."""
+    place, parent = blend.parent, blend.parent.parent
+    shutil.rmtree(place, ignore_errors=True)
+    with staged_folder(place) as folder:
+        log = folder / "blender.log"
         try:
-            run_program(runtime, _MAKER, [scene, str(Path(made, blend.name))], timeout=_SECONDS, log=log)
+            run_program(runtime, _MAKER, [scene, str(folder / blend.name)], timeout=_SECONDS, log=log)
         except ProgramFailed as error:
             kept = parent / f"{scene}.log"
             shutil.copy(log, kept)
             raise CannotBuild(f"{scene} could not be built: {error} (kept as {kept})") from error
-        if not Path(made, blend.name).is_file():
+        if not (folder / blend.name).is_file():
             raise CannotBuild(f"{scene} was not saved")
-        shutil.rmtree(blend.parent, ignore_errors=True)
-        Path(made).rename(blend.parent)
     for old in parent.glob(f"{scene}-*"):
-        if old != blend.parent:
+        if old != place:
             shutil.rmtree(old, ignore_errors=True)
 
 
 def _key(scene: str, runtime: Runtime) -> str:
-    """What a scene is made of: its script, what that imports, and Blender."""
-    made = hashlib.sha256(runtime.version.encode())
+    """A digest of what a scene depends on: its script, the modules that it imports, Blender's version."""
+    digest = hashlib.sha256(runtime.version.encode())
     for path in sorted({*_used(INSIDE / "make.py"), *_used(script_of(scene))}):
-        made.update(path.read_bytes())
-    return made.hexdigest()[:16]
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def _used(script: Path) -> Iterator[Path]:
-    """A script, and the modules beside it that it imports, by way of others too."""
+    """A script, and the modules of ``inside`` that it imports, directly or not."""
     waiting, seen = [script], {script}
     while waiting:
         path = waiting.pop()
@@ -107,6 +105,6 @@ def _used(script: Path) -> Iterator[Path]:
             if not isinstance(node, ast.ImportFrom) or not node.level:
                 continue
             names = [node.module] if node.module else [alias.name for alias in node.names]
-            found = {INSIDE / f"{name}.py" for name in names} - seen
-            seen |= found
-            waiting += [one for one in found if one.is_file()]
+            imported = {INSIDE / f"{name}.py" for name in names} - seen
+            seen |= imported
+            waiting += [module for module in imported if module.is_file()]

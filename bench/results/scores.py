@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from bench.scenes.spec import BadSpec, spec_of
-from bench.sweep.records import BadRecord, Record, SystemInfo, read_record
+from bench.sweep.records import BadSceneRecord, SceneRecord, SystemInfo, read_record
 from bench.sweep.sweep import scene_folders
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ class Scored:
     """One scene by one system."""
 
     spec: Spec
-    record: Record
+    record: SceneRecord
     folder: Path
 
     def asks(self, metric: Metric) -> bool:
@@ -90,7 +90,7 @@ def read_results(folders: Iterable[Path]) -> Results:
             record = read_record(folder)
             assert record is not None
             scored = Scored(spec_of(record.scene), record, folder)
-        except (BadRecord, BadSpec) as error:
+        except (BadSceneRecord, BadSpec) as error:
             faults.append(f"{folder}: {error}")
             continue
         system = systems.setdefault(record.system.name, SystemResults(record.system))

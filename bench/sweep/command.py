@@ -1,4 +1,4 @@
-"""The command ``simworlds`` in a process of its own, which ends with this one."""
+"""Runs the command ``simworlds`` as a process that ends with this one."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-_GRACE_SECONDS = (2.0, 20.0)  # after the first Ctrl-C, which asks for a stop, and the second: for one now
-_LAST_WORDS = 300
-_NOTHING = "it said nothing"
+_GRACE_SECONDS = (2.0, 20.0)  # after the first Ctrl-C, which asks it to stop, and the second, which insists
+_LAST_CHARACTERS = 300
+_NOTHING = "it printed nothing"
 
 
-def called(words: Sequence[str], log: Path) -> int:
-    """The exit code of a ``simworlds`` that ends with this process, and with it all that it started.
+def run_simworlds(words: Sequence[str], log: Path) -> int:
+    """Runs ``simworlds`` and returns its exit code. Whatever it starts ends with this process.
 
-    What it says is added to ``log``.
+    Its output is appended to ``log``.
     """
-    with log.open("ab") as said:
-        process = spawn(ending_with_this([*simworlds(), *words]), stdout=said, stderr=subprocess.STDOUT)
+    with log.open("ab") as output:
+        process = spawn(ending_with_this([*simworlds(), *words]), stdout=output, stderr=subprocess.STDOUT)
     try:
         return process.wait()
     except KeyboardInterrupt:
@@ -40,9 +40,9 @@ def called(words: Sequence[str], log: Path) -> int:
         end_group(process)
 
 
-def last_words(log: Path) -> str:
-    """The end of what a command said, in one line."""
+def last_output(log: Path) -> str:
+    """The end of a command's output, in one line."""
     with suppress(OSError):
-        said = " ".join(log.read_bytes()[-4000:].decode(errors="replace").split())
-        return said[-_LAST_WORDS:] or _NOTHING
+        text = " ".join(log.read_bytes()[-4000:].decode(errors="replace").split())
+        return text[-_LAST_CHARACTERS:] or _NOTHING
     return _NOTHING

@@ -1,4 +1,4 @@
-"""Digests of files and of data, which are what steps and results are known by."""
+"""Digests of files and of data, by which steps and results are identified."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ def digest_of_file(path: Path) -> str:
 
 def digests(folder: Path, files: Iterable[Path]) -> dict[str, str]:
     """{path below ``folder``: SHA-256} of its ``files``, sorted. Raises OSError."""
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for path in sorted(files):
         stat = path.stat()
-        found[path.relative_to(folder).as_posix()] = _digest(path, stat.st_size, stat.st_mtime_ns)
-    return found
+        result[path.relative_to(folder).as_posix()] = _digest(path, stat.st_size, stat.st_mtime_ns)
+    return result
 
 
 @cache
 def _digest(path: Path, size: int, changed: int) -> str:
-    """Of a file that many scenes share, found once by one process."""
+    """The digest of a file, computed once in each process: many scenes share files."""
     del size, changed
     return digest_of_file(path)
 

@@ -1,7 +1,7 @@
-"""The judge's part of a sweep: once the frames are there, here, by one provider with one limit of cost.
+"""Judges the frames of a sweep's scenes, by one provider within one limit of cost.
 
-That needs no Blender and hardly a processor; so it is done by threads of the sweep itself, wherever the scenes were
-scored, and all results are judged by the same lists of items.
+That needs no Blender and little processor time, so threads of the sweep do it, wherever the scenes were scored. All
+results are judged by the same lists of items.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from bench.judge.providers import Provider, provider_of
 from bench.judge.questions import prompt_version
 from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file
 from bench.sweep.provenance import code_of
-from bench.sweep.records import JUDGEMENT, File, Judged, Record, read_record, write_record
-from bench.sweep.scene_task import stamp
-from bench.sweep.steps import Due
+from bench.sweep.records import JUDGEMENT, File, Judged, SceneRecord, read_record, write_record
+from bench.sweep.run_steps import step_fields
+from bench.sweep.steps import DueStep
 from simworlds.files import write_whole
 
 if TYPE_CHECKING:
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from bench.judge.verdicts import Judgement
-    from bench.sweep.scene_task import Task
+    from bench.sweep.scene_task import SceneTask
 
 
 @dataclass(frozen=True)
-class Judging:
-    """Who judges. ``provider`` is "anthropic", "openai", or "none"; ``max_cost`` (US dollars) is for the whole sweep.
+class JudgeOptions:
+    """The judge to use. ``provider``: "anthropic", "openai" or "none"; ``max_cost`` (US dollars): of the whole sweep.
 
-    ``cache`` is the folder that answers are kept in.
+    ``cache``: the folder of kept answers.
     """
 
     provider: str = "none"
@@ -46,35 +46,37 @@ class Judging:
 
 
 @dataclass(frozen=True)
-class Judge:
-    """Who judges a sweep, or several of them under one limit; or ``why`` nobody does."""
+class SweepJudge:
+    """The judge of one or several sweeps under one limit; without a provider, ``why`` there is none."""
 
-    judging: Judging
+    options: JudgeOptions
     provider: Provider | None
     why: str = ""
 
 
-def judge_of(judging: Judging) -> Judge:
-    """Finds out whether there is a key, and all packages; asks nothing."""
-    if judging.provider == "none":
-        return Judge(judging, None, "no judge was asked for")
+def judge_of(options: JudgeOptions) -> SweepJudge:
+    """Checks that the key and all packages are there; sends nothing."""
+    if options.provider == "none":
+        return SweepJudge(options, None, "no judge was requested (--judge none)")
     try:
         provider = provider_of(
-            judging.provider, model=judging.model, base_url=judging.base_url, max_cost=judging.max_cost
+            options.provider, model=options.model, base_url=options.base_url, max_cost=options.max_cost
         )
         provider.ready()
     except (NotJudged, ValueError) as error:
-        return Judge(judging, None, str(error))
-    return Judge(judging, provider)
+        return SweepJudge(options, None, str(error))
+    return SweepJudge(options, provider)
 
 
-def judge_all(tasks: Sequence[Task], who: Judge, threads: int = 4) -> Iterator[tuple[Task, Record]]:
-    """Judges the frames of each task's scene, and writes its record; in the order in which they are done.
+def judge_all(
+    tasks: Sequence[SceneTask], who: SweepJudge, threads: int = 4
+) -> Iterator[tuple[SceneTask, SceneRecord]]:
+    """Judges the frames of each task's scene and writes its record; yields them in the order in which they end.
 
-    What cannot be judged says why. Raises BadRecord, OSError.
+    A record of a scene that was not judged says why. Raises BadSceneRecord, OSError.
     """
-    waiting: queue.SimpleQueue[Task] = queue.SimpleQueue()
-    done: queue.SimpleQueue[tuple[Task, Record | BaseException]] = queue.SimpleQueue()
+    waiting: queue.SimpleQueue[SceneTask] = queue.SimpleQueue()
+    done: queue.SimpleQueue[tuple[SceneTask, SceneRecord | BaseException]] = queue.SimpleQueue()
     for task in tasks:
         waiting.put(task)
 
@@ -89,7 +91,7 @@ def judge_all(tasks: Sequence[Task], who: Judge, threads: int = 4) -> Iterator[t
             except BaseException as error:
                 done.put((task, error))
 
-    # Daemons: who interrupts a sweep does not wait for answers. What was answered is kept by the judge's own cache.
+    # Daemons: an interrupt does not wait for answers. Those that have arrived are kept in the judge's cache.
     for _ in range(min(threads, len(tasks))):
         threading.Thread(target=work, name="judge", daemon=True).start()
     for _ in tasks:
@@ -99,19 +101,21 @@ def judge_all(tasks: Sequence[Task], who: Judge, threads: int = 4) -> Iterator[t
         yield task, outcome
 
 
-def judge_scene(task: Task, who: Judge) -> Record:
-    """Judges one scene's frames, unless that is done. A judgement of these frames stays until there is a new one."""
-    record = read_record(task.folder) or Record(scene=task.spec.id, system=task.system.info)
+def judge_scene(task: SceneTask, who: SweepJudge) -> SceneRecord:
+    """Judges one scene's frames, if they are not judged yet. A judgement stays until there is a new one."""
+    record = read_record(task.folder) or SceneRecord(scene=task.spec.id, system=task.system.info)
     paths = [task.path(file) for file in record.framed.frames] if record.framed is not None else []
     frames = digest_of([digest_of_file(path) for path in paths])
     before, began = record.judged, time.monotonic()
     if who.provider is None or not paths:
-        judged = Judged(**_stamp("", began), frames=frames, why=who.why if paths else _no_frames(record))
+        judged = Judged(
+            **_step_fields("", began), frames=frames, why=who.why if paths else _no_frames(record)
+        )
     else:
-        key = _key(task, who.judging, who.provider, frames)
+        key = _key(task, who.options, who.provider, frames)
         if before is not None and before.key == key and before.why is None:
             return record
-        judged = _judged(task, who.provider, paths, who.judging.cache, key).model_copy(
+        judged = _judged(task, who.provider, paths, who.options.cache, key).model_copy(
             update={"frames": frames}
         )
     if judged.why and before is not None and before.frames == frames and (before.why in (None, judged.why)):
@@ -121,26 +125,28 @@ def judge_scene(task: Task, who: Judge) -> Record:
     return record
 
 
-def _no_frames(record: Record) -> str:
+def _no_frames(record: SceneRecord) -> str:
     return f"no frames: {(record.framed.why if record.framed is not None else None) or 'none were taken'}"
 
 
-def _key(task: Task, judging: Judging, provider: Provider, frames: str) -> str:
+def _key(task: SceneTask, options: JudgeOptions, provider: Provider, frames: str) -> str:
     return digest_of(
         {
             "prompt": task.spec.prompt,
             "static": task.is_static,
             "frames": frames,
-            "provider": [provider.name, provider.model, judging.base_url],
+            "provider": [provider.name, provider.model, options.base_url],
             "prompts": prompt_version(),
         }
     )
 
 
-def _judged(task: Task, provider: Provider, frames: Sequence[Path], cache: Path | None, key: str) -> Judged:
+def _judged(
+    task: SceneTask, provider: Provider, frames: Sequence[Path], cache: Path | None, key: str
+) -> Judged:
     began = time.monotonic()
     try:
-        found = judge(
+        judgement = judge(
             task.spec.prompt,
             frames,
             static=task.is_static,
@@ -149,27 +155,27 @@ def _judged(task: Task, provider: Provider, frames: Sequence[Path], cache: Path 
             scene=task.spec.id,
         )
     except NotJudged as error:
-        stamp = _stamp(key, began)
-        return Judged(**stamp, why=f"{error.reason}: {error}", cost=error.spent.cost)
+        step_fields = _step_fields(key, began)
+        return Judged(**step_fields, why=f"{error.reason}: {error}", cost=error.spent.cost)
     return Judged(
-        **_stamp(key, began),
+        **_step_fields(key, began),
         why=None,
-        provider=found.provider,
-        model=found.answered_by,
-        prompt_version=found.prompt_version,
-        score=found.score,
-        scores=found.scores,
-        cost=found.cost,
-        items_cost=found.items_cost,
-        file=_kept(task, found),
+        provider=judgement.provider,
+        model=judgement.answered_by,
+        prompt_version=judgement.prompt_version,
+        score=judgement.score,
+        scores=judgement.scores,
+        cost=judgement.cost,
+        items_cost=judgement.items_cost,
+        file=_write_judgement(task, judgement),
     )
 
 
-def _kept(task: Task, found: Judgement) -> File:
-    content = found.model_dump_json(indent=1).encode() + b"\n"
+def _write_judgement(task: SceneTask, judgement: Judgement) -> File:
+    content = judgement.model_dump_json(indent=1).encode() + b"\n"
     write_whole(task.folder / JUDGEMENT, content)
     return File(path=JUDGEMENT, sha256=digest_of_bytes(content), bytes=len(content))
 
 
-def _stamp(key: str, began: float) -> dict[str, Any]:
-    return stamp(Due(key, code_of("bench.judge.judge", "judge/prompts/*")), began)
+def _step_fields(key: str, began: float) -> dict[str, Any]:
+    return step_fields(DueStep(key, code_of("bench.judge.judge", "judge/prompts/*")), began)

@@ -1,4 +1,4 @@
-"""Where a result comes from: the commit, the versions, and the very code that a step stands on."""
+"""The provenance of a result: commit, versions, and a digest of the code that made it."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ _PACKAGES = (
 
 @cache
 def code_of(module: str, *beside: str) -> str:
-    """Digest of a module of ``bench`` with all of ``bench`` that it imports, and of files ``beside`` (globs in it)."""
+    """Digest of a module of ``bench`` with all of ``bench`` that it imports, and of further files (globs in bench)."""
     paths = {*_closure(module), *(path for pattern in beside for path in _BENCH.glob(pattern))}
     return digest_of({path.relative_to(_BENCH).as_posix(): digest_of_file(path) for path in paths})
 
 
 def code_of_audit() -> str:
-    """Of the audit, with what it runs in Blender."""
+    """Digest of the audit's code, with that in Blender."""
     inside = sorted(path.name for path in (_BENCH / _INSIDE).glob("*.py") if path.name != _FRAMES)
     return code_of("bench.audit.audit", *(f"{_INSIDE}/{name}" for name in inside))
 
 
 def code_of_frames() -> str:
-    """Of what takes frames; what it shares with the audit decides what they show only where physics is not baked."""
+    """Digest of the code that takes frames. What it shares with the audit matters only for unbaked physics."""
     return code_of("bench.frames.clip_frames", f"{_INSIDE}/{_FRAMES}", "frames/decode_video.py")
 
 
 def provenance(code: str, blender: str | None = None) -> Provenance:
-    """Of a step that stands on ``code``, done here and now; ``blender``: the version that it used."""
+    """The provenance of a step that runs now. ``code``: digest of its code; ``blender``: version that it uses."""
     commit, dirty = _commit()
     return Provenance(
         simworlds=_version("simworlds") or "from source",
@@ -59,15 +59,15 @@ def provenance(code: str, blender: str | None = None) -> Provenance:
 
 
 def _closure(module: str) -> set[Path]:
-    """The files of a module and of all of ``bench`` that it imports, at whatever place."""
-    found: set[Path] = set()
+    """The files of a module and of all modules of ``bench`` that it imports, directly or not."""
+    files: set[Path] = set()
     waiting = [module]
     while waiting:
         path = _file_of(waiting.pop())
-        if path is not None and path not in found:
-            found.add(path)
+        if path is not None and path not in files:
+            files.add(path)
             waiting += _imported(ast.parse(path.read_bytes()))
-    return found
+    return files
 
 
 def _imported(tree: ast.Module) -> Iterator[str]:
@@ -97,7 +97,7 @@ def _version(package: str) -> str | None:
 
 @cache
 def _commit() -> tuple[str | None, bool | None]:
-    """The commit of the checkout that this code is in, and whether tracked files differ from it."""
+    """The commit of the checkout, and whether tracked files differ from it; None where there is no checkout."""
     if not (_BENCH.parent / ".git").exists():
         return None, None
     commit = _git("rev-parse", "HEAD")

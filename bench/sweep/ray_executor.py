@@ -1,8 +1,8 @@
-"""Does tasks on a Ray cluster: one task a scene, with a Blender of its own, on whatever node has a processor free.
+"""Runs tasks on a Ray cluster: one task a scene, with a Blender of its own, on any node with a free processor.
 
-Nodes share no folder. A scene's files travel to the node and its results back as bytes, known by their content; the
-sweep alone writes the results, each scene's record last. A node that dies loses nothing but time: Ray does its tasks
-again elsewhere. Every node needs this very version of SimWorlds with its Blender.
+Nodes share no folder. A scene's files are sent to the node and its results back as bundles; only the sweep writes the
+results, each scene's record last. If a node dies, Ray runs its tasks again elsewhere. Every node needs the same version
+of SimWorlds with its Blender.
 """
 
 from __future__ import annotations
@@ -15,45 +15,47 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.sweep.bundles import Damaged, Parcel, packed, packed_changes, unpacked
+from bench.sweep.bundles import Bundle, DamagedBundle, bundle_changes, bundle_files, unpack_bundle
 from bench.sweep.content_hash import digest_of, files_below
-from bench.sweep.executor import Done
+from bench.sweep.executor import FinishedTask
 from bench.sweep.provenance import code_of, code_of_audit, code_of_frames
-from bench.sweep.records import NAME, BadRecord, read_record
-from bench.sweep.scene_task import do_scene
-from bench.sweep.systems.folder import Folder
-from bench.sweep.systems.system import NotReady
+from bench.sweep.records import NAME, BadSceneRecord, read_record
+from bench.sweep.run_steps import do_scene
+from bench.sweep.systems.folder import FolderSystem
+from bench.sweep.systems.system import SystemNotReady
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
 
-    from bench.sweep.scene_task import Task
+    from bench.sweep.scene_task import SceneTask
 
 _RETRIES = 5  # of a task whose node or worker died
-_AHEAD = 2  # tasks for each processor of the cluster that wait there with their files
+_AHEAD = 2  # tasks for each processor that wait on the cluster with their files
 _CONNECT_SECONDS = 10.0
 _WAIT_SECONDS = 5.0  # between two looks at how many processors there are
 
 
 @dataclass(frozen=True, slots=True)
-class RayCrew:
+class RayExecutor:
     """``address``: "auto" for the cluster that this machine belongs to, or as Ray has it (``HOST:PORT``, ``ray://…``)."""
 
     address: str
 
-    def work(self, tasks: Sequence[Task], tell: Callable[[Task | None, str], None]) -> Generator[Done]:
-        """See Crew. Raises NotReady where there is no cluster, or it is lost."""
+    def work(
+        self, tasks: Sequence[SceneTask], tell: Callable[[SceneTask | None, str], None]
+    ) -> Generator[FinishedTask]:
+        """See Executor. Raises SystemNotReady where there is no cluster, or it is lost."""
         with _connected(self.address) as ray:
             nodes = _nodes(ray)
             tell(None, f"Ray: {nodes} nodes, {int(ray.cluster_resources().get('CPU', 0))} processors")
             remote = ray.remote(num_cpus=1, max_retries=_RETRIES, retry_exceptions=False)(do_remotely)
             waiting = list(reversed(tasks))
-            sent: dict[Any, Task] = {}
+            sent: dict[Any, SceneTask] = {}
             try:
                 while waiting or sent:
                     room = _AHEAD * int(ray.cluster_resources().get("CPU", 1)) - len(sent)
                     for task in [waiting.pop() for _ in range(min(room, len(waiting)))]:
-                        sent[remote.remote(task, *_outward(task), _code())] = task
+                        sent[remote.remote(task, *_bundle_inputs(task), _code())] = task
                         tell(task, "sent")
                     ready, _ = ray.wait(list(sent), timeout=_WAIT_SECONDS)
                     before, nodes = nodes, _nodes(ray)
@@ -63,7 +65,7 @@ class RayCrew:
                             f"Ray: {before - nodes} of {before} nodes are lost; their scenes are done again elsewhere",
                         )
                     for reference in ready:
-                        yield _arrived(ray, reference, sent.pop(reference))
+                        yield _receive(ray, reference, sent.pop(reference))
             finally:
                 for reference in sent:
                     ray.cancel(reference, force=True)
@@ -75,87 +77,93 @@ def _nodes(ray: Any) -> int:
 
 @contextmanager
 def _connected(address: str) -> Generator[Any]:
-    """Ray, connected; no usage statistics, no dashboard. Raises NotReady."""
+    """Connects to Ray, without usage statistics or dashboard. Raises SystemNotReady."""
     os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
     try:
         import ray  # noqa: PLC0415 - an optional extra
         from ray.exceptions import RayError  # noqa: PLC0415
     except ImportError as error:
-        raise NotReady("--ray needs Ray: install simworlds with its extra 'ray', on every node.") from error
+        raise SystemNotReady(
+            "--ray needs Ray: install simworlds with its extra 'ray', on every node."
+        ) from error
     try:
-        _reach(address)
+        _check_reachable(address)
         ray.init(address=address, log_to_driver=False, configure_logging=False)
     except (OSError, RuntimeError, ValueError) as error:
-        raise NotReady(
+        raise SystemNotReady(
             f"There is no Ray cluster at {address!r}: {' '.join(str(error).split())[:300]} Start one with 'ray start "
             "--head', and 'ray start --address=HOST:6379' on other machines."
         ) from error
-    # Ray prints there what it does about dead nodes, some of it only when it is shut down.
+    # Ray prints messages about dead nodes to stdout, some of them only when it is shut down.
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         try:
             yield ray
         except (ConnectionError, RayError) as error:
-            raise NotReady(
+            raise SystemNotReady(
                 f"The Ray cluster {address!r} was lost: {' '.join(str(error).split())[:300]}. What was done is kept."
             ) from error
         finally:
             ray.shutdown()
 
 
-def _reach(address: str) -> None:
-    """Raises OSError where nobody listens: Ray would end the whole process over it."""
+def _check_reachable(address: str) -> None:
+    """Raises OSError where nothing listens: Ray would end the whole process."""
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdecimal():
         socket.create_connection((host, int(port)), _CONNECT_SECONDS).close()
 
 
-def _outward(task: Task) -> tuple[Parcel, Parcel | None]:
-    """What is in the scene's folder of the results, and the files that the system takes from a folder of its own."""
-    held = packed(task.folder, files_below(task.folder)) if task.folder.is_dir() else Parcel()
+def _bundle_inputs(task: SceneTask) -> tuple[Bundle, Bundle | None]:
+    """Bundles the scene's folder of the results, and the files that the system takes from its source folder."""
+    held = bundle_files(task.folder, files_below(task.folder)) if task.folder.is_dir() else Bundle()
     source = task.system.source
-    taken = packed(source, task.system.files(task.spec)) if source is not None and source.is_dir() else None
+    taken = (
+        bundle_files(source, task.system.files(task.spec)) if source is not None and source.is_dir() else None
+    )
     return held, taken
 
 
-def _arrived(ray: Any, reference: Any, task: Task) -> Done:
-    """Writes what came back."""
+def _receive(ray: Any, reference: Any, task: SceneTask) -> FinishedTask:
+    """Writes the results that a node has returned."""
     try:
-        parcel = ray.get(reference)
+        bundle = ray.get(reference)
     except ray.exceptions.RayTaskError as error:
-        return Done(
+        return FinishedTask(
             task, None, f"{type(error.cause).__name__}: {error.cause}" if error.cause else "its task failed"
         )
     except ray.exceptions.RayError as error:
-        return Done(task, None, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}")
+        return FinishedTask(task, None, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}")
     try:
-        unpacked(parcel, task.folder, last=NAME)
-        return Done(task, read_record(task.folder))
-    except (Damaged, BadRecord, OSError) as error:
-        return Done(task, None, str(error))
+        unpack_bundle(bundle, task.folder, last=NAME)
+        return FinishedTask(task, read_record(task.folder))
+    except (DamagedBundle, BadSceneRecord, OSError) as error:
+        return FinishedTask(task, None, str(error))
 
 
 # On the node
 
 
-def do_remotely(task: Task, held: Parcel, taken: Parcel | None, code: str) -> Parcel:
-    """Does a task in a folder of its own; what is other in the scene's folder then than it was."""
+def do_remotely(task: SceneTask, held: Bundle, taken: Bundle | None, code: str) -> Bundle:
+    """Runs a task in a folder of its own. Returns what has changed in the scene's folder."""
     if code != _code():
-        raise NotReady("this node has another version of SimWorlds than the sweep; install the same on all")
+        raise SystemNotReady(
+            "this node has another version of SimWorlds than the sweep; install the same version on all"
+        )
     with tempfile.TemporaryDirectory(prefix="simworlds-sweep-", ignore_cleanup_errors=True) as place:
         folder, source = Path(place, "scene").resolve(), Path(place, "source").resolve()
-        before = unpacked(held, folder)
-        if taken is not None and isinstance(task.system, Folder):
-            unpacked(taken, source)
+        before = unpack_bundle(held, folder)
+        if taken is not None and isinstance(task.system, FolderSystem):
+            unpack_bundle(taken, source)
             source.mkdir(exist_ok=True)
             task = replace(task, system=replace(task.system, source=source))
         do_scene(replace(task, folder=folder), _silent)
-        return packed_changes(folder, before)
+        return bundle_changes(folder, before)
 
 
 def _silent(_: str) -> None:
-    """Tells nobody."""
+    """Ignores progress."""
 
 
 def _code() -> str:
     """Digest of the code that scores."""
-    return digest_of([code_of("bench.sweep.scene_task"), code_of_audit(), code_of_frames()])
+    return digest_of([code_of("bench.sweep.run_steps"), code_of_audit(), code_of_frames()])

@@ -1,8 +1,7 @@
-"""What is known of one scene by one system: ``record.json`` in its folder of the results.
+"""The record of one scene by one system: ``record.json`` in its folder of the results.
 
-Four steps leave their part: what the system produced, the audit, the frames, the judgement. Each part carries the
-``key`` of all that it was made from, so that a step whose inputs are the same is not done again, and the provenance of
-the code that made it, which may be another for each. A part without a result says why in words.
+Each of four steps adds its part: production, audit, frames, judgement. A part has the ``key`` of its inputs, so that
+a step with the same inputs is not run again, and the provenance of its own code. A part without a result says why.
 """
 
 from __future__ import annotations
@@ -21,13 +20,13 @@ NAME, AUDIT, JUDGEMENT, FRAMES, WORK = "record.json", "audit.json", "judgement.j
 FORMAT = 1
 Kind: TypeAlias = Literal["simworlds", "replay", "folder"]
 Ablation: TypeAlias = Literal["no-verifier", "no-stages"]
-# taken: it was there. done, aborted: the system came to its end. Others are tried again by the next sweep.
+# taken: the file was there. done, aborted: the system has finished. The next sweep tries all others again.
 Outcome: TypeAlias = Literal["taken", "done", "aborted", "failed", "stopped", "missing"]
 FINAL: tuple[Outcome, ...] = ("taken", "done", "aborted")
 
 
-class BadRecord(Exception):  # noqa: N818 - reads as the state it names
-    """A record that is none; the message says which file, and what is wrong."""
+class BadSceneRecord(Exception):  # noqa: N818 - reads as the state it names
+    """An invalid record; the message says which file, and what is wrong."""
 
 
 class _Part(BaseModel):
@@ -35,7 +34,7 @@ class _Part(BaseModel):
 
 
 class SystemInfo(_Part):
-    """A system as the results know it. ``settings``: all that its results depend on (model, limits, folder, …)."""
+    """A system in the results. ``settings``: all that its results depend on (model, limits, folder, …)."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._+-]{0,79}$")
     kind: Kind
@@ -44,9 +43,9 @@ class SystemInfo(_Part):
 
 
 class Provenance(_Part):
-    """Which code did a step, with which versions, on what. ``code``: digest of the modules that the step stands on.
+    """The code, versions and machine of a step. ``code``: digest of the modules that the step uses.
 
-    ``commit`` is None where it is not known (an installed package); ``dirty``: tracked files differed from it.
+    ``commit``: None where it is unknown (an installed package); ``dirty``: tracked files differed from it.
     """
 
     simworlds: str
@@ -72,12 +71,12 @@ class File(_Part):
     def _below(cls, path: str) -> str:
         relative = PurePosixPath(path)
         if not path or relative.is_absolute() or ".." in relative.parts or "\0" in path:
-            raise ValueError(f"{path[:80]!r} leads out of its folder")
+            raise ValueError(f"{path[:80]!r} is outside of its folder")
         return path
 
 
-class Step(_Part):
-    """What every step leaves: the key of its inputs, when it was done (UTC), how long it took."""
+class StepResult(_Part):
+    """What every step records: the key of its inputs, when it ran (UTC), how long it took."""
 
     key: str
     at: str
@@ -85,10 +84,10 @@ class Step(_Part):
     provenance: Provenance
 
 
-class Produced(Step):
-    """What a system made of a prompt. ``prompt`` is what it was given; ``beside``, a digest of the caches it brought.
+class Produced(StepResult):
+    """A system's result for a prompt. ``prompt``: as the system got it; ``beside``: digest of the caches.
 
-    ``cost`` (US dollars), ``minutes``, ``models`` and ``tokens`` are the system's own; None where they are not known.
+    ``cost`` (US dollars), ``minutes``, ``models`` and ``tokens`` are the system's own; None where unknown.
     """
 
     outcome: Outcome
@@ -103,8 +102,8 @@ class Produced(Step):
     tokens: dict[str, int] = Field(default_factory=dict[str, int])
 
 
-class Audited(Step):
-    """The audit's scores; the rest is in audit.json. ``why``: it was not scored, for this reason."""
+class Audited(StepResult):
+    """The audit's scores; details are in audit.json. ``why``: the reason why it was not scored."""
 
     why: str | None
     spec: str
@@ -113,8 +112,8 @@ class Audited(Step):
     file: File | None = None
 
 
-class Framed(Step):
-    """The frames; ``why`` there are none. ``seed``: of the renderer, where it rendered."""
+class Framed(StepResult):
+    """The frames. ``why``: the reason why there are none; ``seed``: of the renderer, if they were rendered."""
 
     why: str | None
     origin: Literal["blend", "video", "picture"] | None = None
@@ -123,10 +122,10 @@ class Framed(Step):
     seed: int | None = None
 
 
-class Judged(Step):
-    """The judge's scores; the rest is in judgement.json. ``why``: it was not judged, for this reason.
+class Judged(StepResult):
+    """The judge's scores; details are in judgement.json. ``why``: the reason why it was not judged.
 
-    ``frames``: the digest of the frames that it is about.
+    ``frames``: the digest of the frames that were judged.
     """
 
     why: str | None
@@ -141,7 +140,7 @@ class Judged(Step):
     file: File | None = None
 
 
-class Record(_Part):
+class SceneRecord(_Part):
     """One scene by one system."""
 
     format: Literal[1] = FORMAT
@@ -153,21 +152,21 @@ class Record(_Part):
     judged: Judged | None = None
 
 
-def read_record(folder: Path) -> Record | None:
-    """The record in a scene's folder; None where there is none. Raises BadRecord."""
+def read_record(folder: Path) -> SceneRecord | None:
+    """The record in a scene's folder; None where there is none. Raises BadSceneRecord."""
     path = folder / NAME
     try:
-        return Record.model_validate_json(path.read_bytes())
+        return SceneRecord.model_validate_json(path.read_bytes())
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise BadRecord(f"{path} cannot be read: {error.strerror or error}") from error
+        raise BadSceneRecord(f"{path} cannot be read: {error.strerror or error}") from error
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
         where = ".".join(map(str, first["loc"])) or "the file"
-        raise BadRecord(f"{path} is no record: {where}: {first['msg']}") from error
+        raise BadSceneRecord(f"{path} is not a valid record: {where}: {first['msg']}") from error
 
 
-def write_record(folder: Path, record: Record) -> None:
+def write_record(folder: Path, record: SceneRecord) -> None:
     """Writes the record, whole or not at all. Raises OSError."""
     write_whole(folder / NAME, record.model_dump_json(indent=1).encode() + b"\n")

@@ -1,4 +1,4 @@
-"""Which scenes are meant: ids, categories, levels, patterns, and the sets that have names."""
+"""Selects scenes by id, category, level, pattern or named set."""
 
 from __future__ import annotations
 
@@ -20,27 +20,27 @@ SETS: dict[str, Callable[[Spec], bool]] = {
 }
 
 
-def chosen(names: Iterable[str]) -> tuple[Spec, ...]:
-    """The scenes that any of ``names`` means, in the benchmark's order. Raises BadSpec for a name that means none.
+def select_scenes(names: Iterable[str]) -> tuple[Spec, ...]:
+    """The scenes that match any of ``names``, in the benchmark's order. Raises BadSpec for a name that matches none.
 
     A name is an id (``cloth_D1_01``), a category, a level (``D2``), a cell (``cloth_D1``), a pattern (``*_D?_01``), or
-    a set: all, dynamic, ablation. Several may stand in one, with commas.
+    a set: all, dynamic, ablation. One string may hold several, with commas.
     """
     wanted = [name.strip() for several in names for name in several.split(",") if name.strip()]
     every = specs()
-    found = {spec.id for name in wanted for spec in _meant(name, every)}
-    return tuple(spec for spec in every if spec.id in found)
+    selected = {spec.id for name in wanted for spec in _matching(name, every)}
+    return tuple(spec for spec in every if spec.id in selected)
 
 
-def _meant(name: str, every: Sequence[Spec]) -> list[Spec]:
+def _matching(name: str, every: Sequence[Spec]) -> list[Spec]:
     if name in SETS:
         return [spec for spec in every if SETS[name](spec)]
-    found = [
+    matches = [
         spec for spec in every if name in (spec.category, spec.level, spec.cell) or fnmatchcase(spec.id, name)
     ]
-    if not found:
+    if not matches:
         sets = ", ".join(SETS)
         raise BadSpec(
-            f"{name[:80]!r} means no scene: give an id, a category, a level, a pattern, or one of {sets}."
+            f"{name[:80]!r} matches no scene: give an id, a category, a level, a pattern, or one of {sets}."
         )
-    return found
+    return matches

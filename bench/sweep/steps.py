@@ -1,4 +1,4 @@
-"""The steps of a scene: when each is due, and what it leaves in the record."""
+"""The steps of a scene: when each is due, and what it adds to the record."""
 
 from __future__ import annotations
 
@@ -18,16 +18,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from bench.frames.clip_frames import Taken
-    from bench.sweep.records import Record
-    from bench.sweep.records import Step as Part
-    from bench.sweep.scene_task import Task, Tell
+    from bench.sweep.records import SceneRecord, StepResult
+    from bench.sweep.scene_task import SceneTask, Tell
 
 
 @dataclass(frozen=True, slots=True)
-class Due:
-    """A step is to be done: the key of its inputs, the digest of its code, the Blender that it will use.
+class DueStep:
+    """A step to run: the key of its inputs, the digest of its code, the Blender that it will use.
 
-    ``content``: digest of the files that a system's result is taken from, "" for one that makes its own.
+    ``content``: digest of the files that a result is taken from, "" for a system that makes its own.
     """
 
     key: str
@@ -38,49 +37,49 @@ class Due:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """``due``: what it is to be done from, None if its result stands. ``do``: what the record's part is made of."""
+    """``due`` returns None if the step's result is still valid. ``do`` returns the fields of the record's part."""
 
     field: str
-    part: type[Part]
-    due: Callable[[Task, Record], Due | None]
-    do: Callable[[Task, Record, Due, Tell], dict[str, Any]]
+    part: type[StepResult]
+    due: Callable[[SceneTask, SceneRecord], DueStep | None]
+    do: Callable[[SceneTask, SceneRecord, DueStep, Tell], dict[str, Any]]
 
 
-# What the system makes
+# Production by the system
 
 
-def _produce_due(task: Task, record: Record) -> Due | None:
+def _produce_due(task: SceneTask, record: SceneRecord) -> DueStep | None:
     system = task.system
     depends_on = system.depends_on(task.spec)
     key = digest_of({"system": system.info.model_dump(mode="json"), "on": depends_on})
     before = record.produced
     if before is not None and before.key == key and before.outcome in FINAL:
         return None
-    return Due(
+    return DueStep(
         key,
         code_of("bench.sweep.steps"),
         content=digest_of(depends_on) if system.source is not None else "",
     )
 
 
-def _produce(task: Task, record: Record, due: Due, tell: Tell) -> dict[str, Any]:
+def _produce(task: SceneTask, record: SceneRecord, due: DueStep, tell: Tell) -> dict[str, Any]:
     del record
-    made = task.system.produce(task.spec, task.folder / WORK / due.key[:12], tell)
+    output = task.system.produce(task.spec, task.folder / WORK / due.key[:12], tell)
     return {
-        "outcome": made.outcome,
-        "why": made.why,
-        "prompt": made.prompt,
-        "blend": _file(task, made.blend),
+        "outcome": output.outcome,
+        "why": output.why,
+        "prompt": output.prompt,
+        "blend": _file(task, output.blend),
         "beside": due.content,
-        "video": _file(task, made.video),
-        "models": made.models,
-        "cost": made.cost,
-        "minutes": made.minutes,
-        "tokens": made.tokens,
+        "video": _file(task, output.video),
+        "models": output.models,
+        "cost": output.cost,
+        "minutes": output.minutes,
+        "tokens": output.tokens,
     }
 
 
-def _file(task: Task, path: Path | None) -> File | None:
+def _file(task: SceneTask, path: Path | None) -> File | None:
     if path is None:
         return None
     source = task.system.source
@@ -92,68 +91,53 @@ def _file(task: Task, path: Path | None) -> File | None:
     )
 
 
-# What the audit finds
+# Audit
 
 
-def _audit_due(task: Task, record: Record) -> Due | None:
-    before, blend = record.audited, _blend(task, record)
+def _audit_due(task: SceneTask, record: SceneRecord) -> DueStep | None:
     code = code_of_audit()
-    if blend is None:
-        return (
-            None
-            if before is not None and (_is_gone(record) or before.why == _no_file(record))
-            else Due("", code)
-        )
-    assert record.produced is not None
-    blender = task.means.runtime().version
-    on = {"blend": digest_of_file(blend), "beside": record.produced.beside}
-    key = digest_of({**on, "spec": _spec(task), "code": code, "blender": blender})
-    if before is not None and before.key == key and before.why is None and _are_whole(task, before.file):
-        return None
-    return Due(key, code, blender)
+
+    def inputs(blend: Path, beside: str, blender: str) -> dict[str, Any]:
+        on = {"blend": digest_of_file(blend), "beside": beside}
+        return {**on, "spec": _spec(task), "code": code, "blender": blender}
+
+    return _due(task, record, record.audited, code, inputs)
 
 
-def _audit(task: Task, record: Record, due: Due, tell: Tell) -> dict[str, Any]:
+def _audit(task: SceneTask, record: SceneRecord, due: DueStep, tell: Tell) -> dict[str, Any]:
     del due
     blend = _blend(task, record)
     if blend is None:
         return {"why": _no_file(record), "spec": _spec(task)}
-    found = audit(blend, task.spec, task.means, tell)
-    content = found.as_json().encode() + b"\n"
+    result = audit(blend, task.spec, task.means, tell)
+    content = result.as_json().encode() + b"\n"
     write_whole(task.folder / AUDIT, content)
     file = File(path=AUDIT, sha256=digest_of_bytes(content), bytes=len(content))
-    return {"why": found.not_scored, "spec": _spec(task), "mpr": found.mpr, "spr": found.spr, "file": file}
+    return {"why": result.not_scored, "spec": _spec(task), "mpr": result.mpr, "spr": result.spr, "file": file}
 
 
-def _spec(task: Task) -> str:
+def _spec(task: SceneTask) -> str:
     return digest_of(task.spec.model_dump(mode="json"))
 
 
-# What is to be seen
+# Frames
 
 
-def _frames_due(task: Task, record: Record) -> Due | None:
-    before, blend, video = record.framed, _blend(task, record), _video(task, record)
+def _frames_due(task: SceneTask, record: SceneRecord) -> DueStep | None:
     code = code_of_frames()
-    if blend is None:
-        return (
-            None
-            if before is not None and (_is_gone(record) or before.why == _no_file(record))
-            else Due("", code)
-        )
-    assert record.produced is not None
-    blender = task.means.runtime().version
-    on = {"source": digest_of_file(video or blend), "static": task.is_static, "code": code}
-    if video is None:
-        on |= {"beside": record.produced.beside, "blender": blender}
-        on |= {"pixels": task.look.pixels, "samples": task.look.samples}
-    key = digest_of(on)
-    if before is not None and before.key == key and before.why is None and _are_whole(task, *before.frames):
-        return None
-    return Due(key, code, blender)
+
+    def inputs(blend: Path, beside: str, blender: str) -> dict[str, Any]:
+        video = _video(task, record)
+        on = {"source": digest_of_file(video or blend), "static": task.is_static, "code": code}
+        if video is None:
+            on |= {"beside": beside, "blender": blender}
+            on |= {"pixels": task.look.pixels, "samples": task.look.samples}
+        return on
+
+    return _due(task, record, record.framed, code, inputs)
 
 
-def _frames(task: Task, record: Record, due: Due, tell: Tell) -> dict[str, Any]:
+def _frames(task: SceneTask, record: SceneRecord, due: DueStep, tell: Tell) -> dict[str, Any]:
     del due
     blend = _blend(task, record)
     if blend is None:
@@ -171,8 +155,8 @@ def _frames(task: Task, record: Record, due: Due, tell: Tell) -> dict[str, Any]:
     return {"why": None, "origin": taken.source, "frames": frames, "notes": taken.notes, "seed": seed}
 
 
-def _video(task: Task, record: Record) -> Path | None:
-    """The system's own video, or its picture of a static scene, if frames are to be of that."""
+def _video(task: SceneTask, record: SceneRecord) -> Path | None:
+    """The system's own video, or picture of a static scene, if frames are to be taken from it."""
     file = record.produced.video if record.produced is not None else None
     if file is None or not task.from_video:
         return None
@@ -180,8 +164,8 @@ def _video(task: Task, record: Record) -> Path | None:
     return path if path.is_file() and (task.is_static or kind_of(path) == "video") else None
 
 
-def _taken(task: Task, blend: Path, video: Path | None) -> Taken:
-    """Of the video; where that cannot be had, of the .blend. Raises NotScored."""
+def _taken(task: SceneTask, blend: Path, video: Path | None) -> Taken:
+    """Takes frames of the video; if that fails, of the .blend. Raises NotScored."""
     folder = task.folder / FRAMES
     means = replace(task.means, seconds=max(task.means.seconds, SECONDS))
     if video is None:
@@ -190,25 +174,48 @@ def _taken(task: Task, blend: Path, video: Path | None) -> Taken:
         return take_frames(video, task.is_static, folder)
     except NotScored as error:
         taken = take_frames(blend, task.is_static, folder, task.look, means)
-        return replace(taken, notes=(f"rendered, for the video cannot be had: {error}", *taken.notes))
+        return replace(taken, notes=(f"rendered, as the video cannot be read: {error}", *taken.notes))
 
 
 # The file that was produced
 
 
-def _blend(task: Task, record: Record) -> Path | None:
-    """None where there is none, or none any more."""
+def _due(
+    task: SceneTask,
+    record: SceneRecord,
+    before: Audited | Framed | None,
+    code: str,
+    inputs: Callable[[Path, str, str], dict[str, Any]],
+) -> DueStep | None:
+    """A step on the produced file, unless its result ``before`` still stands.
+
+    ``inputs`` returns what the result depends on, for the file, its caches' digest and the Blender version.
+    """
+    blend = _blend(task, record)
+    if blend is None:
+        stands = before is not None and (_is_gone(record) or before.why == _no_file(record))
+        return None if stands else DueStep("", code)
+    assert record.produced is not None
+    blender = task.means.runtime().version
+    key = digest_of(inputs(blend, record.produced.beside, blender))
+    if before is not None and before.key == key and before.why is None and _is_unchanged(task, before):
+        return None
+    return DueStep(key, code, blender)
+
+
+def _blend(task: SceneTask, record: SceneRecord) -> Path | None:
+    """The produced file; None if there is none, or none any more."""
     file = record.produced.blend if record.produced is not None else None
     path = task.path(file) if file is not None else None
     return path if path is not None and path.is_file() else None
 
 
-def _is_gone(record: Record) -> bool:
-    """Of a scene without a file: whether there was one. What was found of that stays."""
+def _is_gone(record: SceneRecord) -> bool:
+    """Of a scene without a file: whether there was one. Its results stay."""
     return record.produced is not None and record.produced.blend is not None
 
 
-def _no_file(record: Record) -> str:
+def _no_file(record: SceneRecord) -> str:
     if record.produced is None:
         return "nothing was produced yet"
     if _is_gone(record):
@@ -216,8 +223,9 @@ def _no_file(record: Record) -> str:
     return record.produced.why or f"no file: the system's run {record.produced.outcome}"
 
 
-def _are_whole(task: Task, *files: File | None) -> bool:
-    """Whether files of the results are there as they were written."""
+def _is_unchanged(task: SceneTask, result: Audited | Framed) -> bool:
+    """Whether the files of a result are as they were written."""
+    files = result.frames if isinstance(result, Framed) else (result.file,)
     try:
         return all(file is not None and digest_of_file(task.path(file)) == file.sha256 for file in files)
     except OSError:

@@ -1,4 +1,4 @@
-"""A sweep: all scenes by one system, done by whoever does them, then judged; and the same again for what is there."""
+"""A sweep: scores and judges all scenes by one system, or rescores those that are there."""
 
 from __future__ import annotations
 
@@ -8,16 +8,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.blender.run_folder import locked
 from bench.scenes.spec import BadSpec, spec_of
-from bench.sweep.executor import Crew, Done
-from bench.sweep.judging import Judge, judge_all
-from bench.sweep.records import NAME, BadRecord, SystemInfo, read_record
-from bench.sweep.scene_task import Task, is_done
+from bench.sweep.executor import Executor, FinishedTask
+from bench.sweep.judging import SweepJudge, judge_all
+from bench.sweep.records import NAME, BadSceneRecord, SystemInfo, read_record
+from bench.sweep.run_steps import is_done
+from bench.sweep.scene_task import SceneTask
 from bench.sweep.steps import STEPS
-from bench.sweep.systems.folder import Folder
-from bench.sweep.systems.simworlds_runs import Make, Replay
-from bench.sweep.systems.system import NotReady
+from bench.sweep.systems.folder import FolderSystem
+from bench.sweep.systems.simworlds_runs import ReplaySystem, SimWorldsSystem
+from bench.sweep.systems.system import SystemNotReady
+from simworlds.folder_lock import locked
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,13 +26,13 @@ if TYPE_CHECKING:
     from bench.audit.untrusted_blend import Means
     from bench.frames.clip_frames import Look
     from bench.scenes.spec import Spec
-    from bench.sweep.sweep_view import View
-    from bench.sweep.systems.system import System
+    from bench.sweep.sweep_view import SweepView
+    from bench.sweep.systems.system import SceneSystem
 
 
 @dataclass(frozen=True)
-class How:
-    """How scenes are scored, whatever the system: see Task."""
+class ScoringOptions:
+    """How scenes are scored, for any system: see SceneTask."""
 
     means: Means
     look: Look
@@ -40,10 +41,10 @@ class How:
 
 
 @dataclass(frozen=True)
-class Summary:
-    """What became of the scenes: how many were ``asked`` for, ``scored``, ``judged``; why others were not (counted).
+class SweepSummary:
+    """How many scenes were requested, scored and judged; why others were not, with counts.
 
-    ``faults``: scenes that could not be done at all here (scene, why), which the next sweep tries again.
+    ``faults``: (scene, why) of scenes that could not be run here; the next sweep tries them again.
     """
 
     asked: int
@@ -54,21 +55,22 @@ class Summary:
     faults: tuple[tuple[str, str], ...]
 
 
-def tasks_of(system: System, specs: Sequence[Spec], out: Path, how: How) -> list[Task]:
-    """A task a scene, below ``out``. Raises NotReady where other settings' results lie there; BadRecord."""
+def make_tasks(system: SceneSystem, specs: Sequence[Spec], out: Path, how: ScoringOptions) -> list[SceneTask]:
+    """Makes a task for each scene. Raises SystemNotReady if ``out`` has results of other settings, BadSceneRecord."""
     steps = tuple(name for name in STEPS if name != "frames" or how.frames)
     folder = out / system.info.name
     for spec in specs:
         _check_same(folder / spec.id, system)
     return [
-        Task(spec, system, folder / spec.id, how.means, how.look, steps, how.from_video) for spec in specs
+        SceneTask(spec, system, folder / spec.id, how.means, how.look, steps, how.from_video)
+        for spec in specs
     ]
 
 
-def sweep(tasks: Sequence[Task], judge: Judge, crew: Crew, view: View) -> Summary:
-    """Does the tasks, then judges; all results are on the disk whenever it ends.
+def sweep(tasks: Sequence[SceneTask], judge: SweepJudge, executor: Executor, view: SweepView) -> SweepSummary:
+    """Runs the tasks, then judges. All results are on the disk whenever it ends.
 
-    Raises Refusal where another sweep works in the folder, BadRecord, OSError.
+    Raises Refusal where another sweep works in the folder, BadSceneRecord, OSError.
     """
     folder = tasks[0].folder.parent
     folder.mkdir(parents=True, exist_ok=True)
@@ -76,41 +78,42 @@ def sweep(tasks: Sequence[Task], judge: Judge, crew: Crew, view: View) -> Summar
     with locked(folder), view:
         standing = [task for task in tasks if is_done(task)]
         for task in standing:
-            view.done(Done(task, read_record(task.folder)))
+            view.done(FinishedTask(task, read_record(task.folder)))
         due = [task for task in tasks if task not in standing]
-        with closing(crew.work(due, view.doing)) as work:
+        with closing(executor.work(due, view.doing)) as work:
             for done in work:
                 view.done(done)
                 if done.record is None:
                     faults.append((done.task.spec.id, done.fault))
         framed = [task for task in tasks if "frames" in task.steps and (task.folder / NAME).is_file()]
         for task, record in judge_all(framed, judge):
-            if record.judged is not None and record.judged.key:  # somebody was asked
+            if record.judged is not None and record.judged.key:  # a judge was asked
                 view.judged(task, record)
     return _summary(tasks, faults)
 
 
-def _summary(tasks: Sequence[Task], faults: list[tuple[str, str]]) -> Summary:
+def _summary(tasks: Sequence[SceneTask], faults: list[tuple[str, str]]) -> SweepSummary:
     records = [record for task in tasks if (record := read_record(task.folder)) is not None]
     audits = [record.audited for record in records if record.audited is not None]
     judgements = [record.judged for record in records if record.judged is not None]
-    return Summary(
+    return SweepSummary(
         len(tasks),
         sum(audit.why is None for audit in audits),
-        sum(one.why is None for one in judgements),
+        sum(judged.why is None for judged in judgements),
         dict(Counter(audit.why for audit in audits if audit.why is not None)),
-        dict(Counter(one.why for one in judgements if one.why is not None)),
+        dict(Counter(judged.why for judged in judgements if judged.why is not None)),
         tuple(faults),
     )
 
 
-def _check_same(folder: Path, system: System) -> None:
-    """What a system made is not overwritten by what it makes with other settings."""
+def _check_same(folder: Path, system: SceneSystem) -> None:
+    """Refuses to overwrite results of other settings. Raises SystemNotReady."""
     record = read_record(folder)
     if record is None or record.produced is None or system.source is not None:
         return
     before, now = (
-        {"kind": one.kind, "ablations": one.ablations, **one.settings} for one in (record.system, system.info)
+        {"kind": info.kind, "ablations": info.ablations, **info.settings}
+        for info in (record.system, system.info)
     )
     other = [
         f"{name} {before.get(name)} (now {now.get(name)})"
@@ -118,40 +121,40 @@ def _check_same(folder: Path, system: System) -> None:
         if before.get(name) != now.get(name)
     ]
     if other:
-        raise NotReady(
+        raise SystemNotReady(
             f"{folder.parent} holds results of other settings: {', '.join(other)}. Give these a --name of their own, "
             "or another --out."
         )
 
 
-# Once more, without the systems
+# Rescoring
 
 
-def tasks_again(out: Path, how: How) -> list[list[Task]]:
-    """Tasks for all that lies below ``out``, system by system, that run no system again. Raises BadRecord."""
-    found: dict[str, list[Task]] = {}
+def make_rescore_tasks(out: Path, how: ScoringOptions) -> list[list[SceneTask]]:
+    """Makes tasks for all results below ``out``, system by system, which run no system again. Raises BadSceneRecord."""
+    tasks: dict[str, list[SceneTask]] = {}
     for folder in scene_folders(out):
         record = read_record(folder)
         assert record is not None
         try:
             spec = spec_of(record.scene)
         except BadSpec as error:
-            raise BadRecord(f"{folder / NAME}: {error}") from error
-        system = system_again(record.system)
+            raise BadSceneRecord(f"{folder / NAME}: {error}") from error
+        system = system_from_record(record.system)
         takes = system.source is not None and system.source.is_dir()
         steps = tuple(
             name for name in STEPS if (name != "produce" or takes) and (name != "frames" or how.frames)
         )
-        task = Task(spec, system, folder, how.means, how.look, steps, how.from_video)
-        found.setdefault(str(folder.parent), []).append(task)
-    return list(found.values())
+        task = SceneTask(spec, system, folder, how.means, how.look, steps, how.from_video)
+        tasks.setdefault(str(folder.parent), []).append(task)
+    return list(tasks.values())
 
 
-def system_again(info: SystemInfo) -> System:
-    """A system by what the results know of it; it is not run again."""
+def system_from_record(info: SystemInfo) -> SceneSystem:
+    """The system of a record; it is not run again."""
     if info.kind == "folder":
-        return Folder(info, Path(str(info.settings.get("folder", ""))))
-    return Replay(info) if info.kind == "replay" else Make(info)
+        return FolderSystem(info, Path(str(info.settings.get("folder", ""))))
+    return ReplaySystem(info) if info.kind == "replay" else SimWorldsSystem(info)
 
 
 def scene_folders(out: Path) -> list[Path]:

@@ -1,4 +1,4 @@
-"""What a person sees of a sweep while it lasts: a view that is drawn anew on a terminal, plain lines elsewhere."""
+"""Shows the progress of a sweep: a live view on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from rich.text import Text
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from bench.sweep.executor import Done
-    from bench.sweep.records import Record
-    from bench.sweep.scene_task import Task
+    from bench.sweep.executor import FinishedTask
+    from bench.sweep.records import SceneRecord
+    from bench.sweep.scene_task import SceneTask
 
 _PER_SECOND = 4
 
 
-class View(Protocol):
-    """Somebody who looks on, between entering and leaving."""
+class SweepView(Protocol):
+    """A view of a sweep's progress; a context manager."""
 
-    def doing(self, task: Task | None, what: str) -> None:
-        """A task has got so far; with None, the sweep as a whole."""
+    def doing(self, task: SceneTask | None, what: str) -> None:
+        """Shows the progress of a task; with None, of the sweep."""
         ...
 
-    def done(self, done: Done) -> None:
-        """A task has come to its end."""
+    def done(self, done: FinishedTask) -> None:
+        """Shows a task that has ended."""
         ...
 
-    def judged(self, task: Task, record: Record) -> None:
-        """A scene's frames have been judged, or not."""
+    def judged(self, task: SceneTask, record: SceneRecord) -> None:
+        """Shows a scene whose frames were judged, or not."""
         ...
 
     def __enter__(self) -> Self: ...
@@ -43,35 +43,35 @@ class View(Protocol):
     ) -> None: ...
 
 
-def make_view(stream: TextIO, total: int) -> View:
+def make_view(stream: TextIO, total: int) -> SweepView:
     """The view that fits where ``stream`` goes; ``total``: how many tasks there are."""
     console = Console(file=stream)
     if stream.isatty() and not console.is_dumb_terminal:
-        return Screen(console, total)
-    return Lines(stream, total)
+        return SweepScreen(console, total)
+    return SweepLines(stream, total)
 
 
-class Lines:
-    """A line for each scene that is done; for logs."""
+class SweepLines:
+    """Prints a line for each scene that has ended; for logs."""
 
     def __init__(self, stream: TextIO, total: int) -> None:
         self._stream = stream
         self._total = total
         self._count = 0
 
-    def doing(self, task: Task | None, what: str) -> None:
-        """See View."""
+    def doing(self, task: SceneTask | None, what: str) -> None:
+        """See SweepView."""
         if task is None:
             self._write(what)
 
-    def done(self, done: Done) -> None:
-        """See View."""
+    def done(self, done: FinishedTask) -> None:
+        """See SweepView."""
         self._count += 1
-        self._write(f"[{self._count}/{self._total}] {told(done)}")
+        self._write(f"[{self._count}/{self._total}] {describe_scene(done)}")
 
-    def judged(self, task: Task, record: Record) -> None:
-        """See View."""
-        self._write(told_judgement(task, record))
+    def judged(self, task: SceneTask, record: SceneRecord) -> None:
+        """See SweepView."""
+        self._write(describe_judgement(task, record))
 
     def __enter__(self) -> Self:
         return self
@@ -85,11 +85,11 @@ class Lines:
         try:
             print(line, file=self._stream, flush=True)
         except (OSError, UnicodeError):
-            return  # nobody reads, or nobody can: the sweep goes on
+            return  # the reader is gone, or its encoding lacks a character: the sweep goes on
 
 
-class Screen:
-    """What is being worked on, below a bar; what is done scrolls by."""
+class SweepScreen:
+    """Shows the running tasks above a progress bar; finished ones scroll by."""
 
     def __init__(self, console: Console, total: int) -> None:
         self._console = console
@@ -102,22 +102,22 @@ class Screen:
             get_renderable=self._drawn, console=console, refresh_per_second=_PER_SECOND, transient=True
         )
 
-    def doing(self, task: Task | None, what: str) -> None:
-        """See View."""
+    def doing(self, task: SceneTask | None, what: str) -> None:
+        """See SweepView."""
         if task is None:
             self._console.print(Text(what))
         else:
             self._doing[task.spec.id] = (what, time.monotonic())
 
-    def done(self, done: Done) -> None:
-        """See View."""
+    def done(self, done: FinishedTask) -> None:
+        """See SweepView."""
         self._doing.pop(done.task.spec.id, None)
         self._bar.advance(self._all)
-        self._console.print(Text(told(done)))
+        self._console.print(Text(describe_scene(done)))
 
-    def judged(self, task: Task, record: Record) -> None:
-        """See View."""
-        self._console.print(Text(told_judgement(task, record)))
+    def judged(self, task: SceneTask, record: SceneRecord) -> None:
+        """See SweepView."""
+        self._console.print(Text(describe_judgement(task, record)))
 
     def __enter__(self) -> Self:
         self._live.__enter__()
@@ -137,38 +137,40 @@ class Screen:
         return Group(rows, self._bar)
 
 
-def told(done: Done) -> str:
-    """A scene that is done, in one line."""
+def describe_scene(done: FinishedTask) -> str:
+    """Describes a scene that has ended, in one line."""
     scene, record = done.task.spec.id, done.record
     if record is None:
-        return f"{scene:<16} could not be done: {plain(done.fault)}"
+        return f"{scene:<16} could not be done: {printable(done.fault)}"
     audited = record.audited
     if audited is None:
         return f"{scene:<16} {record.produced.outcome if record.produced else 'nothing'}"
     if audited.why is not None:
-        return f"{scene:<16} not scored: {plain(audited.why)}"
+        return f"{scene:<16} not scored: {printable(audited.why)}"
     frames = len(record.framed.frames) if record.framed is not None else 0
     none = (
-        f", no frames: {plain(record.framed.why)}" if record.framed is not None and record.framed.why else ""
+        f", no frames: {printable(record.framed.why)}"
+        if record.framed is not None and record.framed.why
+        else ""
     )
-    return f"{scene:<16} MPR {share(audited.mpr)}  SPR {share(audited.spr)}  {frames} frames{none}"
+    return (
+        f"{scene:<16} MPR {format_score(audited.mpr)}  SPR {format_score(audited.spr)}  {frames} frames{none}"
+    )
 
 
-def told_judgement(task: Task, record: Record) -> str:
-    """A judgement, in one line."""
+def describe_judgement(task: SceneTask, record: SceneRecord) -> str:
+    """Describes a judgement in one line."""
     judged = record.judged
     if judged is None or judged.why is not None:
-        return (
-            f"{task.spec.id:<16} not judged: {plain(judged.why if judged and judged.why else 'nothing was')}"
-        )
-    return f"{task.spec.id:<16} VLM {share(judged.score)}"
+        return f"{task.spec.id:<16} not judged: {printable(judged.why if judged and judged.why else 'no judgement')}"
+    return f"{task.spec.id:<16} VLM {format_score(judged.score)}"
 
 
-def share(value: float | None) -> str:
-    """A score, as a person reads it."""
+def format_score(value: float | None) -> str:
+    """Formats a score."""
     return "–" if value is None else f"{value:.3f}"
 
 
-def plain(text: str) -> str:
-    """Words of files and servers in one line, without what a terminal would act on."""
+def printable(text: str) -> str:
+    """Untrusted text in one line, without control characters."""
     return "".join(char if char.isprintable() else " " for char in text)[:300]

@@ -1,56 +1,56 @@
-"""The first and the fifth property, which need nothing but the file: it meets its spec, and scores the same again."""
+"""Proves the properties that need only the file: it meets its spec, and its audit is always the same."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from bench.validity.proof import Row
+from bench.validity.proof import ProofRow
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from bench.audit.audit import Audit
-    from bench.validity.variant_builder import Desk
+    from bench.validity.variant_builder import VariantBuilder
 
 
-def satisfiable(desk: Desk) -> Iterator[Row]:
-    """One row: MPR and SPR are 1, every actor is found for certain, and the scene's assertions hold."""
-    found = desk.audited
-    if found.not_scored is not None:
-        yield Row(name="audit", holds=False, why=f"not scored: {found.not_scored}")
+def satisfiable(builder: VariantBuilder) -> Iterator[ProofRow]:
+    """One row: MPR and SPR are 1, every actor is resolved, and the scene's assertions hold."""
+    audit = builder.audited
+    if audit.not_scored is not None:
+        yield ProofRow(name="audit", holds=False, why=f"not scored: {audit.not_scored}")
         return
-    wrong = list(_wrong(found))
+    faults = list(_faults(audit))
     values = {
-        "mpr": found.mpr,
-        "spr": found.spr,
-        "actors": len(found.actors),
-        "checks": sum(len(actor.checks) for actor in found.actors),
-        "relations": len(found.relations),
-        "assertions": len(found.assertions),
+        "mpr": audit.mpr,
+        "spr": audit.spr,
+        "actors": len(audit.actors),
+        "checks": sum(len(actor.checks) for actor in audit.actors),
+        "relations": len(audit.relations),
+        "assertions": len(audit.assertions),
     }
-    yield Row(name="audit", holds=not wrong, why=", ".join(wrong), values=values)
+    yield ProofRow(name="audit", holds=not faults, why=", ".join(faults), values=values)
 
 
-def _wrong(found: Audit) -> Iterator[str]:
-    for actor in found.actors:
+def _faults(audit: Audit) -> Iterator[str]:
+    for actor in audit.actors:
         if actor.outcome != "resolved":
             yield f"{actor.name} is {actor.outcome}"
         yield from (f"{actor.name}: {check.predicate}" for check in actor.checks if check.outcome == "failed")
-    yield from (f"scene: {check.predicate}" for check in found.assertions if check.outcome == "failed")
+    yield from (f"scene: {check.predicate}" for check in audit.assertions if check.outcome == "failed")
     yield from (
-        f"{one.a} {one.type} {one.b} {one.outcome}" for one in found.relations if one.outcome != "holds"
+        f"{rel.a} {rel.type} {rel.b} {rel.outcome}" for rel in audit.relations if rel.outcome != "holds"
     )
-    if not found.relations:
+    if not audit.relations:
         yield "there are no relations"
 
 
-def deterministic(desk: Desk) -> Iterator[Row]:
-    """Two rows: another process, and one that has read other files before, find the same to the byte."""
-    first = desk.audited.as_json()
+def deterministic(builder: VariantBuilder) -> Iterator[ProofRow]:
+    """Two rows: another process, and one that has read other files before, give the same audit to the byte."""
+    first = builder.audited.as_json()
     for name, other in (
-        ("another process", desk.audit_alone(desk.blend)),
-        ("a copy elsewhere, after other files", desk.audit(desk.original)),
+        ("another process", builder.audit_alone(builder.blend)),
+        ("a copy elsewhere, after other files", builder.audit(builder.original)),
     ):
         same = other.as_json() == first
-        why = "" if same else "it found something else"
-        yield Row(name=name, holds=same, why=why, values={"bytes": len(first.encode())})
+        why = "" if same else "it gives another audit"
+        yield ProofRow(name=name, holds=same, why=why, values={"bytes": len(first.encode())})

@@ -1,4 +1,4 @@
-"""What was proven of a scene: a property, what was tried, and what came of it. Leaf."""
+"""The proof of a property of a scene: a row for each test, with its outcome."""
 
 from __future__ import annotations
 
@@ -6,18 +6,19 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-Property = Literal["satisfiable", "twins", "sabotages", "fair", "deterministic"]
-PROPERTIES: tuple[Property, ...] = ("satisfiable", "twins", "sabotages", "fair", "deterministic")
+Property = Literal["satisfiable", "counterfeits", "mutations", "invariance", "deterministic"]
+PROPERTIES: tuple[Property, ...] = ("satisfiable", "counterfeits", "mutations", "invariance", "deterministic")
+OLD_NAMES: dict[str, Property] = {"twins": "counterfeits", "sabotages": "mutations", "fair": "invariance"}
 
 
 class _Part(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class Row(_Part):
-    """One thing that was tried. ``holds``: None where it does not apply. ``why``: in words, what is wrong, or missing.
+class ProofRow(_Part):
+    """One test. ``holds``: None where it does not apply. ``why``: in words, what is wrong or missing.
 
-    ``values`` are JSON: what was measured.
+    ``values``: what was measured, as JSON.
     """
 
     name: str
@@ -27,21 +28,21 @@ class Row(_Part):
 
 
 class Proof(_Part):
-    """A property of a scene. ``unable``: why it could not be looked into; then there are no rows."""
+    """The proof of one property. ``unable``: why it could not be tested; then there are no rows."""
 
     scene: str
     about: Property
-    rows: tuple[Row, ...] = ()
+    rows: tuple[ProofRow, ...] = ()
     unable: str = ""
     seconds: float = 0.0
 
     @property
     def holds(self) -> bool | None:
-        """Whether everything that was tried came out as it must; None where nothing applies."""
+        """Whether all tests passed; None where none applies."""
         tried = [row.holds for row in self.rows if row.holds is not None]
         return all(tried) if tried else None
 
     @property
-    def faults(self) -> tuple[Row, ...]:
-        """What did not come out so."""
+    def faults(self) -> tuple[ProofRow, ...]:
+        """The tests that failed."""
         return tuple(row for row in self.rows if row.holds is False)

@@ -1,4 +1,4 @@
-"""Proofs that were made before, kept by what they were made of: a scene's file with its caches, its spec, the code."""
+"""Keeps proofs, keyed by a digest of what they depend on: the scene with its caches, its spec, the code."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from bench.validity.proof import Property
 
 _BENCH = Path(__file__).parent.parent
-# What has a part in an audit, or in what is done to a scene: a change of any of it makes every proof void.
+# The code of audits and variants: a change of any of it invalidates every proof.
 _CODE = ("audit/**/*.py", "scenes/*.py", "validity/**/*.py")
 
 
@@ -31,21 +31,21 @@ class _Kept(BaseModel):
 
 
 def proofs_folder() -> Path:
-    """Where proofs are kept, and reports written unless told otherwise."""
+    """Where proofs are kept and, by default, reports are written."""
     return home_folder() / "validation"
 
 
 def key_of(spec: Spec, blend: Path, blender: str) -> str:
-    """What a scene's proofs stand on. ``blender``: its version."""
-    made = hashlib.sha256(f"{blender}\n{_code()}\n{spec.model_dump_json()}\n".encode())
-    made.update(blend.read_bytes())
+    """The digest that a scene's proofs are kept by. ``blender``: its version."""
+    digest = hashlib.sha256(f"{blender}\n{_code()}\n{spec.model_dump_json()}\n".encode())
+    digest.update(blend.read_bytes())
     for name, size in sorted(_beside(blend)):
-        made.update(f"{name}\0{size}\n".encode())
-    return made.hexdigest()
+        digest.update(f"{name}\0{size}\n".encode())
+    return digest.hexdigest()
 
 
 def kept_proof(scene: str, about: Property, key: str) -> Proof | None:
-    """The proof of that property that was made of the same, if there is one."""
+    """The kept proof of a property, if its key is the same."""
     try:
         kept = _Kept.model_validate_json(_path(scene, about).read_bytes())
     except (OSError, ValidationError):
@@ -54,7 +54,7 @@ def kept_proof(scene: str, about: Property, key: str) -> Proof | None:
 
 
 def keep(proof: Proof, key: str) -> None:
-    """Keeps a proof in the place of an older one. Raises OSError."""
+    """Keeps a proof; replaces an older one. Raises OSError."""
     write_whole(_path(proof.scene, proof.about), _Kept(key=key, proof=proof).model_dump_json(), durable=False)
 
 
@@ -64,11 +64,11 @@ def _path(scene: str, about: Property) -> Path:
 
 @cache
 def _code() -> str:
-    made = hashlib.sha256()
+    digest = hashlib.sha256()
     for path in sorted({path for pattern in _CODE for path in _BENCH.glob(pattern)}):
-        made.update(f"{path.relative_to(_BENCH)}\0".encode())
-        made.update(path.read_bytes())
-    return made.hexdigest()
+        digest.update(f"{path.relative_to(_BENCH)}\0".encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def _beside(blend: Path) -> Iterator[tuple[str, int]]:

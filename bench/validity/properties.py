@@ -1,4 +1,4 @@
-"""The five properties: what each is called and asks, and how it is proven of a scene on the desk."""
+"""The five properties: title and claim of each, and the function that proves it of a scene."""
 
 from __future__ import annotations
 
@@ -13,43 +13,42 @@ from bench.validity.mutations import detection
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from bench.validity.proof import Property, Row
-    from bench.validity.variant_builder import Desk
+    from bench.validity.proof import ProofRow, Property
+    from bench.validity.variant_builder import VariantBuilder
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class PropertyProof:
     """``title`` and ``claim`` head a report; ``prove`` gives what was tried, and raises NotScored, CannotStart."""
 
     title: str
     claim: str
-    prove: Callable[[Desk], Iterable[Row]]
+    prove: Callable[[VariantBuilder], Iterable[ProofRow]]
 
 
-ASKED: Mapping[Property, Asked] = {
-    "satisfiable": Asked(
+PROPERTY_PROOFS: Mapping[Property, PropertyProof] = {
+    "satisfiable": PropertyProof(
         "Satisfiable",
-        "Each reference scene has MPR 1.0 and SPR 1.0, its actors are found for certain, its assertions hold.",
+        "Each reference scene has MPR 1.0 and SPR 1.0, its actors are resolved, its assertions hold.",
         file_properties.satisfiable,
     ),
-    "twins": Asked(
-        "It sees through fakes",
-        "A twin of each scene in motion looks the same and has no physics: one moves by keys, one is played from "
-        "files. Its MPR falls by at least the share that predicates of solvers have in it.",
+    "counterfeits": PropertyProof(
+        "It rejects counterfeits",
+        "Two counterfeits of each scene in motion look the same and have no physics: one moves by keys, one is played "
+        "from files. MPR falls by at least the share that solver predicates have in it.",
         rejection.prove,
     ),
-    "sabotages": Asked(
+    "mutations": PropertyProof(
         "Every predicate matters",
-        "Each check of each scene is broken in every way that there is: it fails, and with it only what follows by "
-        "reason.",
+        "Each check of each scene is broken in every way listed below: it fails, and others only for a stated reason.",
         detection.prove,
     ),
-    "fair": Asked(
-        "Fair",
-        f"Organised, named or measured otherwise, a scene scores the same within {equal_scores.TOLERANCE}.",
+    "invariance": PropertyProof(
+        "Invariant",
+        f"A scene that is organised, named or measured in another way scores the same within {equal_scores.TOLERANCE}.",
         equal_scores.prove,
     ),
-    "deterministic": Asked(
+    "deterministic": PropertyProof(
         "Deterministic",
         "Another process, and one that has read other files before, give the same audit, byte for byte.",
         file_properties.deterministic,

@@ -1,4 +1,4 @@
-"""The report of a validation: Markdown with a table for each property, and JSON with every row.
+"""Writes the report of a validation: Markdown with a table for each property, and JSON with every row.
 
 The same proofs give the same Markdown.
 """
@@ -9,24 +9,24 @@ import json
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from bench.validity.invariance.equal_scores import GUISES
-from bench.validity.mutations.catalogue import SABOTAGES
+from bench.validity.invariance.equal_scores import REWRITES
+from bench.validity.mutations.catalogue import MUTATIONS
 from bench.validity.proof import PROPERTIES
 from bench.validity.proof_cache import proofs_folder
-from bench.validity.properties import ASKED
+from bench.validity.properties import PROPERTY_PROOFS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from bench.validity.proof import Proof, Property, Row
+    from bench.validity.proof import Proof, ProofRow, Property
 
 _MARKS = {True: "yes", False: "**no**", None: "–"}
 _HEAD = """# What the benchmark proves about itself
 
-Written by `simworlds bench validate` (`make bench-validate`), never by hand. Each property is proven on the reference
-scenes, one for each spec: a script builds it, Blender bakes it. Whatever is done to a scene is saved as a file of its
-own, which the audit opens and reads like any other: confined, and knowing nothing of what it was made from.
+Written by `simworlds bench validate` (`make bench-validate`); do not edit. Each property is proven on the reference
+scenes, one for each spec: a script builds it, Blender bakes it. Every variant of a scene is saved as a file of its own,
+which the audit opens and reads like any other: confined, without knowing what it was made from.
 """
 
 
@@ -34,8 +34,8 @@ def write_report(proofs: Sequence[Proof], folder: Path | None = None) -> Path:
     """Writes ``validation.md`` and ``validation.json``. Returns the path of the first. Raises OSError."""
     folder = folder or proofs_folder()
     folder.mkdir(parents=True, exist_ok=True)
-    told = [proof.model_dump() for proof in proofs]
-    (folder / "validation.json").write_text(json.dumps(told, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    rows = [proof.model_dump() for proof in proofs]
+    (folder / "validation.json").write_text(json.dumps(rows, indent=1, ensure_ascii=False) + "\n", "utf-8")
     path = folder / "validation.md"
     path.write_text(as_markdown(proofs), "utf-8")
     return path
@@ -49,17 +49,17 @@ def as_markdown(proofs: Sequence[Proof]) -> str:
     parts = [_HEAD, _summary({about: own for about, own in by_property.items() if own})]
     for about, own in by_property.items():
         if own:
-            asked = ASKED[about]
-            parts.append(f"## {asked.title}\n\n{asked.claim}\n\n{_SECTIONS[about](own)}")
+            info = PROPERTY_PROOFS[about]
+            parts.append(f"## {info.title}\n\n{info.claim}\n\n{_SECTIONS[about](own)}")
     faults = list(_faults(proofs))
-    parts.append("## What does not hold\n\n" + ("\n".join(f"- {line}" for line in faults) or "Nothing."))
+    parts.append("## Failures\n\n" + ("\n".join(f"- {line}" for line in faults) or "Nothing."))
     return "\n".join(part.rstrip() + "\n" for part in parts)
 
 
 def _faults(proofs: Sequence[Proof]) -> Iterator[str]:
     for proof in proofs:
         if proof.unable:
-            yield f"{proof.scene}, {proof.about}: could not be looked into: {proof.unable}"
+            yield f"{proof.scene}, {proof.about}: could not be tested: {proof.unable}"
         yield from (f"{proof.scene}, {proof.about}, {row.name}: {row.why}" for row in proof.faults)
 
 
@@ -76,13 +76,13 @@ def _summary(proofs: Mapping[Property, Sequence[Proof]]) -> str:
         held = sum(proof.holds is True for proof in own)
         rows.append(
             [
-                ASKED[about].title,
+                PROPERTY_PROOFS[about].title,
                 f"{held} of {len(applies)}",
                 len(tried),
                 sum(row.holds is True for row in tried),
             ]
         )
-    return _table(["property", "scenes in which it holds", "tried", "came out as they must"], rows)
+    return _table(["property", "scenes in which it holds", "tests", "passed"], rows)
 
 
 # The sections
@@ -97,7 +97,7 @@ def _satisfiable(proofs: Sequence[Proof]) -> str:
     return _table(["scene", *names[:4], "MPR", "SPR", "holds"], rows)
 
 
-def _twins(proofs: Sequence[Proof]) -> str:
+def _counterfeits(proofs: Sequence[Proof]) -> str:
     rows = [
         [
             proof.scene,
@@ -115,98 +115,98 @@ def _twins(proofs: Sequence[Proof]) -> str:
         for proof, row in _rows(proofs)
     ]
     head = [
-        *("scene", "twin", "transferred", "rendered by", "difference", "noise", "without physics"),
-        *("MPR", "falls by", "must", "told apart"),
+        *("scene", "counterfeit", "transferred", "rendered by", "difference", "noise", "without physics"),
+        *("MPR", "falls by", "must fall by", "rejected"),
     ]
     return (
-        "Difference: the mean of |red|, |green|, |blue| (0 to 1) between the pictures of scene and twin at start, "
-        "middle and end. Without physics: that of the scene from which nothing but its physics was taken; a twin "
-        "may differ by a tenth of it. Workbench renders 160 × 90; it shows nothing of a gas that is a volume, nor of "
-        "water behind glass: such scenes are rendered by Cycles (96 × 54, 16 samples). Noise: how much one of these "
-        "differs from itself with another seed; its twin may as much, but not by half of what is without physics. "
-        "Moved: keyed, or played, as a whole; shaped: stored shapes; reshaped: another surface at each frame, as of "
-        "liquids.\n\n" + _table(head, rows)
+        "Difference: the mean of |red|, |green|, |blue| (0 to 1) between the pictures of scene and counterfeit at "
+        "start, middle and end. Without physics: the difference if only the physics is removed; a counterfeit may "
+        "differ by a tenth of that. Workbench renders 160 × 90. It shows neither volumes of gas nor water behind "
+        "glass: such scenes are rendered by Cycles (96 × 54, 16 samples). Noise: the difference of such a scene from "
+        "itself with another seed; its counterfeit may differ as much, but at most by half of the difference without "
+        "physics. Moved: as a whole, by keys or files; shaped: by stored shapes; reshaped: by another surface at "
+        "each frame, as for liquids.\n\n" + _table(head, rows)
     )
 
 
-def _sabotages(proofs: Sequence[Proof]) -> str:
+def _mutations(proofs: Sequence[Proof]) -> str:
     rows = [
         [
             proof.scene,
             len({(row.values["actor"], row.values["predicate"]) for row in own}),
             len(own),
             sum(row.holds is True for row in own),
-            sum(len(row.values.get("followed", ())) for row in own),
+            sum(len(row.values.get("consequences", ())) for row in own),
             "yes" if all(row.holds for row in proof.rows if row.holds is not None) else "**no**",
         ]
         for proof in proofs
-        for own in ([row for row in proof.rows if row.holds is not None and "sabotage" in row.values],)
+        for own in ([row for row in proof.rows if row.holds is not None and "mutation" in row.values],)
     ]
     return "\n\n".join(
         [
-            _table(["scene", "checks", "sabotages", "seen", "others that followed", "all seen"], rows),
-            "By predicate, and how it is broken:",
+            _table(["scene", "checks", "mutations", "detected", "consequences", "all detected"], rows),
+            "Mutations by predicate:",
             _by_predicate([row for _, row in _rows(proofs)]),
-            "What may fail with a sabotage, and why:",
+            "Consequences: the other checks that may fail with a mutation, and why:",
             _reasons(),
-            "One sabotage of each scene, chosen by a digest of its name, was audited twice: by the Blender that "
-            "reads all of them in turn, and by one that was started for it. Both must give the same bytes; "
-            f"{sum(row.holds is True for _, row in _rows(proofs) if 'sabotage' not in row.values)} did.",
+            "One mutation of each scene, chosen by a digest of its name, is audited twice: by the Blender that reads "
+            "all of them in turn, and by a new one. Both must give the same bytes; "
+            f"{sum(row.holds is True for _, row in _rows(proofs) if 'mutation' not in row.values)} did.",
         ]
     )
 
 
-def _by_predicate(rows: Sequence[Row]) -> str:
-    tried = Counter(
-        (row.values.get("predicate"), row.values.get("sabotage")) for row in rows if row.holds is not None
+def _by_predicate(rows: Sequence[ProofRow]) -> str:
+    tested = Counter(
+        (row.values.get("predicate"), row.values.get("mutation")) for row in rows if row.holds is not None
     )
-    seen = Counter((row.values.get("predicate"), row.values.get("sabotage")) for row in rows if row.holds)
+    detected = Counter((row.values.get("predicate"), row.values.get("mutation")) for row in rows if row.holds)
     lines: list[list[object]] = []
-    for predicate, sabotages in SABOTAGES.items():
-        told = dict.fromkeys(each.told for each in sabotages)
-        for name in told:
-            if count := tried[predicate, name]:
-                lines.append([f"`{predicate}`", name, count, seen[predicate, name]])
-    return _table(["predicate", "sabotage", "tried", "seen"], lines)
+    for predicate, mutations in MUTATIONS.items():
+        for name in dict.fromkeys(mutation.label for mutation in mutations):
+            if count := tested[predicate, name]:
+                lines.append([f"`{predicate}`", name, count, detected[predicate, name]])
+    return _table(["predicate", "mutation", "tested", "detected"], lines)
 
 
 def _reasons() -> str:
-    found: dict[tuple[str, str], list[str]] = {}
-    for sabotages in SABOTAGES.values():
-        for sabotage in sabotages:
-            for follows in sabotage.follows:
-                names = found.setdefault((follows.why, follows.who), [])
-                names += [name for name in follows.predicates if name not in names]
+    predicates: dict[tuple[str, str], list[str]] = {}
+    for mutations in MUTATIONS.values():
+        for mutation in mutations:
+            for each in mutation.consequences:
+                names = predicates.setdefault((each.why, each.who), [])
+                names += [name for name in each.predicates if name not in names]
     whose = {
-        "changed": "of actors whose objects were changed",
-        "carried": "of these, and of what moves with them",
-        "meeting": "of actors that meet them",
-        "all": "of all",
+        "changed": "those whose objects were changed",
+        "carried": "these, and those that move with them",
+        "meeting": "those that interact with them",
+        "all": "all",
     }
     rows = [
-        [why, ", ".join(f"`{name}`" for name in names), whose[who]] for (why, who), names in found.items()
+        [why, ", ".join(f"`{name}`" for name in names), whose[who]]
+        for (why, who), names in predicates.items()
     ]
-    return _table(["because", "these may fail", "whose"], rows)
+    return _table(["reason", "checks that may fail", "of which actors"], rows)
 
 
-def _fair(proofs: Sequence[Proof]) -> str:
+def _invariance(proofs: Sequence[Proof]) -> str:
     rows: list[list[object]] = []
     for proof in proofs:
         own = {row.name: row for row in proof.rows}
-        rows.append([proof.scene, *(_apart(own.get(guise)) for guise in GUISES), _MARKS[proof.holds]])
-    meaning = "\n".join(f"- {name}: {what}" for name, what in GUISES.items())
+        rows.append([proof.scene, *(_change(own.get(rewrite)) for rewrite in REWRITES), _MARKS[proof.holds]])
+    meaning = "\n".join(f"- {name}: {what}" for name, what in REWRITES.items())
     return (
-        f"{meaning}\n\nBy how much MPR and SPR change; –: the scene cannot be put into that guise, as nothing in it is "
-        f"grouped, or still, or of several meshes.\n\n{_table(['scene', *GUISES, 'holds'], rows)}"
+        f"{meaning}\n\nChanges of MPR and SPR. –: the rewrite does not apply, as nothing in the scene is grouped, "
+        f"or static, or made of several meshes.\n\n{_table(['scene', *REWRITES, 'holds'], rows)}"
     )
 
 
-def _apart(row: Row | None) -> str:
+def _change(row: ProofRow | None) -> str:
     if row is None or row.holds is None:
         return "–"
-    apart: dict[str, Any] = row.values.get("apart", {})
-    told = " / ".join(_number(apart.get(name), 3) for name in ("mpr", "spr"))
-    return told if row.holds else f"**{told}**"
+    change: dict[str, Any] = row.values.get("change", {})
+    text = " / ".join(_number(change.get(name), 3) for name in ("mpr", "spr"))
+    return text if row.holds else f"**{text}**"
 
 
 def _deterministic(proofs: Sequence[Proof]) -> str:
@@ -219,14 +219,14 @@ def _deterministic(proofs: Sequence[Proof]) -> str:
 
 _SECTIONS: Mapping[Property, Callable[[Sequence[Proof]], str]] = {
     "satisfiable": _satisfiable,
-    "twins": _twins,
-    "sabotages": _sabotages,
-    "fair": _fair,
+    "counterfeits": _counterfeits,
+    "mutations": _mutations,
+    "invariance": _invariance,
     "deterministic": _deterministic,
 }
 
 
-def _rows(proofs: Sequence[Proof]) -> list[tuple[Proof, Row]]:
+def _rows(proofs: Sequence[Proof]) -> list[tuple[Proof, ProofRow]]:
     return [(proof, row) for proof in proofs for row in proof.rows]
 
 

@@ -1,15 +1,11 @@
-"""Proves properties of scenes, several scenes at a time, each in a process of its own."""
+"""Proves properties of scenes, several scenes at a time, each scene in a process of its own."""
 
 from __future__ import annotations
 
-import os
-import signal
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager, suppress
+from contextlib import closing
 from dataclasses import dataclass
-from multiprocessing import active_children, get_context
 from typing import TYPE_CHECKING
 
 from bench.audit.untrusted_blend import Means, NotScored
@@ -17,27 +13,27 @@ from bench.references.reference_scenes import CannotBuild, build, has_reference
 from bench.scenes.spec import specs
 from bench.validity.proof import Proof
 from bench.validity.proof_cache import keep, kept_proof, key_of
-from bench.validity.properties import ASKED
-from bench.validity.variant_builder import Desk
+from bench.validity.properties import PROPERTY_PROOFS
+from bench.validity.variant_builder import VariantBuilder
+from bench.worker_processes import run_in_processes
 from simworlds.sandbox.errors import BlenderError
 from simworlds.sandbox.launch import find_blender
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from bench.scenes.spec import Spec
     from bench.validity.proof import Property
 
-# One scene may have three dozen variants; each file has its own time within this.
-_SECONDS = 300.0
+_SECONDS = 300.0  # for each variant; a scene may have three dozen
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
-    """A scene, what is to be proven of it, and whether what is kept is to be proven again.
+class ProofTask:
+    """A scene and the properties to prove. ``again``: even if there is a kept proof.
 
-    ``blend``: the scene's file; None: its reference, built where it is not there.
+    ``blend``: the scene's file; None: its reference, which is built if missing.
     """
 
     spec: Spec
@@ -47,8 +43,8 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
-class Done:
-    """What came of a task: a proof for each property; how many of them were kept; seconds of building and proving."""
+class ProvenScene:
+    """The proofs of a scene; how many of them were kept; seconds of building and of proving."""
 
     scene: str
     proofs: tuple[Proof, ...]
@@ -58,108 +54,80 @@ class Done:
 
 
 def subset() -> tuple[Spec, ...]:
-    """One scene of each category and level: its first."""
+    """The first scene of each category and level."""
     first: dict[str, Spec] = {}
     for spec in specs():
         first.setdefault(spec.cell, spec)
     return tuple(first.values())
 
 
-def prove_all(tasks: Sequence[Task], jobs: int) -> Iterator[Done]:
-    """Does tasks, as many at a time as ``jobs``; what is done first comes first. An interrupt ends all of them."""
+def prove_all(tasks: Sequence[ProofTask], jobs: int) -> Iterator[ProvenScene]:
+    """Runs ``jobs`` tasks at a time; yields in the order in which they end. An interrupt ends all of them."""
     if jobs <= 1:
-        yield from map(prove, tasks)
+        yield from (prove(task, _tell) for task in tasks)
         return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_leave_terminal) as pool:
-        with _deaf():  # and so are the processes that are started now, until they have a scene
-            waiting = [pool.submit(_prove_interruptibly, task) for task in tasks]
-        try:
-            for future in as_completed(waiting):
-                yield future.result()
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            for pid in [child.pid for child in active_children() if child.pid]:
-                with suppress(ProcessLookupError):
-                    os.kill(pid, signal.SIGINT)
-            raise
+    with closing(run_in_processes(tasks, prove, jobs, lambda _task, doing: _tell(doing))) as results:
+        for task, proven, fault in results:
+            yield proven or _unproven(task, fault)
 
 
-@contextmanager
-def _deaf() -> Generator[None]:
-    """Ignores interrupts."""
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-def _leave_terminal() -> None:
-    """Leaves a terminal's interrupts to the first process, which passes them on, once."""
-    os.setpgid(0, 0)
-
-
-def _prove_interruptibly(task: Task) -> Done:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        return prove(task)
-    finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-def prove(task: Task) -> Done:
-    """Does one task. What hinders it is told in its proofs."""
+def prove(task: ProofTask, tell: Callable[[str], None] = lambda _: None) -> ProvenScene:
+    """Runs one task. Failures are stated in its proofs."""
     started = time.monotonic()
     scene = task.spec.id
     try:
-        blend = task.blend or _reference(task.spec)
+        blend = task.blend or _reference(task.spec, tell)
         key = key_of(task.spec, blend, find_blender().version)
         built = time.monotonic()
         kept = [] if task.again else [kept_proof(scene, each, key) for each in task.properties]
-        found = {proof.about: proof for proof in kept if proof is not None}
-        missing: list[Property] = [each for each in task.properties if each not in found]
-        made = {proof.about: proof for proof in _proofs(task.spec, blend, missing, key)}
+        kept_proofs = {proof.about: proof for proof in kept if proof is not None}
+        missing: list[Property] = [each for each in task.properties if each not in kept_proofs]
+        new_proofs = {proof.about: proof for proof in _proofs(task, blend, missing, key, tell)}
     except (CannotBuild, BlenderError, OSError) as error:
-        return Done(scene, tuple(_unable(scene, each, error) for each in task.properties), 0, 0.0, 0.0)
-    proofs = tuple((found | made)[each] for each in task.properties)
-    return Done(scene, proofs, len(found), built - started, time.monotonic() - built)
+        return _unproven(task, str(error) or type(error).__name__)
+    proofs = tuple((kept_proofs | new_proofs)[each] for each in task.properties)
+    return ProvenScene(scene, proofs, len(kept_proofs), built - started, time.monotonic() - built)
 
 
-def _reference(spec: Spec) -> Path:
+def _unproven(task: ProofTask, why: str) -> ProvenScene:
+    scene = task.spec.id
+    proofs = tuple(Proof(scene=scene, about=each, unable=why) for each in task.properties)
+    return ProvenScene(scene, proofs, 0, 0.0, 0.0)
+
+
+def _reference(spec: Spec, tell: Callable[[str], None]) -> Path:
     if not has_reference(spec.id):
         raise CannotBuild(f"there is no reference scene for {spec.id}")
-    _tell(f"{spec.id}: building, unless it is there")
+    tell(f"{spec.id}: building, if it is missing")
     return build(spec.id)
 
 
 def _tell(doing: str) -> None:
-    """Says on a terminal what is being done."""
+    """Prints what is being done, on a terminal only."""
     if sys.stderr.isatty():
         print(f"{doing} …", file=sys.stderr, flush=True)
 
 
-def _proofs(spec: Spec, blend: Path, properties: Sequence[Property], key: str) -> Iterator[Proof]:
+def _proofs(
+    task: ProofTask, blend: Path, properties: Sequence[Property], key: str, tell: Callable[[str], None]
+) -> Iterator[Proof]:
     if not properties:
         return
-    with Desk(spec, blend, Means(seconds=_SECONDS)) as desk:
+    with VariantBuilder(task.spec, blend, Means(seconds=_SECONDS)) as builder:
         for each in properties:
-            _tell(f"{spec.id}: {each}")
-            proof = prove_on(desk, each)
+            tell(f"{task.spec.id}: {each}")
+            proof = prove_property(builder, each)
             if not proof.unable:
                 keep(proof, key)
             yield proof
 
 
-def prove_on(desk: Desk, about: Property) -> Proof:
-    """Proves one property of the scene on the desk."""
+def prove_property(builder: VariantBuilder, about: Property) -> Proof:
+    """Proves one property of a scene."""
     started = time.monotonic()
-    scene = desk.spec.id
+    scene = builder.spec.id
     try:
-        rows = tuple(ASKED[about].prove(desk))
+        rows = tuple(PROPERTY_PROOFS[about].prove(builder))
     except (NotScored, BlenderError, OSError) as error:
-        return _unable(scene, about, error)
+        return Proof(scene=scene, about=about, unable=str(error) or type(error).__name__)
     return Proof(scene=scene, about=about, rows=rows, seconds=round(time.monotonic() - started, 2))
-
-
-def _unable(scene: str, about: Property, error: Exception) -> Proof:
-    return Proof(scene=scene, about=about, unable=str(error) or type(error).__name__)

@@ -1,8 +1,7 @@
-"""One scene on the desk: a copy in a folder of its own, a Blender that makes variants of it, one that audits them.
+"""Makes variants of a scene and audits them: a copy in a folder of its own, one Blender that edits, one that audits.
 
-Both are confined as for any untrusted file. The scene itself is only read; of its caches the folder has links, which
-the workshop can neither write through nor delete behind. Either Blender is started when it is first needed, and again
-after it has crashed.
+Both are confined as for any untrusted file. The scene itself is only read; the folder has links to its caches, through
+which nothing can be written or deleted. Each Blender is started when it is first needed, and again after a crash.
 """
 
 from __future__ import annotations
@@ -44,35 +43,35 @@ _PROGRAM = Program(
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
-    """A file without its relations: facts, actors, and the audit of their predicates."""
+class SceneReading:
+    """A file without relations: its facts, actors, and the audit of their predicates."""
 
     scene: Scene
     found: dict[str, Found]
     audit: Audit
 
 
-class Desk:
-    """To be used in a ``with``. What it makes is gone afterwards."""
+class VariantBuilder:
+    """A context manager; the variants are deleted at its end."""
 
     def __init__(self, spec: Spec, blend: Path, means: Means | None = None) -> None:
         self.spec, self.blend = spec, blend.resolve()
         means = means or Means()
         self._means = replace(means, read=(*means.read, self.blend.parent))
 
-    def __enter__(self) -> Desk:
+    def __enter__(self) -> VariantBuilder:
         self._stack = ExitStack()
-        made = tempfile.TemporaryDirectory(prefix="simworlds-validate-", ignore_cleanup_errors=True)
-        self.folder = Path(self._stack.enter_context(made)).resolve()
+        folder = tempfile.TemporaryDirectory(prefix="simworlds-validate-", ignore_cleanup_errors=True)
+        self.folder = Path(self._stack.enter_context(folder)).resolve()
         self.original = self.folder / self.blend.name
         shutil.copy2(self.blend, self.original)
-        for beside in self.blend.parent.iterdir():
-            if beside.is_dir():
-                (self.folder / beside.name).symlink_to(beside)
-        self._auditor = _Session(lambda path: Untrusted(path, self._means))
-        self._workshop = _Session(lambda path: Untrusted(path, self._means, _PROGRAM, self.folder))
+        for path in self.blend.parent.iterdir():
+            if path.is_dir():
+                (self.folder / path.name).symlink_to(path)
+        self._auditor = _ReusedBlender(lambda path: Untrusted(path, self._means))
+        self._worker = _ReusedBlender(lambda path: Untrusted(path, self._means, _PROGRAM, self.folder))
         self._stack.callback(self._auditor.close)
-        self._stack.callback(self._workshop.close)
+        self._stack.callback(self._worker.close)
         return self
 
     def __exit__(
@@ -83,66 +82,66 @@ class Desk:
     # Variants
 
     def make(self, name: str, job: str, **arguments: Any) -> tuple[Path, Any]:
-        """Has the workshop do a job with the scene as it was, and saves what becomes of it as ``name``.
+        """Runs a job of ``inside/variant_builder.py`` on the original scene, and saves the result as ``name``.
 
-        Returns the file and the workshop's answer. Raises NotScored where it refuses or crashes, CannotStart.
+        Returns the file and the job's answer. Raises NotScored where it refuses or crashes, CannotStart.
         """
         path = self.folder / f"{name}.blend"
-        shop = self._workshop.opened(self.original)
-        told = shop.ask(job, doing=f"at the {job}", **arguments)
-        shop.ask("save", doing="saving", path=str(path))
-        return path, told
+        blender = self._worker.opened(self.original)
+        answer = blender.ask(job, doing=f"running {job}", **arguments)
+        blender.ask("save", doing="saving", path=str(path))
+        return path, answer
 
-    def pictures(self, path: Path, *, cycles: bool, seed: int = 0) -> None:
+    def render(self, path: Path, *, cycles: bool, seed: int = 0) -> None:
         """Renders start, middle and end of a variant, beside it: its name with -0, -1, -2.png.
 
         By Workbench, or by Cycles with ``seed``.
         """
-        shop = self._workshop.opened(path)
-        shop.ask("take", doing="rendering", path=str(path.with_suffix("")), cycles=cycles, seed=seed)
+        blender = self._worker.opened(path)
+        blender.ask("render", doing="rendering", path=str(path.with_suffix("")), cycles=cycles, seed=seed)
 
     def difference(self, first: Path, second: Path) -> float:
         """The mean absolute difference of two variants' pictures: red, green and blue from 0 to 1."""
         names = {"first": str(first.with_suffix("")), "second": str(second.with_suffix(""))}
-        return float(self._workshop.opened(self.original).ask("compare", doing="comparing", **names))
+        return float(self._worker.opened(self.original).ask("compare", doing="comparing", **names))
 
     # Audits
 
     @cached_property
-    def reading(self) -> Reading:
-        """The scene as it is."""
+    def reading(self) -> SceneReading:
+        """The original scene."""
         return self.read(self.original)
 
     @cached_property
     def audited(self) -> Audit:
-        """The audit of the scene as it is, where it lies, by a Blender that sees nothing else."""
+        """The audit of the original scene in its own folder, in a new Blender."""
         return audit(self.blend, self.spec, self._means)
 
-    def read(self, path: Path) -> Reading:
-        """What a variant is, without its relations. Raises NotScored, CannotStart."""
+    def read(self, path: Path) -> SceneReading:
+        """Reads a variant without relations. Raises NotScored, CannotStart."""
         scene = read_scene(self._auditor.opened(path), play=True)
         found = find_actors(self.spec, scene)
-        return Reading(scene, found, audited(self.spec, scene, found))
+        return SceneReading(scene, found, audited(self.spec, scene, found))
 
     def audit(self, path: Path) -> Audit:
-        """The whole audit of a variant, by the Blender that has read the others. Raises NotScored, CannotStart."""
+        """Audits a variant in the Blender that has read the others. Raises NotScored, CannotStart."""
         file = self._auditor.opened(path)
         return audit_of(file, read_scene(file, play=True), self.spec)
 
     def audit_alone(self, path: Path) -> Audit:
-        """The whole audit of a variant, by a Blender that sees nothing else."""
+        """Audits a variant in a new Blender."""
         return audit(path, self.spec, self._means)
 
 
-class _Session:
-    """A Blender that opens one file after the other."""
+class _ReusedBlender:
+    """A Blender that is reused for one file after another."""
 
     def __init__(self, start: Callable[[Path], Untrusted]) -> None:
         self._start, self._stack = start, ExitStack()
         self._file: Untrusted | None = None
 
     def opened(self, path: Path) -> Untrusted:
-        """The Blender with that file open: the one that there is, unless it has crashed. Raises NotScored."""
+        """Opens the file in the running Blender, or in a new one after a crash. Raises NotScored."""
         if self._file is not None:
             try:
                 self._file.reopen(path)

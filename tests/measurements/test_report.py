@@ -9,7 +9,7 @@ import pytest
 
 from measurements.main import main
 from measurements.report import Figure, Part, markdown, targets_table, write
-from measurements.targets import TARGETS, Target, shown
+from measurements.targets import TARGETS, Target, format_value
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -32,7 +32,7 @@ def test_a_target_is_reached_on_its_good_side_only(
 
 
 def test_what_is_just_missed_does_not_look_reached() -> None:
-    assert shown(0.7496, "share") != "0.75"
+    assert format_value(0.7496, "share") != "0.75"
     row = targets_table([Figure("hit1", 0.7496)]).rows[0]
     assert "NOT reached" in row
 

@@ -9,7 +9,7 @@ import bpy
 
 from simworlds.sandbox.inside import mantaflow
 
-from . import physics
+from . import baking
 
 
 def main(arguments):
@@ -21,7 +21,7 @@ def main(arguments):
     bpy.ops.wm.save_as_mainfile(
         filepath=path, check_existing=False, compress=True
     )  # caches lie beside the file
-    physics.bake(f"//{os.path.basename(path).removesuffix('.blend')}_fluids")
+    baking.bake(f"//{os.path.basename(path).removesuffix('.blend')}_fluids")
     bpy.context.scene.frame_set(1)
     bpy.ops.wm.save_mainfile(compress=True)
     sys.stdout.flush()

@@ -1,9 +1,9 @@
-"""The system ``folder=DIR``: files that anybody made, one .blend a scene.
+"""The system ``folder=DIR``: existing files, one .blend for each scene.
 
 ``DIR/<scene id>.blend``, or the one .blend in ``DIR/<scene id>/`` (of several: ``<scene id>.blend`` or
 ``scene.blend``). A video beside it (a picture of a static scene) of the same name, or called ``video`` or ``still``,
-is what the judge sees; without one, the .blend is rendered. A ``made.json`` beside it, or ``<scene id>.json``, may tell
-what the scene took: ``{"model": "…", "cost": 1.2, "minutes": 30}``.
+is shown to the judge; without one, the .blend is rendered. A ``made.json`` beside it, or ``<scene id>.json``, may
+state model, cost and time: ``{"model": "…", "cost": 1.2, "minutes": 30}``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, NonNegativeFloat, ValidationError
 from bench.frames.video import PICTURES, VIDEOS
 from bench.scenes.spec import FOLDER
 from bench.sweep.content_hash import digests, files_below
-from bench.sweep.systems.system import Made, NotReady
+from bench.sweep.systems.system import SystemNotReady, SystemOutput
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 _CACHES = "blendcache_"
 
 
-class Told(BaseModel):
-    """What a ``made.json`` may tell. Other fields are passed over."""
+class MadeInfo(BaseModel):
+    """The contents of a ``made.json``. Other fields are ignored."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -39,19 +39,19 @@ class Told(BaseModel):
 
 
 @dataclass(frozen=True)
-class Folder:
+class FolderSystem:
     """Files in ``source``."""
 
     info: SystemInfo
     source: Path
 
     def ready(self) -> None:
-        """Raises NotReady."""
+        """Raises SystemNotReady."""
         if not self.source.is_dir():
-            raise NotReady(f"{self.source} is not a folder.")
+            raise SystemNotReady(f"{self.source} is not a folder.")
 
     def is_for(self, spec: Spec) -> bool:
-        """Any scene: one whose file is missing is counted as such."""
+        """True: a scene whose file is missing is counted as missing."""
         del spec
         return True
 
@@ -60,7 +60,7 @@ class Folder:
         return digests(self.source, self.files(spec))
 
     def files(self, spec: Spec) -> list[Path]:
-        """All in its own folder; of a file in the common one, all there but what is another scene's by its name."""
+        """All files in the scene's folder; in the common folder, all but those named after other scenes."""
         if not (self.source / f"{spec.id}.blend").is_file():
             own = self.source / spec.id
             return files_below(own) if own.is_dir() else []
@@ -72,32 +72,32 @@ class Folder:
             for path in (files_below(entry) if entry.is_dir() else [entry])
         ]
 
-    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> Made:
-        """Takes what is there."""
+    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> SystemOutput:
+        """Takes the existing files."""
         del place, tell
         try:
             blend = self._blend(spec)
         except ValueError as error:
-            return Made("missing", spec.prompt, str(error))
+            return SystemOutput("missing", spec.prompt, str(error))
         if blend is None:
-            return Made("missing", spec.prompt, "no file")
-        told = _told((blend.with_name("made.json"), blend.with_name(f"{spec.id}.json")))
-        models = {"model": told.model} if told.model else {}
+            return SystemOutput("missing", spec.prompt, "no file")
+        info = _made_info((blend.with_name("made.json"), blend.with_name(f"{spec.id}.json")))
+        models = {"model": info.model} if info.model else {}
         kinds = PICTURES if spec.category == "static" else VIDEOS
         video = _first(
             blend.with_name(f"{stem}{kind}") for stem in _stems(blend, spec) for kind in (*VIDEOS, *kinds)
         )
-        return Made("taken", spec.prompt, "", blend, video, models, told.cost, told.minutes)
+        return SystemOutput("taken", spec.prompt, "", blend, video, models, info.cost, info.minutes)
 
     def _blend(self, spec: Spec) -> Path | None:
-        """Raises ValueError where several might be meant."""
+        """The scene's file, or None. Raises ValueError if several are possible."""
         own = self.source / spec.id
         named = (self.source / f"{spec.id}.blend", own / f"{spec.id}.blend", own / "scene.blend")
-        if (found := _first(named)) is not None:
-            return found
+        if (path := _first(named)) is not None:
+            return path
         several = sorted(path for path in own.glob("*.blend") if path.is_file())
         if len(several) > 1:
-            raise ValueError(f"several .blend files, and none is called {spec.id}.blend or scene.blend")
+            raise ValueError(f"several .blend files, none of them called {spec.id}.blend or scene.blend")
         return several[0] if several else None
 
 
@@ -109,9 +109,9 @@ def _first(paths: Iterable[Path]) -> Path | None:
     return next((path for path in paths if path.is_file()), None)
 
 
-def _told(paths: Iterable[Path]) -> Told:
+def _made_info(paths: Iterable[Path]) -> MadeInfo:
     path = _first(paths)
     try:
-        return Told.model_validate_json(path.read_bytes()) if path is not None else Told()
+        return MadeInfo.model_validate_json(path.read_bytes()) if path is not None else MadeInfo()
     except (OSError, ValidationError):
-        return Told()
+        return MadeInfo()

@@ -1,7 +1,7 @@
-"""The systems ``simworlds`` and ``replay``: ``simworlds make`` and ``simworlds demo``, as a person calls them.
+"""The systems ``simworlds`` and ``replay``: they call ``simworlds make`` and ``simworlds demo``.
 
-Each scene is a run in a folder of its own. A run that was cut off is taken up again by ``simworlds resume``, so that
-nothing is paid for twice; how it ended, what it made and what it cost is read from its journal.
+Each scene is a run in a folder of its own. An interrupted run is continued by ``simworlds resume``, so that nothing is
+paid for twice; outcome, files and cost are read from its journal.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from typing import TYPE_CHECKING, Any, cast
 
 from agents.loop.errors import NoRun
 from agents.loop.journal import NAME, read_rows
-from bench.sweep.command import called, last_words
+from bench.sweep.command import last_output, run_simworlds
 from bench.sweep.records import FINAL, Outcome, SystemInfo
-from bench.sweep.systems.system import Made, NotReady
+from bench.sweep.systems.system import SystemNotReady, SystemOutput
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from bench.scenes.spec import Spec
 
-# The session that plays a scene: of each, the spec whose prompt asks for the same actors. The edit belongs to none.
-SESSIONS = {
+# Scene → the transcript whose prompt asks for the same actors. That of the edit has no scene.
+TRANSCRIPTS = {
     "rigid_D2_01": "dominoes",
     "cloth_D1_01": "tablecloth",
     "fluid_D1_01": "pour",  # cider from a keg into a glass, where the scene has milk from a jug into a bowl
@@ -38,8 +38,8 @@ _TOKENS = ("input", "output", "cache_read", "cache_write")
 
 
 @dataclass(frozen=True)
-class _Runs:
-    """``options``: further words of the command that begins a run; ``limits``: those of every sitting at it."""
+class _RunSystem:
+    """``options``: further words of the command that begins a run; ``limits``: also of those that resume it."""
 
     info: SystemInfo
     options: tuple[str, ...] = ()
@@ -55,32 +55,38 @@ class _Runs:
         del spec
         return []
 
-    def run(self, place: Path, prompt: str, words: Sequence[str], tell: Callable[[str], object]) -> Made:
-        """What is in a run's folder, after it was begun by ``words``, or taken up again where it was left."""
+    def run(
+        self, place: Path, prompt: str, words: Sequence[str], tell: Callable[[str], object]
+    ) -> SystemOutput:
+        """Begins a run by ``words``, or resumes it. Returns its result."""
         before = _read(place, prompt)
         if before is not None and before.outcome in FINAL:
             return before
-        tell("making it" if before is None else "going on with making it")
+        tell("making it" if before is None else "resuming it")
         log = place.with_name(f"{place.name}.log")
         log.parent.mkdir(parents=True, exist_ok=True)
         begin = [words[0], *self.options, *self.limits, "--quiet", "--run", str(place), "--", *words[1:]]
         if before is None:
-            shutil.rmtree(place, ignore_errors=True)  # one that was killed before it began
-        code = called(begin if before is None else ["resume", *self.limits, "--quiet", str(place)], log)
+            shutil.rmtree(place, ignore_errors=True)  # of a run that was killed before it began
+        code = run_simworlds(
+            begin if before is None else ["resume", *self.limits, "--quiet", str(place)], log
+        )
         after = _read(place, prompt)
         if after is None or (after.outcome not in FINAL and not after.why):
-            return Made("failed", prompt, f"simworlds {words[0]} ended with {code}: {last_words(log)}")
+            return SystemOutput(
+                "failed", prompt, f"simworlds {words[0]} ended with {code}: {last_output(log)}"
+            )
         return after
 
 
 @dataclass(frozen=True)
-class Make(_Runs):
-    """SimWorlds itself, asked by a scene's prompt."""
+class SimWorldsSystem(_RunSystem):
+    """Makes a scene with SimWorlds, from its prompt."""
 
     def ready(self) -> None:
-        """Raises NotReady without a key."""
+        """Raises SystemNotReady without a key."""
         if not any(os.environ.get(name) for name in KEYS):
-            raise NotReady(
+            raise SystemNotReady(
                 f"'simworlds make' asks a language model and needs a key: set {KEYS[0]}. Without one, try --system "
                 "replay."
             )
@@ -94,43 +100,43 @@ class Make(_Runs):
         """The prompt."""
         return spec.prompt
 
-    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> Made:
-        """See System."""
+    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> SystemOutput:
+        """See SceneSystem."""
         return self.run(place, spec.prompt, ["make", spec.prompt], tell)
 
 
 @dataclass(frozen=True)
-class Replay(_Runs):
-    """The sessions that were written by hand and ship with SimWorlds, against a real Blender."""
+class ReplaySystem(_RunSystem):
+    """Replays the transcripts that ship with SimWorlds, in a real Blender."""
 
     def ready(self) -> None:
         """Always."""
 
     def is_for(self, spec: Spec) -> bool:
-        """Whether a session belongs to the scene."""
-        return spec.id in SESSIONS
+        """Whether there is a transcript for the scene."""
+        return spec.id in TRANSCRIPTS
 
     def depends_on(self, spec: Spec) -> str:
-        """The session."""
-        return SESSIONS.get(spec.id, "")
+        """The transcript."""
+        return TRANSCRIPTS.get(spec.id, "")
 
-    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> Made:
-        """See System."""
-        name = SESSIONS.get(spec.id)
+    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> SystemOutput:
+        """See SceneSystem."""
+        name = TRANSCRIPTS.get(spec.id)
         if name is None:
-            return Made("missing", spec.prompt, "no session belongs to it")
+            return SystemOutput("missing", spec.prompt, "there is no transcript for it")
         return self.run(place, spec.prompt, ["demo", name], tell)
 
 
-# What a journal tells
+# Reading the journal
 
 
-def _read(run: Path, prompt: str) -> Made | None:
-    """What became of a run; None where none was begun."""
+def _read(run: Path, prompt: str) -> SystemOutput | None:
+    """The result of a run; None where none was begun."""
     try:
         rows = read_rows(run / NAME)
     except NoRun as error:
-        return Made("failed", prompt, str(error))
+        return SystemOutput("failed", prompt, str(error))
     began = next((row for row in rows if row["type"] == "run.began"), None)
     if began is None:
         return None
@@ -138,7 +144,7 @@ def _read(run: Path, prompt: str) -> Made | None:
     outcome = ended.get("outcome") if ended.get("outcome") in _OUTCOMES else "stopped"
     turns = [turn for row in rows if isinstance(turn := row.get("turn"), dict) and turn.get("live")]
     costs = [turn.get("cost") for turn in turns]
-    return Made(
+    return SystemOutput(
         cast("Outcome", outcome),
         str(began.get("prompt", prompt)),
         str(ended.get("why", "")),
@@ -152,7 +158,7 @@ def _read(run: Path, prompt: str) -> Made | None:
 
 
 def _models(began: Mapping[str, Any]) -> dict[str, str]:
-    """By role; of a session, who wrote it."""
+    """The model of each role; of a transcript, its author."""
     source = str(began.get("source", ""))
     if source and source != "live":
         return {"all roles": source}
@@ -160,12 +166,12 @@ def _models(began: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _tokens(turn: Mapping[str, Any], name: str) -> int:
-    """Of a turn, and of attempts at it that were lost."""
+    """Tokens of a turn, with those of failed attempts."""
     return sum(int((turn.get(part) or {}).get(name, 0)) for part in ("usage", "lost"))
 
 
 def _beneath(run: Path, name: Any) -> Path | None:
-    """A plain file of the run that its journal names."""
+    """A file that the journal names, if it exists in the run's folder."""
     relative = PurePosixPath(name) if isinstance(name, str) and name else None
     if relative is None or relative.is_absolute() or ".." in relative.parts:
         return None
@@ -174,7 +180,7 @@ def _beneath(run: Path, name: Any) -> Path | None:
 
 
 def _worked(rows: Sequence[Mapping[str, Any]]) -> float:
-    """Seconds that somebody sat at it: from row to row, but for the time between two sittings."""
+    """Seconds that the run was worked on: without the time between two sessions."""
     seconds = 0.0
     for before, row in pairwise(rows):
         if row["type"] != "sitting.began":

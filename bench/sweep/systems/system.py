@@ -1,4 +1,4 @@
-"""Systems that make .blend files of prompts, and the three that a sweep knows."""
+"""The interface of systems that make .blend files of prompts."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from bench.sweep.records import Outcome, SystemInfo
 
 
-class NotReady(Exception):  # noqa: N818 - reads as the state it names
+class SystemNotReady(Exception):  # noqa: N818 - reads as the state it names
     """A system that cannot be run here; the message says why, and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
-    """What a system made of a prompt: see ``bench.sweep.records.Produced``. ``prompt``: what it was given."""
+class SystemOutput:
+    """A system's result for a prompt: see ``bench.sweep.records.Produced``. ``prompt``: as the system got it."""
 
     outcome: Outcome
     prompt: str
@@ -32,38 +32,38 @@ class Made:
     tokens: dict[str, int] = field(default_factory=dict[str, int])
 
 
-class System(Protocol):
-    """What a sweep asks of a system. It is sent to other processes, and so is plain data."""
+class SceneSystem(Protocol):
+    """A system as a sweep uses it. Plain data: it is sent to other processes."""
 
     @property
     def info(self) -> SystemInfo:
-        """What the results are known by."""
+        """Its name, kind and settings, as stored with results."""
         ...
 
     @property
     def source(self) -> Path | None:
-        """The folder that files are taken from; None for a system that makes its own."""
+        """The folder that files are taken from; None for a system that makes its own files."""
         ...
 
     def ready(self) -> None:
-        """Raises NotReady."""
+        """Raises SystemNotReady."""
         ...
 
     def is_for(self, spec: Spec) -> bool:
-        """Whether the system is asked for this scene when nobody says which."""
+        """Whether the scene is among the system's default scenes."""
         ...
 
     def depends_on(self, spec: Spec) -> Any:
-        """What the result for a scene depends on besides the settings, as JSON: while it stays, so does the result."""
+        """What the result depends on besides the settings, as JSON: the result is kept while this is unchanged."""
         ...
 
     def files(self, spec: Spec) -> list[Path]:
-        """The files of ``source`` that are this scene's."""
+        """The files of ``source`` that belong to the scene."""
         ...
 
-    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> Made:
-        """Makes the scene in the folder ``place``, or goes on with what was begun there. Raises OSError.
+    def produce(self, spec: Spec, place: Path, tell: Callable[[str], object]) -> SystemOutput:
+        """Makes the scene in the folder ``place``, or resumes what was begun there. Raises OSError.
 
-        When it is interrupted (KeyboardInterrupt), nothing that it started goes on.
+        On KeyboardInterrupt, all processes that it started end.
         """
         ...

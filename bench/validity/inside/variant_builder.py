@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes variants of the open scene, and pictures of them."""
+"""The program that makes variants of the open scene, and renders them."""
 
 from bench.audit.inside.serve import serve
 from simworlds.sandbox.inside import service
 
-# What is asked → the module and function that answer. Modules are named in full: they lie in several packages.
+# Job → the module and function that do it. Modules are named in full: they lie in several packages.
 JOBS = {
     "open": ("audit.inside.opening", "open_file"),
     "save": ("validity.inside.saving", "save"),
-    "sabotage": ("validity.mutations.inside.changes", "sabotage"),
-    "guise": ("validity.invariance.inside.rewrites", "dress"),
-    "twin": ("validity.counterfeits.inside.copying", "copy"),
-    "bare": ("validity.counterfeits.inside.stripping", "show_bare"),
-    "take": ("validity.inside.picture_series", "take"),
+    "mutate": ("validity.mutations.inside.changes", "mutate"),
+    "rewrite": ("validity.invariance.inside.rewrites", "rewrite"),
+    "counterfeit": ("validity.counterfeits.inside.counterfeit", "make_counterfeit"),
+    "remove_physics": ("validity.counterfeits.inside.physics_removal", "remove_visibly"),
+    "render": ("validity.inside.picture_series", "render"),
     "compare": ("validity.inside.picture_series", "compare"),
 }
 

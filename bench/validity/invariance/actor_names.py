@@ -1,4 +1,4 @@
-"""Who plays in a scene, as the guises need it: actors with their objects, and another name for each."""
+"""The actors of a scene as rewrites need them: their objects, and another name for each."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ if TYPE_CHECKING:
     from bench.audit.facts import Scene
     from bench.scenes.spec import Spec
 
-_STANDING = (*UNMARKED, "collider", "rigid_passive")
+_NOT_MOVED = (*UNMARKED, "collider", "rigid_passive")
 
 
-def cast_of(spec: Spec, scene: Scene, found: Mapping[str, Found]) -> list[dict[str, Any]]:
-    """Each actor that was found: its name, its last synonym, whether nothing simulates it, its objects by unit.
+def actor_objects(spec: Spec, scene: Scene, found: Mapping[str, Found]) -> list[dict[str, Any]]:
+    """Each actor: its name, its last synonym, whether nothing simulates it, its objects by unit.
 
-    ``parts``: what else belongs to what stands still by contact, as legs to a table top.
+    ``parts``: further objects that belong to a static actor by contact, such as legs to a table top.
     """
     units = {
-        name: [[one.name for one in unit.objects if one.in_scene] for unit in one.units]
-        for name, one in found.items()
+        name: [[obj.name for obj in unit.objects if obj.in_scene] for unit in actor.units]
+        for name, actor in found.items()
     }
     taken = {name for several in units.values() for unit in several for name in unit}
     assemblies = Assemblies(scene, taken)
-    told: list[dict[str, Any]] = []
+    described: list[dict[str, Any]] = []
     for actor in spec.actors:
-        stands = actor.role in _STANDING
+        stands = actor.role in _NOT_MOVED
         grown = {name for unit in units[actor.name] if stands for name in assemblies.grown(unit)}
-        told.append(
+        described.append(
             {
                 "name": actor.name,
                 "other": actor.synonyms[-1] if actor.synonyms else actor.name,
@@ -42,4 +42,4 @@ def cast_of(spec: Spec, scene: Scene, found: Mapping[str, Found]) -> list[dict[s
             }
         )
         taken |= grown
-    return told
+    return described

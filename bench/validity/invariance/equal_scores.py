@@ -1,69 +1,69 @@
-"""The fourth property: how a scene is organised, named and measured does not change what it scores."""
+"""Proves invariance: how a scene is organised, named and measured does not change its scores."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 from bench.audit.untrusted_blend import NotScored, Refused
-from bench.validity.invariance.actor_names import cast_of
-from bench.validity.proof import Row
+from bench.validity.invariance.actor_names import actor_objects
+from bench.validity.proof import ProofRow
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from bench.audit.audit import Audit
-    from bench.validity.variant_builder import Desk
+    from bench.validity.variant_builder import VariantBuilder
 
-GUISES = {
+REWRITES = {
     "ungrouped": "hierarchies and collections dissolved",
-    "grouped": "each actor's objects in a collection of its name, themselves called nothing",
-    "renamed": "actors called by a synonym",
+    "grouped": "each actor's objects in a collection of its name, themselves without meaningful names",
+    "renamed": "actors named by a synonym",
     "rescaled": "a hundred times as large, in hundredths of a metre",
-    "instanced": "still things shown as instances of collections outside of the scene",
-    "joined": "still things of several meshes made one",
+    "instanced": "static actors shown as instances of collections outside of the scene",
+    "joined": "static actors of several meshes joined",
 }
 TOLERANCE = 0.02
 _DIGITS = 6
 
 
-def prove(desk: Desk) -> Iterator[Row]:
-    """A row for each guise; those that a scene cannot be put into do not apply."""
-    before = desk.audit(desk.original)
-    cast = cast_of(desk.spec, desk.reading.scene, desk.reading.found)
-    for guise in GUISES:
+def prove(builder: VariantBuilder) -> Iterator[ProofRow]:
+    """A row for each rewrite; where nothing can be rewritten, it does not apply."""
+    before = builder.audit(builder.original)
+    actors = actor_objects(builder.spec, builder.reading.scene, builder.reading.found)
+    for rewrite in REWRITES:
         try:
-            path, _ = desk.make(guise, "guise", guise=guise, cast=cast)
-            after = desk.audit(path)
+            path, _ = builder.make(rewrite, "rewrite", kind=rewrite, actors=actors)
+            after = builder.audit(path)
         except Refused as error:
-            yield Row(name=guise, holds=None, why=str(error))
+            yield ProofRow(name=rewrite, holds=None, why=str(error))
         except NotScored as error:
-            yield Row(name=guise, holds=False, why=str(error))
+            yield ProofRow(name=rewrite, holds=False, why=str(error))
         else:
-            yield _row(guise, before, after)
+            yield _row(rewrite, before, after)
 
 
-def _row(guise: str, before: Audit, after: Audit) -> Row:
-    apart: dict[str, float | None] = {
-        "mpr": _apart(before.mpr, after.mpr),
-        "spr": _apart(before.spr, after.spr),
+def _row(rewrite: str, before: Audit, after: Audit) -> ProofRow:
+    change: dict[str, float | None] = {
+        "mpr": _difference(before.mpr, after.mpr),
+        "spr": _difference(before.spr, after.spr),
     }
-    values: dict[str, Any] = {"mpr": after.mpr, "spr": after.spr, "apart": apart}
+    values: dict[str, Any] = {"mpr": after.mpr, "spr": after.spr, "change": change}
     same = (before.mpr is None) == (after.mpr is None) and (before.spr is None) == (after.spr is None)
-    holds = same and all(each is None or abs(each) <= TOLERANCE for each in apart.values())
-    return Row(name=guise, holds=holds, why="" if holds else _lost(after), values=values)
+    holds = same and all(each is None or abs(each) <= TOLERANCE for each in change.values())
+    return ProofRow(name=rewrite, holds=holds, why="" if holds else _describe_losses(after), values=values)
 
 
-def _apart(before: float | None, after: float | None) -> float | None:
+def _difference(before: float | None, after: float | None) -> float | None:
     return None if before is None or after is None else round(after - before, _DIGITS)
 
 
-def _lost(after: Audit) -> str:
-    """What does not hold in a guise, in words."""
+def _describe_losses(after: Audit) -> str:
+    """What does not hold after a rewrite, in words."""
     checks = [
         f"{actor.name}: {check.predicate}"
         for actor in after.actors
         for check in actor.checks
         if check.outcome == "failed"
     ]
-    relations = [f"{one.a} {one.type} {one.b}" for one in after.relations if one.outcome != "holds"]
+    relations = [f"{rel.a} {rel.type} {rel.b}" for rel in after.relations if rel.outcome != "holds"]
     return ", ".join([*checks, *relations]) or (after.not_scored or "")

@@ -1,7 +1,7 @@
-"""One row for each way in which a predicate is broken, and what else logically fails with it, by reason.
+"""The mutations of every predicate: how it can be broken, and which other checks then fail for a logical reason.
 
-A sabotage flips the check that it is aimed at. Beyond that it may flip what ``Follows`` names, and nothing else: a
-cloth modifier that is gone cannot be baked, but its table is still there.
+A mutation fails the check that it is aimed at. Beyond that it may only fail the checks that its consequences name: a
+cloth modifier that was removed cannot be baked, but its table is still there.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Any, Literal
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-# Whose checks follow: of actors whose objects were changed; of those and of what moves with them; of actors that count
-# a changed one as a partner (or anybody); of all.
+# Whose checks may fail too: of actors whose objects were changed; of these and of what moves with them; of actors that
+# have a changed one (or any) as a partner; of all.
 Who = Literal["changed", "carried", "meeting", "all"]
 # Whose objects are changed: the actor's; one partner's at a time (or everybody else's); whatever the change looks for.
 On = Literal["actor", "partner", "scene"]
 
 
 @dataclass(frozen=True, slots=True)
-class Follows:
-    """Checks that fail with the one that is aimed at, and why they do."""
+class Consequence:
+    """Checks that may fail with the one that is aimed at, and why."""
 
     who: Who
     predicates: tuple[str, ...]
@@ -29,35 +29,37 @@ class Follows:
 
 
 @dataclass(frozen=True, slots=True)
-class Sabotage:
-    """``change`` is the function in ``inside`` that does it; ``options`` are what it needs beyond objects.
+class Mutation:
+    """One way to break a check: ``change`` is a function in ``inside``, ``options`` its arguments besides objects.
 
-    ``given`` adds options read off the check: its parameters, and what it saw in the scene as it was. ``roles``: of
-    which actors; () of all. ``optional``: there are scenes in which it has nothing to change.
+    ``given`` derives further options from the check: its parameters, and the values that it saw before. ``roles``: of
+    which actors; () of all. ``optional``: some scenes have nothing that it could change.
     """
 
     change: str
     on: On = "actor"
     options: Mapping[str, Any] = field(default_factory=dict[str, Any])
     given: Callable[[Mapping[str, Any], Mapping[str, Any]], dict[str, Any]] | None = None
-    follows: tuple[Follows, ...] = ()
+    consequences: tuple[Consequence, ...] = ()
     roles: tuple[str, ...] = ()
     optional: bool = False
 
     @property
-    def told(self) -> str:
-        """In a few words, for reports."""
+    def label(self) -> str:
+        """A few words for reports."""
         values = (
             ", ".join(value) if isinstance(value, list) else str(value) for value in self.options.values()
         )
         return f"{' '.join([self.change.replace('_', ' '), *values])}{' of a partner' if self.on == 'partner' else ''}"
 
 
-def _on(change: str, types: str, *follows: Follows, roles: tuple[str, ...] = (), **options: Any) -> Sabotage:
-    return Sabotage(change, "actor", {"types": [types], **options}, follows=follows, roles=roles)
+def _on(
+    change: str, types: str, *consequences: Consequence, roles: tuple[str, ...] = (), **options: Any
+) -> Mutation:
+    return Mutation(change, "actor", {"types": [types], **options}, consequences=consequences, roles=roles)
 
 
-# What follows, and why
+# Consequences
 
 _CLOTH = ("cloth_cache_baked", "cloth_self_collision", "cloth_pin_group", "cloth_collision_partners")
 _SOFT = ("soft_cache_baked", "soft_collision_partners", "soft_goal_group", "soft_rigid_partners")
@@ -75,86 +77,90 @@ _BODY = (
 )  # fmt: skip
 _MEETING = ("cloth_collision_partners", "soft_collision_partners", "particle_collision_partners")
 
-_NO_SOLVER = Follows("changed", ("solver_enabled",), "what is gone is not on")
-_NOT_DEFORMED = Follows("changed", ("particle_from_deformed",), "what does not deform, nothing comes from")
-_NOT_FELT = Follows(
-    "meeting", (*_MEETING, "soft_rigid_partners"), "what has no collision that is on, stops nothing"
+_NO_SOLVER = Consequence("changed", ("solver_enabled",), "a solver that was removed is not on")
+_NOT_DEFORMED = Consequence("changed", ("particle_from_deformed",), "nothing deforms the mesh any more")
+_NO_COLLISION = Consequence(
+    "meeting", (*_MEETING, "soft_rigid_partners"), "an object without an active collision stops nothing"
 )
-_NOT_FELT_ITSELF = Follows("changed", ("rigid_collision_modifier",), "a collision that is off is none")
-_STANDS = Follows(
-    "carried", ("fluid_dynamic_effector",), "what no solver that was played moves, stands still"
-)
-_NO_FLOW = Follows("all", ("fluid_flow_count",), "a flow that is not open gives nothing")
-_NO_DOMAIN = Follows(
+_OWN_COLLISION_OFF = Consequence("changed", ("rigid_collision_modifier",), "its collision is off")
+_STANDS_STILL = Consequence("carried", ("fluid_dynamic_effector",), "no baked solver moves it any more")
+_NO_FLOW = Consequence("all", ("fluid_flow_count",), "a flow that is off does not count")
+_NO_DOMAIN = Consequence(
     "all",
     ("fluid_domain_exists", "fluid_flow_count", "fluid_cache_baked", "fluid_guiding"),
-    "without the domain, nothing flows in it, is kept or led",
+    "there is no domain any more",
 )
-_NO_GUIDE = Follows("all", ("fluid_guiding",), "what takes no part guides nothing")
-_FEWER_BODIES = Follows("all", ("rigid_world_populated",), "there is a body less")
-_UNTIED = Follows("all", ("rigid_constraint", "rigid_constraint_no_collision"), "a tie has two ends")
-_NO_RIGID_PARTNER = Follows(
-    "meeting", ("soft_rigid_partners",), "what is no body of the world is no rigid partner"
+_NO_GUIDE = Consequence("all", ("fluid_guiding",), "a disabled effector guides nothing")
+_ONE_BODY_LESS = Consequence("all", ("rigid_world_populated",), "the world has one body less")
+_NO_CONSTRAINT = Consequence(
+    "all", ("rigid_constraint", "rigid_constraint_no_collision"), "a constraint needs both of its objects"
 )
-_ONE_WORLD = Follows("all", ("rigid_cache_baked",), "the world has one cache")
-_OTHER_PART = Follows("changed", ("solver_enabled",), "what plays another role does not play this one")
+_NO_RIGID_PARTNER = Consequence(
+    "meeting", ("soft_rigid_partners",), "a partner must be in the rigid-body world"
+)
+_ONE_WORLD = Consequence("all", ("rigid_cache_baked",), "all bodies share one cache")
+_OTHER_ROLE = Consequence("changed", ("solver_enabled",), "it has another role now")
 
 
-def _mute(types: str, role: tuple[str, ...], *follows: Follows, **options: Any) -> tuple[Sabotage, ...]:
-    """Off in renders; off in the viewport, where what does not move is seen too."""
+def _switched_off(
+    types: str, role: tuple[str, ...], *consequences: Consequence, **options: Any
+) -> tuple[Mutation, ...]:
+    """Switches modifiers off in renders, or in the viewport, where a lack of motion shows too."""
     return (
-        _on("mute", types, *follows, roles=role, **options),
-        _on("mute", types, *follows, _STANDS, roles=role, where="show_viewport", **options),
+        _on("switch_off", types, *consequences, roles=role, **options),
+        _on("switch_off", types, *consequences, _STANDS_STILL, roles=role, where="show_viewport", **options),
     )
 
 
-def _partners(types: str, path: str) -> tuple[Sabotage, ...]:
-    """What it meets has no collision any more; it meets nothing any more."""
-    gone = (_NOT_FELT, _NOT_FELT_ITSELF, _NO_SOLVER)
+def _without_collisions(types: str, path: str) -> tuple[Mutation, ...]:
+    """Removes the collision of a partner, or limits collisions to an empty collection."""
+    gone = (_NO_COLLISION, _OWN_COLLISION_OFF, _NO_SOLVER)
     return (
-        Sabotage("remove", "partner", {"types": ["COLLISION"]}, follows=gone),
-        _on("spare", types, path=path),
+        Mutation("remove_modifier", "partner", {"types": ["COLLISION"]}, consequences=gone),
+        _on("collide_with_nothing", types, path=path),
     )
 
 
-def _caches(types: str, *follows: Follows) -> tuple[Sabotage, ...]:
-    return _on("free", types, *follows), _on("shorten", types, *follows)
+def _without_bake(types: str, *consequences: Consequence) -> tuple[Mutation, ...]:
+    return _on("free_bake", types, *consequences), _on("shorten_cache", types, *consequences)
 
 
-SABOTAGES: Mapping[str, tuple[Sabotage, ...]] = {
-    "renderable": (Sabotage("hide"),),
+MUTATIONS: Mapping[str, tuple[Mutation, ...]] = {
+    "renderable": (Mutation("hide_in_render"),),
     "solver_enabled": (
-        *_mute("CLOTH", ("cloth",), _NOT_DEFORMED),
-        *_mute("SOFT_BODY", ("soft",), _NOT_DEFORMED),
-        *_mute("COLLISION", ("collider",), _NOT_FELT, _NOT_FELT_ITSELF),
-        *_mute("FLUID", ("fluid_domain",), kind="DOMAIN"),
-        *_mute("FLUID", ("fluid_flow",), _NO_FLOW, kind="FLOW"),
-        *_mute("FLUID", ("fluid_effector",), _NO_GUIDE, _STANDS, kind="EFFECTOR"),
-        *_mute("PARTICLE_SYSTEM", ("particle_emitter",), kind="EMITTER"),
-        *_mute("PARTICLE_SYSTEM", ("particle_hair",), kind="HAIR"),
-        Sabotage(
+        *_switched_off("CLOTH", ("cloth",), _NOT_DEFORMED),
+        *_switched_off("SOFT_BODY", ("soft",), _NOT_DEFORMED),
+        *_switched_off("COLLISION", ("collider",), _NO_COLLISION, _OWN_COLLISION_OFF),
+        *_switched_off("FLUID", ("fluid_domain",), kind="DOMAIN"),
+        *_switched_off("FLUID", ("fluid_flow",), _NO_FLOW, kind="FLOW"),
+        *_switched_off("FLUID", ("fluid_effector",), _NO_GUIDE, _STANDS_STILL, kind="EFFECTOR"),
+        *_switched_off("PARTICLE_SYSTEM", ("particle_emitter",), kind="EMITTER"),
+        *_switched_off("PARTICLE_SYSTEM", ("particle_hair",), kind="HAIR"),
+        Mutation(
             "set_body",
             options={"attribute": "enabled", "value": False},
-            follows=(_STANDS,),
+            consequences=(_STANDS_STILL,),
             roles=("rigid_active", "rigid_passive"),
         ),
-        Sabotage(
-            "calm",
-            follows=(Follows("all", ("particle_force_fields",), "a field without strength moves nothing"),),
+        Mutation(
+            "remove_field_strength",
+            consequences=(
+                Consequence("all", ("particle_force_fields",), "a field without strength does not count"),
+            ),
             roles=("force",),
         ),
     ),
     "cloth_modifier": (
         _on(
-            "remove",
+            "remove_modifier",
             "CLOTH",
-            Follows("changed", _CLOTH, "these are settings of the modifier"),
+            Consequence("changed", _CLOTH, "these are settings of the modifier"),
             _NO_SOLVER,
             _NOT_DEFORMED,
-            _STANDS,
+            _STANDS_STILL,
         ),
     ),
-    "cloth_cache_baked": _caches("CLOTH", _STANDS),
+    "cloth_cache_baked": _without_bake("CLOTH", _STANDS_STILL),
     "cloth_self_collision": (
         _on("set_value", "CLOTH", path="collision_settings.use_self_collision", value=False),
     ),
@@ -163,89 +169,93 @@ SABOTAGES: Mapping[str, tuple[Sabotage, ...]] = {
         _on("set_value", "CLOTH", path="settings.vertex_group_mass", value=""),
     ),
     "cloth_collision_partners": (
-        *_partners("CLOTH", "collision_settings.collection"),
+        *_without_collisions("CLOTH", "collision_settings.collection"),
         _on("set_value", "CLOTH", path="collision_settings.use_collision", value=False),
     ),
     "fluid_modifier": (
         _on(
-            "remove",
+            "remove_modifier",
             "FLUID",
-            Follows("changed", _FLUID, "these are settings of the modifier"),
+            Consequence("changed", _FLUID, "these are settings of the modifier"),
             _NO_SOLVER,
             _NO_DOMAIN,
         ),
     ),
     "fluid_type": (
-        Sabotage(
-            "swap",
+        Mutation(
+            "swap_fluid_type",
             given=lambda params, _: {"kind": params["type"]},
-            follows=(
-                Follows(
+            consequences=(
+                Consequence(
                     "all",
                     ("fluid_domain_exists", "fluid_flow_count", "fluid_guiding"),
-                    "these ask for the same kind",
+                    "these need a fluid of the same type",
                 ),
-                Follows(
+                Consequence(
                     "changed",
                     ("fluid_mesh", "fluid_cache_baked"),
-                    "another kind of fluid is kept in other files",
+                    "a fluid of another type has other files",
                 ),
             ),
         ),
     ),
     "fluid_domain_exists": (
-        Sabotage(
+        Mutation(
             "remove_domains",
             "scene",
-            follows=(
-                Follows("changed", _FLUID, "these are settings of the modifier"),
+            consequences=(
+                Consequence("changed", _FLUID, "these are settings of the modifier"),
                 _NO_SOLVER,
                 _NO_DOMAIN,
             ),
         ),
-        Sabotage(
-            "put_away",
-            follows=(
-                Follows("changed", ("fluid_cache_baked",), "it does not flow into what is kept"),
+        Mutation(
+            "move_out_of_domain",
+            consequences=(
+                Consequence("changed", ("fluid_cache_baked",), "it does not flow into the baked domain"),
                 _NO_FLOW,
             ),
         ),
     ),
     "fluid_flow_count": (
-        Sabotage(
+        Mutation(
             "close_flows",
             "scene",
             given=lambda _, seen: {"flows": seen["flows"], "least": seen["min"]},
-            follows=(_NO_SOLVER,),
+            consequences=(_NO_SOLVER,),
         ),
     ),
     "fluid_cache_baked": (
-        Sabotage(
-            "lose_files", "scene", follows=(Follows("all", ("fluid_cache_baked",), "so are all fluids'"),)
-        ),
-        Sabotage(
-            "forget_bake",
+        Mutation(
+            "lose_fluid_files",
             "scene",
-            follows=(Follows("all", ("fluid_cache_baked",), "so are all fluids'"),),
+            consequences=(Consequence("all", ("fluid_cache_baked",), "it is done to all fluids"),),
+        ),
+        Mutation(
+            "clear_fluid_bake",
+            "scene",
+            consequences=(Consequence("all", ("fluid_cache_baked",), "it is done to all fluids"),),
             optional=True,
         ),
     ),
     "fluid_dynamic_effector": (
-        Sabotage("ignore", follows=(_NO_GUIDE,)),
-        Sabotage("stand_still", follows=(_NO_FLOW,), optional=True),
+        Mutation("disable_effector", consequences=(_NO_GUIDE,)),
+        Mutation("remove_keys", consequences=(_NO_FLOW,), optional=True),
     ),
     "fluid_guiding": (
-        Sabotage("unguide", "scene"),
-        Sabotage(
-            "ignore", "scene", follows=(Follows("all", ("fluid_dynamic_effector",), "it takes no part"),)
+        Mutation("disable_guiding", "scene"),
+        Mutation(
+            "disable_effector",
+            "scene",
+            consequences=(Consequence("all", ("fluid_dynamic_effector",), "the effector is disabled"),),
         ),
     ),
     "fluid_resolution": (
-        Sabotage(
-            "coarsen",
+        Mutation(
+            "lower_resolution",
             given=lambda _, seen: {"least": seen["min"]},
-            follows=(
-                Follows(
+            consequences=(
+                Consequence(
                     "all", ("fluid_cache_baked",), "Blender frees a fluid's bake when its resolution is set"
                 ),
             ),
@@ -253,126 +263,138 @@ SABOTAGES: Mapping[str, tuple[Sabotage, ...]] = {
     ),
     "fluid_mesh": (_on("set_value", "FLUID", kind="DOMAIN", path="domain_settings.use_mesh", value=False),),
     "rigid_settings": (
-        Sabotage(
+        Mutation(
             "remove_body",
-            follows=(
-                Follows("changed", _BODY, "these are settings of the body"),
+            consequences=(
+                Consequence("changed", _BODY, "these are settings of the body"),
                 _NO_SOLVER,
-                _FEWER_BODIES,
-                _UNTIED,
+                _ONE_BODY_LESS,
+                _NO_CONSTRAINT,
                 _NO_RIGID_PARTNER,
-                _STANDS,
+                _STANDS_STILL,
             ),
         ),
-        Sabotage("expel", follows=(_FEWER_BODIES, _UNTIED, _NO_RIGID_PARTNER, _STANDS)),
+        Mutation(
+            "remove_from_world",
+            consequences=(_ONE_BODY_LESS, _NO_CONSTRAINT, _NO_RIGID_PARTNER, _STANDS_STILL),
+        ),
     ),
     "rigid_type": (
-        Sabotage("turn_type", follows=(_OTHER_PART, _STANDS)),
-        Sabotage("grab", follows=(_STANDS,), roles=("rigid_active",)),
+        Mutation("swap_body_type", consequences=(_OTHER_ROLE, _STANDS_STILL)),
+        Mutation("keep_kinematic", consequences=(_STANDS_STILL,), roles=("rigid_active",)),
     ),
     "rigid_shape": (
-        Sabotage("other_shape", given=lambda params, _: {"shapes": list(params.get("shapes", ()))}),
+        Mutation("change_shape", given=lambda params, _: {"shapes": list(params.get("shapes", ()))}),
     ),
     "rigid_world_populated": (
-        Sabotage(
-            "expel",
+        Mutation(
+            "remove_from_world",
             given=lambda _, seen: {"count": seen["bodies"] - seen["min"] + 1},
-            follows=(
-                Follows("changed", ("rigid_settings",), "a body outside of the world is none"),
-                _UNTIED,
+            consequences=(
+                Consequence("changed", ("rigid_settings",), "a body outside of the world does not count"),
+                _NO_CONSTRAINT,
                 _NO_RIGID_PARTNER,
-                _STANDS,
+                _STANDS_STILL,
             ),
         ),
-        Sabotage(
+        Mutation(
             "switch_off_world",
             "scene",
-            follows=(Follows("changed", ("solver_enabled",), "its world is off"), _STANDS),
+            consequences=(Consequence("changed", ("solver_enabled",), "its world is off"), _STANDS_STILL),
         ),
     ),
     "rigid_cache_baked": (
-        Sabotage("free_world", "scene", follows=(_ONE_WORLD, _STANDS)),
-        Sabotage("shorten_world", "scene", follows=(_ONE_WORLD, _STANDS)),
+        Mutation("free_world_bake", "scene", consequences=(_ONE_WORLD, _STANDS_STILL)),
+        Mutation("shorten_world_cache", "scene", consequences=(_ONE_WORLD, _STANDS_STILL)),
     ),
-    "rigid_constraint": (Sabotage("untie", follows=(_UNTIED,)),),
+    "rigid_constraint": (Mutation("detach_constraint", consequences=(_NO_CONSTRAINT,)),),
     "rigid_constraint_no_collision": (
-        Sabotage(
-            "let_collide",
-            follows=(Follows("all", ("rigid_constraint_no_collision",), "a tie is both its ends'"),),
+        Mutation(
+            "enable_constraint_collisions",
+            consequences=(
+                Consequence(
+                    "all", ("rigid_constraint_no_collision",), "a constraint belongs to both of its objects"
+                ),
+            ),
         ),
     ),
     "rigid_collision_modifier": (
-        _on("remove", "COLLISION", _NOT_FELT, _NO_SOLVER),
-        _on("mute", "COLLISION", _NOT_FELT, _NO_SOLVER),
+        _on("remove_modifier", "COLLISION", _NO_COLLISION, _NO_SOLVER),
+        _on("switch_off", "COLLISION", _NO_COLLISION, _NO_SOLVER),
     ),
-    "rigid_positive_mass": (Sabotage("set_body", options={"attribute": "mass", "value": 0.0}),),
+    "rigid_positive_mass": (Mutation("set_body", options={"attribute": "mass", "value": 0.0}),),
     "particle_system": (
         _on(
-            "remove",
+            "remove_modifier",
             "PARTICLE_SYSTEM",
-            Follows("changed", _PARTICLES, "these are settings of the system"),
+            Consequence("changed", _PARTICLES, "these are settings of the system"),
             _NO_SOLVER,
         ),
     ),
     "particle_type": (
-        Sabotage(
+        Mutation(
             "set_value",
             options={"types": ["PARTICLE_SYSTEM"], "path": "particle_system.settings.type"},
             given=lambda params, _: {
                 "value": "HAIR" if params.get("type", "EMITTER") == "EMITTER" else "EMITTER"
             },
-            follows=(
-                _OTHER_PART,
-                Follows("changed", ("particle_cache_baked",), "hair that does not move is not kept"),
+            consequences=(
+                _OTHER_ROLE,
+                Consequence("changed", ("particle_cache_baked",), "static hair has no cache"),
             ),
         ),
     ),
     "particle_source": (_on("set_value", "PARTICLE_SYSTEM", path="particle_system.settings.count", value=0),),
-    "particle_cache_baked": _caches("PARTICLE_SYSTEM"),
-    "particle_collision_partners": _partners(
+    "particle_cache_baked": _without_bake("PARTICLE_SYSTEM"),
+    "particle_collision_partners": _without_collisions(
         "PARTICLE_SYSTEM", "particle_system.settings.collision_collection"
     ),
-    "particle_from_deformed": (_on("put_first", "PARTICLE_SYSTEM"),),
+    "particle_from_deformed": (_on("move_first", "PARTICLE_SYSTEM"),),
     "particle_force_fields": (
-        Sabotage(
-            "calm", "scene", follows=(Follows("all", ("solver_enabled",), "a field without strength is off"),)
+        Mutation(
+            "remove_field_strength",
+            "scene",
+            consequences=(Consequence("all", ("solver_enabled",), "a field without strength is off"),),
         ),
         _on("set_value", "PARTICLE_SYSTEM", path="particle_system.settings.effector_weights.all", value=0.0),
     ),
     "soft_modifier": (
         _on(
-            "remove",
+            "remove_modifier",
             "SOFT_BODY",
-            Follows("changed", _SOFT, "these are settings of the modifier"),
+            Consequence("changed", _SOFT, "these are settings of the modifier"),
             _NO_SOLVER,
             _NOT_DEFORMED,
-            _STANDS,
+            _STANDS_STILL,
         ),
     ),
-    "soft_cache_baked": _caches("SOFT_BODY", _STANDS),
-    "soft_collision_partners": _partners("SOFT_BODY", "settings.collision_collection"),
+    "soft_cache_baked": _without_bake("SOFT_BODY", _STANDS_STILL),
+    "soft_collision_partners": _without_collisions("SOFT_BODY", "settings.collision_collection"),
     "soft_goal_group": (
         _on("clear_group", "SOFT_BODY", path="settings.vertex_group_goal"),
         _on("set_value", "SOFT_BODY", path="settings.use_goal", value=False),
     ),
     "soft_rigid_partners": (
-        Sabotage(
-            "expel",
+        Mutation(
+            "remove_from_world",
             "partner",
-            follows=(
-                Follows("changed", ("rigid_settings",), "a body outside of the world is none"),
-                _FEWER_BODIES,
-                _UNTIED,
-                _STANDS,
+            consequences=(
+                Consequence("changed", ("rigid_settings",), "a body outside of the world does not count"),
+                _ONE_BODY_LESS,
+                _NO_CONSTRAINT,
+                _STANDS_STILL,
             ),
         ),
-        Sabotage(
-            "remove", "partner", {"types": ["COLLISION"]}, follows=(_NOT_FELT, _NOT_FELT_ITSELF, _NO_SOLVER)
+        Mutation(
+            "remove_modifier",
+            "partner",
+            {"types": ["COLLISION"]},
+            consequences=(_NO_COLLISION, _OWN_COLLISION_OFF, _NO_SOLVER),
         ),
     ),
-    "dense_transform_keys": (Sabotage("record"),),
-    "animated_shape_keys": (Sabotage("reshape"), Sabotage("play_mesh")),
-    "static_has_cache": (Sabotage("add_bake", "scene"),),
-    "static_has_rigid_world": (Sabotage("add_body", "scene"),),
-    "static_has_solver": (Sabotage("add_solver", "scene"),),
+    "dense_transform_keys": (Mutation("key_every_frame"),),
+    "animated_shape_keys": (Mutation("animate_shape_key"), Mutation("add_mesh_cache")),
+    "static_has_cache": (Mutation("add_bake", "scene"),),
+    "static_has_rigid_world": (Mutation("add_body", "scene"),),
+    "static_has_solver": (Mutation("add_solver", "scene"),),
 }

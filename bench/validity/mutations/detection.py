@@ -1,7 +1,7 @@
-"""The third property: whatever is broken about a scene, the check that asks for it sees it, and no other one does.
+"""Proves that every predicate matters: each mutation of a scene fails the check that it is aimed at, and no other.
 
-Each sabotage is saved as a file, which is opened and read as any other; one of each scene is also audited by a Blender
-of its own, which must find the same.
+Each mutant is saved as a file, which is opened and read like any other. One of each scene is also audited by a Blender
+of its own, which must give the same audit.
 """
 
 from __future__ import annotations
@@ -10,72 +10,73 @@ import hashlib
 from typing import TYPE_CHECKING, Any
 
 from bench.audit.untrusted_blend import NotScored, Refused
-from bench.validity.mutations.planning import Result, aims, checks_of, judge
-from bench.validity.proof import Row
+from bench.validity.mutations.planning import MutationResult, checks_of, judge, planned_mutations
+from bench.validity.proof import ProofRow
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.validity.mutations.planning import Aim, Place
-    from bench.validity.variant_builder import Desk
+    from bench.validity.mutations.planning import CheckPlace, PlannedMutation
+    from bench.validity.variant_builder import VariantBuilder
 
 
-def prove(desk: Desk) -> Iterator[Row]:
-    """A row for each sabotage of each check, one for each check that has none, one for the sample."""
-    broken: set[Place] = set()
+def prove(builder: VariantBuilder) -> Iterator[ProofRow]:
+    """A row for each mutation of each check, one for each check that was not broken, one for the sample."""
+    broken: set[CheckPlace] = set()
     files: list[Path] = []
-    planned = list(aims(desk.reading.audit, desk.reading.found))
-    for number, aim in enumerate(planned):
+    for number, planned in enumerate(planned_mutations(builder.reading.audit, builder.reading.found)):
         try:
-            path, changed = desk.make(
-                f"sabotage-{number}",
-                "sabotage",
-                change=aim.sabotage.change,
-                objects=list(aim.objects),
-                options=dict(aim.options),
+            path, changed = builder.make(
+                f"mutation-{number}",
+                "mutate",
+                change=planned.mutation.change,
+                objects=list(planned.objects),
+                options=dict(planned.options),
             )
-            result = judge(aim, desk.reading, desk.read(path).audit, changed)
+            result = judge(planned, builder.reading, builder.read(path).audit, changed)
         except NotScored as error:
-            spared = aim.sabotage.optional and isinstance(error, Refused)
-            yield _row(aim, None if spared else False, str(error))
+            skipped = planned.mutation.optional and isinstance(error, Refused)
+            yield _row(planned, None if skipped else False, str(error))
             continue
-        broken.add(aim.place)
+        broken.add(planned.place)
         files.append(path)
-        yield _row(aim, result.holds, _wrong(result), result)
-    for place, check in checks_of(desk.reading.audit).items():
+        yield _row(planned, result.holds, _describe_faults(result), result)
+    for place, check in checks_of(builder.reading.audit).items():
         if place not in broken and check.outcome == "passed":
-            yield Row(
-                name=place.told,
+            yield ProofRow(
+                name=place.label,
                 holds=False,
-                why="nothing has broken it",
+                why="no mutation broke it",
                 values={"predicate": place.predicate},
             )
     if files:
-        yield _sampled(desk, files)
+        yield _sampled(builder, files)
 
 
-def _row(aim: Aim, holds: bool | None, why: str, result: Result | None = None) -> Row:
+def _row(
+    planned: PlannedMutation, holds: bool | None, why: str, result: MutationResult | None = None
+) -> ProofRow:
     values: dict[str, Any] = {
-        "actor": aim.place.actor,
-        "predicate": aim.place.predicate,
-        "sabotage": aim.sabotage.told,
+        "actor": planned.place.actor,
+        "predicate": planned.place.predicate,
+        "mutation": planned.mutation.label,
     }
     if result is not None:
-        values["followed"] = [place.told for place in result.followed]
-    return Row(name=aim.told, holds=holds, why=why, values=values)
+        values["consequences"] = [place.label for place in result.expected]
+    return ProofRow(name=planned.label, holds=holds, why=why, values=values)
 
 
-def _wrong(result: Result) -> str:
-    wrong = [] if result.hit else ["the check still passes"]
-    if result.spilled:
-        wrong.append(f"without reason, so did {', '.join(place.told for place in result.spilled)}")
-    return "; ".join(wrong)
+def _describe_faults(result: MutationResult) -> str:
+    faults = [] if result.detected else ["the check still passes"]
+    if result.unexpected:
+        faults.append(f"failed without a reason: {', '.join(place.label for place in result.unexpected)}")
+    return "; ".join(faults)
 
 
-def _sampled(desk: Desk, files: list[Path]) -> Row:
-    """One of the files, by a digest of the scene's name: both ways of auditing it give the same bytes."""
-    path = files[int(hashlib.sha256(desk.spec.id.encode()).hexdigest(), 16) % len(files)]
-    alone, among = desk.audit_alone(path).as_json(), desk.audit(path).as_json()
-    why = "" if alone == among else "a Blender of its own finds something else"
-    return Row(name=f"{path.stem} audited alone", holds=alone == among, why=why)
+def _sampled(builder: VariantBuilder, files: list[Path]) -> ProofRow:
+    """Audits one of the files, chosen by a digest of the scene's name, in both ways: the bytes must be equal."""
+    path = files[int(hashlib.sha256(builder.spec.id.encode()).hexdigest(), 16) % len(files)]
+    alone, among = builder.audit_alone(path).as_json(), builder.audit(path).as_json()
+    why = "" if alone == among else "a Blender of its own gives another audit"
+    return ProofRow(name=f"{path.stem} audited alone", holds=alone == among, why=why)

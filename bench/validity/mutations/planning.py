@@ -1,11 +1,11 @@
-"""Which sabotages a scene calls for, and what came of one: which checks it flipped, and which it had reason to."""
+"""Plans the mutations of a scene, and compares the audits before and after each."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from bench.validity.mutations.catalogue import SABOTAGES
+from bench.validity.mutations.catalogue import MUTATIONS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -13,131 +13,135 @@ if TYPE_CHECKING:
     from bench.audit.actors import Found
     from bench.audit.audit import Audit, Checked
     from bench.audit.facts import Object, Scene
-    from bench.validity.mutations.catalogue import Follows, Sabotage, Who
-    from bench.validity.variant_builder import Reading
+    from bench.validity.mutations.catalogue import Consequence, Mutation, Who
+    from bench.validity.variant_builder import SceneReading
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Place:
-    """A check of a spec: the actor ("" for the scene as a whole), its place in the list, the predicate."""
+class CheckPlace:
+    """Identifies a check of a spec: actor ("" for the whole scene), number in its list, predicate."""
 
     actor: str
     number: int
     predicate: str
 
     @property
-    def told(self) -> str:
+    def label(self) -> str:
         """In words."""
         return f"{self.actor or 'scene'}: {self.predicate}"
 
 
 @dataclass(frozen=True, slots=True)
-class Aim:
-    """A sabotage of one check: of ``objects``, by name, with all that the change needs."""
+class PlannedMutation:
+    """A mutation that is to break the check at ``place``: of ``objects`` (names), with all options of the change."""
 
-    place: Place
-    sabotage: Sabotage
+    place: CheckPlace
+    mutation: Mutation
     objects: tuple[str, ...]
     options: Mapping[str, Any]
 
     @property
-    def told(self) -> str:
+    def label(self) -> str:
         """In words."""
-        return f"{self.place.told} by {self.sabotage.told}"
+        return f"{self.place.label} by {self.mutation.label}"
 
 
-def checks_of(audit: Audit) -> dict[Place, Checked]:
+def checks_of(audit: Audit) -> dict[CheckPlace, Checked]:
     """All checks of an audit, by place."""
-    found = {
-        Place(actor.name, number, check.predicate): check
+    checks = {
+        CheckPlace(actor.name, number, check.predicate): check
         for actor in audit.actors
         for number, check in enumerate(actor.checks)
     }
-    found |= {Place("", number, check.predicate): check for number, check in enumerate(audit.assertions)}
-    return found
+    checks |= {
+        CheckPlace("", number, check.predicate): check for number, check in enumerate(audit.assertions)
+    }
+    return checks
 
 
-def aims(audit: Audit, found: Mapping[str, Found]) -> Iterator[Aim]:
-    """The sabotages of every check that passes in a scene."""
+def planned_mutations(audit: Audit, actors: Mapping[str, Found]) -> Iterator[PlannedMutation]:
+    """Yields the mutations of every check that passes in a scene."""
     for place, check in checks_of(audit).items():
         if check.outcome != "passed":
             continue
-        own = found[place.actor] if place.actor else None
+        own = actors[place.actor] if place.actor else None
         role = own.actor.role if own is not None else ""
-        for sabotage in SABOTAGES[place.predicate]:
-            if sabotage.roles and role not in sabotage.roles:
+        for mutation in MUTATIONS[place.predicate]:
+            if mutation.roles and role not in mutation.roles:
                 continue
-            options = dict(sabotage.options)
-            if sabotage.given is not None:
-                options |= sabotage.given(check.params, check.seen)
-            for objects in _objects(sabotage, check, own, found):
-                yield Aim(place, sabotage, objects, options)
+            options = dict(mutation.options)
+            if mutation.given is not None:
+                options |= mutation.given(check.params, check.seen)
+            for objects in _objects(mutation, check, own, actors):
+                yield PlannedMutation(place, mutation, objects, options)
 
 
 def _objects(
-    sabotage: Sabotage, check: Checked, own: Found | None, found: Mapping[str, Found]
+    mutation: Mutation, check: Checked, own: Found | None, actors: Mapping[str, Found]
 ) -> Iterator[tuple[str, ...]]:
-    """The objects to change: several choices where there are several partners, each of which counts."""
-    if own is None or sabotage.on == "scene":
+    """Yields the objects to change: one choice for each partner where there are several."""
+    if own is None or mutation.on == "scene":
         yield ()
-    elif sabotage.on == "partner":
+    elif mutation.on == "partner":
         named = check.params.get("partners")
         if named:
-            yield from (_of_actor(found[name]) for name in named)
+            yield from (_of_actor(actors[name]) for name in named)
         else:
-            others = (one for one in found.values() if one is not own)
-            yield tuple(name for one in others for name in _of_actor(one))
+            others = (actor for actor in actors.values() if actor is not own)
+            yield tuple(name for actor in others for name in _of_actor(actor))
     else:
-        yield tuple(one.name for unit in own.units[: _enough(check)] for one in unit.objects)
+        yield tuple(obj.name for unit in own.units[: _units_to_break(check)] for obj in unit.objects)
 
 
-def _of_actor(one: Found) -> tuple[str, ...]:
-    return tuple(name for unit in one.units for name in sorted(unit.names))
+def _of_actor(actor: Found) -> tuple[str, ...]:
+    return tuple(name for unit in actor.units for name in sorted(unit.names))
 
 
-def _enough(check: Checked) -> int:
-    """How many units must be broken for the check to fail, whichever they are: no more, so that each of them counts."""
+def _units_to_break(check: Checked) -> int:
+    """The smallest number of units that must be broken for the check to fail, whichever they are."""
     if check.wanted == "must_not_have" or "needed" not in check.seen:
         return 1
     return check.seen["units"] - check.seen["needed"] + 1
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
-    """What a sabotage did: whether the check flipped, which others did with reason, and which without."""
+class MutationResult:
+    """What a mutation did: whether its check failed, and which others flipped, with and without a reason."""
 
-    hit: bool
-    followed: tuple[Place, ...]
-    spilled: tuple[Place, ...]
+    detected: bool
+    expected: tuple[CheckPlace, ...]
+    unexpected: tuple[CheckPlace, ...]
 
     @property
     def holds(self) -> bool:
-        """Whether that check flipped, and only what follows."""
-        return self.hit and not self.spilled
+        """Whether the check failed, and others only for a reason."""
+        return self.detected and not self.unexpected
 
 
-def judge(aim: Aim, whole: Reading, after: Audit, changed: Sequence[str]) -> Result:
-    """Compares audits. ``whole``: the scene as it was; ``changed``: names of the objects that were changed in it."""
+def judge(
+    planned: PlannedMutation, whole: SceneReading, after: Audit, changed: Sequence[str]
+) -> MutationResult:
+    """Compares the audits. ``whole``: the scene before; ``changed``: names of the objects that were changed."""
     old, new = checks_of(whole.audit), checks_of(after)
     flipped = [place for place, check in old.items() if new[place].outcome != check.outcome]
-    touched = _Touched(whole, changed)
-    followed: list[Place] = []
-    spilled: list[Place] = []
+    affected = _AffectedActors(whole, changed)
+    expected: list[CheckPlace] = []
+    unexpected: list[CheckPlace] = []
     for place in flipped:
-        if place != aim.place:
-            reason = any(touched.reaches(each, place, old[place]) for each in aim.sabotage.follows)
-            (followed if reason else spilled).append(place)
-    hit = aim.place in flipped and new[aim.place].outcome == "failed"
-    return Result(hit, tuple(followed), tuple(spilled))
+        if place != planned.place:
+            reason = any(affected.explains(each, place, old[place]) for each in planned.mutation.consequences)
+            (expected if reason else unexpected).append(place)
+    detected = planned.place in flipped and new[planned.place].outcome == "failed"
+    return MutationResult(detected, tuple(expected), tuple(unexpected))
 
 
-class _Touched:
-    """Which actors a change of objects has to do with."""
+class _AffectedActors:
+    """The actors that a change of objects may affect."""
 
-    def __init__(self, whole: Reading, changed: Sequence[str]) -> None:
+    def __init__(self, whole: SceneReading, changed: Sequence[str]) -> None:
         self._found = found = whole.found
         own = set(changed)
-        carried = own | {one.name for one in whole.scene.objects if _follows(one, own, whole.scene)}
+        carried = own | {obj.name for obj in whole.scene.objects if _follows(obj, own, whole.scene)}
         self._actors: dict[Who, set[str]] = {
             "changed": self._of(own),
             "carried": self._of(carried),
@@ -145,21 +149,22 @@ class _Touched:
         }
 
     def _of(self, objects: set[str]) -> set[str]:
-        return {name for name, one in self._found.items() if any(unit.names & objects for unit in one.units)}
+        return {name for name, actor in self._found.items() if any(u.names & objects for u in actor.units)}
 
-    def reaches(self, follows: Follows, place: Place, check: Checked) -> bool:
-        """Whether a check may flip for that reason."""
-        if place.predicate not in follows.predicates:
+    def explains(self, consequence: Consequence, place: CheckPlace, check: Checked) -> bool:
+        """Whether a check may flip as that consequence."""
+        if place.predicate not in consequence.predicates:
             return False
-        if follows.who == "meeting":
+        if consequence.who == "meeting":
             partners = set(check.params.get("partners") or self._actors["all"])
             return bool(partners & self._actors["changed"])
-        return place.actor in self._actors[follows.who]
+        return place.actor in self._actors[consequence.who]
 
 
-def _follows(one: Object, others: set[str], scene: Scene) -> bool:
+def _follows(obj: Object, others: set[str], scene: Scene) -> bool:
+    """Whether an object moves with one of ``others`` (names), directly or through further objects."""
     objects = {each.name: each for each in scene.objects}
-    waiting, seen = list(one.follows), {one.name}
+    waiting, seen = list(obj.follows), {obj.name}
     while waiting:
         name = waiting.pop()
         if name in others:

@@ -17,10 +17,10 @@ from processes import becomes, of_run
 from sittings import MESSAGES, answered, go_on, scenes, seat, sit
 from team import ABORT, DONE, NEEDS_FIX, Team, call, run
 
-from agents.blender.run_folder import locked
 from agents.loop import journal as journal_module
 from agents.loop.errors import NoRun, RunError
 from agents.loop.journal import NAME, read_rows
+from simworlds.folder_lock import locked
 
 if TYPE_CHECKING:
     from collections.abc import Callable

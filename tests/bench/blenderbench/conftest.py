@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from bench.blenderbench.run import run
-from bench.blenderbench.systems import Unedited
-from bench.blenderbench.task_scenes import Look
+from bench.blenderbench.systems import UneditedStart
+from bench.blenderbench.task_scenes import RenderSettings
 from bench.blenderbench.task_set import TaskSet, read_set
 from simworlds.sandbox.runtime import clean_environment, installed_bpy
 
@@ -39,16 +39,16 @@ def mini(tmp_path_factory: pytest.TempPathFactory) -> TaskSet:
 
 
 @pytest.fixture(scope="session")
-def look() -> Look:
+def rendering() -> RenderSettings:
     """As few samples as the miniature's own renders have."""
-    return Look(samples=4, seconds=120)
+    return RenderSettings(samples=4, seconds=120)
 
 
 @pytest.fixture(scope="session")
-def unedited(mini: TaskSet, look: Look, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def unedited(mini: TaskSet, rendering: RenderSettings, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The results of a system that edits nothing. Never write to them."""
     out = tmp_path_factory.mktemp("results") / "unedited"
-    run(mini, mini.tasks, Unedited(look), out)
+    run(mini, mini.tasks, UneditedStart(rendering), out)
     return out
 
 

@@ -16,7 +16,7 @@ from PIL import Image
 
 from bench.blenderbench import weights as found_in
 from bench.blenderbench.errors import NoWeights
-from bench.blenderbench.n_clip import SHAPES, Tower, clip_distance, prepared
+from bench.blenderbench.n_clip import SHAPES, Tower, clip_distance, preprocess
 from bench.blenderbench.weights import FILE, SHA256, load_clip
 from simworlds.cli import main
 
@@ -29,21 +29,21 @@ def tower() -> Tower:
     return Tower(clip_sample.weights())
 
 
-def test_the_reference_was_made_of_this_sample_and_tells_pictures_apart() -> None:
+def test_the_reference_is_of_this_sample_and_separates_pictures() -> None:
     assert REFERENCE["seed"] == clip_sample.SEED
     assert [tuple(row["size"]) for row in REFERENCE["pictures"]] == list(clip_sample.SIZES)
     cosines = EMBEDDINGS @ EMBEDDINGS.T
     assert cosines[~np.eye(len(cosines), dtype=bool)].max() < 0.95
 
 
-def test_pictures_are_prepared_as_by_the_reference() -> None:
+def test_preprocessing_matches_the_reference() -> None:
     for picture, row in zip(clip_sample.pictures(), REFERENCE["pictures"], strict=True):
-        seen = prepared(picture)
+        seen = preprocess(picture)
         assert seen.shape == (3, 224, 224)
         np.testing.assert_allclose(seen[:, ::32, ::32].ravel(), row["pixels"], atol=2e-6)
 
 
-def test_embeddings_are_those_of_the_reference(tower: Tower) -> None:
+def test_embeddings_match_the_reference(tower: Tower) -> None:
     embedded = tower.embed(clip_sample.pictures())
     np.testing.assert_allclose(embedded, EMBEDDINGS, atol=1e-5)
     assert np.min((embedded * EMBEDDINGS).sum(axis=1)) > 1 - 1e-5
@@ -57,7 +57,7 @@ class Known:
         return EMBEDDINGS[: len(self.sizes)]
 
 
-def test_the_distance_is_one_less_the_cosine_times_100() -> None:
+def test_the_distance_is_100_times_one_minus_the_cosine() -> None:
     tower: Any = Known()
     first, second = clip_sample.pictures()[:2]
     by_hand = 100 * (1 - sum(float(a * b) for a, b in zip(*EMBEDDINGS[:2], strict=True)))
@@ -75,7 +75,7 @@ def test_the_peer_resizes_the_goal_and_multiplies_nothing() -> None:
 
 
 @pytest.mark.parametrize("change", ["missing", "shape"])
-def test_weights_of_another_model_are_told_apart_by_name(change: str) -> None:
+def test_rejects_weights_of_another_model_by_name(change: str) -> None:
     empty = {name: np.zeros(shape, dtype=np.float32) for name, shape in SHAPES.items()}
     name = "vision_model.encoder.layers.7.mlp.fc1.weight"
     if change == "missing":
@@ -86,7 +86,7 @@ def test_weights_of_another_model_are_told_apart_by_name(change: str) -> None:
         Tower(empty)
 
 
-def test_weights_that_come_to_nothing_are_no_distance_of_zero() -> None:
+def test_rejects_weights_that_give_no_embedding() -> None:
     empty = Tower({name: np.zeros(shape, dtype=np.float32) for name, shape in SHAPES.items()})
     with pytest.raises(NoWeights, match="come to no embedding"):
         empty.embed([Image.new("RGB", (32, 32))])
@@ -99,7 +99,7 @@ def silent(_: str) -> None:
     pass
 
 
-def test_a_folder_of_weights_is_read_and_known_by_its_digest(tmp_path: Path, tower: Tower) -> None:
+def test_reads_a_folder_of_weights_and_its_digest(tmp_path: Path, tower: Tower) -> None:
     safetensors = pytest.importorskip("safetensors.numpy")
     half = {name: values.astype(np.float16) for name, values in tower.weights.items()}
     safetensors.save_file(
@@ -117,7 +117,7 @@ def test_a_folder_of_weights_is_read_and_known_by_its_digest(tmp_path: Path, tow
 
 
 @pytest.mark.parametrize("content", [None, b"", b"\x08\x00\x00\x00\x00\x00\x00\x00{}      ", b"\xff" * 64])
-def test_a_folder_without_sound_weights_says_how_to_get_them_without_network(
+def test_a_folder_without_valid_weights_says_how_to_get_them_offline(
     content: bytes | None, tmp_path: Path
 ) -> None:
     pytest.importorskip("safetensors")
@@ -131,7 +131,7 @@ def test_a_folder_without_sound_weights_says_how_to_get_them_without_network(
         assert "hf download openai/clip-vit-base-patch32 model.safetensors --revision" in said
 
 
-def test_nothing_is_fetched_that_was_not_asked_for_by_name(
+def test_fetches_only_by_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     hub = pytest.importorskip("huggingface_hub")
@@ -154,7 +154,7 @@ def test_nothing_is_fetched_that_was_not_asked_for_by_name(
 
 
 @pytest.mark.parametrize(("package", "asked"), [("safetensors", "folder"), ("huggingface_hub", "hub")])
-def test_without_the_extra_it_is_named(
+def test_names_the_missing_extra(
     package: str, asked: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     real = builtins.__import__
@@ -170,7 +170,7 @@ def test_without_the_extra_it_is_named(
         load_clip("hub" if asked == "hub" else str(tmp_path), silent)
 
 
-def test_the_command_tells_that_weights_are_missing(tmp_path: Path) -> None:
+def test_the_command_reports_missing_weights(tmp_path: Path) -> None:
     words = ["bench", "blenderbench", "score", str(tmp_path), "--clip", str(tmp_path / "none")]
     done = CliRunner().invoke(main, words)
     assert done.exit_code == 2

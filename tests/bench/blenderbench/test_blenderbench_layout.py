@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from PIL import Image
 
 from bench.blenderbench.errors import NoTasks
-from bench.blenderbench.task_set import chosen, in_order, read_set
+from bench.blenderbench.task_set import natural_key, read_set, select_tasks
 from simworlds.cli import main
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def fault_of(root: Path) -> str:
     return str(caught.value)
 
 
-def test_tasks_are_found_by_level_and_in_the_order_that_people_count_in(tmp_path: Path) -> None:
+def test_finds_tasks_by_level_in_natural_order(tmp_path: Path) -> None:
     names = ["level3/a1", "level1/room10", "level1/room9", "level2/Böden (2)"]
     for name in names:
         make_task(tmp_path, name)
@@ -57,7 +57,7 @@ def test_tasks_are_found_by_level_and_in_the_order_that_people_count_in(tmp_path
     assert found.faults == ()
 
 
-def test_a_task_holds_what_its_files_say(tmp_path: Path) -> None:
+def test_a_task_has_the_contents_of_its_files(tmp_path: Path) -> None:
     folder = make_task(tmp_path)
     (folder / "task.txt").write_bytes(b"\xef\xbb\xbfFirst the lamp,\r\nthen the mug.\r\n")
     Image.new("RGB", (32, 16)).save(folder / "renders" / "goal" / "visprompt1.png")
@@ -75,7 +75,7 @@ def test_a_task_without_a_render_of_its_start_can_be_used(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("name", ["blender_file.blend", "start.py", "task.txt", GOAL])
-def test_a_missing_file_is_named_with_its_path(name: str, tmp_path: Path) -> None:
+def test_names_the_path_of_a_missing_file(name: str, tmp_path: Path) -> None:
     folder = make_task(tmp_path)
     (folder / name).unlink()
     assert f"{folder / name} is missing." in fault_of(tmp_path)
@@ -92,7 +92,7 @@ def test_a_link_out_of_the_set_is_not_followed(name: str, tmp_path: Path) -> Non
     assert f"{folder / name} is a link out of the set, to {elsewhere}" in fault_of(tmp_path / "set")
 
 
-def test_a_task_that_is_a_link_out_of_the_set_is_left_out(tmp_path: Path) -> None:
+def test_skips_a_task_that_links_out_of_the_set(tmp_path: Path) -> None:
     make_task(tmp_path / "set")
     make_task(tmp_path / "other", "level1/theirs")
     (tmp_path / "set" / "level1" / "theirs").symlink_to(tmp_path / "other" / "level1" / "theirs")
@@ -104,19 +104,19 @@ def test_a_task_that_is_a_link_out_of_the_set_is_left_out(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("task.txt", b" \n\t\n", "is empty: there is nothing to ask for"),
-        ("task.txt", b"\xff\xfe no text", "is no UTF-8 text"),
-        ("task.txt", b"Move\x00 it", "holds characters that no text has"),
+        ("task.txt", b" \n\t\n", "is empty; it must hold the instruction"),
+        ("task.txt", b"\xff\xfe no text", "is not UTF-8 text"),
+        ("task.txt", b"Move\x00 it", "contains control characters"),
         ("task.txt", b"x" * 20_001, "has more than 20,000 bytes"),
         ("start.py", b"#" * (1 << 20) + b"#", "has more than 1,048,576 bytes"),
-        ("start.py", b"\xe9", "is no UTF-8 text"),
+        ("start.py", b"\xe9", "is not UTF-8 text"),
         ("blender_file.blend", b"", "it is empty"),
         ("blender_file.blend", b"PK\x03\x04", "it is no .blend"),
-        (GOAL, b"GIF89a", "is no PNG"),
-        (GOAL, b"\x89PNG\r\n\x1a\n", "is no PNG"),
+        (GOAL, b"GIF89a", "is not a PNG"),
+        (GOAL, b"\x89PNG\r\n\x1a\n", "is not a PNG"),
     ],
 )
-def test_a_file_that_is_something_else_is_named_with_its_path(
+def test_names_the_path_of_an_invalid_file(
     name: str, content: bytes, said: str, tmp_path: Path
 ) -> None:
     folder = make_task(tmp_path)
@@ -147,7 +147,7 @@ def png_of(width: int, height: int) -> bytes:
         ((4_000, 20), "more than 16 times"),
     ],
 )
-def test_a_goal_of_a_size_that_cannot_be_compared_is_known_without_reading_it(
+def test_rejects_a_goal_of_a_bad_size_without_reading_it(
     size: tuple[int, int], said: str, tmp_path: Path
 ) -> None:
     folder = make_task(tmp_path)
@@ -157,42 +157,42 @@ def test_a_goal_of_a_size_that_cannot_be_compared_is_known_without_reading_it(
     assert said in told
 
 
-def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(tmp_path: Path) -> None:
+def test_does_not_wait_for_a_pipe(tmp_path: Path) -> None:
     folder = make_task(tmp_path)
     (folder / "task.txt").unlink()
     os.mkfifo(folder / "task.txt")
-    assert f"{folder / 'task.txt'} is no plain file" in fault_of(tmp_path)
+    assert f"{folder / 'task.txt'} is not a plain file" in fault_of(tmp_path)
 
 
-def test_a_name_that_would_not_survive_a_terminal_is_a_fault(tmp_path: Path) -> None:
+def test_rejects_a_name_with_control_characters(tmp_path: Path) -> None:
     make_task(tmp_path)
     make_task(tmp_path, "level2/a\x1b[31m")
     assert "cannot be a task's name" in read_set(tmp_path).faults[0]
 
 
 @pytest.mark.parametrize(
-    ("inside", "said"), [(None, "is no folder"), ("scenes", "it has none of level1, level2")]
+    ("inside", "said"), [(None, "is not a folder"), ("scenes", "it has none of level1, level2")]
 )
-def test_a_folder_that_is_no_set_says_what_it_lacks(inside: str | None, said: str, tmp_path: Path) -> None:
+def test_says_what_a_folder_lacks_to_be_a_set(inside: str | None, said: str, tmp_path: Path) -> None:
     root = tmp_path / "set"
     if inside:
         (root / inside).mkdir(parents=True)
     assert said in fault_of(root)
 
 
-def test_tasks_are_chosen_by_level_or_id_and_unknown_names_tell_the_known_ones(tmp_path: Path) -> None:
+def test_selects_tasks_by_level_or_id_and_lists_known_names(tmp_path: Path) -> None:
     for name in ("level1/a", "level1/b", "level2/a"):
         make_task(tmp_path, name)
     found = read_set(tmp_path)
-    assert [task.id for task in chosen(found, ["level2", "level1/b"])] == ["level1/b", "level2/a"]
-    assert chosen(found, []) == found.tasks
+    assert [task.id for task in select_tasks(found, ["level2", "level1/b"])] == ["level1/b", "level2/a"]
+    assert select_tasks(found, []) == found.tasks
     with pytest.raises(NoTasks, match=r"has no level9.*level1/a, level1/b, level2/a"):
-        chosen(found, ["level9"])
+        select_tasks(found, ["level9"])
 
 
-def test_numbers_in_names_count_as_such_whatever_their_script() -> None:
+def test_sorts_numbers_of_any_script() -> None:
     names = ["a10", "a9", "10", "9", "b²", "٣", "a"]
-    assert sorted(names, key=in_order) == ["٣", "9", "10", "a", "a9", "a10", "b²"]
+    assert sorted(names, key=natural_key) == ["٣", "9", "10", "a", "a9", "a10", "b²"]
 
 
 def test_the_command_lists_tasks_and_faults(tmp_path: Path) -> None:
@@ -204,7 +204,7 @@ def test_the_command_lists_tasks_and_faults(tmp_path: Path) -> None:
     assert "task.txt is missing." in done.stderr
 
 
-def test_the_command_says_why_there_is_nothing(tmp_path: Path) -> None:
+def test_the_command_says_why_there_are_no_tasks(tmp_path: Path) -> None:
     done = CliRunner().invoke(main, ["bench", "blenderbench", "tasks", str(tmp_path / "none")])
     assert done.exit_code == 2
-    assert "is no folder" in done.stderr
+    assert "is not a folder" in done.stderr

@@ -43,7 +43,7 @@ def by_fractions(first: Image.Image, second: Image.Image) -> float:
         ((0, 102, 204), (0, 0, 0), (0.16 + 0.64) / 3 * 100),
     ],
 )
-def test_plain_pictures_are_as_far_apart_as_by_hand(
+def test_plain_pictures_match_distances_by_hand(
     first: tuple[int, int, int], second: tuple[int, int, int], by_hand: float
 ) -> None:
     assert photometric_loss(plain((2, 2), first), plain((2, 2), second)) == pytest.approx(by_hand, abs=1e-5)
@@ -61,7 +61,7 @@ def test_it_agrees_with_exact_arithmetic() -> None:
     assert photometric_loss(first, second, "peer") == pytest.approx(by_fractions(first, second), rel=1e-6)
 
 
-def test_the_paper_compares_at_the_goals_size_and_the_peer_at_the_renders() -> None:
+def test_the_paper_uses_the_goals_size_and_the_peer_the_renders() -> None:
     render, goal = noise((40, 30), 3), noise((24, 16), 4)
     at_goal = by_fractions(render.resize((24, 16), Image.Resampling.BICUBIC), goal)
     at_render = by_fractions(render, goal.resize((40, 30), Image.Resampling.BICUBIC))
@@ -74,7 +74,7 @@ def test_sizes_do_not_matter_to_plain_colours() -> None:
     assert photometric_loss(plain((64, 64), (51, 0, 0)), plain((17, 31), (0, 0, 0))) == pytest.approx(4 / 3)
 
 
-def test_transparency_is_left_out_and_palettes_are_looked_up(tmp_path: Path) -> None:
+def test_drops_transparency_and_resolves_palettes(tmp_path: Path) -> None:
     Image.new("RGBA", (4, 4), (200, 100, 50, 0)).save(tmp_path / "clear.png")
     indexed = Image.new("P", (4, 4), 1)
     indexed.putpalette([0, 0, 0, 200, 100, 50])
@@ -85,7 +85,7 @@ def test_transparency_is_left_out_and_palettes_are_looked_up(tmp_path: Path) -> 
     assert read_picture(tmp_path / "grey.png").getpixel((0, 0)) == (77, 77, 77)
 
 
-def test_a_torn_picture_says_which_it_is(tmp_path: Path) -> None:
+def test_names_a_truncated_picture(tmp_path: Path) -> None:
     noise((64, 64), 5).save(tmp_path / "whole.png")
     (tmp_path / "torn.png").write_bytes((tmp_path / "whole.png").read_bytes()[:3000])
     with pytest.raises(BadPicture, match=r"torn\.png cannot be read as a picture"):
@@ -93,15 +93,15 @@ def test_a_torn_picture_says_which_it_is(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["none.png", "folder.png"])
-def test_what_is_no_file_says_so(name: str, tmp_path: Path) -> None:
+def test_rejects_what_is_not_a_file(name: str, tmp_path: Path) -> None:
     (tmp_path / "folder.png").mkdir()
     with pytest.raises(BadPicture, match=name.replace(".", r"\.")):
         read_picture(tmp_path / name)
 
 
-def test_a_jpeg_by_another_name_and_deep_grey_are_not_compared(tmp_path: Path) -> None:
+def test_rejects_a_renamed_jpeg_and_deep_grey(tmp_path: Path) -> None:
     noise((8, 8), 6).save(tmp_path / "photo.png", format="JPEG")
-    with pytest.raises(BadPicture, match="is no PNG"):
+    with pytest.raises(BadPicture, match="is not a PNG"):
         read_picture(tmp_path / "photo.png")
     Image.fromarray(np.full((8, 8), 40_000, dtype=np.uint16)).save(tmp_path / "deep.png")
     with pytest.raises(BadPicture, match="grey with more than 8 bits"):

@@ -22,10 +22,10 @@ from bench.blenderbench.errors import BadResults
 from bench.blenderbench.n_clip import Tower, clip_distance
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
-from bench.blenderbench.results import Record, Score, place_of, read, read_run
+from bench.blenderbench.results import Score, TaskRecord, read, read_run, task_folder
 from bench.blenderbench.run import run
-from bench.blenderbench.systems import Folder, Unedited
-from bench.blenderbench.task_scenes import render
+from bench.blenderbench.systems import RendersFolder, UneditedStart
+from bench.blenderbench.task_scenes import make_start, render
 from bench.blenderbench.task_set import read_set
 from simworlds.cli import main
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.blenderbench.task_scenes import Look
-    from bench.blenderbench.task_set import Task, TaskSet
+    from bench.blenderbench.task_scenes import RenderSettings
+    from bench.blenderbench.task_set import EditTask, TaskSet
 
 pytestmark = pytest.mark.blender
 
@@ -43,11 +43,11 @@ def loss(first: Path, second: Path) -> float:
     return photometric_loss(read_picture(first), read_picture(second))
 
 
-def record_of(out: Path, task: str) -> Record:
-    return read(place_of(out, task).record, Record)
+def record_of(out: Path, task: str) -> TaskRecord:
+    return read(task_folder(out, task).record, TaskRecord)
 
 
-def task_of(found: TaskSet, name: str) -> Task:
+def task_of(found: TaskSet, name: str) -> EditTask:
     return next(task for task in found.tasks if task.id == name)
 
 
@@ -58,46 +58,82 @@ def bench(*words: object) -> Any:
 # The baseline, and the trap
 
 
-def test_every_task_is_rendered_as_its_start_and_by_the_camera_of_the_set(
-    unedited: Path, mini: TaskSet
-) -> None:
+def test_renders_every_start_scene_through_the_sets_camera(unedited: Path, mini: TaskSet) -> None:
     for task in mini.tasks:
         record = record_of(unedited, task.id)
         assert (record.why, record.rounds) == (None, ("renders/01.png",))
         assert record.rendered is not None
         assert record.rendered.camera == "Camera1"
         assert record.start_loss == pytest.approx(0, abs=1e-3)  # this machine makes of it what the set's did
-        assert loss(place_of(unedited, task.id).root / "renders" / "01.png", task.goal) > 0.5
+        assert loss(task_folder(unedited, task.id).root / "renders" / "01.png", task.goal) > 0.5
 
 
-def test_the_raw_file_of_a_camera_task_holds_the_goals_camera_and_start_py_undoes_it(
-    unedited: Path, mini: TaskSet, look: Look, tmp_path: Path
+def test_start_py_replaces_the_goals_camera_of_a_raw_file(
+    unedited: Path, mini: TaskSet, rendering: RenderSettings, tmp_path: Path
 ) -> None:
     task = task_of(mini, "level1/table1")
     untouched = task.code.replace("camera.location =", "ignored =").replace(
         "camera.rotation_euler", "ignored"
     )
     trapped = dataclasses.replace(task, code=untouched)
-    run(mini, [trapped], Unedited(look), tmp_path / "trapped")
+    run(mini, [trapped], UneditedStart(rendering), tmp_path / "trapped")
     raw = tmp_path / "trapped" / "level1" / "table1" / "renders" / "01.png"
     assert loss(raw, task.goal) == pytest.approx(0, abs=1e-3)
-    assert loss(place_of(unedited, task.id).root / "renders" / "01.png", task.goal) > 1
+    assert loss(task_folder(unedited, task.id).root / "renders" / "01.png", task.goal) > 1
 
 
-def test_what_edits_a_scene_finds_it_whole_and_neither_goal_nor_authors_edit_beside_it(
-    unedited: Path, mini: TaskSet, look: Look, tmp_path: Path
+def test_the_start_scene_is_complete_and_has_no_goal_beside_it(
+    unedited: Path, mini: TaskSet, rendering: RenderSettings, tmp_path: Path
 ) -> None:
-    place = place_of(unedited, "level2/mug1")
+    place = task_folder(unedited, "level2/mug1")
     assert [path.name for path in place.start.parent.iterdir()] == ["start.blend"]
     assert not [path for path in unedited.rglob("*") if path.suffix == ".py"]
     alone = tmp_path / "alone.blend"
     shutil.copy(place.start, alone)
-    made = render(alone, tmp_path / "again.png", (48, 32), look)
+    made = render(alone, tmp_path / "again.png", (48, 32), rendering)
     assert (made.camera, made.samples) == ("Camera1", 4)
     assert loss(tmp_path / "again.png", place.start_picture) == 0
 
 
-def test_records_tell_where_results_come_from(unedited: Path, mini: TaskSet) -> None:
+FALLING = """\
+import bpy
+
+scene = bpy.context.scene
+bpy.ops.rigidbody.world_add()
+bpy.context.view_layer.objects.active = mug = bpy.data.objects["Mug"]
+bpy.ops.rigidbody.object_add()
+mug.location.z = 1
+scene.frame_set({frame})
+"""
+
+
+def test_plays_unbaked_motion_up_to_the_frame(
+    mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+) -> None:
+    task = task_of(mini, "level1/table1")
+    pictures = [tmp_path / "1.png", tmp_path / "10.png"]
+    for frame, picture in zip((1, 10), pictures, strict=True):
+        (tmp_path / str(frame)).mkdir()
+        blend = tmp_path / str(frame) / "start.blend"
+        falling = dataclasses.replace(task, code=task.code + FALLING.format(frame=frame))
+        assert make_start(falling, blend, rendering) == ()
+        render(blend, picture, (48, 32), rendering)
+    assert loss(*pictures) > 0.2
+
+
+def test_names_a_file_that_cannot_be_packed(mini: TaskSet, rendering: RenderSettings, tmp_path: Path) -> None:
+    task = task_of(mini, "level1/table1")
+    code = "import bpy\nbpy.data.images['Label'].filepath = '//elsewhere.png'\n"
+    (tmp_path / "kept").mkdir()
+    notes = make_start(
+        dataclasses.replace(task, code=task.code + code), tmp_path / "kept" / "start.blend", rendering
+    )
+    assert len(notes) == 1
+    assert notes[0].startswith("not in the scene to be edited: file /")
+    assert notes[0].endswith("elsewhere.png")
+
+
+def test_records_have_provenance(unedited: Path, mini: TaskSet) -> None:
     record = record_of(unedited, "level1/table1")
     assert sorted(record.inputs) == ["blender_file.blend", "renders/goal/render1.png", "start.py", "task.txt"]
     assert len(record.provenance.code) == 64
@@ -125,14 +161,14 @@ BAD_CODE = {
 }  # fmt: skip
 
 
-def test_a_task_that_comes_to_nothing_says_why_and_the_others_go_on(
-    one: Path, look: Look, tmp_path: Path
+def test_a_failed_task_says_why_and_others_go_on(
+    one: Path, rendering: RenderSettings, tmp_path: Path
 ) -> None:
     for number, (code, _) in enumerate(BAD_CODE.values(), 2):
         shutil.copytree(one / "level1" / "table1", tmp_path / "set" / "level1" / f"table{number}")
         (tmp_path / "set" / "level1" / f"table{number}" / "start.py").write_text(code)
     found = read_set(tmp_path / "set")
-    records = run(found, found.tasks, Unedited(look), tmp_path / "out")
+    records = run(found, found.tasks, UneditedStart(rendering), tmp_path / "out")
     for record, (_, told) in zip(records, BAD_CODE.values(), strict=True):
         assert told in (record.why or ""), record.why
         assert record.rounds == ()
@@ -140,8 +176,8 @@ def test_a_task_that_comes_to_nothing_says_why_and_the_others_go_on(
     assert bench("score", tmp_path / "out").exit_code == 1
 
 
-def test_start_py_writes_nothing_and_reads_no_secret(
-    one: Path, look: Look, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_start_py_cannot_write_or_read_outside_the_sandbox(
+    one: Path, rendering: RenderSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Held by the sandbox where agents build; here it is shown to be used."""
     root = tmp_path / "set"
@@ -155,16 +191,18 @@ def test_start_py_writes_nothing_and_reads_no_secret(
         "    try:\n        use()\n    except OSError:\n        continue\n    raise SystemExit('it got out')\n"
     )
     found = read_set(root)
-    [record] = run(found, found.tasks, Unedited(look), tmp_path / "out")
+    [record] = run(found, found.tasks, UneditedStart(rendering), tmp_path / "out")
     assert record.why is None, record.why
     assert not target.exists()
 
 
-def test_code_that_takes_too_long_is_ended(one: Path, look: Look, tmp_path: Path) -> None:
+def test_ends_code_that_takes_too_long(one: Path, rendering: RenderSettings, tmp_path: Path) -> None:
     shutil.copytree(one, tmp_path / "set")
     (tmp_path / "set" / "level1" / "table1" / "start.py").write_text("import time\ntime.sleep(600)\n")
     found = read_set(tmp_path / "set")
-    [record] = run(found, found.tasks, Unedited(dataclasses.replace(look, seconds=8)), tmp_path / "out")
+    [record] = run(
+        found, found.tasks, UneditedStart(dataclasses.replace(rendering, seconds=8)), tmp_path / "out"
+    )
     assert "The task's start.py ran past its deadline of 8 s" in (record.why or "")
 
 
@@ -177,24 +215,22 @@ def picture(path: Path, shade: int) -> Path:
     return path
 
 
-def test_rounds_of_a_folder_are_taken_in_the_order_that_people_count_in(
-    mini: TaskSet, tmp_path: Path
-) -> None:
+def test_copies_rounds_in_natural_order(mini: TaskSet, tmp_path: Path) -> None:
     theirs = tmp_path / "theirs"
     for number in (1, 2, 10):
         picture(theirs / "level1" / "table1" / f"round{number}.png", number)
         picture(theirs / "level2" / "mug1" / "renders" / str(number) / "render1.png", 100 + number)
-    records = run(mini, mini.tasks, Folder(theirs), tmp_path / "out")
+    records = run(mini, mini.tasks, RendersFolder(theirs), tmp_path / "out")
     told = {record.task: record for record in records}
     for task, shades in (("level1/table1", (1, 2, 10)), ("level2/mug1", (101, 102, 110))):
         assert told[task].rounds == ("renders/01.png", "renders/02.png", "renders/03.png")
-        root = place_of(tmp_path / "out", task).root
+        root = task_folder(tmp_path / "out", task).root
         assert tuple(read_picture(root / file).getpixel((0, 0))[0] for file in told[task].rounds) == shades  # type: ignore[index]
     assert "has no render" in (told["level3/mug1"].why or "")
     assert told["level1/table1"].cost is None
 
 
-def test_a_folder_that_leads_out_of_itself_or_holds_no_picture_is_not_taken(
+def test_rejects_links_out_of_the_folder_and_files_that_are_not_pictures(
     mini: TaskSet, tmp_path: Path
 ) -> None:
     theirs = tmp_path / "theirs"
@@ -203,57 +239,57 @@ def test_a_folder_that_leads_out_of_itself_or_holds_no_picture_is_not_taken(
     (theirs / "level1" / "table1" / "1.png").symlink_to(tmp_path / "elsewhere.png")
     (theirs / "level1" / "table2").mkdir()
     (theirs / "level1" / "table2" / "1.png").write_bytes(b"no picture")
-    records = run(mini, mini.tasks[:2], Folder(theirs), tmp_path / "out")
+    records = run(mini, mini.tasks[:2], RendersFolder(theirs), tmp_path / "out")
     assert "is a link out of" in (records[0].why or "")
-    assert "is no PNG" in (records[1].why or "")
+    assert "is not a PNG" in (records[1].why or "")
 
 
-def test_renders_that_were_added_are_taken_over_when_it_is_run_again(mini: TaskSet, tmp_path: Path) -> None:
+def test_copies_added_renders_when_run_again(mini: TaskSet, tmp_path: Path) -> None:
     theirs, out = tmp_path / "theirs", tmp_path / "out"
     picture(theirs / "level1" / "table1" / "1.png", 1)
-    first = run(mini, mini.tasks[:2], Folder(theirs), out)
+    first = run(mini, mini.tasks[:2], RendersFolder(theirs), out)
     picture(theirs / "level1" / "table2" / "1.png", 2)
     picture(theirs / "level1" / "table1" / "2.png", 3)
-    second = run(mini, mini.tasks[:2], Folder(theirs), out)
+    second = run(mini, mini.tasks[:2], RendersFolder(theirs), out)
     assert [len(record.rounds) for record in first] == [1, 0]
     assert [len(record.rounds) for record in second] == [2, 1]
 
 
-def test_a_task_that_has_changed_since_is_not_passed_off_as_the_same(one: Path, tmp_path: Path) -> None:
+def test_rejects_results_of_a_task_that_has_changed(one: Path, tmp_path: Path) -> None:
     root, theirs = tmp_path / "set", tmp_path / "theirs"
     shutil.copytree(one, root)
     picture(theirs / "level1" / "table1" / "1.png", 1)
     found = read_set(root)
-    run(found, found.tasks, Folder(theirs), tmp_path / "out")
+    run(found, found.tasks, RendersFolder(theirs), tmp_path / "out")
     (root / "level1" / "table1" / "task.txt").write_text("Something else.")
     with pytest.raises(BadResults, match="has changed since"):
-        run(found, found.tasks, Folder(theirs), tmp_path / "out")
+        run(found, found.tasks, RendersFolder(theirs), tmp_path / "out")
 
 
-def test_a_folder_of_other_results_is_not_mixed_with(mini: TaskSet, look: Look, tmp_path: Path) -> None:
+def test_rejects_a_folder_with_results_of_another_setup(
+    mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+) -> None:
     theirs = tmp_path / "theirs"
     picture(theirs / "level1" / "table1" / "1.png", 1)
-    run(mini, mini.tasks[:1], Folder(theirs), tmp_path / "out")
+    run(mini, mini.tasks[:1], RendersFolder(theirs), tmp_path / "out")
     with pytest.raises(BadResults, match=r"holds results of .*folder.*Choose another folder"):
-        run(mini, mini.tasks[:1], Unedited(look), tmp_path / "out")
-    with pytest.raises(BadResults, match="is not empty, and holds no results"):
-        run(mini, mini.tasks[:1], Folder(theirs), theirs)
+        run(mini, mini.tasks[:1], UneditedStart(rendering), tmp_path / "out")
+    with pytest.raises(BadResults, match="is not empty and has no results"):
+        run(mini, mini.tasks[:1], RendersFolder(theirs), theirs)
 
 
 @pytest.mark.parametrize(
     ("folder", "name"), [("_viga 2", "viga 2"), ("rendus été", "rendus -t-"), ("результат", "folder")]
 )
-def test_a_folder_gives_its_name_as_far_as_a_table_can_have_it(
-    folder: str, name: str, tmp_path: Path
-) -> None:
-    assert Folder(tmp_path / folder).name == name
+def test_a_folders_name_is_made_fit_for_tables(folder: str, name: str, tmp_path: Path) -> None:
+    assert RendersFolder(tmp_path / folder).name == name
 
 
-def test_a_name_that_no_table_can_have_is_an_error(mini: TaskSet, tmp_path: Path) -> None:
+def test_rejects_a_name_that_tables_do_not_allow(mini: TaskSet, tmp_path: Path) -> None:
     words = ("--system", f"folder={tmp_path}", "--out", tmp_path / "out", "--name", "a|b\n")
     done = bench("run", mini.root, *words)
     assert done.exit_code == 2
-    assert "cannot stand in a table" in done.stderr
+    assert "cannot be a name in tables" in done.stderr
 
 
 # SimWorlds itself, but for the model
@@ -282,14 +318,14 @@ def api(monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeMessagesAPI]:
         yield server
 
 
-def test_an_edit_is_asked_for_with_instruction_and_goal_and_its_scene_is_what_scores(
+def test_edits_with_instruction_and_goal_and_scores_the_edited_scene(
     mini: TaskSet, api: FakeMessagesAPI, tmp_path: Path
 ) -> None:
     out = tmp_path / "out"
     words = ("--system", "simworlds", "--task", "level1/table2", "--samples", 4, "--out", out)
     done = bench("run", mini.root, *words)
     assert done.exit_code == 0, done.output
-    task, place = task_of(mini, "level1/table2"), place_of(out, "level1/table2")
+    task, place = task_of(mini, "level1/table2"), task_folder(out, "level1/table2")
     assert loss(place.root / "renders" / "01.png", task_of(mini, "level1/table1").goal) < 0.01
     asked = api.received("POST /v1/messages")[0].body
     assert task.instruction in team.words_of(asked)  # though it begins like an option
@@ -308,20 +344,20 @@ def test_an_edit_is_asked_for_with_instruction_and_goal_and_its_scene_is_what_sc
     assert len(api.received("POST /v1/messages")) == requests
 
 
-def test_without_a_key_nothing_is_begun(mini: TaskSet, tmp_path: Path) -> None:
+def test_without_a_key_nothing_starts(mini: TaskSet, tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = bench(
         "run", mini.root, "--system", "simworlds", "--task", "level1/table1", "--samples", 1, "--out", out
     )
     assert done.exit_code == 2
     assert "needs a key: set ANTHROPIC_API_KEY" in done.stderr
-    assert not place_of(out, "level1/table1").start.exists()
+    assert not task_folder(out, "level1/table1").start.exists()
 
 
 # Kills
 
 
-def test_a_run_that_is_killed_goes_on_where_it_was(mini: TaskSet, tmp_path: Path) -> None:
+def test_a_killed_run_goes_on_where_it_was(mini: TaskSet, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ["bench", "blenderbench", "run", str(mini.root), "--system", "start", "--samples", "4"]
     words += ["--task", "level1", "--out", str(out)]
@@ -338,10 +374,10 @@ def test_a_run_that_is_killed_goes_on_where_it_was(mini: TaskSet, tmp_path: Path
         assert any("level1/table2: running start.py" in line for line in said)
         killed.send_signal(signal.SIGKILL)
     assert killed.wait() == -signal.SIGKILL
-    kept = place_of(out, "level1/table1").record.read_bytes()
-    assert not place_of(out, "level1/table2").record.exists()
+    kept = task_folder(out, "level1/table1").record.read_bytes()
+    assert not task_folder(out, "level1/table2").record.exists()
     assert bench(*words[2:]).exit_code == 0
-    assert place_of(out, "level1/table1").record.read_bytes() == kept
+    assert task_folder(out, "level1/table1").record.read_bytes() == kept
     assert record_of(out, "level1/table2").why is None
     assert not list(out.rglob(".blender-*"))
 
@@ -351,20 +387,20 @@ def test_a_run_that_is_killed_goes_on_where_it_was(mini: TaskSet, tmp_path: Path
 
 @pytest.mark.parametrize(
     ("system", "told"),
-    [("blender", "There is no system 'blender'"), ("folder=/nowhere", "is no folder of renders")],
+    [("blender", "There is no system 'blender'"), ("folder=/nowhere", "is not a folder of renders")],
 )
-def test_a_system_that_is_none_is_an_error(system: str, told: str, mini: TaskSet, tmp_path: Path) -> None:
+def test_rejects_an_unknown_system(system: str, told: str, mini: TaskSet, tmp_path: Path) -> None:
     done = bench("run", mini.root, "--system", system, "--out", tmp_path / "out")
     assert done.exit_code == 2
     assert told in done.stderr
     assert not (tmp_path / "out").exists()
 
 
-def test_a_record_that_is_none_is_an_error_that_names_it(mini: TaskSet, tmp_path: Path) -> None:
+def test_names_an_invalid_record(mini: TaskSet, tmp_path: Path) -> None:
     theirs, out = tmp_path / "theirs", tmp_path / "out"
     picture(theirs / "level1" / "table1" / "1.png", 1)
-    run(mini, mini.tasks[:1], Folder(theirs), out)
-    path = place_of(out, "level1/table1").record
+    run(mini, mini.tasks[:1], RendersFolder(theirs), out)
+    path = task_folder(out, "level1/table1").record
     for spoilt in (b"{", json.dumps({**json.loads(path.read_bytes()), "rounds": ["../../x.png"]}).encode()):
         path.write_bytes(spoilt)
         done = bench("score", out)
@@ -375,7 +411,7 @@ def test_a_record_that_is_none_is_an_error_that_names_it(mini: TaskSet, tmp_path
 # The whole way, with a tower of CLIP's architecture
 
 
-def test_a_set_is_scored_from_raw_files_to_the_table(unedited: Path, mini: TaskSet, tmp_path: Path) -> None:
+def test_scores_a_set_from_raw_files_to_the_table(unedited: Path, mini: TaskSet, tmp_path: Path) -> None:
     safetensors = pytest.importorskip("safetensors.numpy")
     safetensors.save_file(clip_sample.weights(), tmp_path / "model.safetensors")
     out = tmp_path / "out"
@@ -386,7 +422,7 @@ def test_a_set_is_scored_from_raw_files_to_the_table(unedited: Path, mini: TaskS
     assert done.exit_code == 0, done.output
     task = mini.tasks[0]
     render, goal = (read_picture(path) for path in (out / task.id / "renders" / "01.png", task.goal))
-    kept = read(place_of(out, task.id).scores, Score)
+    kept = read(task_folder(out, task.id).scores, Score)
     assert kept.pl == pytest.approx(photometric_loss(render, goal))
     assert kept.n_clip == pytest.approx(clip_distance(Tower(clip_sample.weights()), render, goal), abs=1e-3)
     assert kept.n_clip > 0

@@ -16,11 +16,11 @@ from test_blenderbench_vlm import marks
 
 from bench.blenderbench.published import OVERALL, PUBLISHED, TASKS
 from bench.blenderbench.report import as_markdown, read_results
-from bench.blenderbench.results import Score, place_of, read
+from bench.blenderbench.results import Score, read, task_folder
 from bench.blenderbench.run import run
-from bench.blenderbench.score import Rule, score
-from bench.blenderbench.systems import Folder
-from bench.blenderbench.task_set import LEVELS, Task, TaskSet
+from bench.blenderbench.score import ScoringRule, score
+from bench.blenderbench.systems import RendersFolder
+from bench.blenderbench.task_set import LEVELS, EditTask, TaskSet
 from bench.blenderbench.weights import Clip
 from simworlds.cli import main
 
@@ -37,7 +37,7 @@ def bench(*words: object) -> Any:
 @pytest.fixture
 def found(tmp_path: Path) -> TaskSet:
     """A set whose goals are grey; nobody opens its scenes."""
-    tasks: list[Task] = []
+    tasks: list[EditTask] = []
     for level, name in (("level1", "a1"), ("level1", "a2"), ("level2", "b1"), ("level3", "c1")):
         folder = tmp_path / "set" / level / name
         goal = folder / "renders" / "goal" / "render1.png"
@@ -46,7 +46,7 @@ def found(tmp_path: Path) -> TaskSet:
         for file in ("blender_file.blend", "start.py", "task.txt"):
             (folder / file).write_bytes(b"BLENDER")
         tasks.append(
-            Task(level, name, folder, folder / "blender_file.blend", "", f"Do {name}.", goal, (32, 16))
+            EditTask(level, name, folder, folder / "blender_file.blend", "", f"Do {name}.", goal, (32, 16))
         )
     return TaskSet(tmp_path / "set", tuple(tasks), ("level1/a3/task.txt is missing.",))
 
@@ -63,12 +63,12 @@ def out(found: TaskSet, tmp_path: Path) -> Path:
         (theirs / task).mkdir(parents=True)
         for number, step in enumerate(steps, 1):
             grey(theirs / task / f"{number}.png", GREY + step)
-    run(found, found.tasks, Folder(theirs), tmp_path / "out")
+    run(found, found.tasks, RendersFolder(theirs), tmp_path / "out")
     return tmp_path / "out"
 
 
-def test_the_last_round_counts_and_its_loss_is_the_one_by_hand(out: Path) -> None:
-    scores = {one.task: one for one in score(out, Rule())}
+def test_scores_the_last_round_with_the_loss_by_hand(out: Path) -> None:
+    scores = {one.task: one for one in score(out, ScoringRule())}
     assert scores["level1/a1"].pl == pytest.approx(4.0, abs=1e-5)  # 0.2² × 100
     assert [each.pl for each in scores["level1/a1"].rounds] == pytest.approx([4.0, 0.0, 4.0], abs=1e-5)
     assert scores["level1/a2"].pl == pytest.approx(16.0, abs=1e-5)
@@ -76,14 +76,14 @@ def test_the_last_round_counts_and_its_loss_is_the_one_by_hand(out: Path) -> Non
     assert (scores["level1/a1"].n_clip, scores["level1/a1"].vlm) == (None, None)
 
 
-def test_what_came_to_nothing_is_not_a_zero_and_says_why(out: Path) -> None:
-    last = score(out, Rule())[-1]
+def test_a_failed_task_has_a_reason_and_no_zero(out: Path) -> None:
+    last = score(out, ScoringRule())[-1]
     assert (last.task, last.pl, last.rounds) == ("level3/c1", None, ())
     assert "has no render" in last.missing["pl"]
 
 
 def test_the_peers_convention_multiplies_nothing(out: Path) -> None:
-    assert score(out, Rule(convention="peer"))[0].pl == pytest.approx(0.04, abs=1e-7)
+    assert score(out, ScoringRule(convention="peer"))[0].pl == pytest.approx(0.04, abs=1e-7)
 
 
 class Shades:
@@ -101,14 +101,14 @@ def clip() -> Clip:
     return Clip(tower, "made up", "0" * 64)
 
 
-def test_the_best_round_is_chosen_by_n_clip_only_where_that_is_asked_for(out: Path) -> None:
-    plain = {one.task: one for one in score(out, Rule(clip=clip()))}
-    best = {one.task: one for one in score(out, Rule(clip=clip(), best_round=True))}
+def test_chooses_the_best_round_by_n_clip_only_on_request(out: Path) -> None:
+    plain = {one.task: one for one in score(out, ScoringRule(clip=clip()))}
+    best = {one.task: one for one in score(out, ScoringRule(clip=clip(), best_round=True))}
     assert (plain["level1/a1"].chosen, best["level1/a1"].chosen) == ("renders/03.png", "renders/02.png")
     assert (plain["level2/b1"].chosen, best["level2/b1"].chosen) == ("renders/02.png", "renders/01.png")
     assert best["level1/a1"].pl == pytest.approx(0, abs=1e-6)
     text = as_markdown([read_results(out)])
-    assert "the round that N-CLIP likes best counts" in text
+    assert "the round with the best N-CLIP counts" in text
     assert "other weights than OpenAI's: made up" in text
 
 
@@ -116,11 +116,11 @@ def test_the_best_round_without_weights_is_an_error_and_nothing_is_scored(out: P
     done = bench("score", out, "--best-round")
     assert done.exit_code == 2
     assert "--best-round chooses by N-CLIP" in done.stderr
-    assert not place_of(out, "level1/a1").scores.exists()
+    assert not task_folder(out, "level1/a1").scores.exists()
 
 
-def test_means_are_over_tasks_and_what_is_missing_is_counted(out: Path) -> None:
-    score(out, Rule())
+def test_means_are_over_tasks_and_count_missing_ones(out: Path) -> None:
+    score(out, ScoringRule())
     found = read_results(out)
     assert found.rows["level1"]["pl"].mean == pytest.approx(10, abs=1e-5)
     assert (found.rows["level3"]["pl"].mean, found.rows["level3"]["pl"].tasks) == (None, 0)
@@ -128,8 +128,8 @@ def test_means_are_over_tasks_and_what_is_missing_is_counted(out: Path) -> None:
     assert found.rows[OVERALL]["pl"].tasks == 3
 
 
-def test_the_table_says_what_it_stands_on(out: Path) -> None:
-    score(out, Rule())
+def test_the_table_states_its_basis(out: Path) -> None:
+    score(out, ScoringRule())
     text = as_markdown([read_results(out)], published=True)
     rows = {line.split("|")[1].strip(): line for line in text.splitlines() if line.startswith("| ")}
     assert rows["Level 1"].split("|")[2].strip() == "10.00"
@@ -148,8 +148,8 @@ def test_the_table_says_what_it_stands_on(out: Path) -> None:
     assert "level3/c1 has no PL: " in text
 
 
-def test_published_figures_do_not_stand_beside_those_of_another_convention(out: Path) -> None:
-    score(out, Rule(convention="peer"))
+def test_does_not_mix_published_figures_with_another_convention(out: Path) -> None:
+    score(out, ScoringRule(convention="peer"))
     done = bench("report", out, "--paper")
     assert done.exit_code == 2
     assert "Score without --peer" in done.stderr
@@ -171,20 +171,20 @@ def test_the_published_overall_figures_are_means_over_nine_eight_and_nine_tasks_
     assert fitting == [tuple(TASKS.values())] == [(9, 8, 9)]
 
 
-def test_results_that_are_not_scored_alike_are_not_put_together(out: Path, tmp_path: Path) -> None:
+def test_does_not_combine_results_scored_differently(out: Path, tmp_path: Path) -> None:
     done = bench("report", out)
     assert done.exit_code == 2
     assert "not scored yet" in done.stderr
-    score(out, Rule())
+    score(out, ScoringRule())
     shutil.copytree(out, tmp_path / "other")
-    score(tmp_path / "other", Rule(convention="peer"))
+    score(tmp_path / "other", ScoringRule(convention="peer"))
     assert "both conventions" in bench("report", out, tmp_path / "other").stderr
-    shutil.copy(place_of(tmp_path / "other", "level1/a1").scores, place_of(out, "level1/a1").scores)
-    assert "scored in different ways" in bench("report", out).stderr
+    shutil.copy(task_folder(tmp_path / "other", "level1/a1").scores, task_folder(out, "level1/a1").scores)
+    assert "scored with different options" in bench("report", out).stderr
 
 
-def test_programs_get_every_score_with_its_provenance(out: Path) -> None:
-    score(out, Rule())
+def test_the_json_has_every_score_with_provenance(out: Path) -> None:
+    score(out, ScoringRule())
     done = bench("report", out, "--json")
     assert done.exit_code == 0
     [told] = json.loads(done.stdout)
@@ -194,14 +194,14 @@ def test_programs_get_every_score_with_its_provenance(out: Path) -> None:
     assert len(told["scores"][0]["provenance"]["code"]) == 64
 
 
-def test_a_goal_that_was_lost_is_a_reason_and_no_crash(out: Path) -> None:
-    place_of(out, "level1/a1").goal.write_bytes(b"")
+def test_a_lost_goal_is_a_reason_and_no_crash(out: Path) -> None:
+    task_folder(out, "level1/a1").goal.write_bytes(b"")
     done = bench("score", out)
     assert done.exit_code == 1
     assert "level1/a1: pl is not scored" in done.stderr
 
 
-@pytest.mark.parametrize(("name", "told"), [("none", "holds no results"), ("set", "holds no results")])
+@pytest.mark.parametrize(("name", "told"), [("none", "has no results"), ("set", "has no results")])
 def test_a_folder_without_results_says_so(name: str, told: str, found: TaskSet, tmp_path: Path) -> None:
     for command in ("score", "report"):
         done = bench(command, tmp_path / name)
@@ -212,7 +212,7 @@ def test_a_folder_without_results_says_so(name: str, told: str, found: TaskSet, 
 # Marks
 
 
-def test_the_judge_marks_the_round_that_counts_and_one_who_fails_is_counted(
+def test_the_judge_marks_the_chosen_round_and_failures_are_counted(
     out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with FakeMessagesAPI(lambda params: Reply(json.dumps(marks(3, 4, 4, 4)))) as api:
@@ -222,7 +222,7 @@ def test_the_judge_marks_the_round_that_counts_and_one_who_fails_is_counted(
         done = bench("score", out, *words)
         assert done.exit_code == 1
         assert "level1/a1: vlm is not scored: rejected" in done.stderr
-        assert read(place_of(out, "level1/a2").scores, Score).vlm == 3.75
+        assert read(task_folder(out, "level1/a2").scores, Score).vlm == 3.75
         asked = len(api.received("POST /v1/messages"))
         assert bench("score", out, *words).exit_code == 1  # level3/c1 has nothing to show
         assert len(api.received("POST /v1/messages")) == asked + 1
@@ -235,4 +235,4 @@ def test_a_judge_without_a_key_is_an_error_before_anything_is_scored(out: Path) 
     done = bench("score", out, "--judge", "anthropic")
     assert done.exit_code == 2
     assert "set ANTHROPIC_API_KEY" in done.stderr
-    assert not place_of(out, "level1/a1").scores.exists()
+    assert not task_folder(out, "level1/a1").scores.exists()

@@ -85,7 +85,7 @@ def test_the_judge_sees_the_request_the_goal_and_then_the_result_and_no_more(
     assert [one.size for one in seen] == [(40, 30), (1568, 784)]
 
 
-def test_another_provider_is_asked_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_provider_gets_the_same_question(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENAI_API_KEY", "any")
     with FakeChatAPI(lambda params: Said(json.dumps(marks(0, 0, 1, 1)))) as server:
         judged = judge_edit(INSTRUCTION, GOAL, RESULT, provider_of("openai", base_url=server.base_url), None)
@@ -97,7 +97,7 @@ def test_another_provider_is_asked_the_same(monkeypatch: pytest.MonkeyPatch) -> 
     "wrong",
     [marks(1, 4, 5, 6), marks(1, -1, 5, 2), marks(1, 4, 4.5, 2), {"task_completion": 3}, "Looks fine: 5."],
 )
-def test_marks_that_are_none_go_back_a_few_times(wrong: Any, api: FakeMessagesAPI, claude: Provider) -> None:
+def test_invalid_marks_are_sent_back_a_few_times(wrong: Any, api: FakeMessagesAPI, claude: Provider) -> None:
     api.instead.append(wrong)  # type: ignore[attr-defined]
     assert judge_edit(INSTRUCTION, GOAL, RESULT, claude, None).marks.score == 3.0
     assert len(api.received("POST /v1/messages")) == 2
@@ -107,14 +107,14 @@ def test_marks_that_are_none_go_back_a_few_times(wrong: Any, api: FakeMessagesAP
     assert caught.value.reason == "malformed"
 
 
-def test_a_refusal_is_no_low_mark(api: FakeMessagesAPI, claude: Provider) -> None:
+def test_a_refusal_is_not_a_low_mark(api: FakeMessagesAPI, claude: Provider) -> None:
     api.instead.append(Reply("", stop_reason="refusal"))  # type: ignore[attr-defined]
     with pytest.raises(NotJudged) as caught:
         judge_edit(INSTRUCTION, GOAL, RESULT, claude, None)
     assert caught.value.reason == "refused"
 
 
-def test_what_was_judged_is_not_asked_again_but_other_pixels_are(
+def test_caches_marks_by_pixels(
     api: FakeMessagesAPI, claude: Provider, tmp_path: Path
 ) -> None:
     other = RESULT.copy()

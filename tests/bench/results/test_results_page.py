@@ -199,7 +199,7 @@ def test_no_file_outside_a_scenes_folder_gets_onto_the_page(path: str, full: Wri
     write_record(folder, found.model_copy(update={"framed": framed}))
     seen = page_of(full)
     assert not [image for image in seen.of("img") if image.get("src")]
-    assert "cloth_D1_01/record.json is no record: framed.frames.0.path" in seen.text
+    assert "cloth_D1_01/record.json is not a valid record: framed.frames.0.path" in seen.text
 
 
 def test_a_link_out_of_a_scenes_folder_is_not_followed(full: Written) -> None:
@@ -247,7 +247,7 @@ def test_what_cannot_be_read_is_named_and_the_rest_is_reported(full: Written) ->
     (other / "record.json").write_text(record.replace("cloth_D1_01", "cloth_D9_01"))
     done = reported(full)
     assert done.exit_code == 0
-    assert "static_D1_01/record.json is no record" in done.stdout
+    assert "static_D1_01/record.json is not a valid record" in done.stdout
     assert "There is no scene 'cloth_D9_01'" in done.stdout
 
 

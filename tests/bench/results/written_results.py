@@ -16,7 +16,7 @@ from bench.sweep.records import (
     Judged,
     Produced,
     Provenance,
-    Record,
+    SceneRecord,
     SystemInfo,
     write_record,
 )
@@ -90,7 +90,7 @@ class Written:
             file=_file(folder, "judgement.json", judgement) if judgement else None,
         )
         info = SystemInfo(name=system, kind="simworlds", ablations=ablations, settings=settings or {})
-        record = Record(
+        record = SceneRecord(
             scene=scene, system=info, produced=produced, audited=audited, framed=framed, judged=judged
         )
         write_record(folder, record)

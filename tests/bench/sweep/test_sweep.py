@@ -13,15 +13,15 @@ from click.testing import CliRunner
 from processes_below import all_end, below
 from sweeping import CHEAP, SCENES, content, record, scores, written
 
-from agents.blender.run_folder import locked
 from bench.audit.untrusted_blend import Means
 from bench.frames.clip_frames import Look
-from bench.sweep.executor import LocalCrew
+from bench.sweep.executor import LocalExecutor
 from bench.sweep.records import SystemInfo, read_record, write_record
-from bench.sweep.scene_selection import chosen
-from bench.sweep.sweep import How, tasks_of
-from bench.sweep.systems.folder import Folder
+from bench.sweep.scene_selection import select_scenes
+from bench.sweep.sweep import ScoringOptions, make_tasks
+from bench.sweep.systems.folder import FolderSystem
 from simworlds.cli import main
+from simworlds.folder_lock import locked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from click.testing import Result
     from sweeping import Command
 
-    from bench.sweep.scene_task import Task
+    from bench.sweep.scene_task import SceneTask
 
 pytestmark = pytest.mark.blender
 
@@ -72,7 +72,7 @@ def results(done: Path, tmp_path: Path) -> Path:
 # What is found
 
 
-def test_every_scene_has_a_record_with_scores_or_the_reason_why_not(done: Path) -> None:
+def test_every_record_has_scores_or_a_reason(done: Path) -> None:
     found = scores(done)
     assert found["cloth_D1_03"] == (None, None, "no file")
     assert found["rigid_D1_01"] == (None, None, "it is no .blend")
@@ -82,7 +82,7 @@ def test_every_scene_has_a_record_with_scores_or_the_reason_why_not(done: Path) 
         assert audit["mpr"] is not None
 
 
-def test_a_record_tells_where_everything_comes_from(done: Path) -> None:
+def test_a_record_has_provenance(done: Path) -> None:
     found = record(done, "cloth_D1_02")
     produced, audited, framed = found["produced"], found["audited"], found["framed"]
     assert (produced["models"], produced["cost"], produced["minutes"]) == ({"model": "a-model"}, 0.5, 3)
@@ -95,7 +95,7 @@ def test_a_record_tells_where_everything_comes_from(done: Path) -> None:
     assert len(audited["spec"]) == 64
 
 
-def test_frames_are_the_videos_or_pictures_own_and_else_rendered(done: Path) -> None:
+def test_takes_frames_from_videos_or_pictures_and_renders_others(done: Path) -> None:
     assert record(done, "static_D1_01")["framed"]["origin"] == "picture"
     framed = record(done, "cloth_D1_01")["framed"]
     assert framed["origin"] == "blend"
@@ -107,13 +107,13 @@ def test_frames_are_the_videos_or_pictures_own_and_else_rendered(done: Path) -> 
 # What is done again
 
 
-def test_the_same_sweep_again_does_nothing_again_that_was_scored(made: Path, results: Path) -> None:
+def test_a_repeated_sweep_does_not_score_again(made: Path, results: Path) -> None:
     before = written(results)
     assert swept(made, results.parent, "--scenes", "cloth_D1_01,cloth_D1_02,static_D1_01").exit_code == 0
     assert written(results) == before
 
 
-def test_only_the_scene_whose_file_changed_is_scored_anew(made: Path, results: Path, tmp_path: Path) -> None:
+def test_rescores_only_the_scene_whose_file_changed(made: Path, results: Path, tmp_path: Path) -> None:
     folder = tmp_path / "changed"
     shutil.copytree(made, folder)
     shutil.copy(made / "cloth_D1_02" / "anything.blend", folder / "cloth_D1_01.blend")
@@ -130,7 +130,7 @@ def test_only_the_scene_whose_file_changed_is_scored_anew(made: Path, results: P
     assert written(results)["cloth_D1_02"] == stamps["cloth_D1_02"]
 
 
-def test_rescoring_mends_what_was_damaged_and_runs_no_system(results: Path) -> None:
+def test_rescoring_repairs_damage_and_runs_no_system(results: Path) -> None:
     whole = content(results)
     (results / "cloth_D1_01" / "audit.json").write_text("{}")
     (results / "cloth_D1_02" / "frames" / "050.png").unlink()
@@ -139,7 +139,7 @@ def test_rescoring_mends_what_was_damaged_and_runs_no_system(results: Path) -> N
     assert content(results) == whole
 
 
-def test_what_was_scored_stays_when_its_file_is_gone(results: Path) -> None:
+def test_keeps_scores_when_the_file_is_gone(results: Path) -> None:
     before = scores(results)
     for path in results.glob("*/record.json"):
         found = read_record(path.parent)
@@ -155,7 +155,7 @@ def test_what_was_scored_stays_when_its_file_is_gone(results: Path) -> None:
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGKILL, -9), (signal.SIGINT, 130)])
-def test_a_sweep_that_is_ended_leaves_whole_records_and_no_process_and_goes_on(
+def test_a_killed_sweep_leaves_whole_records_and_no_process_and_goes_on(
     number: signal.Signals, code: int, made: Path, done: Path, tmp_path: Path, command: Callable[..., Command]
 ) -> None:
     words = ("run", "--system", f"folder={made}", "--out", tmp_path, "--name", "theirs", "--jobs", "1")
@@ -177,23 +177,23 @@ def test_a_sweep_that_is_ended_leaves_whole_records_and_no_process_and_goes_on(
     assert len(mine) == 2
 
 
-def test_what_befalls_one_scene_costs_only_that_one(made: Path, tmp_path: Path) -> None:
-    how = How(Means(), Look(), frames=False)
-    system = Folder(SystemInfo(name="theirs", kind="folder"), made)
-    tasks = tasks_of(system, chosen(["cloth_D1_01", "cloth_D1_03"]), tmp_path, how)
+def test_a_crash_costs_only_one_scene(made: Path, tmp_path: Path) -> None:
+    how = ScoringOptions(Means(), Look(), frames=False)
+    system = FolderSystem(SystemInfo(name="theirs", kind="folder"), made)
+    tasks = make_tasks(system, select_scenes(["cloth_D1_01", "cloth_D1_03"]), tmp_path, how)
 
-    def kill(task: Task | None, _: str) -> None:
+    def kill(task: SceneTask | None, _: str) -> None:
         for process in multiprocessing.active_children():
-            if task is tasks[0] and process.name == task.spec.id:
+            if task is tasks[0]:
                 process.kill()
 
-    killed, other = sorted(LocalCrew(1).work(tasks, kill), key=lambda done: done.task.spec.id)
-    assert (killed.record, killed.fault) == (None, "its process ended (SIGKILL)")
+    killed, other = sorted(LocalExecutor(1).work(tasks, kill), key=lambda done: done.task.spec.id)
+    assert (killed.record, killed.fault) == (None, "its process ended without a result (SIGKILL)")
     assert other.record is not None
     assert other.record == read_record(tmp_path / "theirs" / "cloth_D1_03")
 
 
-def test_two_sweeps_do_not_write_to_one_folder(made: Path, tmp_path: Path) -> None:
+def test_two_sweeps_cannot_use_one_folder(made: Path, tmp_path: Path) -> None:
     (tmp_path / "theirs").mkdir()
     with locked(tmp_path / "theirs"):
         second = swept(made, tmp_path, "--scenes", "cloth_D1_03")
@@ -211,13 +211,13 @@ def test_two_sweeps_do_not_write_to_one_folder(made: Path, tmp_path: Path) -> No
         (["--system", "folder=/nowhere"], "/nowhere is not a folder"),
         (["--system", "simworlds"], "set ANTHROPIC_API_KEY"),
         (["--system", "replay", "--no-stages"], "--no-stages means nothing with --system replay"),
-        (["--system", "replay", "--scenes", "cloth_D9"], "means no scene"),
+        (["--system", "replay", "--scenes", "cloth_D9"], "matches no scene"),
         (["--system", "replay", "--scenes", ","], "names no scene"),
         (["--system", "replay", "--name", "../up"], "is no name"),
         (["--system", "replay", "--frame-size", "big"], "WIDTHxHEIGHT"),
     ],
 )
-def test_what_cannot_be_begun_says_what_is_wrong(
+def test_says_why_a_sweep_cannot_start(
     words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN"):
@@ -227,9 +227,9 @@ def test_what_cannot_be_begun_says_what_is_wrong(
     assert not (tmp_path / "out").exists()
 
 
-def test_a_damaged_record_is_named_and_not_overwritten(made: Path, results: Path) -> None:
+def test_names_a_damaged_record_and_keeps_it(made: Path, results: Path) -> None:
     (results / "cloth_D1_01" / "record.json").write_text('{"format": 7}')
     done = swept(made, results.parent, "--scenes", "cloth_D1_01")
     assert done.exit_code == 2
-    assert "cloth_D1_01/record.json is no record" in done.stderr
+    assert "cloth_D1_01/record.json is not a valid record" in done.stderr
     assert (results / "cloth_D1_01" / "record.json").read_text() == '{"format": 7}'

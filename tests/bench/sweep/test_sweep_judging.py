@@ -13,9 +13,9 @@ from PIL import Image
 
 from bench.audit.untrusted_blend import Means
 from bench.frames.clip_frames import Look
-from bench.sweep.judging import Judging, judge_all, judge_of
+from bench.sweep.judging import JudgeOptions, judge_all, judge_of
 from bench.sweep.records import Judged, read_record, write_record
-from bench.sweep.sweep import How, tasks_again
+from bench.sweep.sweep import ScoringOptions, make_rescore_tasks
 from simworlds.cli import main
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
         Image.new("RGB", (64, 36), (60 * number, 90, 120)).save(folder / "still.png")
         words = ["--system", f"folder={place / system}", "--scenes", SCENE, "--out", str(place / "out")]
         done = CliRunner().invoke(main, ["bench", "run", *words, "--judge", "none"])
-        assert (done.exit_code, "1 not judged: no judge was asked for" in done.stdout) == (0, True)
+        assert (done.exit_code, "1 not judged: no judge was requested" in done.stdout) == (0, True)
     return place / "out"
 
 
@@ -68,14 +68,14 @@ def out(swept: Path, tmp_path: Path) -> Path:
 def judged(out: Path, api: Anthropic, **given: object) -> dict[str, Judged]:
     """What stands in each system's record after a judge was asked."""
     who = {"provider": "anthropic", "base_url": api.server.base_url, "cache": out.parent / "kept", **given}
-    judge = judge_of(Judging(**who))  # type: ignore[arg-type]
-    for tasks in tasks_again(out, How(Means(), Look())):
+    judge = judge_of(JudgeOptions(**who))  # type: ignore[arg-type]
+    for tasks in make_rescore_tasks(out, ScoringOptions(Means(), Look())):
         assert len(list(judge_all(tasks, judge))) == len(tasks)
     found = {path.parent.parent.name: read_record(path.parent) for path in out.glob("*/*/record.json")}
     return {name: one.judged for name, one in found.items() if one is not None and one.judged is not None}
 
 
-def test_the_command_judges_frames_and_keeps_the_judgement_with_its_cost(out: Path, api: Anthropic) -> None:
+def test_judges_frames_and_keeps_the_judgement_with_its_cost(out: Path, api: Anthropic) -> None:
     done = CliRunner().invoke(
         main, ["bench", "rescore", str(out / "one"), "--judge-url", api.server.base_url]
     )
@@ -91,14 +91,14 @@ def test_the_command_judges_frames_and_keeps_the_judgement_with_its_cost(out: Pa
     assert (record.judged.provider, record.judged.model) == ("anthropic", "claude-opus-5-5")
 
 
-def test_all_systems_are_judged_by_one_list_of_items_and_each_once(out: Path, api: Anthropic) -> None:
+def test_judges_all_systems_once_by_one_list_of_items(out: Path, api: Anthropic) -> None:
     first = judged(out, api)
     assert sorted(api.stages()) == ["items", "verdicts", "verdicts"]
     assert judged(out, api) == first
     assert len(api.server.requests) == 3
 
 
-def test_other_frames_are_judged_anew(out: Path, api: Anthropic) -> None:
+def test_judges_new_frames_again(out: Path, api: Anthropic) -> None:
     before = judged(out, api)["one"].score or 0
     Image.new("RGB", (64, 36), (9, 9, 9)).save(out / "one" / SCENE / "frames" / "000.png")
     api.script.fails = ()
@@ -114,7 +114,7 @@ def test_without_a_key_it_says_why_frames_are_not_judged(
     assert "set ANTHROPIC_API_KEY" in (found.why or "")
 
 
-def test_a_judgement_stays_when_nobody_can_be_asked_for_another(
+def test_keeps_a_judgement_when_no_judge_is_available(
     out: Path, api: Anthropic, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = judged(out, api)
@@ -123,7 +123,7 @@ def test_a_judgement_stays_when_nobody_can_be_asked_for_another(
     assert judged(out, api) == before
 
 
-def test_a_judgement_of_frames_that_are_gone_does_not_stay(out: Path, api: Anthropic) -> None:
+def test_drops_a_judgement_of_frames_that_are_gone(out: Path, api: Anthropic) -> None:
     judged(out, api)
     record = read_record(out / "one" / SCENE)
     assert record is not None
@@ -134,14 +134,14 @@ def test_a_judgement_of_frames_that_are_gone_does_not_stay(out: Path, api: Anthr
     assert (found.score, found.why) == (None, "no frames: it is no picture")
 
 
-def test_a_judge_who_refuses_is_told_and_asked_again_by_the_next_sweep(out: Path, api: Anthropic) -> None:
+def test_records_a_refusal_and_asks_again_in_the_next_sweep(out: Path, api: Anthropic) -> None:
     shutil.rmtree(out / "two")
     api.script.instead["verdicts"].append(api.refusal())
     assert (judged(out, api)["one"].why or "").startswith("refused")
     assert judged(out, api)["one"].score is not None
 
 
-def test_the_limit_of_cost_holds_for_all_together(out: Path, api: Anthropic) -> None:
+def test_the_cost_limit_holds_for_all_scenes_together(out: Path, api: Anthropic) -> None:
     found = judged(out, api, max_cost=0.0001)
     assert all((one.why or "").startswith("over budget") for one in found.values())
     assert not api.server.requests

@@ -12,12 +12,12 @@ from rich.console import Console
 from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep import provenance as origin
 from bench.sweep.content_hash import digest_of
-from bench.sweep.executor import Done
-from bench.sweep.records import BadRecord, File, SystemInfo, read_record
-from bench.sweep.scene_selection import chosen
-from bench.sweep.scene_task import Task
-from bench.sweep.sweep_view import Lines, Screen
-from bench.sweep.systems.folder import Folder
+from bench.sweep.executor import FinishedTask
+from bench.sweep.records import BadSceneRecord, File, SystemInfo, read_record
+from bench.sweep.scene_selection import select_scenes
+from bench.sweep.scene_task import SceneTask
+from bench.sweep.sweep_view import SweepLines, SweepScreen
+from bench.sweep.systems.folder import FolderSystem
 from simworlds.files import write_whole
 
 if TYPE_CHECKING:
@@ -27,12 +27,12 @@ SCENE = "cloth_D1_01"
 INFO = SystemInfo(name="theirs", kind="folder")
 
 
-def folder(place: Path, *names: str) -> Folder:
+def folder(place: Path, *names: str) -> FolderSystem:
     for name in names:
         path = place / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(name)
-    return Folder(INFO, place)
+    return FolderSystem(INFO, place)
 
 
 # Scenes
@@ -51,17 +51,17 @@ def folder(place: Path, *names: str) -> Folder:
         (["soft_D1_02,cloth_D1_02", "cloth_D1_02"], 2, "cloth_D1_02"),
     ],
 )
-def test_scenes_are_named_by_id_category_level_pattern_or_set(
+def test_selects_scenes_by_id_category_level_pattern_or_set(
     names: list[str], count: int, first: str
 ) -> None:
-    found = [spec.id for spec in chosen(names)]
+    found = [spec.id for spec in select_scenes(names)]
     assert (len(found), found[0]) == (count, first)
     assert len({*found}) == count
 
 
-def test_a_name_that_means_no_scene_is_an_error() -> None:
-    with pytest.raises(BadSpec, match="'cloth_D1_99' means no scene"):
-        chosen(["cloth_D1_01,cloth_D1_99"])
+def test_rejects_a_name_that_matches_no_scene() -> None:
+    with pytest.raises(BadSpec, match="'cloth_D1_99' matches no scene"):
+        select_scenes(["cloth_D1_01,cloth_D1_99"])
 
 
 # Files
@@ -82,7 +82,7 @@ def test_a_name_that_means_no_scene_is_an_error() -> None:
         (["cloth_D1_01.blend", "video.mp4", "cloth_D1_02.mp4", "cloth_D1_01.png"], "cloth_D1_01.blend", None),
     ],
 )
-def test_a_scenes_file_is_the_one_that_can_only_be_meant(
+def test_finds_the_unambiguous_file_of_a_scene(
     names: list[str], blend: str, video: str | None, tmp_path: Path
 ) -> None:
     made = folder(tmp_path, *names).produce(spec_of(SCENE), tmp_path, lambda _: None)
@@ -99,7 +99,7 @@ def test_a_scenes_file_is_the_one_that_can_only_be_meant(
         (["cloth_D1_01/a.blend", "cloth_D1_01/b.blend"], "several .blend"),
     ],
 )
-def test_a_file_that_is_missing_or_not_clear_is_told(names: list[str], why: str, tmp_path: Path) -> None:
+def test_reports_a_missing_or_ambiguous_file(names: list[str], why: str, tmp_path: Path) -> None:
     made = folder(tmp_path, *names).produce(spec_of(SCENE), tmp_path, lambda _: None)
     assert (made.outcome, made.blend) == ("missing", None)
     assert made.why.startswith(why)
@@ -141,12 +141,12 @@ def test_a_file_that_cannot_be_written_whole_leaves_the_old_one(tmp_path: Path) 
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
-def test_a_step_stands_on_the_code_that_it_imports_and_on_no_other(
+def test_the_digest_of_a_step_covers_only_the_code_that_it_imports(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bench = tmp_path / "bench"
     for name, text in {
-        "audit.py": "from bench.rules import size\nimport json\n",
+        "audit/audit.py": "from bench.rules import size\nimport json\n",
         "rules/size.py": "if True:\n    from bench import names\n",
         "names.py": "",
         "other.py": "",
@@ -163,7 +163,7 @@ def test_a_step_stands_on_the_code_that_it_imports_and_on_no_other(
     before = code()
     (bench / "other.py").write_text("changed = True")
     assert code() == before
-    for name in ("audit.py", "rules/size.py", "names.py", "inside/read.py"):
+    for name in ("audit/audit.py", "rules/size.py", "names.py", "inside/read.py"):
         text = (bench / name).read_text()
         (bench / name).write_text(f"{text}changed = True\n")
         assert code() != before
@@ -175,26 +175,26 @@ def test_a_step_stands_on_the_code_that_it_imports_and_on_no_other(
 def test_a_record_of_another_shape_is_named(tmp_path: Path) -> None:
     assert read_record(tmp_path) is None
     (tmp_path / "record.json").write_text('{"format": 1, "scene": "cloth_D1_01"}')
-    with pytest.raises(BadRecord, match=r"record\.json is no record: system: Field required"):
+    with pytest.raises(BadSceneRecord, match=r"record\.json is not a valid record: system: Field required"):
         read_record(tmp_path)
 
 
 @pytest.mark.parametrize("path", ["", "/etc/passwd", "../secret", "frames/../../secret", "a\0b"])
-def test_a_record_names_files_below_its_folder_alone(path: str) -> None:
-    with pytest.raises(ValidationError, match="leads out of its folder"):
+def test_a_record_rejects_paths_outside_its_folder(path: str) -> None:
+    with pytest.raises(ValidationError, match="is outside of its folder"):
         File(path=path, sha256="", bytes=0)
 
 
 # What is seen
 
 
-def test_a_terminal_shows_what_is_being_done_and_nothing_that_would_move_its_cursor(tmp_path: Path) -> None:
+def test_the_live_view_shows_progress_without_control_characters(tmp_path: Path) -> None:
     stream = io.StringIO()
-    task = Task(spec_of(SCENE), Folder(INFO, tmp_path), tmp_path)
-    with Screen(Console(file=stream, force_terminal=True, width=80), 2) as view:
+    task = SceneTask(spec_of(SCENE), FolderSystem(INFO, tmp_path), tmp_path)
+    with SweepScreen(Console(file=stream, force_terminal=True, width=80), 2) as view:
         view.doing(None, "two nodes")
         view.doing(task, "opening")
-        view.done(Done(task, None, "crashed over \x1b[2J\x07evil"))
+        view.done(FinishedTask(task, None, "crashed over \x1b[2J\x07evil"))
     said = stream.getvalue()
     assert "two nodes" in said
     assert "cloth_D1_01      could not be done: crashed over  [2J evil" in said
@@ -202,10 +202,12 @@ def test_a_terminal_shows_what_is_being_done_and_nothing_that_would_move_its_cur
     assert "\x07" not in said
 
 
-def test_who_reads_the_log_may_be_gone(tmp_path: Path) -> None:
+def test_survives_a_closed_log_reader(tmp_path: Path) -> None:
     class Gone(io.StringIO):
         def write(self, text: str) -> int:
             raise BrokenPipeError
 
-    view = Lines(Gone(), 1)
-    view.done(Done(Task(spec_of(SCENE), Folder(INFO, tmp_path), tmp_path), None, "crashed"))
+    view = SweepLines(Gone(), 1)
+    view.done(
+        FinishedTask(SceneTask(spec_of(SCENE), FolderSystem(INFO, tmp_path), tmp_path), None, "crashed")
+    )

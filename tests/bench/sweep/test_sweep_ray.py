@@ -13,7 +13,14 @@ import pytest
 from click.testing import CliRunner
 from sweeping import CHEAP, content, record, scores
 
-from bench.sweep.bundles import Damaged, Packed, Parcel, packed, packed_changes, unpacked
+from bench.sweep.bundles import (
+    Bundle,
+    BundledFile,
+    DamagedBundle,
+    bundle_changes,
+    bundle_files,
+    unpack_bundle,
+)
 from bench.sweep.content_hash import digest_of_bytes
 from simworlds.cli import main
 
@@ -57,7 +64,7 @@ def many(made: Path, tmp_path: Path) -> Path:
 
 
 @pytest.mark.blender
-def test_a_node_that_is_killed_meanwhile_costs_nothing_but_time(
+def test_a_killed_node_costs_only_time(
     many: Path, tmp_path: Path, cluster: subprocess.Popen[str], command: Callable[..., Command]
 ) -> None:
     assert cluster.stdout is not None
@@ -104,19 +111,19 @@ def test_without_the_package_it_says_what_to_install(
 # What travels
 
 
-def test_a_parcel_brings_what_changed_and_says_what_is_gone(tmp_path: Path) -> None:
+def test_a_bundle_has_changed_and_deleted_files(tmp_path: Path) -> None:
     here, there = tmp_path / "here", tmp_path / "there"
     (here / "frames").mkdir(parents=True)
     (here / "record.json").write_text("old")
     (here / "frames" / "old.png").write_text("old")
     (here / "same").write_text("same")
-    before = unpacked(packed(here, [path for path in here.rglob("*") if path.is_file()]), there)
+    before = unpack_bundle(bundle_files(here, [path for path in here.rglob("*") if path.is_file()]), there)
     (there / "record.json").write_text("new")
     (there / "frames" / "old.png").unlink()
     (there / "frames" / "new.png").write_text("new")
-    parcel = packed_changes(there, before)
-    assert {file.path for file in parcel.files} == {"record.json", "frames/new.png"}
-    unpacked(parcel, here, last="record.json")
+    bundle = bundle_changes(there, before)
+    assert {file.path for file in bundle.files} == {"record.json", "frames/new.png"}
+    unpack_bundle(bundle, here, last="record.json")
     assert {path.name: path.read_text() for path in here.rglob("*") if path.is_file()} == {
         "record.json": "new",
         "new.png": "new",
@@ -125,18 +132,18 @@ def test_a_parcel_brings_what_changed_and_says_what_is_gone(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("path", ["../out", "/etc/out", "link/out", "", "a\0b"])
-def test_a_parcel_writes_nothing_outside_its_folder(path: str, tmp_path: Path) -> None:
+def test_a_bundle_writes_nothing_outside_its_folder(path: str, tmp_path: Path) -> None:
     folder = tmp_path / "folder"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path)
-    good = Packed("good", digest_of_bytes(b"good"), b"good")
-    bad = Packed(path, digest_of_bytes(b"bad"), b"bad")
-    with pytest.raises(Damaged, match="leads out"):
-        unpacked(Parcel((good, bad)), folder)
+    good = BundledFile("good", digest_of_bytes(b"good"), b"good")
+    bad = BundledFile(path, digest_of_bytes(b"bad"), b"bad")
+    with pytest.raises(DamagedBundle, match="is outside"):
+        unpack_bundle(Bundle((good, bad)), folder)
     assert sorted(tmp_path.rglob("*")) == [folder, folder / "link"]
 
 
-def test_a_damaged_parcel_is_not_unpacked(tmp_path: Path) -> None:
-    with pytest.raises(Damaged, match="did not arrive as it was sent"):
-        unpacked(Parcel((Packed("file", "0" * 64, b"other"),)), tmp_path)
+def test_a_damaged_bundle_is_not_unpacked(tmp_path: Path) -> None:
+    with pytest.raises(DamagedBundle, match="did not arrive as it was sent"):
+        unpack_bundle(Bundle((BundledFile("file", "0" * 64, b"other"),)), tmp_path)
     assert not list(tmp_path.iterdir())

@@ -14,7 +14,7 @@ from sweeping import CHEAP, record
 
 from bench.scenes.spec import spec_of
 from bench.sweep.records import SystemInfo
-from bench.sweep.systems.simworlds_runs import SESSIONS, Make, Replay
+from bench.sweep.systems.simworlds_runs import TRANSCRIPTS, ReplaySystem, SimWorldsSystem
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -53,7 +53,9 @@ def ended(minute: int, outcome: str, file: str | None = None, video: str | None 
 def run(tmp_path: Path) -> Callable[..., Any]:
     """What is made of a run that has come to its end, with these rows in its journal."""
 
-    def run(rows: Iterable[dict[str, Any]], system: type[Make | Replay] = Make) -> Any:
+    def run(
+        rows: Iterable[dict[str, Any]], system: type[SimWorldsSystem | ReplaySystem] = SimWorldsSystem
+    ) -> Any:
         place = tmp_path / "run"
         place.mkdir()
         (place / "scene.blend").touch()
@@ -67,7 +69,7 @@ def run(tmp_path: Path) -> Callable[..., Any]:
 # Journals
 
 
-def test_a_run_that_is_done_is_not_begun_again_and_tells_what_it_took(
+def test_a_finished_run_is_not_repeated_and_its_costs_are_read(
     run: Callable[..., Any], tmp_path: Path
 ) -> None:
     sitting = {"t": "2026-01-01T10:30:00+00:00", "type": "sitting.began"}
@@ -85,47 +87,47 @@ def test_a_run_that_is_done_is_not_begun_again_and_tells_what_it_took(
     assert made.tokens == {"input": 202, "output": 20, "cache_read": 10, "cache_write": 0}
 
 
-def test_a_run_that_was_given_up_counts_with_what_stands(run: Callable[..., Any]) -> None:
+def test_an_aborted_run_counts_with_its_last_scene(run: Callable[..., Any]) -> None:
     made = run([began(), ended(1, "aborted", "scene.blend")])
     assert (made.outcome, made.why, made.video) == ("aborted", "so", None)
     assert made.blend is not None
 
 
-def test_a_cost_that_is_not_known_is_not_told_as_none(run: Callable[..., Any]) -> None:
+def test_an_unknown_cost_is_not_zero(run: Callable[..., Any]) -> None:
     assert run([began(), answered(1, 0.25), answered(2, None), ended(3, "done")]).cost is None
 
 
-def test_a_session_is_its_own_model_and_costs_nothing(run: Callable[..., Any]) -> None:
+def test_a_transcript_has_its_author_as_model_and_costs_nothing(run: Callable[..., Any]) -> None:
     rows = [began(source="hand-written session: dominoes"), answered(1, None, live=False), ended(2, "done")]
-    made = run(rows, Replay)
+    made = run(rows, ReplaySystem)
     assert (made.models, made.cost, made.tokens) == ({"all roles": "hand-written session: dominoes"}, 0, {})
 
 
 @pytest.mark.parametrize("file", ["../../secret.blend", "/etc/passwd", "none.blend", "", None, 7])
-def test_a_journal_names_files_of_its_run_alone(file: Any, run: Callable[..., Any], tmp_path: Path) -> None:
+def test_ignores_files_outside_the_run(file: Any, run: Callable[..., Any], tmp_path: Path) -> None:
     (tmp_path.parent / "secret.blend").touch()
     assert run([began(), ended(1, "done", file)]).blend is None
 
 
-def test_a_scene_that_no_session_belongs_to_is_missing(tmp_path: Path) -> None:
-    replay = Replay(SystemInfo(name="it", kind="replay"))
+def test_a_scene_without_a_transcript_is_missing(tmp_path: Path) -> None:
+    replay = ReplaySystem(SystemInfo(name="it", kind="replay"))
     made = replay.produce(spec_of("rigid_D1_01"), tmp_path, lambda _: None)
-    assert (made.outcome, made.why) == ("missing", "no session belongs to it")
+    assert (made.outcome, made.why) == ("missing", "there is no transcript for it")
     assert not replay.is_for(spec_of("rigid_D1_01"))
 
 
-def test_every_session_is_of_a_scene_that_there_is() -> None:
+def test_every_transcript_has_an_existing_scene() -> None:
     from agents.loop.answer_source import sessions
 
-    assert all(spec_of(scene) for scene in SESSIONS)
-    assert {*SESSIONS.values()} == {*sessions()} - {"edit"}
+    assert all(spec_of(scene) for scene in TRANSCRIPTS)
+    assert {*TRANSCRIPTS.values()} == {*sessions()} - {"edit"}
 
 
 # Real runs, against a model that does not help
 
 
 @pytest.mark.blender
-def test_a_run_that_fails_is_recorded_with_the_reason_and_taken_up_again_by_the_next_sweep(
+def test_records_why_a_run_failed_and_resumes_it_in_the_next_sweep(
     tmp_path: Path, command: Callable[..., Command]
 ) -> None:
     with FakeMessagesAPI(lambda _: REFUSAL) as api:
@@ -152,7 +154,7 @@ def test_a_run_that_fails_is_recorded_with_the_reason_and_taken_up_again_by_the_
 
 
 @pytest.mark.blender
-def test_ctrl_c_ends_a_run_that_waits_for_an_answer_and_leaves_it_to_be_resumed(
+def test_ctrl_c_stops_a_waiting_run_which_can_be_resumed(
     tmp_path: Path, command: Callable[..., Command]
 ) -> None:
     asked, answer = threading.Event(), threading.Event()

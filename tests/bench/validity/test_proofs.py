@@ -1,4 +1,4 @@
-"""Each property holds of small scenes, and is found wanting where the benchmark would let something pass."""
+"""Each property holds of small scenes, and fails where the benchmark would let something pass."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from small_specs import DRAPE, POUR, ROOM, STILL, spec_like
 from bench.audit.predicates.catalogue import PREDICATES
 from bench.audit.predicates.predicate import Verdict
 from bench.audit.untrusted_blend import Crashed
-from bench.validity import variant_builder as desks
-from bench.validity.invariance.actor_names import cast_of
-from bench.validity.run import prove_on
-from bench.validity.variant_builder import Desk
+from bench.validity import variant_builder
+from bench.validity.invariance.actor_names import actor_objects
+from bench.validity.run import prove_property
+from bench.validity.variant_builder import VariantBuilder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,21 +31,21 @@ pytestmark = pytest.mark.blender
 
 
 @pytest.fixture(scope="module")
-def drape(small_scenes: Path) -> Iterator[Desk]:
-    with Desk(spec_like(DRAPE), small_scenes / "drape.blend") as desk:
-        yield desk
+def drape(small_scenes: Path) -> Iterator[VariantBuilder]:
+    with VariantBuilder(spec_like(DRAPE), small_scenes / "drape.blend") as builder:
+        yield builder
 
 
 @pytest.fixture(scope="module")
-def pour(small_scenes: Path) -> Iterator[Desk]:
-    with Desk(spec_like(POUR), small_scenes / "pour.blend") as desk:
-        yield desk
+def pour(small_scenes: Path) -> Iterator[VariantBuilder]:
+    with VariantBuilder(spec_like(POUR), small_scenes / "pour.blend") as builder:
+        yield builder
 
 
 @pytest.fixture(scope="module")
-def room(small_scenes: Path) -> Iterator[Desk]:
-    with Desk(spec_like(ROOM), small_scenes / "room.blend") as desk:
-        yield desk
+def room(small_scenes: Path) -> Iterator[VariantBuilder]:
+    with VariantBuilder(spec_like(ROOM), small_scenes / "room.blend") as builder:
+        yield builder
 
 
 def faults(proof: Proof) -> dict[str, str]:
@@ -53,10 +53,10 @@ def faults(proof: Proof) -> dict[str, str]:
     return {row.name: row.why for row in proof.faults}
 
 
-def otherwise(desk: Desk, **changed: Any) -> Desk:
-    """The same desk, with another spec on it."""
-    other = object.__new__(Desk)
-    other.__dict__ |= {**desk.__dict__, "spec": spec_like(DRAPE, **changed)}
+def otherwise(builder: VariantBuilder, **changed: Any) -> VariantBuilder:
+    """The same builder with another spec."""
+    other = object.__new__(VariantBuilder)
+    other.__dict__ |= {**builder.__dict__, "spec": spec_like(DRAPE, **changed)}
     for known in ("reading", "audited"):
         other.__dict__.pop(known, None)
     return other
@@ -73,26 +73,28 @@ def state(folder: Path) -> dict[str, tuple[int, int]]:
 # Satisfiable
 
 
-def test_a_scene_that_meets_its_spec_is_satisfiable(drape: Desk, pour: Desk, room: Desk) -> None:
-    for desk in (drape, pour, room):
-        assert faults(prove_on(desk, "satisfiable")) == {}
+def test_a_scene_that_meets_its_spec_is_satisfiable(
+    drape: VariantBuilder, pour: VariantBuilder, room: VariantBuilder
+) -> None:
+    for builder in (drape, pour, room):
+        assert faults(prove_property(builder, "satisfiable")) == {}
 
 
-def test_a_scene_that_is_not_baked_does_not_meet_its_spec(small_scenes: Path) -> None:
-    with Desk(spec_like(DRAPE), small_scenes / "slack.blend") as desk:
-        [why] = faults(prove_on(desk, "satisfiable")).values()
+def test_an_unbaked_scene_does_not_meet_its_spec(small_scenes: Path) -> None:
+    with VariantBuilder(spec_like(DRAPE), small_scenes / "slack.blend") as builder:
+        [why] = faults(prove_property(builder, "satisfiable")).values()
     assert {"tablecloth: cloth_cache_baked", "domino: rigid_cache_baked"} <= set(why.split(", "))
 
 
-# Twins
+# Counterfeits
 
 
-def test_twins_look_the_same_and_are_told_from_the_scene(drape: Desk, pour: Desk) -> None:
-    for desk, transferred in (
+def test_counterfeits_look_the_same_and_score_less(drape: VariantBuilder, pour: VariantBuilder) -> None:
+    for builder, transferred in (
         (drape, {"moved": 2, "shaped": 1, "particles": 12}),
         (pour, {"reshaped": 1}),
     ):
-        proof = prove_on(desk, "twins")
+        proof = prove_property(builder, "counterfeits")
         assert faults(proof) == {}
         assert [row.name for row in proof.rows] == ["keys", "files"]
         for row in proof.rows:
@@ -101,38 +103,49 @@ def test_twins_look_the_same_and_are_told_from_the_scene(drape: Desk, pour: Desk
             assert row.values["drop"] >= row.values["must_drop"] > 0.3
 
 
-def test_a_still_scene_has_no_twins(room: Desk) -> None:
-    assert prove_on(room, "twins").holds is None
+def test_a_static_scene_has_no_counterfeits(room: VariantBuilder) -> None:
+    assert prove_property(room, "counterfeits").holds is None
 
 
-def test_checks_that_see_only_what_is_shown_let_a_twin_pass_and_that_is_reported(drape: Desk) -> None:
+def test_reports_checks_that_a_counterfeit_passes(
+    drape: VariantBuilder,
+) -> None:
     seen = [
         {"name": actor["name"], "role": "static", "must_have": ["renderable"]} for actor in DRAPE["actors"]
     ]
-    desk = otherwise(drape, actors=seen)
-    assert set(faults(prove_on(desk, "twins"))) == {"keys", "files"}
-    assert all("not told" in why for why in faults(prove_on(desk, "twins")).values())
+    builder = otherwise(drape, actors=seen)
+    assert set(faults(prove_property(builder, "counterfeits"))) == {"keys", "files"}
+    assert all(
+        "does not tell it from the scene" in why
+        for why in faults(prove_property(builder, "counterfeits")).values()
+    )
 
 
-def test_a_twin_that_looks_otherwise_proves_nothing(drape: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Desk, "difference", lambda *_: 0.25)
-    assert all("does not look the same" in why for why in faults(prove_on(drape, "twins")).values())
+def test_a_counterfeit_that_looks_different_proves_nothing(
+    drape: VariantBuilder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(VariantBuilder, "difference", lambda *_: 0.25)
+    assert all(
+        "does not look the same" in why for why in faults(prove_property(drape, "counterfeits")).values()
+    )
 
 
-# Sabotages
+# Mutations
 
 
-def test_every_sabotage_is_seen_and_nothing_else_is(drape: Desk, pour: Desk, room: Desk) -> None:
-    for desk in (drape, pour, room):
-        proof = prove_on(desk, "sabotages")
+def test_every_mutation_fails_its_check_and_no_other(
+    drape: VariantBuilder, pour: VariantBuilder, room: VariantBuilder
+) -> None:
+    for builder in (drape, pour, room):
+        proof = prove_property(builder, "mutations")
         assert faults(proof) == {}
         broken = {row.values.get("predicate") for row in proof.rows if row.holds}
         asked = [
             check.predicate
-            for actor in desk.spec.actors
+            for actor in builder.spec.actors
             for check in (*actor.must_have, *actor.must_not_have)
         ]
-        assert {*asked, *(check.predicate for check in desk.spec.assertions)} <= broken
+        assert {*asked, *(check.predicate for check in builder.spec.assertions)} <= broken
 
 
 def always(unit: Unit, stage: Stage, params: Params) -> Verdict:
@@ -141,45 +154,51 @@ def always(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def if_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """Lets a thing be seen only where all cloth of the scene is baked, which has nothing to do with it."""
+    """Passes only if all cloth of the scene is baked, which has nothing to do with being renderable."""
     del unit, params
     cloths = [one.cloth for each in stage.scene.objects for one in each.modifiers if one.cloth]
     return Verdict("passed" if all(cloth.cache.is_baked for cloth in cloths) else "failed", {})
 
 
-def test_a_predicate_that_always_passes_is_found_out(drape: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_detects_a_predicate_that_always_passes(
+    drape: VariantBuilder, monkeypatch: pytest.MonkeyPatch
+) -> None:
     blind = replace(PREDICATES["cloth_cache_baked"], judge=always)
     monkeypatch.setitem(PREDICATES, "cloth_cache_baked", blind)
-    found = faults(prove_on(otherwise(drape), "sabotages"))
+    found = faults(prove_property(otherwise(drape), "mutations"))
     assert set(found) == {
-        "tablecloth: cloth_cache_baked by free CLOTH",
-        "tablecloth: cloth_cache_baked by shorten CLOTH",
+        "tablecloth: cloth_cache_baked by free bake CLOTH",
+        "tablecloth: cloth_cache_baked by shorten cache CLOTH",
     }
     assert set(found.values()) == {"the check still passes"}
 
 
-def test_a_predicate_that_fails_for_no_reason_is_found_out(
-    drape: Desk, monkeypatch: pytest.MonkeyPatch
+def test_detects_a_predicate_that_fails_without_a_reason(
+    drape: VariantBuilder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(PREDICATES, "renderable", replace(PREDICATES["renderable"], judge=if_baked))
-    found = faults(prove_on(otherwise(drape), "sabotages"))
-    assert "lamp: renderable" in found["tablecloth: cloth_cache_baked by free CLOTH"]
+    found = faults(prove_property(otherwise(drape), "mutations"))
+    assert "lamp: renderable" in found["tablecloth: cloth_cache_baked by free bake CLOTH"]
 
 
-def test_a_check_that_nothing_has_broken_is_reported(drape: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("bench.validity.mutations.planning.SABOTAGES", dict.fromkeys(PREDICATES, ()))
-    found = Counter(faults(prove_on(drape, "sabotages")).values())
-    assert set(found) == {"nothing has broken it"}
+def test_reports_a_check_that_no_mutation_broke(
+    drape: VariantBuilder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("bench.validity.mutations.planning.MUTATIONS", dict.fromkeys(PREDICATES, ()))
+    found = Counter(faults(prove_property(drape, "mutations")).values())
+    assert set(found) == {"no mutation broke it"}
     assert found.total() == sum(len(actor.checks) for actor in drape.reading.audit.actors)
 
 
-# Fair
+# Invariance
 
 
-def test_a_scene_scores_the_same_in_every_guise(drape: Desk, pour: Desk, room: Desk) -> None:
+def test_a_scene_scores_the_same_after_every_rewrite(
+    drape: VariantBuilder, pour: VariantBuilder, room: VariantBuilder
+) -> None:
     applied: Counter[str] = Counter()
-    for desk in (drape, pour, room):
-        proof = prove_on(desk, "fair")
+    for builder in (drape, pour, room):
+        proof = prove_property(builder, "invariance")
         assert faults(proof) == {}
         applied.update(row.name for row in proof.rows if row.holds)
     assert applied == {
@@ -188,10 +207,10 @@ def test_a_scene_scores_the_same_in_every_guise(drape: Desk, pour: Desk, room: D
     }
 
 
-def test_a_scene_in_centimetres_moves_as_it_did(drape: Desk) -> None:
+def test_a_scene_in_centimetres_moves_as_before(drape: VariantBuilder) -> None:
     whole = drape.reading
-    cast = cast_of(drape.spec, whole.scene, whole.found)
-    path, _ = drape.make("centimetres", "guise", guise="rescaled", cast=cast)
+    actors = actor_objects(drape.spec, whole.scene, whole.found)
+    path, _ = drape.make("centimetres", "rewrite", kind="rescaled", actors=actors)
     scene = drape.read(path).scene
     assert scene.unit_scale == pytest.approx(0.01)
     bounds = [
@@ -208,10 +227,10 @@ def test_a_scene_in_centimetres_moves_as_it_did(drape: Desk) -> None:
     assert domino[0] - domino[1] > 0.1, "it falls"
 
 
-def test_a_name_that_is_two_actors_makes_a_guise_unfair_and_that_is_reported(drape: Desk) -> None:
+def test_reports_a_rewrite_that_confuses_two_actors(drape: VariantBuilder) -> None:
     table, lamp, floor = STILL
     confused = [*DRAPE["actors"][:3], table, {**lamp, "synonyms": ["ground"]}, floor]
-    found = faults(prove_on(otherwise(drape, actors=confused), "fair"))
+    found = faults(prove_property(otherwise(drape, actors=confused), "invariance"))
     assert set(found) == {"renamed"}
     assert "floor: rigid_settings" in found["renamed"]
 
@@ -219,54 +238,56 @@ def test_a_name_that_is_two_actors_makes_a_guise_unfair_and_that_is_reported(dra
 # Deterministic
 
 
-def test_an_audit_is_the_same_in_every_process(drape: Desk, pour: Desk) -> None:
-    for desk in (drape, pour):
-        assert faults(prove_on(desk, "deterministic")) == {}
+def test_the_audit_is_the_same_in_every_process(drape: VariantBuilder, pour: VariantBuilder) -> None:
+    for builder in (drape, pour):
+        assert faults(prove_property(builder, "deterministic")) == {}
 
 
-def test_an_audit_that_changes_from_run_to_run_is_reported(
-    drape: Desk, monkeypatch: pytest.MonkeyPatch
+def test_reports_an_audit_that_changes_from_run_to_run(
+    drape: VariantBuilder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    real, runs = desks.audit, Counter[str]()
+    real, runs = variant_builder.audit, Counter[str]()
 
     def wavering(*given: Any) -> Any:
         runs["audit"] += 1
         found = real(*given)
         return replace(found, blend={**found.blend, "run": runs["audit"]})
 
-    monkeypatch.setattr(desks, "audit", wavering)
-    assert set(faults(prove_on(otherwise(drape), "deterministic"))) == {
+    monkeypatch.setattr(variant_builder, "audit", wavering)
+    assert set(faults(prove_property(otherwise(drape), "deterministic"))) == {
         "another process",
         "a copy elsewhere, after other files",
     }
 
 
-# The desk
+# The variant builder
 
 
-def test_nothing_that_is_done_touches_the_scene_or_its_caches(small_scenes: Path) -> None:
+def test_variants_leave_the_scene_and_its_caches_alone(small_scenes: Path) -> None:
     before = state(small_scenes)
     assert any("water" in name for name in before)
-    with Desk(spec_like(POUR), small_scenes / "pour.blend") as desk:
-        folder = desk.folder
+    with VariantBuilder(spec_like(POUR), small_scenes / "pour.blend") as builder:
+        folder = builder.folder
         for change, options in (
-            ("lose_files", {}),
-            ("forget_bake", {}),
-            ("coarsen", {"least": 12}),
-            ("swap", {"kind": "DOMAIN"}),
+            ("lose_fluid_files", {}),
+            ("clear_fluid_bake", {}),
+            ("lower_resolution", {"least": 12}),
+            ("swap_fluid_type", {"kind": "DOMAIN"}),
             ("remove_domains", {}),
         ):
-            path, _ = desk.make(change, "sabotage", change=change, objects=["Water"], options=options)
+            path, _ = builder.make(change, "mutate", change=change, objects=["Water"], options=options)
             assert path.parent == folder
     assert state(small_scenes) == before
     assert not folder.exists()
 
 
-def test_a_blender_that_crashes_is_started_again(room: Desk) -> None:
-    shop = room._workshop.opened(room.original)
-    os.kill(shop._process.inner, signal.SIGKILL)
-    while shop._process.alive:
+def test_restarts_a_blender_that_crashed(room: VariantBuilder) -> None:
+    blender = room._worker.opened(room.original)
+    os.kill(blender._process.inner, signal.SIGKILL)
+    while blender._process.alive:
         time.sleep(0.01)
     with pytest.raises(Crashed):
-        shop.ask("save", doing="saving", path=str(room.folder / "dead.blend"))
-    assert room.make("again", "sabotage", change="hide", objects=["Floor"], options={})[1] == ["Floor"]
+        blender.ask("save", doing="saving", path=str(room.folder / "dead.blend"))
+    assert room.make("again", "mutate", change="hide_in_render", objects=["Floor"], options={})[1] == [
+        "Floor"
+    ]

@@ -17,10 +17,10 @@ from small_specs import DRAPE, POUR, ROOM, spec_like
 from bench.audit.predicates.catalogue import PREDICATES
 from bench.audit.predicates.predicate import Verdict
 from bench.scenes.spec import specs
-from bench.validity.mutations.catalogue import SABOTAGES
-from bench.validity.proof import Proof, Row
+from bench.validity.mutations.catalogue import MUTATIONS
+from bench.validity.proof import Proof, ProofRow
 from bench.validity.report import as_markdown
-from bench.validity.run import Task, prove, prove_all, subset
+from bench.validity.run import ProofTask, prove, prove_all, subset
 from simworlds.cli import main
 
 if TYPE_CHECKING:
@@ -57,11 +57,11 @@ def test_the_subset_has_one_scene_of_each_cell() -> None:
     ("arguments", "said"),
     [
         (("--scenes", "cloth_D9_01"), "There is no scene 'cloth_D9_01'"),
-        (("--properties", "fair,square"), "square: there are satisfiable, twins"),
+        (("--properties", "fair,square"), "square: the properties are satisfiable, counterfeits"),
         (("--jobs", "0"), "0 is not in the range"),
     ],
 )
-def test_a_name_that_is_none_is_refused_before_anything_is_done(
+def test_refuses_an_unknown_name_before_it_does_anything(
     arguments: tuple[str, ...], said: str, home: Path
 ) -> None:
     result = run(*arguments)
@@ -70,12 +70,12 @@ def test_a_name_that_is_none_is_refused_before_anything_is_done(
     assert not home.exists()
 
 
-def test_every_predicate_has_a_sabotage_for_every_role_that_a_spec_asks_it_of() -> None:
-    assert SABOTAGES.keys() == PREDICATES.keys()
+def test_every_predicate_has_a_mutation_for_every_role_that_specs_ask_it_of() -> None:
+    assert MUTATIONS.keys() == PREDICATES.keys()
     for spec in specs():
         for actor in spec.actors:
             for check in actor.must_have:
-                ways = [one for one in SABOTAGES[check.predicate] if not one.roles or actor.role in one.roles]
+                ways = [way for way in MUTATIONS[check.predicate] if not way.roles or actor.role in way.roles]
                 assert ways or actor.role in ("static", "keyframed"), (
                     f"{spec.id}: {actor.name}: {check.predicate}"
                 )
@@ -89,7 +89,7 @@ def test_a_proof_is_kept_until_its_scene_changes(home: Path, small_scenes: Path,
     blend = tmp_path / "scene" / "room.blend"
     blend.parent.mkdir()
     blend.write_bytes((small_scenes / "room.blend").read_bytes())
-    task = Task(spec_like(ROOM), ("satisfiable",), blend=blend)
+    task = ProofTask(spec_like(ROOM), ("satisfiable",), blend=blend)
     first, second = prove(task), prove(task)
     assert (first.kept, second.kept) == (0, 1)
     assert first.proofs == second.proofs
@@ -103,14 +103,14 @@ def test_a_proof_is_kept_until_its_scene_changes(home: Path, small_scenes: Path,
 
 
 @pytest.mark.blender
-def test_scenes_are_proven_at_once_and_what_cannot_be_opened_is_told(
+def test_proves_scenes_in_parallel_and_reports_those_that_cannot_be_opened(
     home: Path, small_scenes: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "broken.blend").write_bytes(b"BLENDER half of it")
     tasks = [
-        Task(spec_like(DRAPE), ("satisfiable",), blend=small_scenes / "drape.blend"),
-        Task(spec_like(POUR), ("satisfiable",), blend=small_scenes / "pour.blend"),
-        Task(spec_like(ROOM), ("fair",), blend=tmp_path / "broken.blend"),
+        ProofTask(spec_like(DRAPE), ("satisfiable",), blend=small_scenes / "drape.blend"),
+        ProofTask(spec_like(POUR), ("satisfiable",), blend=small_scenes / "pour.blend"),
+        ProofTask(spec_like(ROOM), ("invariance",), blend=tmp_path / "broken.blend"),
     ]
     found = {done.scene: done.proofs[0] for done in prove_all(tasks, 2)}
     assert found["cloth_D3_99"].holds
@@ -131,7 +131,7 @@ def never(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 @pytest.mark.blender
-def test_it_builds_proves_reports_and_tells_by_its_exit_code(
+def test_builds_proves_reports_and_sets_the_exit_code(
     home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = ("--scenes", STATIC, "--properties", ",".join(QUICK))
@@ -152,11 +152,11 @@ def test_it_builds_proves_reports_and_tells_by_its_exit_code(
     monkeypatch.setenv("SIMWORLDS_HOME", str(tmp_path / "report" / "validation.md"))
     unable = run(*asked, "--output", str(tmp_path / "report"))
     assert unable.exit_code == 2
-    assert "not looked into" in unable.output
+    assert "could not be tested" in unable.output
 
 
 @pytest.mark.blender
-def test_an_interrupt_ends_all_and_keeps_what_was_proven(home: Path, tmp_path: Path) -> None:
+def test_an_interrupt_ends_all_and_keeps_proofs(home: Path, tmp_path: Path) -> None:
     place = tmp_path / "tmp"
     place.mkdir()
     arguments = ["--scenes", f"{STATIC},cloth_D2_03", "--properties", "satisfiable", "--jobs", "2"]
@@ -181,7 +181,7 @@ def test_an_interrupt_ends_all_and_keeps_what_was_proven(home: Path, tmp_path: P
         process.send_signal(signal.SIGINT)
         rest = process.stderr.read()
     assert process.returncode == 130
-    assert "Interrupted. What was proven is kept" in rest
+    assert "Interrupted. Proofs are kept" in rest
     assert "Traceback" not in rest
     assert not list(place.glob("simworlds-*"))
     assert [path.name for path in home.rglob("*.json")] == [f"{STATIC}-satisfiable.json"]
@@ -191,21 +191,23 @@ def test_an_interrupt_ends_all_and_keeps_what_was_proven(home: Path, tmp_path: P
 # The report
 
 
-def test_a_report_shows_what_does_not_hold_and_what_could_not_be_looked_into() -> None:
+def test_the_report_lists_failures_and_what_could_not_be_tested() -> None:
     proofs = [
         Proof(
             scene="a",
-            about="twins",
-            rows=(Row(name="keys", holds=False, why="it is not told from the scene"),),
+            about="counterfeits",
+            rows=(ProofRow(name="keys", holds=False, why="the audit does not tell it from the scene"),),
         ),
-        Proof(scene="b", about="twins", unable="Blender crashed"),
+        Proof(scene="b", about="counterfeits", unable="Blender crashed"),
         Proof(
-            scene="c", about="fair", rows=(Row(name="joined", holds=None, why="nothing in it can be joined"),)
+            scene="c",
+            about="invariance",
+            rows=(ProofRow(name="joined", holds=None, why="nothing in it can be joined"),),
         ),
     ]
     text = as_markdown(proofs)
-    assert "| It sees through fakes | 0 of 2 | 1 | 0 |" in text
-    assert "| Fair | 0 of 0 | 0 | 0 |" in text
-    assert "- a, twins, keys: it is not told from the scene\n" in text
-    assert "- b, twins: could not be looked into: Blender crashed\n" in text
+    assert "| It rejects counterfeits | 0 of 2 | 1 | 0 |" in text
+    assert "| Invariant | 0 of 0 | 0 | 0 |" in text
+    assert "- a, counterfeits, keys: the audit does not tell it from the scene\n" in text
+    assert "- b, counterfeits: could not be tested: Blender crashed\n" in text
     assert as_markdown(proofs) == text

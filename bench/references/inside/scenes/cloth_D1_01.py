@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A tablecloth falls on a round table, and drapes."""
 
-from ..physics import cloth, collider
-from ..stage import begin, camera, light
-from ..things import box, cylinder, joined, sheet
+from ..props import box, cylinder, joined, sheet
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import cloth, collider
 
 
 def build():

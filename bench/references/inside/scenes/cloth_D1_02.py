@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A bedsheet falls from the rafters over a rocking chair, onto the armrests and down to the floorboards."""
 
-from ..physics import cloth, collider
-from ..stage import begin, camera, light
-from ..things import box, boxes, joined, legs, sheet, tube
+from ..props import box, boxes, joined, legs, sheet, tube
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import cloth, collider
 
 OAK, BOARDS = (0.33, 0.2, 0.1), (0.5, 0.38, 0.25)
 # From back to front: the runners touch the floor at their middle.

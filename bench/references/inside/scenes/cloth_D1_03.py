@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A striped blanket slides down a shed's roof, over the eave, and crumples on the lawn."""
 
-from ..physics import cloth, collider
-from ..stage import begin, camera, light
-from ..things import box, joined, prism, sheet
+from ..props import box, joined, prism, sheet
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import cloth, collider
 
 PITCH = 28  # degrees
 # The roof in the plane of its fall, from ridge to eave (x, z): a slab 0.12 m thick, over walls that follow it.

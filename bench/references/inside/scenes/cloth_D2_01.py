@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A flag, fastened to its pole along one edge, snaps and ripples in the wind."""
 
-from ..physics import cloth, field
-from ..stage import begin, camera, light
-from ..things import box, cylinder, joined, revolved, sheet, weigh
+from ..props import box, cylinder, joined, revolved, sheet, weigh
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import cloth, field
 
 
 def build():

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A strip of velvet is let down end first onto a counter, and folds back and forth into a heap beside scissors."""
 
-from ..physics import cloth, collider, hook
-from ..rounds import ring
-from ..stage import begin, camera, keys, light
-from ..things import box, joined, sheet, weigh
+from ..props import box, joined, sheet, weigh
+from ..round_shapes import ring
+from ..scene_setup import begin, camera, keys, light
+from ..simulation_parts import cloth, collider, hook
 
 LONG, TOP = 1.5, 0.9
 BRASS = {"colour": (0.75, 0.55, 0.2), "metal": 1.0, "roughness": 0.3}

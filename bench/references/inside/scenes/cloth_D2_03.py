@@ -3,9 +3,9 @@
 
 import math
 
-from ..physics import cloth, hook
-from ..stage import begin, camera, keys, light
-from ..things import box, cylinder, joined, sheet, weigh
+from ..props import box, cylinder, joined, sheet, weigh
+from ..scene_setup import begin, camera, keys, light
+from ..simulation_parts import cloth, hook
 
 WIDE, HIGH, RAIL = 2.6, 2.2, 2.45
 PLEATS = 9

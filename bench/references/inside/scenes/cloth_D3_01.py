@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A cannonball rolls down a ramp and under a banner, which bulges, lets it pass and swings back."""
 
-from ..physics import body, cloth, collider
-from ..stage import begin, camera, light
-from ..things import ball, box, boxes, prism, sheet, weigh
+from ..props import ball, box, boxes, prism, sheet, weigh
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import body, cloth, collider
 
 OAK = (0.42, 0.26, 0.12)
 

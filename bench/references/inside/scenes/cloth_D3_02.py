@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A napkin floats down over a pudding that wobbles on its plate, clings to it and trembles with it."""
 
-from ..physics import cloth, collider, soft
-from ..stage import begin, camera, light
-from ..struts import braced
-from ..things import box, revolved, sheet
+from ..props import box, revolved, sheet
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import cloth, collider, soft
+from ..soft_body_struts import braced
 
 TOP = 0.9
 PLATE = [(0, 0), (0.2, 0), (0.28, 0.012), (0.28, 0.018), (0.2, 0.012), (0, 0.012)]

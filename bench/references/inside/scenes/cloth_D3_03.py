@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A carpet drops from a balcony onto cobblestones; as it crumples, dust bursts from it and rolls over the ground."""
 
-from ..physics import cloth, collider, particles
-from ..stage import begin, camera, light
-from ..things import ball, box, boxes, sheet
+from ..props import ball, box, boxes, sheet
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import cloth, collider, particles
 
 SAND, DUST = (0.72, 0.56, 0.36), (0.5, 0.48, 0.45)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Milk runs out of a tilted jug into a bowl on a table."""
 
-from ..physics import domain, effector, flow
-from ..stage import begin, camera, light
-from ..things import box, revolved
+from ..props import box, revolved
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import domain, effector, flow
 
 BOWL = [(0, 0), (0.09, 0), (0.19, 0.1), (0.2, 0.12), (0.17, 0.12), (0.16, 0.1), (0.08, 0.025), (0, 0.025)]
 JUG = [

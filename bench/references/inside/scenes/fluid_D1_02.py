@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Smoke climbs from the chimney of a snowed-in log cabin at dusk."""
 
-from ..physics import domain, flow
-from ..stage import begin, camera, light, vapour
-from ..things import block, box, cylinder, joined, prism, weigh
+from ..props import block, box, cylinder, joined, prism, weigh
+from ..scene_setup import begin, camera, light, vapour
+from ..simulation_parts import domain, flow
 
 WOOD = (0.22, 0.12, 0.06)
 SNOW = (0.85, 0.88, 0.95)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A column of blue water collapses in a long glass tank, surges to its far wall and sloshes back."""
 
-from ..physics import domain, flow
-from ..stage import begin, camera, light
-from ..things import box, boxes, legs
+from ..props import box, boxes, legs
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import domain, flow
 
 CELL = 0.035
 EDGE = 0.6 * CELL  # how far a fluid keeps from the sides of its domain

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Two lion heads on opposite walls spout water into a sunken basin, where the jets meet."""
 
-from ..physics import domain, effector, flow
-from ..stage import begin, camera, light, under
-from ..things import ball, box, boxes, cylinder, joined
+from ..props import ball, box, boxes, cylinder, joined
+from ..scene_setup import begin, camera, light, under
+from ..simulation_parts import domain, effector, flow
 
 MARBLE = (0.85, 0.83, 0.78)
 BRONZE = {"colour": (0.4, 0.24, 0.1), "metal": 1.0, "roughness": 0.35}

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """An oar swings through a tub of water, and piles a wave up against the rim ahead of its blade."""
 
-from ..physics import domain, effector, flow
-from ..stage import begin, camera, keys, light
-from ..things import box, cylinder, fused, revolved, tube
+from ..props import box, cylinder, fused, revolved, tube
+from ..scene_setup import begin, camera, keys, light
+from ..simulation_parts import domain, effector, flow
 
 # Walls of two cells, or the water would find its way through.
 TUB = [(0, 0), (0.5, 0), (0.56, 0.4), (0.58, 0.4), (0.58, 0.43), (0.51, 0.43), (0.45, 0.05), (0, 0.05)]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Incense smoke rises from a burner, and is led aside over the altar by a fan that sweeps past."""
 
-from ..physics import domain, effector, flow
-from ..stage import begin, camera, keys, lamp, light, vapour
-from ..things import box, cylinder, joined, revolved, tube
+from ..props import box, cylinder, joined, revolved, tube
+from ..scene_setup import begin, camera, keys, lamp, light, vapour
+from ..simulation_parts import domain, effector, flow
 
 TOP = 0.9
 BURNER = [(0, 0), (0.07, 0), (0.05, 0.03), (0.1, 0.08), (0.1, 0.13), (0.07, 0.13), (0.07, 0.1), (0, 0.1)]

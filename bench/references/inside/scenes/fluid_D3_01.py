@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A millstone drops into a basin of water, throws up spray and sinks to the bottom."""
 
-from ..physics import body, domain, effector, flow
-from ..stage import begin, camera, light
-from ..things import box, boxes, revolved
+from ..props import box, boxes, revolved
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import body, domain, effector, flow
 
 STONE = (0.42, 0.4, 0.36)
 TIMBER = (0.3, 0.18, 0.09)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A toy barge lurches forward in a channel, and ploughs up a wave; the crates on its deck topple."""
 
-from ..physics import body, domain, effector, flow
-from ..stage import begin, camera, keys, light
-from ..things import box, boxes, mesh
+from ..props import box, boxes, mesh
+from ..scene_setup import begin, camera, keys, light
+from ..simulation_parts import body, domain, effector, flow
 
 STONE = (0.45, 0.43, 0.4)
 PINE = (0.75, 0.52, 0.28)

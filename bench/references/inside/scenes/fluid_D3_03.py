@@ -3,9 +3,9 @@
 
 import math
 
-from ..physics import domain, field, flow, particles
-from ..stage import begin, camera, lamp, light, vapour
-from ..things import ball, box, cylinder, joined, tube
+from ..props import ball, box, cylinder, joined, tube
+from ..scene_setup import begin, camera, lamp, light, vapour
+from ..simulation_parts import domain, field, flow, particles
 
 BARK = (0.75, 0.7, 0.62)
 IRON = (0.05, 0.05, 0.055)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Snow sifts down on a chapel and the meadow around it, and stays where it lands."""
 
-from ..air import sinks
-from ..physics import collider, particles
-from ..stage import begin, camera, last, light
-from ..things import ball, box, boxes, joined, prism, sheet
+from ..air_drag import sinks
+from ..props import ball, box, boxes, joined, prism, sheet
+from ..scene_setup import begin, camera, last, light
+from ..simulation_parts import collider, particles
 
 HIGH = 5.2
 SLOW = 2.0  # metres a second

@@ -3,10 +3,10 @@
 
 from math import radians
 
-from ..air import sinks
-from ..physics import collider, particles
-from ..stage import begin, camera, light
-from ..things import box, boxes, cylinder, joined, revolved, sheet, weigh
+from ..air_drag import sinks
+from ..props import box, boxes, cylinder, joined, revolved, sheet, weigh
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import collider, particles
 
 STEEP = 70  # degrees, of the barrel
 BORE = 0.085

@@ -3,9 +3,9 @@
 
 from random import Random
 
-from ..physics import collider, particles
-from ..stage import begin, camera, light
-from ..things import ball, box, boxes, fused, joined, sheet, weigh
+from ..props import ball, box, boxes, fused, joined, sheet, weigh
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import collider, particles
 
 HIGH = 0.9  # the shelf's upper side
 

@@ -5,9 +5,9 @@ from math import exp, hypot
 
 from mathutils import Vector
 
-from ..physics import field, hair
-from ..stage import begin, camera, keys, light, paint
-from ..things import box, boxes, joined, sheet, tube, weigh
+from ..props import box, boxes, joined, sheet, tube, weigh
+from ..scene_setup import begin, camera, keys, light, paint
+from ..simulation_parts import field, hair
 
 POST = (0.3, -0.5)
 GUSTS = (3, 20, 8, 26, 9, 22, 6, 24)  # every half second

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Leaves lie on the cobbles of a courtyard; a whirlwind lifts them, and they circle upwards between bench and lamp."""
 
-from ..physics import field, particles
-from ..stage import begin, camera, light, under
-from ..things import boxes, joined, mesh, revolved, sheet, weigh
+from ..props import boxes, joined, mesh, revolved, sheet, weigh
+from ..scene_setup import begin, camera, light, under
+from ..simulation_parts import field, particles
 
 WIDE = 0.7  # metres, half of the ground from which leaves are lifted
 # Of a maple leaf, from its stalk around its five lobes: (across, along).

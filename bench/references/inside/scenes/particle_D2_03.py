@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Two fountains of sparks, set in pots, throw them across each other; they rain down on the paving and hop on."""
 
-from ..physics import collider, particles
-from ..stage import begin, camera, lamp, light
-from ..things import ball, boxes, joined, revolved, sheet, weigh
+from ..props import ball, boxes, joined, revolved, sheet, weigh
+from ..scene_setup import begin, camera, lamp, light
+from ..simulation_parts import collider, particles
 
 APART = 1.75  # of either pot from the middle
 POT = [(0, 0), (0.12, 0), (0.17, 0.26), (0.19, 0.26), (0.19, 0.3), (0.15, 0.3), (0.11, 0.03), (0, 0.03)]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sail of a burning longship billows from its yard; embers peel off the cloth and blow away over the bow."""
 
-from ..physics import cloth, field, particles
-from ..stage import begin, camera, keys, lamp, light
-from ..things import ball, box, cylinder, joined, mesh, sheet, tube, weigh
+from ..props import ball, box, cylinder, joined, mesh, sheet, tube, weigh
+from ..scene_setup import begin, camera, keys, lamp, light
+from ..simulation_parts import cloth, field, particles
 
 WOOD = (0.16, 0.09, 0.05)
 YARD = 3.3

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A slab of Turkish delight flops onto a counter; sugar bursts off its skin each time it wobbles."""
 
-from ..physics import collider, particles, soft
-from ..stage import begin, camera, light
-from ..struts import braced
-from ..things import ball, block, box, weigh
+from ..props import ball, block, box, weigh
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import collider, particles, soft
+from ..soft_body_struts import braced
 
 TOP = 0.9
 WOBBLES = (11, 19, 28)  # frames in which the slab lands, swells up again, and once more

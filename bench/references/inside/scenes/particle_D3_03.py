@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A flare bursts over a beach; each of its fragments draws a trail of smoke."""
 
-from ..physics import collider, domain, flow, particles
-from ..stage import begin, camera, light, vapour
-from ..things import ball, box
+from ..props import ball, box
+from ..scene_setup import begin, camera, light, vapour
+from ..simulation_parts import collider, domain, flow, particles
 
 
 def build():

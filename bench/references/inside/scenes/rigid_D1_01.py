@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Six bricks, one above the other, fall on a slab and lie in a heap."""
 
-from ..physics import body
-from ..stage import begin, camera, light
-from ..things import box
+from ..props import box
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import body
 
 SIZE = (0.24, 0.115, 0.07)
 # Where each hangs across the pile (x, y), and how it is turned: none falls flat on the one before.

@@ -3,9 +3,9 @@
 
 import math
 
-from ..physics import body, thrown
-from ..stage import begin, camera, light
-from ..things import box, boxes, cylinder, joined, revolved
+from ..props import box, boxes, cylinder, joined, revolved
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import body, thrown
 
 STEPS, DEEP, HIGH, WIDE = 6, 0.42, 0.17, 1.6
 RADIUS, SQUAT, RIBS = 0.22, 0.85, 14

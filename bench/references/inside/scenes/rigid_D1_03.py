@@ -6,9 +6,9 @@ import random
 
 from mathutils import Euler, Vector
 
-from ..physics import body, thrown
-from ..stage import begin, camera, lamp, light
-from ..things import box, boxes, cylinder, joined
+from ..props import box, boxes, cylinder, joined
+from ..scene_setup import begin, camera, lamp, light
+from ..simulation_parts import body, thrown
 
 DIE, LONG, WIDE = 0.04, 1.5, 0.7
 FELT = 0.75  # its height

@@ -5,9 +5,9 @@ import math
 
 from mathutils import Matrix, Vector
 
-from ..physics import body
-from ..stage import begin, camera, keys, light
-from ..things import box
+from ..props import box
+from ..scene_setup import begin, camera, keys, light
+from ..simulation_parts import body
 
 COUNT, APART = 12, 0.055
 THICK, WIDE, TALL = 0.016, 0.06, 0.12

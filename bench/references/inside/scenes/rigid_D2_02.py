@@ -3,9 +3,9 @@
 
 import math
 
-from ..physics import body, joint, limits, thrown
-from ..stage import begin, camera, light
-from ..things import box, boxes, joined, revolved
+from ..props import box, boxes, joined, revolved
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import body, joint, limits, thrown
 
 WIDE, TALL, LOW = 1.2, 1.0, 0.42  # of the doorway: its width; how tall the leaves are, and how high they hang
 POST = 0.12

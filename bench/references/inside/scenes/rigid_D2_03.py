@@ -5,9 +5,9 @@ import math
 
 from mathutils import Matrix, Vector
 
-from ..physics import body, joint
-from ..stage import begin, camera, light, under
-from ..things import ball, box, boxes, joined, revolved
+from ..props import ball, box, boxes, joined, revolved
+from ..scene_setup import begin, camera, light, under
+from ..simulation_parts import body, joint
 
 LONG, DEEP, HIGH = 0.4, 0.2, 0.18  # of a brick
 ROWS, ACROSS = 4, 3

@@ -5,9 +5,9 @@ import math
 
 from mathutils import Vector
 
-from ..physics import body, collider, joint, particles
-from ..stage import begin, camera, lamp, light
-from ..things import ball, box, boxes, cylinder, joined, mesh, weigh
+from ..props import ball, box, boxes, cylinder, joined, mesh, weigh
+from ..scene_setup import begin, camera, lamp, light
+from ..simulation_parts import body, collider, joint, particles
 
 RADIUS, THICK, AXLE = 0.26, 0.07, 0.75
 SPEED = 14.0  # of the wheel, radians a second

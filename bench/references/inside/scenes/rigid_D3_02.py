@@ -5,9 +5,9 @@ import math
 
 from mathutils import Vector
 
-from ..physics import body, cloth, collider, thrown
-from ..stage import begin, camera, light, under
-from ..things import boxes, cylinder, joined, mesh, sheet, tube, weigh
+from ..props import boxes, cylinder, joined, mesh, sheet, tube, weigh
+from ..scene_setup import begin, camera, light, under
+from ..simulation_parts import body, cloth, collider, thrown
 
 STEEP = math.radians(28)
 ROUND = 4.0  # metres, the radius at which the hill becomes flat

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A burning torch tumbles down cellar steps, trailing flame and smoke, until it lies on the flagstones."""
 
-from ..physics import body, domain, effector, flow, thrown
-from ..stage import begin, camera, lamp, light, under, vapour
-from ..things import ball, box, boxes, cylinder, joined
+from ..props import ball, box, boxes, cylinder, joined
+from ..scene_setup import begin, camera, lamp, light, under, vapour
+from ..simulation_parts import body, domain, effector, flow, thrown
 
 STEPS, DEEP, HIGH, WIDE = 4, 0.27, 0.2, 1.6
 LONG, HEAD = 0.5, 0.05  # of the torch's handle; the radius of its head

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A blancmange slips out of its mould onto a plate, sags, wobbles and comes to rest."""
 
-from ..physics import collider, soft
-from ..stage import begin, camera, keys, light
-from ..struts import braced
-from ..things import boxes, legs, revolved
+from ..props import boxes, legs, revolved
+from ..scene_setup import begin, camera, keys, light
+from ..simulation_parts import collider, soft
+from ..soft_body_struts import braced
 
 PLATE = [(0, 0), (0.12, 0), (0.2, 0.02), (0.2, 0.026), (0.12, 0.012), (0, 0.012)]
 SIDE = [

@@ -3,11 +3,11 @@
 
 import math
 
-from ..physics import collider, soft
-from ..rounds import ring
-from ..stage import begin, camera, light
-from ..struts import braced
-from ..things import box
+from ..props import box
+from ..round_shapes import ring
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import collider, soft
+from ..soft_body_struts import braced
 
 
 def build():

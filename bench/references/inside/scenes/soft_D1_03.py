@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Dough slides off a tilted peel and slumps onto a counter dusted with flour."""
 
-from ..physics import collider, soft
-from ..stage import begin, camera, light
-from ..struts import braced
-from ..things import box, boxes, prism, revolved
+from ..props import box, boxes, prism, revolved
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import collider, soft
+from ..soft_body_struts import braced
 
 TOP = 0.9
 TILT, THICK = 32, 0.03  # of the peel: degrees, metres

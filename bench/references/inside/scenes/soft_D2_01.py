@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A rubber cactus, held at its root in a pot, whips over in a gust and sways upright again."""
 
-from ..physics import field, soft
-from ..stage import begin, camera, keys, light
-from ..struts import braced
-from ..things import ball, box, cylinder, fused, revolved, tube, weigh
+from ..props import ball, box, cylinder, fused, revolved, tube, weigh
+from ..scene_setup import begin, camera, keys, light
+from ..simulation_parts import field, soft
+from ..soft_body_struts import braced
 
 SILL = 0.9
 POT = [(0, 0), (0.07, 0), (0.095, 0.15), (0.105, 0.15), (0.105, 0.18), (0.085, 0.18), (0.08, 0.14), (0, 0.14)]

@@ -4,10 +4,10 @@
 They are larger than life: what falls as far as it is tall, when that is a centimetre, is down within a frame.
 """
 
-from ..physics import collider, soft
-from ..stage import begin, camera, light
-from ..struts import braced
-from ..things import ball, boxes, fused, legs, revolved
+from ..props import ball, boxes, fused, legs, revolved
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import collider, soft
+from ..soft_body_struts import braced
 
 TOP = 0.72
 DISH = [(0, 0), (0.4, 0), (0.62, 0.05), (0.62, 0.075), (0.4, 0.04), (0, 0.04)]

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A hot-water bottle lands on a trampoline, whose mat dips under it and flings it up once more."""
 
-from ..physics import collider, soft
-from ..rounds import around, ring
-from ..stage import begin, camera, light
-from ..struts import braced
-from ..things import box, cylinder, fused, joined, revolved, weigh
+from ..props import box, cylinder, fused, joined, revolved, weigh
+from ..round_shapes import around, ring
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import collider, soft
+from ..soft_body_struts import braced
 
 HIGH, WIDE, TUBE = 0.7, 1.3, 0.035
 RINGS = 12

@@ -5,9 +5,9 @@ Rigid bodies do not feel soft ones. What the jelly does to the block is done by 
 spring as strong as the jelly should be; what the block does to the jelly is the soft body's own collision.
 """
 
-from ..physics import body, collider, joint, limits, soft
-from ..stage import begin, camera, light
-from ..things import block, box, smooth
+from ..props import block, box, smooth
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import body, collider, joint, limits, soft
 
 SIDE, THICK = 0.7, 0.22
 MASS = 60.0

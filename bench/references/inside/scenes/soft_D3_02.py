@@ -6,10 +6,10 @@ import math
 import bpy
 from mathutils import Euler, Matrix, Vector
 
-from ..physics import collider, domain, effector, flow, soft
-from ..stage import begin, camera, light
-from ..struts import braced
-from ..things import ball, box, boxes, joined, mesh, smooth
+from ..props import ball, box, boxes, joined, mesh, smooth
+from ..scene_setup import begin, camera, light
+from ..simulation_parts import collider, domain, effector, flow, soft
+from ..soft_body_struts import braced
 
 LONG, WIDE, DEEP, FLOOR = 0.9, 0.7, 0.24, 0.08  # of the tray, inside; how thick its bottom is
 WATER = 0.11

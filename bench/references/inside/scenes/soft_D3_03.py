@@ -5,9 +5,9 @@ import math
 
 from mathutils import Euler, Matrix, Vector
 
-from ..physics import body, joint, soft
-from ..stage import begin, camera, light, paint, under
-from ..things import box, boxes, cylinder, joined, mesh, revolved
+from ..props import box, boxes, cylinder, joined, mesh, revolved
+from ..scene_setup import begin, camera, light, paint, under
+from ..simulation_parts import body, joint, soft
 
 STEEP, SLOPE = math.radians(16), 1.0  # of the ramp; metres along it
 START = 0.75  # up the ramp

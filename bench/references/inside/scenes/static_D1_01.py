@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A living room, seen from where its fourth wall would be."""
 
-from ..stage import begin, camera, light
-from ..things import ball, box, boxes, cylinder, joined, legs, revolved
+from ..props import ball, box, boxes, cylinder, joined, legs, revolved
+from ..scene_setup import begin, camera, light
 
 PLASTER, CREAM = {"colour": (0.82, 0.78, 0.7)}, {"colour": (0.93, 0.91, 0.86)}
 OAK, WALNUT, BLACK = (

@@ -4,9 +4,9 @@
 import math
 from itertools import product
 
-from ..rounds import arch, around
-from ..stage import begin, camera, light
-from ..things import ball, box, boxes, cylinder, joined, legs, prism, revolved, tube
+from ..props import ball, box, boxes, cylinder, joined, legs, prism, revolved, tube
+from ..round_shapes import arch, around
+from ..scene_setup import begin, camera, light
 
 OAK, PINE, LIME = (
     {"colour": (0.4, 0.25, 0.12)},

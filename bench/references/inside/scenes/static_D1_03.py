@@ -3,9 +3,9 @@
 
 import math
 
-from ..rounds import around, ring
-from ..stage import begin, camera, lamp, light
-from ..things import ball, box, boxes, cylinder, joined, legs, prism, revolved, tube
+from ..props import ball, box, boxes, cylinder, joined, legs, prism, revolved, tube
+from ..round_shapes import around, ring
+from ..scene_setup import begin, camera, lamp, light
 
 WALNUT, OAK, CREAM = (
     {"colour": (0.25, 0.14, 0.07)},

@@ -4,9 +4,9 @@
 import math
 from itertools import product
 
-from ..rounds import arch
-from ..stage import begin, camera, light
-from ..things import box, boxes, cylinder, joined, mesh, prism, revolved, sheet, tube
+from ..props import box, boxes, cylinder, joined, mesh, prism, revolved, sheet, tube
+from ..round_shapes import arch
+from ..scene_setup import begin, camera, light
 
 GRANITE, SLATE = {"colour": (0.42, 0.4, 0.38)}, {"colour": (0.16, 0.18, 0.22)}
 OAK, WICKER = {"colour": (0.38, 0.24, 0.13)}, {"colour": (0.55, 0.42, 0.25)}

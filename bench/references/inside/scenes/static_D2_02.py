@@ -3,9 +3,9 @@
 
 from itertools import product
 
-from ..rounds import arch
-from ..stage import begin, camera, light
-from ..things import ball, box, boxes, cylinder, joined, prism, revolved, sheet, tube
+from ..props import ball, box, boxes, cylinder, joined, prism, revolved, sheet, tube
+from ..round_shapes import arch
+from ..scene_setup import begin, camera, light
 
 SNOW, OAK, LARCH = (
     {"colour": (0.93, 0.95, 0.98)},

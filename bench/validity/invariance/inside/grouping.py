@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Groups and names: hierarchies and collections dissolved, or made where there are none; things called otherwise."""
+"""Rewrites of groups and names: dissolves or makes hierarchies and collections, renames objects."""
 
 import bpy
 import numpy
@@ -7,50 +7,50 @@ import numpy
 _SAME = 1e-6
 
 
-def ungroup(cast):
-    """Dissolves hierarchies that carry nothing, and collections that are there to group. The largest part of what was
-    named by its group gets the name.
+def ungroup(actors):
+    """Dissolves hierarchies that move nothing, and collections that only group. The largest mesh of a group gets the
+    name of the group.
     """
-    things = list(bpy.context.scene.objects)
-    carriers = _moving({thing.parent for thing in things if thing.parent is not None})
-    changed = [thing for thing in things if thing.parent is not None and thing.parent not in carriers]
-    for thing in changed:
-        matrix = thing.matrix_world.copy()
-        thing.parent = None
-        thing.matrix_world = matrix
-    changed += _out_of_collections(things)
-    for actor in cast:
+    objects = list(bpy.context.scene.objects)
+    carriers = _moving({obj.parent for obj in objects if obj.parent is not None})
+    changed = [obj for obj in objects if obj.parent is not None and obj.parent not in carriers]
+    for obj in changed:
+        matrix = obj.matrix_world.copy()
+        obj.parent = None
+        obj.matrix_world = matrix
+    changed += _out_of_collections(objects)
+    for actor in actors:
         for unit in actor["units"]:
-            _pass_name_on(unit)
+            _move_name_to_mesh(unit)
     return len(set(changed))
 
 
-def group(cast):
-    """Puts what stands for each actor into a collection of its name; the objects themselves are called nothing."""
+def group(actors):
+    """Puts each actor's objects into a collection of its name; the objects get meaningless names."""
     _out_of_collections(bpy.context.scene.objects)
     number = 0
-    for actor in cast:
+    for actor in actors:
         names = [*(name for unit in actor["units"] for name in unit), *actor["parts"]]
-        things = [bpy.data.objects[name] for name in names]
-        made = bpy.data.collections.new(actor["name"])
-        bpy.context.scene.collection.children.link(made)
-        for thing in things:
+        objects = [bpy.data.objects[name] for name in names]
+        collection = bpy.data.collections.new(actor["name"])
+        bpy.context.scene.collection.children.link(collection)
+        for obj in objects:
             number += 1
-            bpy.context.scene.collection.objects.unlink(thing)
-            made.objects.link(thing)
-            _call(thing, f"Mesh.{number:03d}")
+            bpy.context.scene.collection.objects.unlink(obj)
+            collection.objects.link(obj)
+            _rename(obj, f"Mesh.{number:03d}")
     return number
 
 
-def rename(cast):
-    """Calls each actor otherwise, and what else there is nothing in particular."""
+def rename(actors):
+    """Renames each actor's objects and its collection to a synonym."""
     changed = 0
-    for actor in cast:
+    for actor in actors:
         style = _STYLES[changed % len(_STYLES)]
         for number, unit in enumerate(actor["units"], 1):
             for name in unit:
                 changed += 1
-                _call(bpy.data.objects[name], style(actor["other"], number))
+                _rename(bpy.data.objects[name], style(actor["other"], number))
         collection = bpy.data.collections.get(actor["name"])
         if collection is not None:
             collection.name = actor["other"]
@@ -64,14 +64,14 @@ _STYLES = (
 )
 
 
-def _call(thing, name):
-    thing.name = name
-    if thing.data is not None:
-        thing.data.name = name
+def _rename(obj, name):
+    obj.name = name
+    if obj.data is not None:
+        obj.data.name = name
 
 
-def _pass_name_on(unit):
-    """Where an empty bore the name of a thing: its largest mesh bears it, and the empty is gone."""
+def _move_name_to_mesh(unit):
+    """Where an empty had the name of an actor: removes it, and gives the name to the largest mesh."""
     bearer = bpy.data.objects.get(unit[0])
     if bearer is None or not _only_groups(bearer):
         return
@@ -79,67 +79,67 @@ def _pass_name_on(unit):
     if parts:
         called = bearer.name
         bpy.data.objects.remove(bearer)
-        max(parts, key=lambda thing: thing.dimensions.length).name = called
+        max(parts, key=lambda obj: obj.dimensions.length).name = called
 
 
-def _only_groups(thing):
-    """Whether it is an empty that neither shows, pushes nor ties anything, and has nothing on it any more."""
+def _only_groups(obj):
+    """Whether it is an empty without instances, force field, constraint or children."""
     return (
-        thing.type == "EMPTY"
-        and thing.instance_type == "NONE"
-        and (thing.field is None or thing.field.type == "NONE")
-        and thing.rigid_body_constraint is None
-        and not thing.children
+        obj.type == "EMPTY"
+        and obj.instance_type == "NONE"
+        and (obj.field is None or obj.field.type == "NONE")
+        and obj.rigid_body_constraint is None
+        and not obj.children
     )
 
 
-def _moving(things):
-    """Those of these objects that are not always in the same place."""
+def _moving(objects):
+    """The objects that move."""
     scene = bpy.context.scene
     first, last = scene.frame_start, scene.frame_end
-    seen = {thing: [] for thing in things}
+    seen = {obj: [] for obj in objects}
     for frame in (first, (first + last) // 2, last):
         scene.frame_set(frame)
         graph = bpy.context.evaluated_depsgraph_get()
-        for thing, poses in seen.items():
-            poses.append(numpy.array(thing.evaluated_get(graph).matrix_world))
+        for obj, poses in seen.items():
+            poses.append(numpy.array(obj.evaluated_get(graph).matrix_world))
     scene.frame_set(first)
     return {
-        thing
-        for thing, poses in seen.items()
+        obj
+        for obj, poses in seen.items()
         if not all(numpy.allclose(pose, poses[0], rtol=0, atol=_SAME) for pose in poses)
     }
 
 
-def _out_of_collections(things):
-    """Takes objects out of collections that only group. Returns those that were in one."""
+def _out_of_collections(objects):
+    """Removes objects from collections that only group. Returns those that were in one."""
     needed = _needed_collections()
     root = bpy.context.scene.collection
     changed = []
-    for thing in list(things):
-        grouping = [each for each in thing.users_collection if each is not root and each not in needed]
-        if grouping and root not in thing.users_collection:
-            root.objects.link(thing)
+    for obj in list(objects):
+        grouping = [each for each in obj.users_collection if each is not root and each not in needed]
+        if grouping and root not in obj.users_collection:
+            root.objects.link(obj)
         for each in grouping:
-            each.objects.unlink(thing)
-            changed.append(thing)
+            each.objects.unlink(obj)
+            changed.append(obj)
     return changed
 
 
 def _needed_collections():
     """Collections that physics or instances refer to."""
-    found = set()
+    needed = set()
     scene = bpy.context.scene
     if scene.rigidbody_world is not None:
-        found |= {scene.rigidbody_world.collection, scene.rigidbody_world.constraints}
-    for thing in bpy.data.objects:
-        found.add(thing.instance_collection)
-        for modifier in thing.modifiers:
+        needed |= {scene.rigidbody_world.collection, scene.rigidbody_world.constraints}
+    for obj in bpy.data.objects:
+        needed.add(obj.instance_collection)
+        for modifier in obj.modifiers:
             for block in (modifier, *(getattr(modifier, name, None) for name in _SETTINGS)):
-                found |= _collections_of(block)
+                needed |= _collections_of(block)
     for settings in bpy.data.particles:
-        found |= _collections_of(settings) | _collections_of(settings.effector_weights)
-    return found - {None}
+        needed |= _collections_of(settings) | _collections_of(settings.effector_weights)
+    return needed - {None}
 
 
 _SETTINGS = ("settings", "collision_settings", "domain_settings")
@@ -149,10 +149,12 @@ def _collections_of(block):
     """The collections that a block of settings names, and its weights of fields."""
     if block is None:
         return set()
-    found = {getattr(block, each.identifier) for each in block.bl_rna.properties if _names_collection(each)}
+    collections = {
+        getattr(block, each.identifier) for each in block.bl_rna.properties if _names_collection(each)
+    }
     weights = getattr(block, "effector_weights", None)
-    return found | ({weights.collection} if weights is not None else set())
+    return collections | ({weights.collection} if weights is not None else set())
 
 
-def _names_collection(one):
-    return one.type == "POINTER" and one.fixed_type.identifier == "Collection"
+def _names_collection(prop):
+    return prop.type == "POINTER" and prop.fixed_type.identifier == "Collection"

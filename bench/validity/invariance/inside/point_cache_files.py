@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's files of cached points (.bphys): lengths in them multiplied.
+"""Scales the lengths in Blender's point cache files (.bphys).
 
 A file is a magic word, a type with flags, the number of points and a mask of the kinds of data; then, for each kind,
 whether it is compressed, and the data of all points. Compressed data are Zstandard over the bytes of each place in a
@@ -21,12 +21,12 @@ _RAW, _FILTERED = 0, 3
 
 
 def multiply(path, factor):
-    """Makes all that is a length in a file so many times as long. Raises ValueError for a file of another format."""
+    """Multiplies all lengths in a file by ``factor``. Raises ValueError for a file of another format."""
     with open(path, "rb") as file:
         data = file.read()
     magic, kind, count, mask = _HEAD.unpack_from(data)
     if magic != _MAGIC:
-        raise ValueError(f"{path} holds no cached points")
+        raise ValueError(f"{path} is not a point cache")
     lengths = {_LOCATION, _VELOCITY, _SIZES} | ({_REST} if kind & 0xFFFF == _CLOTH else set())
     written, place = [data[: _HEAD.size]], _HEAD.size
     for bit in range(_KINDS):
@@ -42,7 +42,7 @@ def multiply(path, factor):
 def _read(data, place, count):
     """(one kind of data of all points, where the next one begins)."""
     if data[place] != _FILTERED:
-        raise ValueError(f"cached points are compressed in a way that is not known ({data[place]})")
+        raise ValueError(f"unknown compression of a point cache ({data[place]})")
     (size,) = _SIZE.unpack_from(data, place + 1)
     start = place + 1 + _SIZE.size
     packed = zstandard.ZstdDecompressor().decompressobj().decompress(data[start : start + size])

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shows the open scene in another guise: the same things and motion, otherwise organised. One function for each."""
+"""Rewrites the open scene: the same objects and motion, otherwise organised, named or measured."""
 
 from simworlds.sandbox.inside.refusal import Refused
 
 from . import grouping, meshes, units
 
-GUISES = {
+REWRITES = {
     "ungrouped": grouping.ungroup,
     "grouped": grouping.group,
     "renamed": grouping.rename,
@@ -15,16 +15,16 @@ GUISES = {
 }
 
 
-def dress(guise, cast):
-    """Puts the open scene into a guise. Returns how much of it was changed.
+def rewrite(kind, actors):
+    """Applies a rewrite to the open scene. Returns how much of it was changed.
 
-    ``cast``: the actors, each with ``name``, ``other`` (another name for it), ``still`` (whether it is of a role that
-    nothing simulates), ``units`` (names of objects, the first of which stands for the rest), and ``parts``, what
-    belongs to it by contact alone.
+    ``actors``: each with ``name``, ``other`` (another name for it), ``still`` (whether it is of a role that
+    nothing simulates), ``units`` (names of objects, the first of which stands for the rest), and ``parts``
+    (names of objects that belong to it by contact alone).
 
-    Raises Refused where there is nothing that could be changed so.
+    Raises Refused where there is nothing to change.
     """
-    changed = GUISES[guise](cast)
+    changed = REWRITES[kind](actors)
     if not changed:
-        raise Refused(f"nothing in it can be {guise}")
+        raise Refused(f"nothing in it can be {kind}")
     return changed

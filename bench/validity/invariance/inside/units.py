@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scene in centimetres: everything a hundred times as large, and a unit that is a hundredth of a metre.
+"""Rewrites the scene to centimetres: everything is a hundred times as large, the unit a hundredth of a metre.
 
 What is baked stays baked, and shows the same: points in caches are multiplied where they lie; the rigid-body world,
-whose cache cannot be taken out of the file, is baked anew with its bodies led along the paths that they took.
+whose cache cannot be taken out of the file, is baked anew with its bodies keyed along the paths that they took.
 """
 
 import os
@@ -19,15 +19,15 @@ FACTOR = 100.0
 _LENGTHS = ("location", "delta_location", "scale")
 
 
-def rescale(cast):
-    """Makes all lengths a hundred times as long, and the unit as much shorter. Returns how many objects there are."""
-    del cast
+def rescale(actors):
+    """Multiplies all lengths by 100, and divides the unit by 100. Returns the number of objects."""
+    del actors
     scene = bpy.context.scene
     paths = _paths_of_bodies(scene)
     _multiply_caches(scene)
-    for thing in scene.objects:
-        _enlarge(thing)
-    for action in {each for thing in scene.objects for each in _actions(thing)}:
+    for obj in scene.objects:
+        _enlarge(obj)
+    for action in {each for obj in scene.objects for each in _actions(obj)}:
         _enlarge_curves(action)
     scene.gravity = [FACTOR * each for each in scene.gravity]
     units = scene.unit_settings
@@ -37,20 +37,20 @@ def rescale(cast):
     return len(scene.objects)
 
 
-def _enlarge(thing):
-    """An object with what is its own; what hangs on another gets larger with that."""
-    if thing.parent is None:
-        thing.location *= FACTOR
-        thing.delta_location *= FACTOR
-        thing.scale *= FACTOR
-    if thing.type == "CAMERA":
-        thing.data.clip_start *= FACTOR
-        thing.data.clip_end *= FACTOR
+def _enlarge(obj):
+    """Enlarges an object; a child grows with its parent."""
+    if obj.parent is None:
+        obj.location *= FACTOR
+        obj.delta_location *= FACTOR
+        obj.scale *= FACTOR
+    if obj.type == "CAMERA":
+        obj.data.clip_start *= FACTOR
+        obj.data.clip_end *= FACTOR
 
 
-def _actions(thing):
-    animated = thing.animation_data
-    if thing.parent is None and animated is not None and animated.action is not None:
+def _actions(obj):
+    animated = obj.animation_data
+    if obj.parent is None and animated is not None and animated.action is not None:
         yield animated.action, animated.action_slot
 
 
@@ -67,9 +67,7 @@ def _enlarge_curves(pair):
 
 
 def _multiply_caches(scene):
-    caches = [
-        cache for thing in scene.objects for modifier in thing.modifiers if (cache := _cache_of(modifier))
-    ]
+    caches = [cache for obj in scene.objects for modifier in obj.modifiers if (cache := _cache_of(modifier))]
     for cache in caches:
         cache.use_disk_cache = True
     place, name = os.path.split(bpy.data.filepath)
@@ -97,60 +95,60 @@ def _cache_of(modifier):
 
 
 def _paths_of_bodies(scene):
-    """{body that is simulated: its poses at every frame}, of a world that is baked."""
+    """{name of an active body: its poses at every frame}; empty if the world is not baked."""
     world = scene.rigidbody_world
     if world is None or not world.point_cache.is_baked:
         return {}
-    bodies = [thing for thing in world.collection.objects if thing.rigid_body.type == "ACTIVE"]
-    found = {thing.name: [] for thing in bodies}
+    bodies = [obj for obj in world.collection.objects if obj.rigid_body.type == "ACTIVE"]
+    paths = {obj.name: [] for obj in bodies}
     for frame in range(scene.frame_start, scene.frame_end + 1):
         scene.frame_set(frame)
         graph = bpy.context.evaluated_depsgraph_get()
-        for thing in bodies:
-            found[thing.name].append(numpy.array(thing.evaluated_get(graph).matrix_world))
+        for obj in bodies:
+            paths[obj.name].append(numpy.array(obj.evaluated_get(graph).matrix_world))
     scene.frame_set(scene.frame_start)
-    return found
+    return paths
 
 
 def _bake_bodies(scene, paths):
-    """Bakes the world with its bodies led; then lets them be what they were."""
+    """Bakes the world with its bodies keyed, then restores them."""
     if not paths:
         return
     cache = scene.rigidbody_world.point_cache
     with bpy.context.temp_override(point_cache=cache):
         bpy.ops.ptcache.free_bake()
-    led = [_Led(bpy.data.objects[name], scene.frame_start, poses) for name, poses in paths.items()]
+    guided = [_GuidedBody(bpy.data.objects[name], scene.frame_start, poses) for name, poses in paths.items()]
     with bpy.context.temp_override(point_cache=cache):
         bpy.ops.ptcache.bake(bake=True)
-    for each in led:
-        each.release()
+    for body in guided:
+        body.release()
 
 
-class _Led:
-    """A body that follows poses (4 × 4), enlarged, from frame ``first`` on."""
+class _GuidedBody:
+    """A body keyed to follow enlarged poses (4 × 4) from frame ``first`` on."""
 
-    def __init__(self, thing, first, poses):
-        animated = thing.animation_data
-        self._thing, self._had_keys = thing, animated is not None and animated.action is not None
+    def __init__(self, obj, first, poses):
+        animated = obj.animation_data
+        self._obj, self._had_keys = obj, animated is not None and animated.action is not None
         self._keys = (animated.action, animated.action_slot) if self._had_keys else None
-        self._kinematic, self._mode = thing.rigid_body.kinematic, thing.rotation_mode
-        self._basis = thing.matrix_basis.copy()
+        self._kinematic, self._mode = obj.rigid_body.kinematic, obj.rotation_mode
+        self._basis = obj.matrix_basis.copy()
         if self._had_keys:
             animated.action = None
-        thing.rigid_body.kinematic, thing.rotation_mode = True, "QUATERNION"
+        obj.rigid_body.kinematic, obj.rotation_mode = True, "QUATERNION"
         for frame, pose in enumerate(poses, first):
             place, turn, _ = Matrix(pose).decompose()
-            thing.location, thing.rotation_quaternion = place * FACTOR, turn
-            thing.keyframe_insert("location", frame=frame)
-            thing.keyframe_insert("rotation_quaternion", frame=frame)
+            obj.location, obj.rotation_quaternion = place * FACTOR, turn
+            obj.keyframe_insert("location", frame=frame)
+            obj.keyframe_insert("rotation_quaternion", frame=frame)
 
     def release(self):
-        """Makes it what it was."""
-        thing = self._thing
-        thing.animation_data.action = None
-        thing.rotation_mode, thing.matrix_basis = self._mode, self._basis
-        thing.rigid_body.kinematic = self._kinematic
+        """Restores the body."""
+        obj = self._obj
+        obj.animation_data.action = None
+        obj.rotation_mode, obj.matrix_basis = self._mode, self._basis
+        obj.rigid_body.kinematic = self._kinematic
         if self._had_keys:
-            thing.animation_data.action, thing.animation_data.action_slot = self._keys
+            obj.animation_data.action, obj.animation_data.action_slot = self._keys
         else:
-            thing.animation_data_clear()
+            obj.animation_data_clear()

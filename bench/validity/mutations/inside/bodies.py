@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Changes of rigid bodies, of what ties them, and of their world."""
+"""Changes of rigid bodies, their constraints, and their world."""
 
 import bpy
 
@@ -8,91 +8,91 @@ from .lookup import mute_keys
 _SHAPES = ("MESH", "BOX", "SPHERE", "CAPSULE", "CYLINDER", "CONE", "CONVEX_HULL")
 
 
-def set_body(things, attribute, value):
-    """Gives a setting of rigid bodies another value."""
-    found = _bodies(things)
-    for thing in found:
-        setattr(thing.rigid_body, attribute, value)
-    return found
+def set_body(objects, attribute, value):
+    """Sets a setting of rigid bodies to another value."""
+    bodies = _bodies(objects)
+    for obj in bodies:
+        setattr(obj.rigid_body, attribute, value)
+    return bodies
 
 
-def turn_type(things):
+def swap_body_type(objects):
     """Makes active bodies passive, and passive ones active."""
-    found = _bodies(things)
-    for thing in found:
-        thing.rigid_body.type = "PASSIVE" if thing.rigid_body.type == "ACTIVE" else "ACTIVE"
-    return found
+    bodies = _bodies(objects)
+    for obj in bodies:
+        obj.rigid_body.type = "PASSIVE" if obj.rigid_body.type == "ACTIVE" else "ACTIVE"
+    return bodies
 
 
-def grab(things):
-    """Has active bodies follow their keys from the first frame to the last: whatever would let them go is muted."""
-    found = [thing for thing in _bodies(things) if thing.rigid_body.type == "ACTIVE"]
-    for thing in found:
-        mute_keys(thing, "rigid_body.kinematic")
-        thing.rigid_body.kinematic = True
-    return found
+def keep_kinematic(objects):
+    """Makes active bodies kinematic for the whole clip; keys that would release them are muted."""
+    bodies = [obj for obj in _bodies(objects) if obj.rigid_body.type == "ACTIVE"]
+    for obj in bodies:
+        mute_keys(obj, "rigid_body.kinematic")
+        obj.rigid_body.kinematic = True
+    return bodies
 
 
-def other_shape(things, shapes):
-    """Has bodies collide as something that they are not: a mesh, or else a shape that is none of ``shapes``."""
-    found = _bodies(things)
-    for thing in found:
-        thing.rigid_body.collision_shape = next(shape for shape in _SHAPES if shape not in shapes)
-    return found
+def change_shape(objects, shapes):
+    """Gives bodies a collision shape that is not in ``shapes``."""
+    bodies = _bodies(objects)
+    for obj in bodies:
+        obj.rigid_body.collision_shape = next(shape for shape in _SHAPES if shape not in shapes)
+    return bodies
 
 
-def remove_body(things):
-    """Makes bodies things again that nothing simulates."""
-    found = _bodies(things)
-    for thing in found:
-        bpy.context.view_layer.objects.active = thing
+def remove_body(objects):
+    """Removes the rigid bodies of objects."""
+    bodies = _bodies(objects)
+    for obj in bodies:
+        bpy.context.view_layer.objects.active = obj
         bpy.ops.rigidbody.object_remove()
-    return found
+    return bodies
 
 
-def expel(things, count=None):
-    """Takes bodies out of the world, which keep their settings: these, or (``count``) so many of all, these first."""
+def remove_from_world(objects, count=None):
+    """Removes bodies from the world, which keep their settings: these, or ``count`` of all, these first."""
     world = bpy.context.scene.rigidbody_world.collection
-    found = [thing for thing in _bodies(things) if thing.name in world.objects]
+    bodies = [obj for obj in _bodies(objects) if obj.name in world.objects]
     if count is not None:
-        found = [*found, *(thing for thing in world.objects if thing not in found)][:count]
-    for thing in found:
-        world.objects.unlink(thing)
-    return found
+        bodies = [*bodies, *(obj for obj in world.objects if obj not in bodies)][:count]
+    for obj in bodies:
+        world.objects.unlink(obj)
+    return bodies
 
 
-def switch_off_world(things):
-    """Keeps the world from being simulated."""
-    del things
+def switch_off_world(objects):
+    """Disables the rigid-body world."""
+    del objects
     bpy.context.scene.rigidbody_world.enabled = False
     return _bodies(bpy.context.scene.objects)
 
 
-def untie(things):
-    """Takes one end off whatever ties these bodies."""
-    found = _ties(things)
-    for thing in found:
-        thing.rigid_body_constraint.object2 = None
-    return found
+def detach_constraint(objects):
+    """Clears the second object of these bodies' constraints."""
+    constraints = _ties(objects)
+    for obj in constraints:
+        obj.rigid_body_constraint.object2 = None
+    return constraints
 
 
-def let_collide(things):
-    """Lets bodies collide with what they are tied to."""
-    found = _ties(things)
-    for thing in found:
-        thing.rigid_body_constraint.disable_collisions = False
-    return found
+def enable_constraint_collisions(objects):
+    """Lets constrained bodies collide with each other."""
+    constraints = _ties(objects)
+    for obj in constraints:
+        obj.rigid_body_constraint.disable_collisions = False
+    return constraints
 
 
-def _bodies(things):
-    return [thing for thing in things if thing.rigid_body is not None]
+def _bodies(objects):
+    return [obj for obj in objects if obj.rigid_body is not None]
 
 
-def _ties(things):
-    """The objects with constraints of these bodies."""
-    found = []
-    for thing in bpy.context.scene.objects:
-        tie = thing.rigid_body_constraint
-        if tie is not None and ({thing, tie.object1, tie.object2} & set(things)):
-            found.append(thing)
-    return found
+def _ties(objects):
+    """The objects that have constraints of these bodies."""
+    constraints = []
+    for obj in bpy.context.scene.objects:
+        constraint = obj.rigid_body_constraint
+        if constraint is not None and ({obj, constraint.object1, constraint.object2} & set(objects)):
+            constraints.append(obj)
+    return constraints

@@ -1,58 +1,58 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bakes that are freed, cut short, lost or forgotten."""
+"""Frees, shortens or loses bakes."""
 
 import bpy
 
 from .lookup import fluids_of, modifiers_of
 
 
-def free(things, types):
+def free_bake(objects, types):
     """Frees the bakes of modifiers."""
-    found = modifiers_of(things, types)
-    for _, modifier in found:
+    simulated = modifiers_of(objects, types)
+    for _, modifier in simulated:
         _free(_cache_of(modifier))
-    return [thing for thing, _ in found]
+    return [obj for obj, _ in simulated]
 
 
-def free_world(things):
+def free_world_bake(objects):
     """Frees the bake of the rigid-body world."""
-    del things
+    del objects
     _free(bpy.context.scene.rigidbody_world.point_cache)
     return _simulated()
 
 
-def shorten(things, types):
-    """Has the caches of modifiers end in the middle of the clip."""
-    found = modifiers_of(things, types)
-    for _, modifier in found:
+def shorten_cache(objects, types):
+    """Lets the caches of modifiers end in the middle of the clip."""
+    simulated = modifiers_of(objects, types)
+    for _, modifier in simulated:
         _cache_of(modifier).frame_end = _middle()
-    return [thing for thing, _ in found]
+    return [obj for obj, _ in simulated]
 
 
-def shorten_world(things):
-    """Has the cache of the rigid-body world end in the middle of the clip."""
-    del things
+def shorten_world_cache(objects):
+    """Lets the cache of the rigid-body world end in the middle of the clip."""
+    del objects
     bpy.context.scene.rigidbody_world.point_cache.frame_end = _middle()
     return _simulated()
 
 
-def lose_files(things):
-    """Has all fluids look for their files where there are none; what they know of their bakes stays."""
-    del things
-    found = fluids_of("DOMAIN")
-    for number, (_, settings) in enumerate(found):
+def lose_fluid_files(objects):
+    """Points all fluids to folders without files; their flags still say that they are baked."""
+    del objects
+    domains = fluids_of("DOMAIN")
+    for number, (_, settings) in enumerate(domains):
         settings.cache_directory = f"//lost/{number}"
-    return [thing for thing, _ in found]
+    return [obj for obj, _ in domains]
 
 
-def forget_bake(things):
-    """Has all fluids forget that they are baked; their files stay. A cache of type REPLAY knows of no bake."""
-    del things
-    found = [(thing, settings) for thing, settings in fluids_of("DOMAIN") if settings.cache_type != "REPLAY"]
-    for _, settings in found:
-        # Blender takes back what it knows of the bake when the resolution is set, to whatever value.
+def clear_fluid_bake(objects):
+    """Clears the flags that fluids are baked; their files stay. A cache of type REPLAY has no such flag."""
+    del objects
+    domains = [(obj, settings) for obj, settings in fluids_of("DOMAIN") if settings.cache_type != "REPLAY"]
+    for _, settings in domains:
+        # Blender clears the flags when the resolution is set, to whatever value.
         settings.resolution_max = settings.resolution_max
-    return [thing for thing, _ in found]
+    return [obj for obj, _ in domains]
 
 
 def _cache_of(modifier):
@@ -65,7 +65,7 @@ def _free(cache):
 
 
 def _simulated():
-    return [thing for thing in bpy.context.scene.objects if thing.rigid_body is not None]
+    return [obj for obj in bpy.context.scene.objects if obj.rigid_body is not None]
 
 
 def _middle():

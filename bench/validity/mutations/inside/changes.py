@@ -1,44 +1,64 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Breaks one thing about the open scene. The changes are listed here, by name; each is a function of its own."""
+"""Mutates the open scene: one function for each change, listed here by name."""
 
 from bench.audit.inside.json_values import called
 from simworlds.sandbox.inside.refusal import Refused
 
-from . import bodies, caches, fakes, fluids, modifiers
+from . import bodies, caches, cheats, fluids, modifiers
 from .lookup import named
 
-# Each gets objects and what else it needs by name, and returns the objects that it changed; none: there was nothing to
+# Each takes objects and further options by name, and returns the objects that it changed: none if there was nothing to
 # change.
 CHANGES = {
-    each.__name__: each
-    for each in (
-        *(modifiers.hide, modifiers.mute, modifiers.remove, modifiers.put_first, modifiers.set_value),
-        *(modifiers.clear_group, modifiers.spare),
-        *(caches.free, caches.free_world, caches.shorten, caches.shorten_world, caches.lose_files),
-        *(caches.forget_bake,),
-        *(
-            bodies.set_body,
-            bodies.turn_type,
-            bodies.grab,
-            bodies.other_shape,
-            bodies.remove_body,
-            bodies.expel,
-        ),
-        *(bodies.switch_off_world, bodies.untie, bodies.let_collide),
-        *(fluids.swap, fluids.close_flows, fluids.remove_domains, fluids.put_away, fluids.ignore),
-        *(fluids.stand_still, fluids.unguide, fluids.coarsen),
-        *(fakes.calm, fakes.record, fakes.reshape, fakes.play_mesh, fakes.add_bake, fakes.add_body),
-        *(fakes.add_solver,),
+    change.__name__: change
+    for change in (
+        modifiers.hide_in_render,
+        modifiers.switch_off,
+        modifiers.remove_modifier,
+        modifiers.move_first,
+        modifiers.set_value,
+        modifiers.clear_group,
+        modifiers.collide_with_nothing,
+        caches.free_bake,
+        caches.free_world_bake,
+        caches.shorten_cache,
+        caches.shorten_world_cache,
+        caches.lose_fluid_files,
+        caches.clear_fluid_bake,
+        bodies.set_body,
+        bodies.swap_body_type,
+        bodies.keep_kinematic,
+        bodies.change_shape,
+        bodies.remove_body,
+        bodies.remove_from_world,
+        bodies.switch_off_world,
+        bodies.detach_constraint,
+        bodies.enable_constraint_collisions,
+        fluids.swap_fluid_type,
+        fluids.close_flows,
+        fluids.remove_domains,
+        fluids.move_out_of_domain,
+        fluids.disable_effector,
+        fluids.remove_keys,
+        fluids.disable_guiding,
+        fluids.lower_resolution,
+        modifiers.remove_field_strength,
+        cheats.key_every_frame,
+        cheats.animate_shape_key,
+        cheats.add_mesh_cache,
+        cheats.add_bake,
+        cheats.add_body,
+        cheats.add_solver,
     )
 }
 
 
-def sabotage(change, objects, options):
+def mutate(change, objects, options):
     """Changes the open scene. Returns the names of the objects that were changed, sorted.
 
-    Raises Refused where there is nothing that the change could break.
+    Raises Refused where there is nothing to change.
     """
     changed = CHANGES[change](named(objects), **options)
     if not changed:
         raise Refused(f"{change}: there is nothing to change")
-    return sorted({called(thing) for thing in changed})
+    return sorted({called(obj) for obj in changed})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Changes of what flows, what it flows in, and what stands in its way."""
+"""Changes of fluid flows, domains and effectors."""
 
 import bpy
 
@@ -12,22 +12,22 @@ _FAR = 1e5  # in the scene's units
 _LEAST_RESOLUTION = 6
 
 
-def swap(things, kind):
-    """Makes fluids of that kind (DOMAIN, FLOW, EFFECTOR) another sort of it, as smoke for liquid."""
-    found = fluids_of(kind, things)
-    for _, settings in found:
+def swap_fluid_type(objects, kind):
+    """Gives fluid modifiers of that kind (DOMAIN, FLOW, EFFECTOR) another type, such as smoke for liquid."""
+    fluids = fluids_of(kind, objects)
+    for _, settings in fluids:
         if kind == "FLOW":
             settings.flow_type = _OTHER[settings.flow_type]
         elif kind == "DOMAIN":
             settings.domain_type = _OTHER_DOMAIN[settings.domain_type]
         else:
             settings.effector_type = _OTHER_EFFECTOR[settings.effector_type]
-    return [thing for thing, _ in found]
+    return [obj for obj, _ in fluids]
 
 
-def close_flows(things, flows, least):
+def close_flows(objects, flows, least):
     """Closes so many of ``flows`` (names) that fewer than ``least`` are open: inflows by their switch, others muted."""
-    del things
+    del objects
     shut = named(flows)[: len(flows) - least + 1]
     for _, modifier in modifiers_of(shut, {"FLUID"}, "FLOW"):
         if modifier.flow_settings.flow_behavior == "INFLOW":
@@ -37,58 +37,58 @@ def close_flows(things, flows, least):
     return shut
 
 
-def remove_domains(things):
-    """Takes their fluid modifiers off all domains of the scene."""
-    del things
-    found = modifiers_of(bpy.context.scene.objects, {"FLUID"}, "DOMAIN")
-    for thing, modifier in found:
-        thing.modifiers.remove(modifier)
-    return [thing for thing, _ in found]
+def remove_domains(objects):
+    """Removes all fluid domains of the scene."""
+    del objects
+    domains = modifiers_of(bpy.context.scene.objects, {"FLUID"}, "DOMAIN")
+    for obj, modifier in domains:
+        obj.modifiers.remove(modifier)
+    return [obj for obj, _ in domains]
 
 
-def put_away(things):
-    """Puts flows and effectors where no domain reaches, whatever their keys say."""
-    found = modifiers_of(things, {"FLUID"}, "FLOW") + modifiers_of(things, {"FLUID"}, "EFFECTOR")
-    for thing, _ in found:
-        thing.delta_location.x += _FAR
-    return [thing for thing, _ in found]
+def move_out_of_domain(objects):
+    """Moves flows and effectors far out of any domain, whatever their keys say."""
+    moved = modifiers_of(objects, {"FLUID"}, "FLOW") + modifiers_of(objects, {"FLUID"}, "EFFECTOR")
+    for obj, _ in moved:
+        obj.delta_location.x += _FAR
+    return [obj for obj, _ in moved]
 
 
-def ignore(things):
-    """Has effectors take no part: these, or all."""
-    found = fluids_of("EFFECTOR", things or None)
-    for _, settings in found:
+def disable_effector(objects):
+    """Disables effectors: these, or all."""
+    effectors = fluids_of("EFFECTOR", objects or None)
+    for _, settings in effectors:
         settings.use_effector = False
-    return [thing for thing, _ in found]
+    return [obj for obj, _ in effectors]
 
 
-def stand_still(things):
-    """Takes their keys off effectors, and off what these follow."""
-    found = [thing for thing, _ in fluids_of("EFFECTOR", things)]
-    moving = [each for thing in found for each in _led_by(thing) if each.animation_data is not None]
-    for thing in moving:
-        thing.animation_data_clear()
-    return found if moving else []
+def remove_keys(objects):
+    """Removes the keys of effectors and of their parents."""
+    effectors = [obj for obj, _ in fluids_of("EFFECTOR", objects)]
+    moving = [each for obj in effectors for each in _led_by(obj) if each.animation_data is not None]
+    for obj in moving:
+        obj.animation_data_clear()
+    return effectors if moving else []
 
 
-def unguide(things):
-    """Has no domain be guided."""
-    del things
-    found = fluids_of("DOMAIN")
-    for _, settings in found:
+def disable_guiding(objects):
+    """Turns guiding off in all domains."""
+    del objects
+    domains = fluids_of("DOMAIN")
+    for _, settings in domains:
         settings.use_guide = False
-    return [thing for thing, _ in found]
+    return [obj for obj, _ in domains]
 
 
-def coarsen(things, least):
-    """Gives domains fewer divisions than the least."""
-    found = fluids_of("DOMAIN", things)
-    for _, settings in found:
+def lower_resolution(objects, least):
+    """Lowers the resolution of domains below ``least``."""
+    domains = fluids_of("DOMAIN", objects)
+    for _, settings in domains:
         settings.resolution_max = max(_LEAST_RESOLUTION, least - 1)
-    return [thing for thing, _ in found]
+    return [obj for obj, _ in domains]
 
 
-def _led_by(thing):
-    while thing is not None:
-        yield thing
-        thing = thing.parent
+def _led_by(obj):
+    while obj is not None:
+        yield obj
+        obj = obj.parent

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds what is to be changed: objects by the names that the audit has for them, modifiers by type and kind."""
+"""Finds what to change: objects by their names in the audit, modifiers by type and kind."""
 
 import bpy
 
@@ -9,16 +9,16 @@ from bench.audit.inside.json_values import called
 
 def named(names):
     """The objects of those names, in that order."""
-    known = {called(thing): thing for thing in bpy.data.objects}
+    known = {called(obj): obj for obj in bpy.data.objects}
     return [known[name] for name in names if name in known]
 
 
-def modifiers_of(things, types, kind=None):
+def modifiers_of(objects, types, kind=None):
     """(object, modifier) for each modifier of these types; ``kind``: of a fluid, or of a particle system."""
     return [
-        (thing, modifier)
-        for thing in things
-        for modifier in thing.modifiers
+        (obj, modifier)
+        for obj in objects
+        for modifier in obj.modifiers
         if modifier.type in types and kind in (None, kind_of(modifier))
     ]
 
@@ -32,22 +32,22 @@ def kind_of(modifier):
     return None
 
 
-def fluids_of(kind, things=None):
-    """(object, settings) for each fluid modifier of that kind; without ``things``, in the scene."""
-    found = modifiers_of(bpy.context.scene.objects if things is None else things, {"FLUID"}, kind)
-    return [(thing, getattr(modifier, f"{kind.lower()}_settings")) for thing, modifier in found]
+def fluids_of(kind, objects=None):
+    """(object, settings) for each fluid modifier of that kind; without ``objects``, in the scene."""
+    pairs = modifiers_of(bpy.context.scene.objects if objects is None else objects, {"FLUID"}, kind)
+    return [(obj, getattr(modifier, f"{kind.lower()}_settings")) for obj, modifier in pairs]
 
 
-def mute_keys(thing, path):
-    """Keeps keys from setting a property of an object."""
-    animated = thing.animation_data
+def mute_keys(obj, path):
+    """Mutes the keys of a property of an object."""
+    animated = obj.animation_data
     if animated is not None and animated.action is not None:
         for curve in curves_of(animated.action, animated.action_slot):
             curve.mute = curve.mute or curve.data_path == path
 
 
 def split(owner, path):
-    """What ``path`` leads to on ``owner``: (the block that has it, the attribute)."""
+    """Splits a dotted path: (the block below ``owner`` that has the last attribute, its name)."""
     *steps, last = path.split(".")
     for step in steps:
         owner = getattr(owner, step)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from agents.blender.run_folder import RunFolder, locked, new_run
+from agents.blender.run_folder import RunFolder, new_run
+from simworlds.folder_lock import locked
 from simworlds.sandbox import usage
 from simworlds.sandbox.confined_command import ResourceLimits
 from simworlds.sandbox.errors import Refusal

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A film as keys in the file: places and turns at every frame, stored shapes, things shown in turn."""
+"""Motion as keys in the file: transforms at every frame, shape keys, objects shown one after another."""
 
 import bpy
 import numpy
@@ -8,48 +8,48 @@ from mathutils import Matrix
 _LINEAR, _CONSTANT = 1, 0
 
 
-def move(thing, frames, poses):
-    """Keys an object's location, rotation and size at each frame, so that it goes through these poses (4 × 4)."""
-    free(thing)
+def move(obj, frames, poses):
+    """Keys an object's location, rotation and scale at each frame, so that it has these poses (4 × 4)."""
+    free(obj)
     parts = [Matrix(pose).decompose() for pose in poses]
     turns = [parts[0][1]]
     for _, turn, _ in parts[1:]:
         turn.make_compatible(turns[-1])
         turns.append(turn)
-    thing.rotation_mode = "QUATERNION"
-    write(thing, "location", frames, [part[0] for part in parts])
-    write(thing, "rotation_quaternion", frames, turns)
-    write(thing, "scale", frames, [part[2] for part in parts])
+    obj.rotation_mode = "QUATERNION"
+    write(obj, "location", frames, [part[0] for part in parts])
+    write(obj, "rotation_quaternion", frames, turns)
+    write(obj, "scale", frames, [part[2] for part in parts])
 
 
-def free(thing):
-    """Takes off an object whatever else would move it."""
-    thing.animation_data_clear()
-    thing.constraints.clear()
-    thing.parent = None
-    thing.delta_location, thing.delta_scale = (0, 0, 0), (1, 1, 1)
-    thing.delta_rotation_euler, thing.delta_rotation_quaternion = (0, 0, 0), (1, 0, 0, 0)
+def free(obj):
+    """Removes everything else that would move an object."""
+    obj.animation_data_clear()
+    obj.constraints.clear()
+    obj.parent = None
+    obj.delta_location, obj.delta_scale = (0, 0, 0), (1, 1, 1)
+    obj.delta_rotation_euler, obj.delta_rotation_quaternion = (0, 0, 0), (1, 0, 0, 0)
 
 
-def reshape(thing, frames, shapes):
-    """Stores these shapes (n × 3) as shape keys, which two keys of time run through."""
-    thing.shape_key_add(name="Basis", from_mix=False)
+def reshape(obj, frames, shapes):
+    """Stores these shapes (n × 3) as shape keys, played by two keys of the evaluation time."""
+    obj.shape_key_add(name="Basis", from_mix=False)
     for number, points in enumerate(shapes):
-        key = thing.data.shape_keys.key_blocks[0] if number == 0 else thing.shape_key_add(from_mix=False)
+        key = obj.data.shape_keys.key_blocks[0] if number == 0 else obj.shape_key_add(from_mix=False)
         key.data.foreach_set("co", numpy.ascontiguousarray(points, dtype=numpy.float32).ravel())
         key.interpolation = "KEY_LINEAR"
-    keys = thing.data.shape_keys
+    keys = obj.data.shape_keys
     keys.use_relative = False
     times = [key.frame for key in keys.key_blocks]
     ends = [frames[0], frames[-1]]
     write(keys, "eval_time", ends, [(times[0],), (times[-1],)])
 
 
-def show_in_turn(things, frames):
-    """Shows each of these objects at its frame alone."""
-    for thing, frame in zip(things, frames, strict=True):
+def show_in_turn(objects, frames):
+    """Shows each of these objects only at its frame."""
+    for obj, frame in zip(objects, frames, strict=True):
         for path in ("hide_viewport", "hide_render"):
-            write(thing, path, [frame - 1, frame, frame + 1], [(1,), (0,), (1,)], _CONSTANT)
+            write(obj, path, [frame - 1, frame, frame + 1], [(1,), (0,), (1,)], _CONSTANT)
 
 
 def write(block, path, frames, values, interpolation=_LINEAR):
@@ -68,7 +68,7 @@ def write(block, path, frames, values, interpolation=_LINEAR):
 
 
 def _curves_of(block):
-    """The curves of an object's, or other block's, own action."""
+    """The curves of a data-block's own action, which is made if missing."""
     animated = block.animation_data or block.animation_data_create()
     if animated.action is None:
         action = bpy.data.actions.new(block.name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a clip shows, frame by frame: where everything is, what shape it has, which particles there are."""
+"""Records a clip frame by frame: poses and shapes of objects, particles, hair."""
 
 import bpy
 import numpy
@@ -7,7 +7,7 @@ import numpy
 _SAME = 1e-5  # of the scene's units, and of a rotation's entries
 
 
-class Film:
+class ClipRecording:
     """``frames``; for each of them, by object's name: ``poses`` (4 × 4) and ``shapes`` (points of meshes, own space).
 
     ``particles``: for each frame {(emitter, system, number): (object shown, its 4 × 4 in the world)}. ``hair``: for
@@ -18,33 +18,35 @@ class Film:
         self.frames = list(clip())
         self.poses, self.shapes, self.particles, self.hair = {}, {}, [], []
 
-    def take(self):
-        """Plays the clip and takes everything down. Returns the film."""
+    def record(self):
+        """Plays the clip and records every frame. Returns the recording."""
         scene = bpy.context.scene
         for frame in self.frames:
             scene.frame_set(frame)
             graph = bpy.context.evaluated_depsgraph_get()
-            for thing in scene.objects:
-                evaluated = thing.evaluated_get(graph)
-                self.poses.setdefault(thing.name, []).append(numpy.array(evaluated.matrix_world))
-                if thing.type == "MESH":
-                    self.shapes.setdefault(thing.name, []).append(points_of(evaluated.data))
+            for obj in scene.objects:
+                evaluated = obj.evaluated_get(graph)
+                self.poses.setdefault(obj.name, []).append(numpy.array(evaluated.matrix_world))
+                if obj.type == "MESH":
+                    self.shapes.setdefault(obj.name, []).append(points_of(evaluated.data))
             self.particles.append(_particles(graph))
             self.hair.append(_hair(scene, graph))
         return self
 
     def moved(self, other):
-        """Names of the objects that are elsewhere in another film of the scene, or not there."""
-        return {name for name, poses in self.poses.items() if not _alike(poses, other.poses.get(name, ()))}
+        """Names of the objects that have another pose in another recording of the scene, or are not in it."""
+        return {
+            name for name, poses in self.poses.items() if not _are_equal(poses, other.poses.get(name, ()))
+        }
 
     def shaped(self, other):
-        """Names of the objects that have another shape there, or none."""
+        """Names of the objects that have another shape in another recording, or none."""
         return {
-            name for name, shapes in self.shapes.items() if not _alike(shapes, other.shapes.get(name, ()))
+            name for name, shapes in self.shapes.items() if not _are_equal(shapes, other.shapes.get(name, ()))
         }
 
     def changes_points(self, name):
-        """Whether a shape has not always as many points."""
+        """Whether the number of points of a shape changes."""
         return len({len(points) for points in self.shapes[name]}) > 1
 
 
@@ -61,7 +63,7 @@ def points_of(mesh):
     return flat.reshape(-1, 3)
 
 
-def _alike(first, second):
+def _are_equal(first, second):
     return len(first) == len(second) and all(
         a.shape == b.shape and numpy.allclose(a, b, rtol=0, atol=_SAME)
         for a, b in zip(first, second, strict=True)
@@ -69,23 +71,23 @@ def _alike(first, second):
 
 
 def _particles(graph):
-    found = {}
+    particles = {}
     for instance in graph.object_instances:
         if instance.is_instance and instance.particle_system is not None:
             key = (instance.parent.original.name, instance.particle_system.name, instance.persistent_id[0])
-            found[key] = (instance.object.original.name, numpy.array(instance.matrix_world))
-    return found
+            particles[key] = (instance.object.original.name, numpy.array(instance.matrix_world))
+    return particles
 
 
 def _hair(scene, graph):
-    found = {}
-    for thing in scene.objects:
-        evaluated = thing.evaluated_get(graph)
+    strands = {}
+    for obj in scene.objects:
+        evaluated = obj.evaluated_get(graph)
         for system in evaluated.particle_systems:
             settings = system.settings
             if settings.type == "HAIR" and settings.render_type == "PATH":
-                found[thing.name, system.name] = _strands(evaluated, system)
-    return found
+                strands[obj.name, system.name] = _strands(evaluated, system)
+    return strands
 
 
 def _strands(evaluated, system):

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Round things, and places around a middle."""
+"""Rings and arches, and points on a circle."""
 
 import math
 
-from .things import revolved
+from .props import revolved
 
 
 def around(radius, count):
-    """So many places (x, y) on a circle, evenly, from +X on."""
+    """``count`` points (x, y) evenly spaced on a circle, from +X on."""
     turns = (2 * math.pi * number / count for number in range(count))
     return [(radius * math.cos(turn), radius * math.sin(turn)) for turn in turns]
 
 
 def arch(wide, high, parts=10):
-    """Half an ellipse as an outline (x, z) for ``things.prism``: so wide at its foot, from +X to -X, and so high."""
+    """Half an ellipse as an outline (x, z) for ``props.prism``, from +X to -X: ``wide`` at its foot, ``high``."""
     turns = (math.pi * part / parts for part in range(parts + 1))
     return [(wide / 2 * math.cos(turn), high * math.sin(turn)) for turn in turns]
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the air does to particles that are light."""
+"""Air drag on light particles."""
 
 GRAVITY = 9.81
 
 
 def sinks(settings, speed, *, flutter=0.0):
-    """Particles that the air slows down to ``speed``, at which they fall: snow a metre a second, paper two.
+    """Lets the air slow particles down until they fall at ``speed``: snow a metre a second, paper two.
 
     ``flutter``: how far they are pushed about, as a share of their weight.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What gives a hollow mesh the body of jelly, dough or rubber."""
+"""Inner edges that make a soft body of a hollow mesh behave like jelly, dough or rubber."""
 
 import bmesh
 from mathutils.bvhtree import BVHTree
@@ -8,27 +8,27 @@ from mathutils.kdtree import KDTree
 _LEAN = 0.6  # about 30 degrees: so that the struts of neighbours cross, and hold against shear
 
 
-def braced(thing):
-    """Edges across the inside of a closed mesh, from each point to what lies opposite, straight and leaning.
+def braced(obj):
+    """Adds edges across the inside of a closed mesh, from each point to the opposite side, straight and leaning.
 
-    A soft body has springs along its edges, and no inside: without these it falls in like a bag. Renders show none.
+    A soft body has springs only along its edges: without these it collapses like a bag. They do not render.
     """
-    made = bmesh.new()
-    made.from_mesh(thing.data)
-    made.verts.ensure_lookup_table()
-    made.normal_update()
-    tree, points = BVHTree.FromBMesh(made), KDTree(len(made.verts))
-    for vertex in made.verts:
+    bm = bmesh.new()
+    bm.from_mesh(obj.data)
+    bm.verts.ensure_lookup_table()
+    bm.normal_update()
+    tree, points = BVHTree.FromBMesh(bm), KDTree(len(bm.verts))
+    for vertex in bm.verts:
         points.insert(vertex.co, vertex.index)
     points.balance()
-    ends = {pair for vertex in made.verts for pair in _opposite(vertex, tree, points)}
+    ends = {pair for vertex in bm.verts for pair in _opposite(vertex, tree, points)}
     for pair in sorted(ends):
-        both = [made.verts[number] for number in pair]
-        if made.edges.get(both) is None:
-            made.edges.new(both)
-    made.to_mesh(thing.data)
-    made.free()
-    return thing
+        both = [bm.verts[number] for number in pair]
+        if bm.edges.get(both) is None:
+            bm.edges.new(both)
+    bm.to_mesh(obj.data)
+    bm.free()
+    return obj
 
 
 def _opposite(vertex, tree, points):

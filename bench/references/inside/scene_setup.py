@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An empty scene, what it is seen by, and what things look like. Lengths are metres, Z is up."""
+"""An empty scene, its camera and lights, and materials, keys and parents of objects. Lengths are metres, Z is up."""
 
 import math
 
@@ -10,7 +10,7 @@ FPS = 24
 
 
 def begin(frames):
-    """An empty scene of so many frames, from 1."""
+    """Makes an empty scene of so many frames, from 1."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.frame_start, scene.frame_end = 1, frames
@@ -19,15 +19,15 @@ def begin(frames):
 
 
 def last():
-    """The clip's last frame."""
+    """The last frame of the clip."""
     return bpy.context.scene.frame_end
 
 
-def paint(thing, *, colour=(0.6, 0.6, 0.6), roughness=0.6, metal=0.0, clear=0.0, glow=0.0):
-    """Gives a thing a material of its own. ``colour``: red, green, blue; ``clear``: how much light passes (0 to 1);
-    ``glow``: how much it gives.
+def paint(obj, *, colour=(0.6, 0.6, 0.6), roughness=0.6, metal=0.0, clear=0.0, glow=0.0):
+    """Gives an object a material of its own. ``colour``: red, green, blue; ``clear``: how much light it lets through
+    (0 to 1); ``glow``: how much it emits.
     """
-    material = bpy.data.materials.new(f"{thing.name} surface")
+    material = bpy.data.materials.new(f"{obj.name} surface")
     material.diffuse_color = (*colour, 1)
     surface = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
     surface.inputs["Base Color"].default_value = (*colour, 1)
@@ -36,14 +36,14 @@ def paint(thing, *, colour=(0.6, 0.6, 0.6), roughness=0.6, metal=0.0, clear=0.0,
     surface.inputs["Transmission Weight"].default_value = clear
     surface.inputs["Emission Color"].default_value = (*colour, 1)
     surface.inputs["Emission Strength"].default_value = glow
-    thing.data.materials.clear()
-    thing.data.materials.append(material)
-    return thing
+    obj.data.materials.clear()
+    obj.data.materials.append(material)
+    return obj
 
 
-def vapour(thing, *, colour=(0.8, 0.8, 0.8), density=5.0, fire=0.0):
+def vapour(obj, *, colour=(0.8, 0.8, 0.8), density=5.0, fire=0.0):
     """Gives the domain of a gas a material that shows its smoke, and its flames by the light ``fire``."""
-    material = bpy.data.materials.new(f"{thing.name} vapour")
+    material = bpy.data.materials.new(f"{obj.name} vapour")
     material.diffuse_color = (*colour, 1)
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.remove(next(node for node in nodes if node.type == "BSDF_PRINCIPLED"))
@@ -60,66 +60,66 @@ def vapour(thing, *, colour=(0.8, 0.8, 0.8), density=5.0, fire=0.0):
         links.new(flame.outputs["Fac"], brightness.inputs[0])
         links.new(brightness.outputs["Value"], volume.inputs["Emission Strength"])
         volume.inputs["Emission Color"].default_value = (1, 0.3, 0.05, 1)
-    thing.data.materials.clear()
-    thing.data.materials.append(material)
-    return thing
+    obj.data.materials.clear()
+    obj.data.materials.append(material)
+    return obj
 
 
 def camera(at, towards, lens=35.0):
-    """The scene's camera."""
-    thing = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    bpy.context.scene.collection.objects.link(thing)
-    thing.location = at
-    thing.rotation_euler = (Vector(towards) - Vector(at)).to_track_quat("-Z", "Y").to_euler()
-    thing.data.lens = lens
-    bpy.context.scene.camera = thing
-    return thing
+    """Makes the scene's camera."""
+    obj = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    bpy.context.scene.collection.objects.link(obj)
+    obj.location = at
+    obj.rotation_euler = (Vector(towards) - Vector(at)).to_track_quat("-Z", "Y").to_euler()
+    obj.data.lens = lens
+    bpy.context.scene.camera = obj
+    return obj
 
 
 def light(*, sun=3.0, elevation=50.0, azimuth=-40.0, sky=(0.6, 0.7, 0.85), colour=(1, 1, 1)):
     """A sun (strength, degrees above the horizon, degrees from +Y), and a sky of one colour."""
-    thing = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
-    bpy.context.scene.collection.objects.link(thing)
-    thing.data.energy, thing.data.color, thing.data.angle = sun, colour, math.radians(2)
-    thing.rotation_euler = (math.radians(90 - elevation), 0, math.radians(azimuth))
+    obj = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    bpy.context.scene.collection.objects.link(obj)
+    obj.data.energy, obj.data.color, obj.data.angle = sun, colour, math.radians(2)
+    obj.rotation_euler = (math.radians(90 - elevation), 0, math.radians(azimuth))
     world = bpy.data.worlds.new("World")
     bpy.context.scene.world = world
     background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
     background.inputs["Color"].default_value = (*sky, 1)
-    return thing
+    return obj
 
 
 def lamp(name, power, at, *, colour=(1, 1, 1), size=0.1):
-    """A light that shines all around from a ball of that ``size`` (radius), in watts."""
-    thing = bpy.data.objects.new(name, bpy.data.lights.new(name, "POINT"))
-    bpy.context.scene.collection.objects.link(thing)
-    thing.location = at
-    thing.data.energy, thing.data.color, thing.data.shadow_soft_size = power, colour, size
-    return thing
+    """A point light of ``power`` watts, a ball of radius ``size``."""
+    obj = bpy.data.objects.new(name, bpy.data.lights.new(name, "POINT"))
+    bpy.context.scene.collection.objects.link(obj)
+    obj.location = at
+    obj.data.energy, obj.data.color, obj.data.shadow_soft_size = power, colour, size
+    return obj
 
 
-def keys(thing, path, values, *, even=False):
-    """Keys on a property: frame → value. Of things that are moved by hand: a tap that tilts, a plate that turns.
+def keys(obj, path, values, *, even=False):
+    """Sets keys on a property: frame → value. For objects that are moved by hand: a tap that tilts, a plate that turns.
 
-    ``even``: at one speed from key to key, which it has at the last one too; else it starts and stops gently.
+    ``even``: at constant speed from key to key, up to the last one; else it eases in and out.
     """
     owner, _, name = path.rpartition(".")
-    target = thing.path_resolve(owner) if owner else thing
+    target = obj.path_resolve(owner) if owner else obj
     for frame, value in values.items():
         setattr(target, name, value)
         target.keyframe_insert(name, frame=frame)
     if even:
-        animation = thing.animation_data
+        animation = obj.animation_data
         strip = animation.action.layers[0].strips[0]
         for curve in strip.channelbag(animation.action_slot).fcurves:
             for key in curve.keyframe_points if curve.data_path == path else ():
                 key.interpolation = "LINEAR"
 
 
-def under(parent, *things):
-    """Makes things the children of another, where they are."""
+def under(parent, *objects):
+    """Makes objects the children of another, and leaves them where they are."""
     bpy.context.view_layer.update()
-    for thing in things:
-        thing.parent = parent
-        thing.matrix_parent_inverse = parent.matrix_world.inverted()
+    for obj in objects:
+        obj.parent = parent
+        obj.matrix_parent_inverse = parent.matrix_world.inverted()
     return parent

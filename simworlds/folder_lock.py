@@ -1,0 +1,25 @@
+"""A folder that one process at a time works in."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from simworlds.sandbox.errors import Refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+    from pathlib import Path
+
+
+@contextmanager
+def locked(folder: Path) -> Generator[None]:
+    """Holds a folder for this process. Raises Refusal while another one has it."""
+    import fcntl  # noqa: PLC0415 - not on Windows
+
+    with (folder / ".lock").open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise Refusal(f"{folder} is in use by another SimWorlds. Choose another folder.") from error
+        yield
