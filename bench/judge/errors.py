@@ -19,6 +19,8 @@ Reason = Literal[
     "malformed",  # the answer is not what was asked for, however often
 ]
 
+NO_OPENAI_PACKAGE = "The openai package is not installed. Install it with: pip install 'simworlds[openai]'"
+
 
 class NotJudged(Exception):  # noqa: N818 - reads as the state it names
     """No judgement; the message says why and what to do. ``spent`` is what was used up all the same."""

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict
 
+from bench.judge.anchor_words import content_stems
 from bench.judge.answer_cache import key_of
 from bench.judge.ask import asked
 from bench.judge.dimensions import CHECKLISTS, Dimension, dimensions
 from bench.judge.questions import Enumeration, Named, enumeration, prompt_version
 from bench.judge.usage import Spent
-from kb_build.index.analysis import terms
 from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
@@ -141,11 +141,11 @@ def _faults(found: Enumeration, prompt: str, *, static: bool) -> Iterator[str]:
 
 def _faults_of(one: Named, said: Sequence[str]) -> Iterator[str]:
     quote = _plain(one.words)
-    if not terms(one.words) or not _contains(said, quote):
+    if not content_stems(one.words) or not _contains(said, quote):
         yield f"the words {one.words[:80]!r} are not in the request, in one piece."
     elif len(quote) > _LONGEST_QUOTE:
         yield f"{len(quote)} words are no anchor; quote at most {_LONGEST_QUOTE}."
-    elif not set(terms(one.words)) & set(terms(one.text)):
+    elif not set(content_stems(one.words)) & set(content_stems(one.text)):
         yield f"the item {one.text[:80]!r} uses none of the words {one.words[:80]!r} that it stands on."
     if len(one.text) > _LONGEST_TEXT:
         yield f"the text is too long ({len(one.text)} characters; at most {_LONGEST_TEXT})."

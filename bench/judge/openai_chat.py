@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import httpx2
 from pydantic import BaseModel, NonNegativeInt, ValidationError
 
-from bench.judge.errors import NotJudged
-from bench.judge.providers import MISSING
+from bench.judge.errors import NO_OPENAI_PACKAGE, NotJudged
 from simworlds.llm.errors import Rejected, TooLong, Unreachable
 from simworlds.llm.messages import Picture, Text, Turn, Usage, whole
 from simworlds.llm.request import clean
@@ -76,7 +75,7 @@ class Chat:
         try:
             import openai  # noqa: PLC0415 - an optional extra
         except ImportError as error:
-            raise NotJudged("not set up", MISSING) from error
+            raise NotJudged("not set up", NO_OPENAI_PACKAGE) from error
         self._package: ModuleType = openai
         self._prices = prices
         key = os.environ.get("OPENAI_API_KEY", "").strip()

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING
 
 from PIL import Image
 
-from agents.loop.edit.inputs import picture
-from agents.loop.errors import Unusable
 from bench.judge.errors import NotJudged
 from simworlds.llm.messages import Picture
+from simworlds.llm.picture_file import BadPicture, read_picture
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,8 +47,8 @@ def read_frames(frames: Sequence[Path], *, static: bool) -> Shown:
 def _flat(path: Path) -> Image.Image:
     """As a player shows it: what is transparent is black."""
     try:
-        data = picture(path).data
-    except Unusable as error:
+        data = read_picture(path).data
+    except BadPicture as error:
         raise NotJudged("frames", str(error)) from error
     with Image.open(io.BytesIO(data)) as opened:
         seen = opened.convert("RGBA")

@@ -8,7 +8,7 @@ from dataclasses import replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from bench.judge.errors import NotJudged
+from bench.judge.errors import NO_OPENAI_PACKAGE, NotJudged
 from simworlds.llm.errors import Rejected
 from simworlds.llm.messages import Text
 from simworlds.llm.prices import Prices
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 # One strong model with eyes of each: the newest of the line that builds the scenes, and the paper's own judge.
 DEFAULTS = {"anthropic": "claude-opus-5-5", "openai": "gpt-5.5"}
-MISSING = "The openai package is not installed. Install it with: pip install 'simworlds[openai]'"
 
 
 class Provider:
@@ -94,7 +93,7 @@ def provider_of(  # noqa: PLR0913
         return Chat(base_url, prices)
 
     if name == "openai" and find_spec("openai") is None:
-        raise NotJudged("not set up", MISSING)
+        raise NotJudged("not set up", NO_OPENAI_PACKAGE)
     connect = {"anthropic": anthropic, "openai": openai}[name]
     return Provider(name, chosen, connect, spending=spending, prices=prices)
 

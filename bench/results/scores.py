@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from bench.scenes.spec import BadSpec, spec_of
-from bench.sweep.records import BadRecord, Record, SystemInfo, read_record
-from bench.sweep.sweep import scene_folders
+from bench.sweep.records import BadRecord, Record, SystemInfo, read_record, scene_folders
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

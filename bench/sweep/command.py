@@ -4,20 +4,28 @@ from __future__ import annotations
 
 import signal
 import subprocess
+import sys
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.setting import simworlds
 from simworlds.end_with_parent import ending_with_this
 from simworlds.processes import end_group, spawn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
 _GRACE_SECONDS = (2.0, 20.0)  # after the first Ctrl-C, which asks for a stop, and the second: for one now
 _LAST_WORDS = 300
 _NOTHING = "it said nothing"
+
+
+def simworlds_command() -> list[str]:
+    """The command ``simworlds`` of this environment, or the same run from the source."""
+    installed = Path(sys.executable).with_name("simworlds")
+    if installed.is_file():
+        return [str(installed)]
+    return [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
 
 
 def called(words: Sequence[str], log: Path) -> int:
@@ -26,7 +34,9 @@ def called(words: Sequence[str], log: Path) -> int:
     What it says is added to ``log``.
     """
     with log.open("ab") as said:
-        process = spawn(ending_with_this([*simworlds(), *words]), stdout=said, stderr=subprocess.STDOUT)
+        process = spawn(
+            ending_with_this([*simworlds_command(), *words]), stdout=said, stderr=subprocess.STDOUT
+        )
     try:
         return process.wait()
     except KeyboardInterrupt:

@@ -12,7 +12,7 @@ from agents.blender.run_folder import locked
 from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep.executor import Crew, Done
 from bench.sweep.judging import Judge, judge_all
-from bench.sweep.records import NAME, BadRecord, SystemInfo, read_record
+from bench.sweep.records import NAME, BadRecord, SystemInfo, read_record, scene_folders
 from bench.sweep.scene_task import Task, is_done
 from bench.sweep.steps import STEPS
 from bench.sweep.systems.folder import Folder
@@ -152,8 +152,3 @@ def system_again(info: SystemInfo) -> System:
     if info.kind == "folder":
         return Folder(info, Path(str(info.settings.get("folder", ""))))
     return Replay(info) if info.kind == "replay" else Make(info)
-
-
-def scene_folders(out: Path) -> list[Path]:
-    """The folders with a record: of all systems in a folder of results, or of one, or the one of a scene; sorted."""
-    return sorted(path.parent for depth in ("", "*/", "*/*/") for path in out.glob(f"{depth}{NAME}"))
