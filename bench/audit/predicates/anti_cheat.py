@@ -117,7 +117,7 @@ def static_has_cache(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def static_has_rigid_world(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The scene has a rigid-body world with at least one body in it. An empty world simulates nothing and is allowed."""
+    """The scene has a rigid-body world with at least one body in it. An empty world does nothing and is allowed."""
     del unit, params
     bodies = [
         one.name for one in stage.scene.objects if one.rigid_body is not None and one.rigid_body.in_world

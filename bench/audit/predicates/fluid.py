@@ -47,7 +47,7 @@ class DomainKind(Params):
 
 
 class Flows(Params):
-    """``min``: how many at least. ``kind``, ``behavior``: as for fluid_type. None: any kind, any behavior but OUTFLOW."""
+    """``min``: how many at least. ``kind``, ``behavior``: as for fluid_type; None: any (of behaviors, not OUTFLOW)."""
 
     min: int = Field(default=1, ge=1)
     kind: FlowKind | tuple[FlowKind, ...] | None = None
