@@ -1,4 +1,4 @@
-"""Tables of texts, as Markdown."""
+"""Tables of text cells, and their Markdown."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table of texts; columns whose cells are all numbers stand right."""
+    """A table of text cells; columns of numbers are aligned right."""
 
     title: str
     header: tuple[str, ...]
@@ -21,7 +21,7 @@ class Table:
 
 
 def table(one: Table) -> str:
-    """A Markdown table whose source is aligned too."""
+    """The Markdown of a table, aligned in its source too."""
     columns = list(zip(one.header, *one.rows, strict=True))
     widths = [max(3, *(_width(cell) for cell in column)) for column in columns]
     right = [all(_is_number(cell) for cell in column[1:]) and len(column) > 1 for column in columns]
@@ -49,7 +49,7 @@ def _escaped(cell: str) -> str:
 
 
 def _width(cell: str) -> int:
-    """How many columns of a terminal a cell takes."""
+    """The width of a cell on a terminal."""
     wide = sum(unicodedata.east_asian_width(char) in "WF" for char in cell)
     return len(_escaped(cell)) + wide
 

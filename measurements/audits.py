@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING
 from bench.markdown_tables import Table
 from bench.references.reference_scenes import build, has_reference
 from bench.scenes.spec import specs
-from bench.setting import environment, percentile, say, simworlds
+from bench.sweep.command import simworlds_command
 from measurements.report import Figure, Part, run_steps
+from measurements.setting import environment, percentile, say
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from bench.setting import Setting
+    from measurements.setting import Setting
 
 _JOBS = 2  # cores of the machine that the targets were set for
 _MEMORY = "1.86"  # GiB
@@ -92,7 +93,17 @@ def _built(scene: str, setting: Setting) -> Path:
 
 def _audited(scene: str, blend: Path, setting: Setting) -> _Audited:
     began = time.perf_counter()
-    command = [*simworlds(), "bench", "audit", str(blend), "--scene", scene, "--json", "--memory", _MEMORY]
+    command = [
+        *simworlds_command(),
+        "bench",
+        "audit",
+        str(blend),
+        "--scene",
+        scene,
+        "--json",
+        "--memory",
+        _MEMORY,
+    ]
     process = subprocess.run(command, capture_output=True, env=environment(setting.home), check=False)
     seconds = time.perf_counter() - began
     if process.returncode != 0:

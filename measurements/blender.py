@@ -25,14 +25,15 @@ from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from agents.blender.tool_catalogue import BY_NAME
 from bench.markdown_tables import Table
-from bench.setting import REPO, environment, percentile, say, simworlds
+from bench.sweep.command import simworlds_command
 from measurements.echo import TOOL as ECHO
 from measurements.report import Figure, Part, run_steps
+from measurements.setting import REPO, environment, percentile, say
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Sequence
 
-    from bench.setting import Setting
+    from measurements.setting import Setting
 
 EXECUTE, STATE, PREVIEW = "blender_execute", "blender_scene_state", "blender_scene_layout_preview"
 _ONE = {"code": "1+1"}
@@ -132,7 +133,7 @@ async def _call(client: Client, tool: str, **arguments: Any) -> float:
 
 
 async def _over_mcp(setting: Setting) -> Part:
-    starts, calls = await _timed(setting, [*simworlds(), "mcp"], EXECUTE, **_ONE)
+    starts, calls = await _timed(setting, [*simworlds_command(), "mcp"], EXECUTE, **_ONE)
     say("blender: an echo tool for comparison")
     echo_starts, echoes = await _timed(
         setting, [sys.executable, "-m", "measurements.echo"], ECHO, query="1+1"
@@ -187,7 +188,7 @@ async def _scenes(setting: Setting) -> Part:
         if tool not in BY_NAME:
             continue
         with tempfile.TemporaryDirectory() as run:
-            async with _client(setting, [*simworlds(), "mcp", "--run", run]) as client:
+            async with _client(setting, [*simworlds_command(), "mcp", "--run", run]) as client:
                 await _call(client, EXECUTE, code=_SCENE.replace("COUNT", str(count)))
                 times = [await _call(client, tool) * unit for _ in range(3 if setting.quick else 6)]
         data[tool] = times

@@ -14,15 +14,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
-from bench.setting import BLENDER, REPO, corpora, environment, say, simworlds
+from bench.sweep.command import simworlds_command
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.sources import find_sources
 from measurements.report import Figure, Part
+from measurements.setting import BLENDER, REPO, corpora, environment, say
 from simworlds.errors import UserError
 from simworlds.settings import base_path
 
 if TYPE_CHECKING:
-    from bench.setting import Setting
+    from measurements.setting import Setting
 
 HTML = "manual-4.4-html"
 _HTML_VERSION = "4.4"
@@ -45,7 +46,7 @@ class BuildTime:
 
 def run_build(home: Path, *arguments: str) -> BuildTime:
     """Builds in ``home``. Raises BuildFailed."""
-    command = [*simworlds(), "kb", "build", BLENDER, "--offline", *arguments]
+    command = [*simworlds_command(), "kb", "build", BLENDER, "--offline", *arguments]
     began, used = time.perf_counter(), _children_cpu()
     try:
         done = subprocess.run(

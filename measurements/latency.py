@@ -10,15 +10,15 @@ import time
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
-from bench.setting import percentile, say
 from kb_serve.knowledge_base import KnowledgeBase
 from measurements.report import Figure, Part
 from measurements.retrieval import NAMED, Query, read_queries
+from measurements.setting import percentile, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from bench.setting import Setting
+    from measurements.setting import Setting
 
 WARMING = (
     "bpy.types.Scene.frame_end",

@@ -20,14 +20,14 @@ from mcp.client import Client
 from mcp.client.streamable_http import streamable_http_client
 
 from bench.markdown_tables import Table
-from bench.setting import REPO, brief, environment, percentile, say
 from kb_serve.knowledge_base import KnowledgeBase
 from measurements.memory import resident_mb
+from measurements.setting import REPO, brief, environment, percentile, say
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Generator, Mapping, Sequence
 
-    from bench.setting import Setting
+    from measurements.setting import Setting
 
 CLIENTS = 64
 _TOOL = "blender_docs"

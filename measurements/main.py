@@ -9,12 +9,12 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.setting import BLENDER, QUERIES, REPO, Setting, say
 from kb_build.base_file import read_meta
 from kb_serve.errors import KBServeError
 from measurements import report
 from measurements.builds import BuildFailed, run_build
 from measurements.retrieval import BadQueries, misses
+from measurements.setting import BLENDER, QUERIES, REPO, Setting, say
 from simworlds.errors import UserError
 from simworlds.settings import base_path, home_folder
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table, table
-from bench.setting import REPO, brief
+from measurements.setting import REPO, brief
 from measurements.targets import TARGETS, format_value
 
 if TYPE_CHECKING:

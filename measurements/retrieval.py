@@ -14,19 +14,19 @@ from typing import TYPE_CHECKING, Any
 from unittest import mock
 
 from bench.markdown_tables import Table
-from bench.setting import corpora, percentile, say
 from kb_build.pipeline import BuildOptions, build
 from kb_serve.answer.budget import tokens
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.rank import search
 from kb_serve.reader import Reader
 from measurements.report import Figure, Part
+from measurements.setting import corpora, percentile, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from bench.setting import Setting
     from kb_serve.answer.answer import Answer
+    from measurements.setting import Setting
 
 LIMIT = 8
 NAMED = frozenset({"exact", "member", "expression"})

@@ -20,17 +20,18 @@ from mcp.client import Client
 from mcp.client.stdio import stdio_client
 
 from bench.markdown_tables import Table
-from bench.setting import BLENDER, REPO, environment, percentile, say, simworlds
+from bench.sweep.command import simworlds_command
 from measurements import load
 from measurements.echo import TOOL as ECHO
 from measurements.memory import children, resident_mb
 from measurements.report import Figure, Part, run_steps
 from measurements.retrieval import read_queries
+from measurements.setting import BLENDER, REPO, environment, percentile, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from bench.setting import Setting
+    from measurements.setting import Setting
 
 TOOL = "blender_docs"
 STARTS = 3
@@ -85,7 +86,7 @@ def _under_load(setting: Setting) -> Part:
 
 def _serve() -> list[str]:
     """The command that serves; it must not rebuild the base in the background."""
-    return [*simworlds(), "serve", "--blender", BLENDER, "--no-rebuild"]
+    return [*simworlds_command(), "serve", "--blender", BLENDER, "--no-rebuild"]
 
 
 def _unusable(setting: Setting) -> str:
@@ -103,7 +104,7 @@ def _unusable(setting: Setting) -> str:
 
 def _docs(setting: Setting, query: str) -> None:
     subprocess.run(
-        [*simworlds(), "docs", "--blender", BLENDER, query],
+        [*simworlds_command(), "docs", "--blender", BLENDER, query],
         env=environment(setting.home), cwd=REPO, capture_output=True, text=True, check=True, timeout=120,
     )  # fmt: skip
 

@@ -21,14 +21,15 @@ from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from bench.markdown_tables import Table
-from bench.setting import REPO, environment, percentile, say, simworlds
+from bench.sweep.command import simworlds_command
 from measurements import verifier_scenes
 from measurements.report import Figure, Part, run_steps
+from measurements.setting import REPO, environment, percentile, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from bench.setting import Setting
+    from measurements.setting import Setting
 
 _SECONDS = 900.0
 _SIZES = (50, 100, 200, 500, 1000, 2000)
@@ -156,7 +157,7 @@ def _built(place: Path, script: str, target: Path) -> dict[str, Any]:
 
 def _checked(setting: Setting, scene: Path, *options: str) -> _Check:
     began = time.perf_counter()
-    done = _ran([*simworlds(), "verify", str(scene), "--json", *options], setting, good=(0, 1))
+    done = _ran([*simworlds_command(), "verify", str(scene), "--json", *options], setting, good=(0, 1))
     return _Check(json.loads(done), time.perf_counter() - began)
 
 

@@ -1,10 +1,10 @@
-"""Finds a spec's actors in a scene that knows nothing of the spec: by names, then by what marks their role.
+"""Finds a spec's actors in a scene that was made without the spec: by names, then by their role and hints.
 
-An actor is found as units, the things that stand for it (twelve dominoes: twelve), each of them an object with its
-descendants, or a collection's members; what particles are shown as is a part of what emits them. An object belongs to
-the actor that its own name speaks of best, else to that of the nearest parent or collection whose name does. Actors
-that no name speaks of are looked for among what is left, by the solver of their role, then by size, surface and place.
-Every step is in a fixed order.
+An actor is found as one or more units (twelve dominoes: twelve), each an object with its descendants, or the members of
+a collection; objects shown as particles are part of their emitter. An object belongs to the actor that its own name
+fits best, or else to the actor of its nearest parent or collection whose name fits one. Actors that no name fits are
+searched among the remaining objects, by their role's solver, then by size, topology and collection. Every step has a
+fixed order.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _SHOWN = 12
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """How an actor was found. Of an ambiguous one, the units are all that it might be."""
+    """How an actor was found. If it is ambiguous, the units are all candidates."""
 
     actor: Actor
     outcome: Outcome
@@ -41,7 +41,7 @@ class Found:
 
     @property
     def told_apart(self) -> bool:
-        """Whether there is something to judge: an ambiguous actor needs a role that marks its candidates."""
+        """Whether it can be judged: it is resolved, or ambiguous with a role that marks its candidates."""
         return self.outcome == "resolved" or (self.outcome == "ambiguous" and self.actor.role not in UNMARKED)
 
 
@@ -55,7 +55,7 @@ def find_actors(spec: Spec, scene: Scene) -> dict[str, Found]:
 
 
 class _Cast:
-    """Who owns what, as far as names tell."""
+    """Which actor owns each object, as far as names say."""
 
     def __init__(self, spec: Spec, scene: Scene) -> None:
         self._spec = spec
@@ -83,7 +83,7 @@ class _Cast:
         self.owners = {one.name: owner for one in scene.objects if (owner := self._owner(one)) is not None}
 
     def _best(self, name: str) -> tuple[Match, str] | None:
-        """The actor that a name speaks of best, with how well."""
+        """The actor that a name fits best, with how well it fits."""
         best: tuple[Match, str] | None = None
         for actor in self._spec.actors:
             found = match(name, (actor.name, *actor.synonyms))
@@ -92,7 +92,7 @@ class _Cast:
         return best
 
     def _said_of(self, one: Object) -> tuple[Match, str] | None:
-        """By an object's own name; if that says nothing, by that of what it or its particles show, or of its data."""
+        """The actor by an object's name; else by the name of what it or its particles instance, or of its data."""
         if not one.in_scene or one.type not in _BODIES:
             return None
         names = (one.name, one.instances, *self._named_by_particles(one), one.data)
@@ -141,7 +141,7 @@ class _Cast:
     # Units
 
     def by_name(self, actor: Actor) -> Found | None:
-        """An actor that names speak of; None where none does."""
+        """The resolution of an actor by names; None if no name fits it."""
         units, by = self._units(actor)
         if not units:
             return None
@@ -173,7 +173,7 @@ class _Cast:
         tops = [name for name in rest if not any(above in rest for above in self._above(name))]
         best = max((self._objects_said[name][0].quality for name in tops), default=0)
         if units:
-            # Beside a collection of that name, only what is called exactly so stands for the actor by itself.
+            # Beside a collection of that name, only an object of exactly that name is a unit of its own.
             tops = [name for name in tops if self._objects_said[name][0].quality == 3]
             return units + [self._tree(name, actor.name) for name in tops], "collection"
         leading = [name for name in tops if self._objects_said[name][0].quality == best]
@@ -186,7 +186,7 @@ class _Cast:
         return trees, "name"
 
     def _topmost(self, groups: list[str], name: str) -> str:
-        """The highest collection above one, of those named; or itself."""
+        """The highest of the given collections above one; or itself."""
         top, seen = name, {name}
         here = self.collections[name].parent
         while here is not None and here not in seen and here in self.collections:
@@ -212,7 +212,7 @@ class _Cast:
         return tuple(found)
 
     def _tree(self, name: str, owner: str | None) -> tuple[str, ...]:
-        """An object, its descendants and what it shows, as far as nobody else owns them."""
+        """An object, its descendants and what it instances, unless another actor owns them."""
         found: dict[str, None] = {}
         waiting = [name]
         while waiting:
@@ -229,7 +229,7 @@ class _Cast:
         return tuple(found)
 
     def _split(self, units: list[tuple[str, ...]], owner: str) -> list[tuple[str, ...]]:
-        """Units taken apart by one level: a collection's into its members, a parent's into its children."""
+        """Units split by one level: a collection into its members, a parent into its children."""
         found: list[tuple[str, ...]] = []
         for unit in units:
             tops = [
@@ -241,7 +241,7 @@ class _Cast:
         return found
 
     def _first(self, names: Iterable[str], actor: Actor) -> list[Object]:
-        """A unit's objects: first what plays the role, then what the name speaks of best, then the rest as it came."""
+        """A unit's objects: first those with the role, then by how well their name fits, else in their order."""
         objects = [self.objects[name] for name in names]
         nothing = Match(0, 0, 0)
 
@@ -252,7 +252,7 @@ class _Cast:
         return sorted(objects, key=rank)
 
     def _above(self, name: str) -> Iterator[str]:
-        """Its parents, what emits it, and what is above these."""
+        """Its parents and emitters, and theirs."""
         seen, waiting = {name}, [name]
         while waiting:
             here = waiting.pop(0)
@@ -264,7 +264,7 @@ class _Cast:
                     yield above
 
     def tree(self, name: str) -> tuple[Object, ...]:
-        """An object that nobody owns, with its descendants."""
+        """An object without an owner, with its descendants."""
         return tuple(self.objects[each] for each in self._tree(name, None))
 
 
@@ -272,9 +272,9 @@ class _Cast:
 
 
 def _with_domain(one: Found, scene: Scene, cast: _Cast, found: Mapping[str, Found]) -> Found:
-    """A fluid with its domain: that is a box, often called so, beside things which bear the fluid's name.
+    """Adds the domain to a fluid: domains are often named after their box, while other objects have the fluid's name.
 
-    Where no object of the actor is a domain, and the scene has one domain that nobody else has, it is the actor's.
+    If no object of the actor is a domain, and the scene has exactly one domain without an owner, it is the actor's.
     """
     role = one.actor.role
     if role != "fluid_domain" or any(plays(each, role) for unit in one.units for each in unit.objects):
@@ -289,7 +289,7 @@ def _with_domain(one: Found, scene: Scene, cast: _Cast, found: Mapping[str, Foun
 
 
 def _by_hints(actors: list[Actor], scene: Scene, cast: _Cast, found: Mapping[str, Found]) -> dict[str, Found]:
-    """Actors that no name speaks of: those with one possibility first, then what that leaves for the others."""
+    """Resolves actors that no name fits: first those with one possibility, then the others with what is left."""
     taken = {name for one in found.values() for unit in one.units for name in unit.names}
     result: dict[str, Found] = {}
     waiting = list(actors)
@@ -334,7 +334,7 @@ def _wanted(actor: Actor) -> dict[str, Any]:
 
 
 def _candidates(actor: Actor, scene: Scene, taken: set[str]) -> list[Object]:
-    """The objects that nobody has and that hints speak for most; of a role without a mark, only those of its size."""
+    """The objects without an owner that fit the hints best; for an unmarked role, only those of its size."""
     free = [one for one in scene.objects if one.in_scene and one.name not in taken and one.type in _BODIES]
     if actor.role in UNMARKED:
         if actor.hints.size is None:
@@ -363,7 +363,7 @@ def _topology_fits(one: Object, actor: Actor) -> bool:
 
 
 def _of_object_collections(scene: Scene) -> frozenset[str]:
-    """Names of the objects in collections that say of themselves, in a property, that they are an object's."""
+    """Names of the objects in collections that a custom property marks as one object's."""
     marked: list[Collection] = [
         each
         for each in scene.collections

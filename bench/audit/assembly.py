@@ -1,17 +1,17 @@
-"""What belongs to a thing in a file that does not say so (paper, appendix, "SPR cross-system fairness").
+"""The parts of an object in a file without grouping (paper, appendix, "SPR cross-system fairness").
 
-A file is grouped if at least half of its rendered geometry stands in groups: hierarchies of several objects, or
-collections that are one thing's. There, nothing is inferred. Elsewhere the assembly of a thing is what hangs together
-with it: meshes whose bounds touch (to a centimetre), and those that touch these. It stops
+A file is grouped if at least half of its rendered geometry is in groups: hierarchies of several objects, or collections
+that hold one object's parts. In such a file nothing is inferred. Otherwise, the assembly of an object is everything
+connected to it: meshes whose bounds touch its own (to a centimetre), the meshes that touch those, and so on. It stops
 
-- at everything that is an actor's, or in a group: it can never take in what it is compared to;
-- at what it stands on, and at what stands on it: what lies beneath (its top is below the other's lowest quarter) and is
-  broader in plan than the other is long, as a floor, a rug or a table under a vase, though not a foot under its lamp;
-- at what is more than three times as large as all that has been found: a wall is no part of the picture on it;
+- at objects of other actors and at groups, so that it never includes what it is compared to;
+- at its support, and at what it supports: an object beneath (its top is in or below the other's lowest quarter) that is
+  broader in plan than the other is long, like a floor, a rug, or a table under a vase, but not the foot of a lamp;
+- at meshes more than three times as large as the assembly so far: a wall is not part of the picture on it;
 - at 500 meshes.
 
-Small meshes join first, so that parts make a thing before anything is compared to its size. An assembly is looked at
-only where a relation of contact or nearness does not hold without it: it can add to a score, and take nothing away.
+Small meshes join first, so that parts add up before anything is compared to their size. An assembly is used only if a
+relation of contact or nearness does not hold without it: it can raise a score, but not lower it.
 """
 
 from __future__ import annotations
@@ -53,44 +53,44 @@ class Box:
         return sum((b - a) ** 2 for a, b in zip(self.low[:2], self.high[:2], strict=True)) ** 0.5
 
     def touches(self, other: Box) -> bool:
-        """Whether they overlap, or are no further apart than touching along any axis."""
+        """Whether they overlap, or are at most a centimetre apart along each axis."""
         sides = zip(self.low, self.high, other.low, other.high, strict=True)
         return all(a <= d + TOUCHING and c <= b + TOUCHING for a, b, c, d in sides)
 
-    def with_(self, other: Box) -> Box:
-        """What spans both."""
+    def union(self, other: Box) -> Box:
+        """The bounds of both."""
         (a, b, c), (d, e, f) = self.low, other.low
         (g, h, i), (j, k, m) = self.high, other.high
         return Box((min(a, d), min(b, e), min(c, f)), (max(g, j), max(h, k), max(i, m)))
 
     def carries(self, other: Box) -> bool:
-        """Whether it is what the other stands on: beneath it, and broader than it is long."""
+        """Whether the other stands on it: it is beneath the other, and broader than the other is long."""
         height = other.high[2] - other.low[2]
         beneath = self.high[2] <= other.low[2] + _LOWEST * height + TOUCHING
         return beneath and self.breadth > other.diagonal
 
 
 class Assemblies:
-    """The assemblies of a scene. ``cast``: names of all objects that are some actor's."""
+    """The assemblies of a scene. ``actor_objects``: names of all objects that belong to an actor."""
 
-    def __init__(self, scene: Scene, cast: Iterable[str]) -> None:
+    def __init__(self, scene: Scene, actor_objects: Iterable[str]) -> None:
         self.boxes = {one.name: box for one in _geometry(scene) if (box := _box(one)) is not None}
         groups = list(_groups(scene, self.boxes))
         in_groups = {name for group in groups for name in group}
         self.is_grouped = len(in_groups) >= _GROUPED * len(self.boxes)
         self._in_groups = in_groups
-        taken = in_groups | set(cast)
+        taken = in_groups | set(actor_objects)
         self._free = sorted(self.boxes.keys() - taken, key=lambda name: (self.boxes[name].diagonal, name))
 
     def grown(self, names: Iterable[str]) -> tuple[str, ...]:
-        """A thing's objects with what else is its assembly; the same where the file, or the thing, is grouped."""
+        """An object's parts (by name) with the rest of its assembly; unchanged if the file, or a part, is grouped."""
         own = tuple(names)
         seeds = [self.boxes[name] for name in own if name in self.boxes]
         if self.is_grouped or not seeds or any(name in self._in_groups for name in own):
             return own
         found, boxes, whole = list(own), list(seeds), seeds[0]
         for box in seeds:
-            whole = whole.with_(box)
+            whole = whole.union(box)
         waiting = [name for name in self._free if name not in own]
         while len(found) < MOST:
             joining = next((name for name in waiting if _joins(self.boxes[name], boxes, whole)), None)
@@ -99,7 +99,7 @@ class Assemblies:
             waiting.remove(joining)
             found.append(joining)
             boxes.append(self.boxes[joining])
-            whole = whole.with_(self.boxes[joining])
+            whole = whole.union(self.boxes[joining])
         return tuple(found)
 
 
@@ -123,7 +123,7 @@ def _box(one: Object) -> Box | None:
 
 
 def _groups(scene: Scene, boxes: dict[str, Box]) -> Iterator[frozenset[str]]:
-    """The groups of a scene, as names of geometry. What holds most of several meshes groups nothing."""
+    """The groups of a scene, as names of geometry; a group that holds more than half of it does not count."""
     for group, several in (*_hierarchies(scene, boxes), *_collections(scene, boxes)):
         if several and group and (len(boxes) < 4 or len(group) <= _GROUPED * len(boxes)):
             yield group
@@ -142,7 +142,7 @@ def _hierarchies(scene: Scene, boxes: dict[str, Box]) -> list[tuple[frozenset[st
 
 
 def _collections(scene: Scene, boxes: dict[str, Box]) -> list[tuple[frozenset[str], bool]]:
-    """Collections that say of themselves that they are an object's, or whose geometry hangs together."""
+    """Collections that a property marks as one object's, or whose geometry is connected."""
     found: list[tuple[frozenset[str], bool]] = []
     for each in scene.collections:
         members = frozenset(each.objects) & boxes.keys()

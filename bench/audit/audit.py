@@ -1,9 +1,9 @@
-"""The audit of a .blend: what of a scene's spec its state in Blender bears out, whoever made it.
+"""The audit of a .blend: which parts of a scene's spec hold for its data in Blender, whoever made it.
 
 For each actor, the checks of its spec with the values seen; MPR, the mean over actors of the share of their checks that
-pass (one that does not apply is left out; an actor that is missing, or that cannot be told from other things, has 0);
-the relations and SPR; the assertions about the whole scene. A file that cannot be looked at is not scored, and says
-why. No pixel is looked at, and no convention of any system is known. The same file gives the same JSON.
+pass (checks that do not apply are left out; an actor that is missing, or cannot be identified, scores 0); the relations
+and SPR; the assertions about the whole scene. A file that cannot be read is not scored, and the audit says why. The
+audit looks at no pixels and relies on no system's conventions. The same file gives the same JSON.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _FAILING_SHOWN = 4
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """A check of an actor, or of the scene. ``outcome``: of what was asked, not of the predicate."""
+    """A check of an actor, or of the scene. ``outcome``: of the check; of a ``must_not_have``, it passes if absent."""
 
     predicate: str
     wanted: Wanted
@@ -52,7 +52,7 @@ class Checked:
 class ActorAudit:
     """An actor: how it was found (``outcome``: resolved, ambiguous, missing), its checks, the share that passes.
 
-    ``score`` is None where none of its checks applies.
+    ``score`` is None if none of its checks applies.
     """
 
     name: str
@@ -66,7 +66,7 @@ class ActorAudit:
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """A scene's audit. ``not_scored``: the reason, or None; then there is nothing else."""
+    """A scene's audit. ``not_scored``: None, or the reason why the file is not scored; then the rest is empty."""
 
     scene: str
     not_scored: str | None
@@ -85,9 +85,9 @@ class Audit:
 def audit(
     blend: Path, spec: Spec, means: Means | None = None, progress: Callable[[str], None] | None = None
 ) -> Audit:
-    """Audits a file by a spec. ``progress`` is told what is being done, in words.
+    """Audits a file by a spec. ``progress`` is called with each step, in words.
 
-    Raises BadSpec for a spec that asks for what is no predicate, and CannotStart where no Blender works.
+    Raises BadSpec for a spec with an unknown predicate or wrong parameters, CannotStart if no Blender works.
     """
     check_predicates(spec)
     try:
@@ -110,7 +110,7 @@ def audit_of(file: Measurer, scene: Scene, spec: Spec) -> Audit:
 def opened(
     blend: Path, means: Means | None, progress: Callable[[str], None]
 ) -> Generator[tuple[Untrusted, Scene]]:
-    """A file in its Blender, and its facts. Where Blender does not survive the clip, only the start is looked at.
+    """A file in its Blender, and its facts. If Blender crashes while playing the clip, only its start is read.
 
     Raises NotScored, CannotStart.
     """
@@ -129,7 +129,7 @@ def opened(
 
 
 def _silent(_: str) -> None:
-    """Tells nobody."""
+    """Ignores progress."""
 
 
 def read_scene(file: Untrusted, *, play: bool) -> Scene:
@@ -139,11 +139,11 @@ def read_scene(file: Untrusted, *, play: bool) -> Scene:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, first["loc"]))
-        raise NotScored(f"what was read of it makes no sense: {where}: {first['msg']}") from error
+        raise NotScored(f"Blender's facts of it were not valid: {where}: {first['msg']}") from error
 
 
 def check_predicates(spec: Spec) -> None:
-    """Raises BadSpec for a check that is no predicate, or whose parameters are wrong."""
+    """Raises BadSpec for a check with an unknown predicate or wrong parameters."""
     for actor in spec.actors:
         for check in (*actor.must_have, *actor.must_not_have):
             _checked(spec, check, actor.name)
@@ -219,7 +219,7 @@ def _check(check: Check, wanted: Wanted, found: Found, stage: Stage) -> Checked:
 
 
 def _count(found: Found) -> int:
-    """How many units must pass. One mesh of so many loose pieces stands for as many things that nothing simulates."""
+    """How many units must pass. Of an actor without a solver, one mesh of several loose pieces counts as several."""
     wanted, units = found.actor.count, found.units
     if len(units) >= wanted or found.actor.role not in UNMARKED:
         return wanted
@@ -228,7 +228,7 @@ def _count(found: Found) -> int:
 
 
 def _of_units(check: Check, wanted: Wanted, verdicts: Sequence[tuple[Unit, Verdict]], needed: int) -> Checked:
-    """One outcome of several units': as many as are needed pass; of what must not be, none has it."""
+    """The outcome over several units: at least ``needed`` pass; for a ``must_not_have``, none may have it."""
     asked = [(unit, _asked(check, wanted, verdict)) for unit, verdict in verdicts]
     if len(asked) == 1 and needed == 1:
         unit, only = asked[0]
@@ -254,7 +254,7 @@ def _judge(check: Check, unit: Unit, stage: Stage) -> Verdict:
 
 
 def _asked(check: Check, wanted: Wanted, verdict: Verdict) -> Checked:
-    """What a verdict means for what was asked."""
+    """The outcome of a check by the verdict of its predicate."""
     outcome = verdict.outcome
     if wanted == "must_not_have" and outcome != "not_applicable":
         outcome = "failed" if outcome == "passed" else "passed"

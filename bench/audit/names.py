@@ -1,4 +1,4 @@
-"""Which actor a name speaks of: words compared, whatever their case, number, joining and suffixes."""
+"""Matches names of objects with phrases, by words: case, plural, joining and numeric suffixes do not matter."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 _LIBRARY = re.compile(r"\s*\[[^\]]*\]$")  # how a linked data-block's full name ends
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _WORD = re.compile(r"[^\W\d_]+")
-# Words that say what kind of data-block a thing is, and nothing of the thing.
+# Words that say what kind of data-block it is, not what it shows.
 _NOISE = frozenset({
     "a", "an", "asset", "base", "coll", "collection", "copy", "final", "geo", "geom", "geometry", "group", "grp",
     "main", "mesh", "model", "new", "obj", "object", "root", "sim", "simulated", "simulation", "the",
@@ -21,7 +21,7 @@ _NOISE = frozenset({
 _PLURALS = (
     ("ies", "y"), ("ves", "f"), ("sses", "ss"), ("xes", "x"), ("ches", "ch"), ("shes", "sh"), ("oes", "o"),
 )  # fmt: skip
-# What stands behind one of these is where the thing is, or of what it is a part.
+# Words after one of these say where the object is, or what it is a part of.
 _BEFORE = frozenset({
     "above", "against", "at", "behind", "below", "beside", "by", "for", "from", "in", "inside", "near", "of", "on",
     "onto", "over", "to", "under", "with",
@@ -47,10 +47,10 @@ def _singular(word: str) -> str:
 
 @dataclass(frozen=True, slots=True, order=True)
 class Match:
-    """How well a name speaks of an actor; the greater, the better.
+    """How well a name fits a phrase; greater is better.
 
-    ``quality``: 3 the name is the phrase, 2 it holds the phrase, 1 it holds it as a place (``rug under table``).
-    ``end``: words in front of the phrase's end: the last noun is what a thing is. ``length``: letters of the phrase.
+    ``quality``: 3 the name is the phrase, 2 it contains the phrase, 1 it contains it as a place (``rug under table``).
+    ``end``: number of words up to the phrase's end (the last noun is the head). ``length``: letters of the phrase.
     """
 
     quality: int
@@ -59,7 +59,7 @@ class Match:
 
 
 def match(name: str, phrases: Iterable[str]) -> Match | None:
-    """The best match of a name with any of an actor's phrases; None where it speaks of none."""
+    """The best match of a name with any of the phrases; None without a match."""
     words = words_of(name)
     head = next((place for place, word in enumerate(words) if place and word in _BEFORE), len(words))
     found = [_match(words, head, "".join(words_of(phrase))) for phrase in phrases]

@@ -1,4 +1,4 @@
-"""What Blender measures of two things at one frame, for relations: plain numbers, in metres, by ``bench/inside``."""
+"""What Blender measures of two groups of objects at one frame, in metres (by ``bench/audit/inside/measure.py``)."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from typing import Literal, TypeAlias
 
 Corner: TypeAlias = tuple[float, float, float]
 Reaches: TypeAlias = tuple[float, float, float, float]
-# Beyond bounds and distance: how deep and by what share either is in the other; that and which is over which;
-# containment; where both lie for who looks.
+# What to measure beyond bounds and distance. depth: how deep, and by what share, either is in the other. columns: that,
+# and which is over which. inside: containment. view: extents as the camera sees them.
 Want: TypeAlias = Literal["depth", "columns", "inside", "view"]
 
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """Two things, ``a`` and ``b``, at a frame. What was not asked for, or does not exist, is None.
+    """Two groups of objects, ``a`` and ``b``, at a frame. Quantities that were not requested or do not exist are None.
 
-    ``empty``: which of them has nothing to measure; then there is no more. ``a_low`` … ``b_high``: corners of bounds.
-    ``gap``: the least distance of their surfaces, 0 where they cross. ``depth``: how deep one is in the other: of the
-    points of either that are in the other's solid, or cut off by its sheet, the greatest distance to the surface.
-    ``a_in_b``, ``b_in_a``: the share of the one's surface that is in the other's solid. ``inside``: the share of ``a``
-    that ``b`` encloses, as a bowl does.
+    ``empty``: which of them has no geometry; then the rest is not set. ``a_low`` … ``b_high``: corners of bounds.
+    ``gap``: the least distance of their surfaces, 0 if they intersect. ``depth``: how deep one penetrates the other:
+    the greatest distance to the surface of points of either that are in the other's solid, or cut off by its sheet.
+    ``a_in_b``, ``b_in_a``: the share of one's surface that is in the other's solid. ``inside``: the share of ``a`` that
+    ``b`` encloses, as a bowl does.
 
-    On vertical lines through both: ``clearance``: the least free height between something of ``a`` and what of ``b``
-    lies beneath it; ``contact``: the height of ``b`` there; ``over``: the share of ``a`` on those lines that has ``b``
-    under it and not over it; ``lines``: how many were looked at.
+    On vertical lines through both: ``clearance``: the least gap between a part of ``a`` and the part of ``b`` below it;
+    ``contact``: the height of ``b`` there; ``over``: the share of ``a`` on those lines that has ``b`` below and not
+    above; ``lines``: how many stretches of ``a`` were compared.
 
-    ``right``, ``near``: how far both reach to the right of who looks, and towards them: low, high of ``a``, of ``b``.
+    ``right``, ``near``: extents to the right of the camera, and towards it: low, high of ``a``, low, high of ``b``.
     """
 
     frame: int
@@ -50,7 +50,7 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """What is to be measured: two things as names of their objects, at turns (0 start, 1 middle, 2 end) of the clip."""
+    """What to measure: two groups of objects (by name), at turns (0 start, 1 middle, 2 end) of the clip."""
 
     a: tuple[str, ...]
     b: tuple[str, ...]

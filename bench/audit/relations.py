@@ -1,7 +1,7 @@
-"""What each relation type means, and whether it holds: measurements at a moment in, a verdict out.
+"""The relation types: for each, a pure function from the measurements at one frame to a verdict.
 
-A definition is the docstring of its unit: what is measured, the threshold, and why. Units are pure functions of one
-moment; a relation holds when its unit does at every moment that the spec names.
+The docstring of a function is the relation's definition: what is measured, the threshold, and why. A relation holds if
+its function says so at every time that the spec names.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from bench.audit.relation_measures import Measured, Want
     from bench.scenes.spec import RelationType
 
-# Of a slope, what lies vertically beneath is further than what is nearest: twice as far at 60 degrees.
+# On a slope, the surface vertically below is further away than the nearest one: twice as far at 60 degrees.
 _SLOPE = 2.0
 _MOST = 0.5
 _NEARLY_ALL = 0.9
@@ -26,7 +26,7 @@ _BESIDE = 0.25
 
 @dataclass(frozen=True, slots=True)
 class Stands:
-    """Whether a relation holds at a moment, and the values that this was read off."""
+    """Whether a relation holds at a frame, and the values that decided it."""
 
     holds: bool
     seen: dict[str, Any] = field(default_factory=dict[str, Any])
@@ -34,9 +34,9 @@ class Stands:
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A row of the table. ``judge`` gets a moment's measurements, the tolerance, and whether both are bodies.
+    """An entry of the table. ``judge`` gets the measurements at a frame, the tolerance, and whether both are bodies.
 
-    What is no body (a source of fluid or of particles, a force) may be in anything.
+    Fluids, forces and sources of fluid or particles are not bodies: they may overlap anything.
     """
 
     judge: Callable[[Measured, float, bool], Stands]
@@ -44,24 +44,24 @@ class Kind:
 
     @property
     def definition(self) -> str:
-        """What it measures, its threshold and why: one paragraph."""
+        """What is measured, the threshold and why: one paragraph."""
         return " ".join((inspect.getdoc(self.judge) or "").split())
 
 
 def supported_by(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` rests on ``b``: their surfaces are at most the tolerance apart, something of ``b`` lies beneath something
-    of ``a`` at a free height of at most twice the tolerance (on a slope what is beneath is further off than what is
-    nearest), and neither is deeper in the other than the tolerance. What hovers, stands beside or has sunk in is not
-    supported; a cloth may hang down around what it lies on."""
+    """``a`` rests on ``b``: their surfaces are at most the tolerance apart, part of ``b`` is vertically below part of
+    ``a`` with a gap of at most twice the tolerance (on a slope the surface below is further away than the nearest
+    one), and neither penetrates the other by more than the tolerance. Objects that hover, stand beside or have sunk in
+    are not supported; a cloth may hang down around its support."""
     near = _at_most(now.gap, tolerance) and _at_most(now.clearance, _SLOPE * tolerance)
     deep = bodies and not _at_most(now.depth, tolerance)
     return Stands(near and not deep, {"gap": now.gap, "clearance": now.clearance, "depth": now.depth})
 
 
 def on_top_of(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` stands on the top of ``b``: it is supported by it, no part of it reaches below the height at which it
-    touches by more than the tolerance, and at least 90 % of what vertical lines meet of ``a`` lies over ``b``. Stricter
-    than being supported: nothing may hang down."""
+    """``a`` stands on top of ``b``: it is supported by ``b``, no part of it is lower than the height of contact by more
+    than the tolerance, and at least 90 % of what vertical lines hit of ``a`` is over ``b``. This is stricter than
+    SupportedBy: nothing may hang down."""
     rests = supported_by(now, tolerance, bodies)
     low, contact, over = now.a_low[2], now.contact, now.over
     whole = contact is not None and low >= contact - tolerance and over is not None and over >= _NEARLY_ALL
@@ -70,16 +70,16 @@ def on_top_of(now: Measured, tolerance: float, bodies: bool) -> Stands:
 
 def inside(now: Measured, tolerance: float, bodies: bool) -> Stands:
     """``a`` is in ``b``: at least half of the points spread over ``a`` lie within the bounds of ``b`` (grown by the
-    tolerance) and are enclosed: of 14 directions around such a point, at least 8 meet ``b``. An open bowl, box or shelf
-    encloses what is below its rim; half suffices, since things stick out of what holds them."""
+    tolerance) and are enclosed: of 14 rays around such a point, at least 8 hit ``b``. An open bowl, box or shelf
+    encloses what is below its rim. Half is enough, since contents often stick out of their container."""
     del tolerance, bodies
     return Stands(_at_least(now.inside, _MOST), {"inside": now.inside})
 
 
 def in_contact(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` touches ``b``: their surfaces are at most the tolerance apart, and most of neither is within the other's
-    solid. A post in the ground, a chimney through a roof and a ship in water touch; a thing that has been swallowed
-    does not."""
+    """``a`` touches ``b``: their surfaces are at most the tolerance apart, and at most half of either is inside the
+    other's solid. A post in the ground, a chimney through a roof and a ship in water touch; an object that is
+    swallowed does not."""
     return Stands(
         _at_most(now.gap, tolerance) and not (bodies and _swallowed(now)),
         {"gap": now.gap, "depth": now.depth, "a_in_b": now.a_in_b, "b_in_a": now.b_in_a},
@@ -87,9 +87,9 @@ def in_contact(now: Measured, tolerance: float, bodies: bool) -> Stands:
 
 
 def against(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` stands or leans against ``b``: their surfaces are at most the tolerance apart, neither is deeper in the
-    other than the tolerance, and they are beside each other: their heights overlap by at least a quarter of the lower
-    one's. What merely stands on the other does not lean on it."""
+    """``a`` stands or leans against ``b``: their surfaces are at most the tolerance apart, neither penetrates the other
+    by more than the tolerance, and they are side by side: their vertical extents overlap by at least a quarter of the
+    shorter one. An object that only stands on the other does not lean on it."""
     shared = min(now.a_high[2], now.b_high[2]) - max(now.a_low[2], now.b_low[2])
     least = min(now.a_high[2] - now.a_low[2], now.b_high[2] - now.b_low[2])
     beside = shared >= _BESIDE * least - tolerance
@@ -99,15 +99,16 @@ def against(now: Measured, tolerance: float, bodies: bool) -> Stands:
 
 
 def attached_to(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` hangs on, or is fixed to, ``b``: their surfaces are at most the tolerance apart at each moment asked for.
-    How deep one is in the other does not matter: what is fixed is often let in, screwed in or threaded through."""
+    """``a`` hangs on, or is fixed to, ``b``: their surfaces are at most the tolerance apart at each of the relation's
+    times. How deep one is in the other does not matter: fixed parts are often embedded, screwed in or threaded
+    through."""
     del bodies
     return Stands(_at_most(now.gap, tolerance), {"gap": now.gap})
 
 
 def next_to(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` is near ``b``: their surfaces are at most the tolerance apart, on whatever side, and most of neither is
-    within the other's solid. The spec says with its tolerance how near is near for these things."""
+    """``a`` is near ``b``: their surfaces are at most the tolerance apart, on any side, and at most half of either is
+    inside the other's solid. The spec's tolerance says what is near for these two."""
     return Stands(
         _at_most(now.gap, tolerance) and not (bodies and _swallowed(now)),
         {"gap": now.gap, "a_in_b": now.a_in_b, "b_in_a": now.b_in_a},
@@ -115,11 +116,11 @@ def next_to(now: Measured, tolerance: float, bodies: bool) -> Stands:
 
 
 def above(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` is over ``b``, at whatever height, touching or not: of what vertical lines through both meet of ``a``, at
-    least three quarters have ``b`` under them and not over them (up to the tolerance counts as level; what has ``b`` on
-    both sides counts half). Where no vertical line meets both, ``a`` is above if its lowest point is higher than the
-    middle of ``b`` and both are no further apart in plan than ``a`` is wide there, or the tolerance: a spout on the
-    wall over a basin."""
+    """``a`` is over ``b``, at any height, touching or not: of what vertical lines through both hit of ``a``, at least
+    three quarters have ``b`` below and not above (differences up to the tolerance count as level; parts with ``b`` on
+    both sides count half). If no vertical line hits both, ``a`` is above if its lowest point is higher than the middle
+    of ``b`` and they are no further apart in plan than ``a`` is wide there, or than the tolerance: a spout on the wall
+    over a basin."""
     del bodies
     if now.lines and now.over is not None:
         return Stands(
@@ -134,34 +135,34 @@ def above(now: Measured, tolerance: float, bodies: bool) -> Stands:
 
 
 def below(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` is under ``b``: ``b`` is above ``a``, as Above says."""
+    """``a`` is under ``b``: ``b`` is above ``a``, as for Above."""
     return above(now, tolerance, bodies)
 
 
 def left_of(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` is to the left of ``b`` for who looks through the scene's camera at that moment (along +Y where there is
-    none): along the camera's horizontal, the middle of ``a`` is on the left of that of ``b``, and they overlap by no
-    more than half of the narrower one, or the tolerance."""
+    """``a`` is to the left of ``b`` as seen by the scene's camera at that time (without a camera, looking along +Y):
+    along the camera's horizontal, the middle of ``a`` is left of the middle of ``b``, and they overlap by at most half
+    of the narrower one, or the tolerance."""
     del bodies
     return _beside(now.right, tolerance, towards=-1)
 
 
 def right_of(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` is to the right of ``b`` for who looks through the scene's camera: as LeftOf, on the other side."""
+    """``a`` is to the right of ``b`` as seen by the scene's camera: as LeftOf, on the other side."""
     del bodies
     return _beside(now.right, tolerance, towards=1)
 
 
 def in_front_of(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` is in front of ``b`` for who looks through the scene's camera at that moment (along +Y where there is
-    none): along the ground towards the camera, the middle of ``a`` is nearer than that of ``b``, and they overlap by no
-    more than half of the less deep one, or the tolerance. Which side is a thing's own front, no mesh tells."""
+    """``a`` is in front of ``b`` as seen by the scene's camera at that time (without a camera, looking along +Y): along
+    the ground towards the camera, the middle of ``a`` is nearer than the middle of ``b``, and they overlap by at most
+    half of the less deep one, or the tolerance. A mesh does not say which side is its own front."""
     del bodies
     return _beside(now.near, tolerance, towards=1)
 
 
 def behind(now: Measured, tolerance: float, bodies: bool) -> Stands:
-    """``a`` is behind ``b`` for who looks through the scene's camera: as InFrontOf, on the other side."""
+    """``a`` is behind ``b`` as seen by the scene's camera: as InFrontOf, on the other side."""
     del bodies
     return _beside(now.near, tolerance, towards=-1)
 

@@ -1,4 +1,4 @@
-"""What a role means in Blender's data: which objects can play it, and with what they simulate."""
+"""What each role means in Blender's data: which objects can have it, and by which modifiers or settings."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _MODIFIERS = {"cloth": "CLOTH", "soft": "SOFT_BODY", "collider": "COLLISION"}
 _FLUIDS = {"fluid_domain": "DOMAIN", "fluid_flow": "FLOW", "fluid_effector": "EFFECTOR"}
 _PARTICLES = {"particle_emitter": "EMITTER", "particle_hair": "HAIR"}
 _BODIES = {"rigid_active": "ACTIVE", "rigid_passive": "PASSIVE"}
-# Nothing in a file tells an actor of these roles from other things.
+# Nothing in a file marks an object as having one of these roles.
 UNMARKED = ("static", "keyframed")
 
 
 def modifiers_of_role(one: Object, role: str) -> tuple[Modifier, ...]:
-    """The modifiers of an object by which it plays the role, on or off."""
+    """The modifiers that give an object the role, on or off."""
     if role in _MODIFIERS:
         return one.of_type(_MODIFIERS[role])
     if role in _FLUIDS:
@@ -30,7 +30,7 @@ def modifiers_of_role(one: Object, role: str) -> tuple[Modifier, ...]:
 
 
 def plays(one: Object, role: str) -> bool:
-    """Whether an object has what marks the role; never for those that nothing marks."""
+    """Whether an object has what marks the role; never for unmarked roles."""
     if role in _BODIES:
         return one.rigid_body is not None and one.rigid_body.type == _BODIES[role]
     if role == "force":

@@ -1,8 +1,8 @@
-"""SPR: which of a spec's relations hold in a file, of those that can be looked at, by distances that Blender measures.
+"""SPR: the share of a spec's relations that hold in a file, by distances that Blender measures.
 
-A relation holds if each thing that stands for ``a`` stands so to ``b`` at each moment that the spec names. It does not
-if an actor is missing, or has nothing to see. It is not scored where the answer hangs on motion that was not played,
-as of physics that is not baked: that is never jumped to. SPR is the share that holds of those that are scored.
+A relation holds if each unit of ``a`` stands in it to ``b`` at each time that the spec names. It does not hold if an
+actor is missing, or has no visible geometry. It is not scored if it depends on motion that was not played, such as
+unbaked physics. SPR counts scored relations only.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from bench.scenes.spec import Relation, RelationType, Role, Spec, When
 
 Outcome = Literal["holds", "does not hold", "not scored"]
-# Of an actor that is more things than these, an even choice is looked at.
+# Of an actor with more units than these, an even selection is measured.
 MOST_UNITS = 24
-# What may be in anything: where something comes from, what pushes, what flows.
+# Roles that may overlap anything: sources, forces, fluids.
 _NO_BODIES: tuple[Role, ...] = ("fluid_flow", "force", "particle_emitter", "fluid_domain")
 _BY_CONTACT: tuple[RelationType, ...] = (
     "SupportedBy", "OnTopOf", "InContact", "Against", "AttachedTo", "NextTo",
@@ -49,7 +49,7 @@ class Measurer(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class At:
-    """A relation at a moment, of one thing: ``unit``. ``seen``: the values measured, in metres."""
+    """A relation of one ``unit`` at one time of the clip. ``seen``: the values measured, in metres."""
 
     when: When
     frame: int | None
@@ -60,11 +60,11 @@ class At:
 
 @dataclass(frozen=True, slots=True)
 class Related:
-    """A relation's verdict. ``why``: in words, where there is nothing measured.
+    """A relation's verdict. ``why``: the reason, in words, if nothing was measured or it is not scored.
 
-    ``moments``: at each moment what decides, the first thing that does not stand so, or else the first. ``units``: how
-    many things of ``a`` were looked at; ``holding``: of how many it holds. ``assembled``: objects that were inferred to
-    belong to either, without which it would not hold.
+    ``moments``: for each time, the deciding unit: the first for which the relation does not hold, or else the first.
+    ``units``: how many units of ``a`` were measured; ``holding``: for how many it holds. ``assembled``: objects that
+    were inferred to belong to either actor, without which it would not hold.
     """
 
     type: str
@@ -80,7 +80,7 @@ class Related:
 
 
 def share(related: Sequence[Related]) -> float | None:
-    """SPR; None where nothing is scored."""
+    """SPR; None if no relation is scored."""
     scored = [one for one in related if one.outcome != "not scored"]
     return round(sum(one.outcome == "holds" for one in scored) / len(scored), _DIGITS) if scored else None
 
@@ -88,7 +88,7 @@ def share(related: Sequence[Related]) -> float | None:
 def judge_relations(
     spec: Spec, scene: Scene, found: Mapping[str, Found], file: Measurer
 ) -> tuple[Related, ...]:
-    """The verdicts, in the spec's order. What Blender cannot measure is not scored, and says why."""
+    """The verdicts, in the spec's order. A relation that Blender cannot measure is not scored, and says why."""
     try:
         return _Judge(spec, scene, found, file).judged()
     except NotScored as error:
@@ -97,7 +97,7 @@ def judge_relations(
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """One thing of ``a`` beside ``b``, to be measured at the turns that can be looked at."""
+    """One unit of ``a`` and all of ``b``, to be measured at those times (``known``) whose motion was played."""
 
     relation: Relation
     unit: str
@@ -156,7 +156,7 @@ class _Judge:
             outcome = "does not hold"
         elif "not scored" in outcomes:
             outcome = "not scored"
-        why = f"not played: {self._scene.unplayed}" if outcome == "not scored" else ""
+        why = f"motion not played: {self._scene.unplayed}" if outcome == "not scored" else ""
         holding = sum(not _failed(each) for each in looked)
         return replace(
             _told(relation, outcome, why),
@@ -167,7 +167,7 @@ class _Judge:
         )
 
     def _absent(self, relation: Relation) -> str:
-        """In words, why there is nothing to measure; "" if there is."""
+        """Why there is nothing to measure, in words; "" if there is."""
         for name in (relation.a, relation.b):
             if not self._found[name].told_apart:
                 return f"{name} is {self._found[name].outcome}"
@@ -188,13 +188,13 @@ class _Judge:
         return cases
 
     def _shown(self, unit: Unit) -> tuple[str, ...]:
-        """The objects of a thing that are looked at: what is rendered, or if nothing is, all that it has."""
+        """The objects of a unit that are measured: those that are rendered, or if none is, all of them."""
         own = [one for one in unit.objects if one.in_scene]
         seen = [one for one in own if one.renders and (one.type in GEOMETRY or one.instances is not None)]
         return tuple(one.name for one in seen or own)
 
     def _is_still(self, name: str) -> bool:
-        """Whether it was not played, or may take its motion from what was not."""
+        """Whether its motion was not played, or may come from an object whose motion was not."""
         waiting, seen = [name], set[str]()
         while waiting:
             one = self._objects.get(waiting.pop())
@@ -218,9 +218,9 @@ class _Judge:
         try:
             told = _MEASURED.validate_python(self._file.ask("measure", pairs=pairs, doing="measuring it"))
         except ValidationError as error:
-            raise NotScored("what was measured makes no sense") from error
+            raise NotScored("Blender's measurements were not valid") from error
         if len(told) != len(cases):
-            raise NotScored("what was measured is not what was asked for")
+            raise NotScored(f"Blender measured {len(told)} pairs instead of {len(cases)}")
         return {case: self._judged(case, each) for case, each in zip(cases, told, strict=True)}
 
     def _judged(self, case: _Case, told: Mapping[str, Measured]) -> tuple[At, ...]:
@@ -254,7 +254,7 @@ def _failed(moments: Iterable[At]) -> bool:
 
 
 def _deciding(several: Sequence[At]) -> At:
-    """Of several things at one moment: one of which the relation does not hold, else one not scored, else the first."""
+    """The deciding one of several units at one time: the first that fails, else is not scored, else the first."""
     for outcome in ("does not hold", "not scored"):
         for at in several:
             if at.outcome == outcome:

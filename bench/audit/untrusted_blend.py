@@ -1,9 +1,8 @@
-"""One untrusted .blend in a Blender of its own: confined, within a deadline and a limit of memory, asked over a socket.
+"""An untrusted .blend in its own sandboxed Blender, with limits of time and memory, queried over a socket.
 
-The file is only read, and so is the folder that it lies in (for its caches and libraries); no script of it runs, there
-is no network, and nothing can be written but a temporary folder that goes with the process. Whatever Blender prints
-goes to a file that nobody believes. A process that crashes, hangs or answers what it was not asked ends the matter:
-the file is not scored, and the exception says why.
+Blender may only read the file and its folder (for caches and libraries). No script of the file runs, there is no
+network, and only a temporary folder, removed with the process, can be written. Blender's prints are not trusted. If the
+process crashes, hangs or replies with anything unexpected, the file is not scored, and the exception says why.
 """
 
 from __future__ import annotations
@@ -40,22 +39,22 @@ _MARKS = (b"BLENDER", b"\x1f\x8b", b"\x28\xb5\x2f\xfd")  # plain, gzip (before 3
 
 
 class NotScored(Exception):  # noqa: N818 - reads as the state it names
-    """A file that cannot be looked at; the message says why."""
+    """A file that cannot be scored; the message says why."""
 
 
 class Crashed(NotScored):
-    """Blender ended over the file."""
+    """Blender ended while it worked on the file."""
 
 
 class Refused(NotScored):
-    """What was asked for is not to be had of this file."""
+    """Blender refused a job on this file; the message says why."""
 
 
 @dataclass(frozen=True)
 class Means:
-    """Which Blender looks (by default this environment's), how long a file may take (seconds), how much memory (bytes).
+    """Which Blender to use (by default this environment's), and its limits for one file: seconds, and memory in bytes.
 
-    ``read``: further folders that it may read, as of linked files elsewhere.
+    ``read``: further folders that it may read, such as those of linked files.
     """
 
     version: str | None = None
@@ -65,14 +64,14 @@ class Means:
     read: tuple[Path, ...] = field(default=())
 
     def runtime(self) -> Runtime:
-        """The Blender. Raises CannotStart."""
+        """The Blender to start. Raises CannotStart."""
         return find_blender(self.version, self.blender_exe)
 
 
 class Untrusted:
-    """A .blend, opened; to be used in a ``with``. Raises NotScored for the file, CannotStart where no Blender works.
+    """An open .blend, to be used in a ``with``. Raises NotScored for a bad file, CannotStart if no Blender works.
 
-    ``program`` answers what is asked; ``workspace`` is where Blender may write, by default a folder that goes with it.
+    ``program`` answers the jobs; ``workspace`` is where Blender may write, by default a folder removed at the end.
     """
 
     def __init__(
@@ -103,15 +102,15 @@ class Untrusted:
         self._end()
 
     def reopen(self, blend: Path) -> None:
-        """Opens another file of the same folder instead, with as much time. Raises as the beginning does."""
+        """Opens another file of the same folder instead, with a fresh time limit. Raises NotScored, CannotStart."""
         path = checked(blend)
         self._deadline = time.monotonic() + self._means.seconds
         self.ask("open", path=str(path), doing="opening it")
 
     def ask(self, job: str, *, doing: str, **arguments: Any) -> Any:
-        """What ``bench/audit/inside/serve.py`` answers. ``doing``: in words, for errors.
+        """The reply of ``bench/audit/inside/serve.py`` to a job. ``doing``: the job in words, for errors.
 
-        Raises NotScored, and CannotStart where this Blender lacks something.
+        Raises NotScored, or CannotStart if this Blender lacks a module.
         """
         left = max(0.0, self._deadline - time.monotonic())
         try:
@@ -124,7 +123,7 @@ class Untrusted:
             raise NotScored(str(error)[:_LONGEST_REASON]) from error
         except TookTooLong:
             raise NotScored(
-                f"Blender was still {doing} when its {self._means.seconds:g} s were over"
+                f"Blender was still {doing} after its time limit of {self._means.seconds:g} s"
             ) from None
         except Untrustworthy as error:
             raise NotScored(f"Blender's reply after {doing} was not valid") from error
@@ -144,7 +143,7 @@ class Untrusted:
         )
 
     def _end(self) -> None:
-        """Lets Blender end, or kills it with all it has started; then removes its folder."""
+        """Ends Blender with all its processes, then removes its folder."""
         process: BlenderProcess | None = getattr(self, "_process", None)
         if process is not None:
             process.close()
@@ -152,7 +151,7 @@ class Untrusted:
 
 
 def checked(blend: Path) -> Path:
-    """Where a .blend really lies. Raises NotScored for what is none by its first bytes."""
+    """The resolved path of a .blend. Raises NotScored if its first bytes are not those of a .blend."""
     path = blend.expanduser().resolve()
     try:
         if not path.is_file():
@@ -164,12 +163,12 @@ def checked(blend: Path) -> Path:
     if not head:
         raise NotScored("it is empty")
     if not head.startswith(_MARKS):
-        raise NotScored("it is no .blend")
+        raise NotScored("it is not a .blend file")
     return path
 
 
 def readable(blend: Path) -> tuple[Path, ...]:
-    """What beside the file Blender may read: its folder; of a folder that holds the user's home, only its caches."""
+    """What Blender may read: the file's folder; if that holds the user's home, only the file and its point caches."""
     folder, home = blend.parent, Path.home().resolve()
     if not home.is_relative_to(folder):
         return (folder,)

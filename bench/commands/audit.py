@@ -30,10 +30,10 @@ _SEEN_WIDTH = 140
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON: the same for the same file, on every run.")
 @click.option(
-    "--read", type=_PATH, multiple=True, help="A further folder that Blender may read, as of linked files."
+    "--read", type=_PATH, multiple=True, help="A further folder that Blender may read, e.g. of linked files."
 )
-@click.option("--seconds", default=120.0, show_default=True, help="How long Blender may take.")
-@click.option("--memory", default=4.0, show_default=True, help="How much memory Blender may take (GiB).")
+@click.option("--seconds", default=120.0, show_default=True, help="Time limit for Blender.")
+@click.option("--memory", default=4.0, show_default=True, help="Memory limit for Blender (GiB).")
 @click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
 @click.option(
     "--blender-exe",
@@ -45,8 +45,8 @@ _SEEN_WIDTH = 140
 def audit(blend: Path, scene: str, as_json: bool, **given: Any) -> None:
     """Audit a .blend by a scene's spec: which of its actors are there, and which checks they pass.
 
-    The file is opened in a Blender of its own, confined: no script in it runs, and nothing is written. Exit code 0: it
-    was scored, well or badly. 2: it was not, and the reason is told.
+    The file is opened in a sandboxed Blender: none of its scripts runs, and nothing is written. Exit code 0: the file
+    was scored, whatever the score. 2: it was not scored; the reason is printed.
     """
     from bench.audit.audit import audit as run  # noqa: PLC0415
     from bench.audit.untrusted_blend import GIB, Means  # noqa: PLC0415
@@ -74,7 +74,7 @@ def audit(blend: Path, scene: str, as_json: bool, **given: Any) -> None:
 
 
 def _tell(doing: str) -> None:
-    """Says on a terminal what is being done; elsewhere, nothing: it takes seconds."""
+    """Prints progress on a terminal; elsewhere nothing, since it takes seconds only."""
     if sys.stderr.isatty():
         click.echo(f"{doing} …", err=True)
 
@@ -84,9 +84,9 @@ def _lines(found: Audit) -> Iterator[str]:
         yield f"{found.scene}: not scored: {found.not_scored}"
         return
     frames, fps = found.blend["frames"], found.blend["fps"]
-    yield f"{found.scene}: frames {frames[0]} to {frames[1]} at {fps:g} a second, {found.blend['objects']} objects"
+    yield f"{found.scene}: frames {frames[0]} to {frames[1]} at {fps:g} fps, {found.blend['objects']} objects"
     if found.blend["unplayed"]:
-        yield f"motion not looked at: {found.blend['unplayed']}"
+        yield f"motion not played: {found.blend['unplayed']}"
     for path in found.blend["missing_libraries"]:
         yield f"linked file missing: {path}"
     for actor in found.actors:

@@ -1,4 +1,4 @@
-"""The command ``simworlds bench``. What a command needs is loaded when it is called."""
+"""The command ``simworlds bench``. Subcommands are loaded when they are called."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ _COMMANDS = {
     "audit": ("bench.commands.audit", "audit", "Audit a .blend by a scene's spec."),
     "blenderbench": ("bench.commands.blenderbench", "blenderbench", "Score edits on BlenderBench."),
     "judge": ("bench.commands.judge", "judge", "Judge frames by a prompt, item by item."),
-    "estimate": ("bench.commands.report", "estimate", "Tell how long a larger sweep takes."),
+    "estimate": ("bench.commands.report", "estimate", "Estimate how long a larger sweep takes."),
     "report": ("bench.commands.report", "report", "Print the tables of results, and write their page."),
-    "rescore": ("bench.commands.sweep", "rescore", "Score results anew, as far as something changed."),
+    "rescore": ("bench.commands.sweep", "rescore", "Score results again where something changed."),
     "run": ("bench.commands.sweep", "run", "Score a system on the benchmark's scenes."),
     "list": ("bench.commands.scenes", "list_scenes", "List the scenes."),
-    "show": ("bench.commands.scenes", "show", "Show a scene: its prompt and what it is held to."),
+    "show": ("bench.commands.scenes", "show", "Show a scene: its prompt, actors and checks."),
     "validate": (
         "bench.commands.validate",
         "validate",
-        "Prove of the benchmark that it sees what it should.",
+        "Validate the benchmark itself: references, mutations, counterfeits.",
     ),
 }
 
@@ -52,4 +52,4 @@ class _Lazy(click.Group):
 
 @click.group(cls=_Lazy, context_settings={"help_option_names": ["-h", "--help"]})
 def bench() -> None:
-    """4DBuildBench: score the .blend files of any system, by what Blender's own data says of them."""
+    """4DBuildBench: score the .blend files of any system by the data that Blender reads from them."""

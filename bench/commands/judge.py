@@ -23,31 +23,33 @@ if TYPE_CHECKING:
 
 _PATH = click.Path(path_type=Path)
 _PROVIDERS = ("anthropic", "openai")
-_PASSING = ("refused", "cut short", "malformed")  # another time, the model may answer otherwise
+_PASSING = ("refused", "cut short", "malformed")  # another attempt may succeed
 
 
 @click.command()
 @click.argument("frames", nargs=-1, type=_PATH)
 @click.option("--scene", metavar="ID", help="Judge by this scene's prompt (see list), or a YAML file's.")
 @click.option("--prompt", metavar="TEXT", help="Judge by a prompt of your own.")
-@click.option("--static", is_flag=True, help="The prompt asks for a still. Scenes know by themselves.")
+@click.option("--static", is_flag=True, help="The prompt asks for a still. Not needed with --scene.")
 @click.option("--provider", type=click.Choice(_PROVIDERS), default="anthropic", show_default=True)
 @click.option("--model", metavar="NAME", help="The model.  [default: claude-opus-5-5, or gpt-5.5 of openai]")
-@click.option("--base-url", metavar="URL", help="Another server that speaks the provider's API.")
+@click.option("--base-url", metavar="URL", help="Another server with the provider's API.")
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Judge so often.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option("--cache", type=_PATH, help="Folder that answers are kept in.  [default: in SimWorlds' own]")
-@click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="Ask nothing that might cost more.")
-@click.option("--price", metavar="IN/OUT", help="Dollars per million tokens, of a model that is in no list.")
-@click.option("--dry-run", is_flag=True, help="Show what would be asked, and what it can cost; ask nobody.")
+@click.option("--cache", type=_PATH, help="Folder of cached answers.  [default: in SimWorlds' cache]")
+@click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="Stop before it could cost more.")
+@click.option(
+    "--price", metavar="IN/OUT", help="Dollars per million tokens, for a model without a list price."
+)
+@click.option("--dry-run", is_flag=True, help="Show the questions and what they can cost; call no model.")
 def judge(frames: tuple[Path, ...], **given: Any) -> None:
-    """Judge FRAMES by a prompt: pictures from the first to the last of a film, evenly spread; of a still, one.
+    """Judge FRAMES by a prompt: evenly spaced frames of a film, from first to last; for a still, one.
 
-    A model lists what the prompt asks for, then says of each item whether the frames show it. Needs a key
-    (ANTHROPIC_API_KEY or OPENAI_API_KEY); with --dry-run, none. Without frames, a dry run assumes five of them; without
-    a prompt, it tells what all scenes of the benchmark would cost for one system. Nothing is asked twice.
+    A model lists what the prompt asks for, then says for each item whether the frames show it. This needs a key
+    (ANTHROPIC_API_KEY or OPENAI_API_KEY), except with --dry-run. A dry run without frames assumes five; without a
+    prompt, it shows what all scenes of the benchmark would cost for one system. Answers are cached.
 
-    Exit code 0: judged, well or badly. 2: not judged, and the reason is told.
+    Exit code 0: judged, whatever the score. 2: not judged; the reason is printed.
     """
     from bench.judge.errors import NotJudged  # noqa: PLC0415 - not for --help
     from bench.judge.providers import DEFAULTS  # noqa: PLC0415
@@ -67,12 +69,12 @@ def judge(frames: tuple[Path, ...], **given: Any) -> None:
         click.echo(f"Not judged ({error.reason}): {error}", err=True)
         sys.exit(2)
     except KeyboardInterrupt:
-        click.echo("Interrupted. What was answered is kept.", err=True)
+        click.echo("Interrupted. Complete answers are cached.", err=True)
         sys.exit(130)
 
 
 def _wanted(frames: Sequence[Path], given: dict[str, Any]) -> Asked | None:
-    """What is to be judged; None where nothing is named."""
+    """The judgement that is requested; None without a scene or prompt."""
     from bench.judge.estimate import Asked  # noqa: PLC0415 - not for --help
 
     if given["scene"] is not None and given["prompt"] is not None:
@@ -84,7 +86,7 @@ def _wanted(frames: Sequence[Path], given: dict[str, Any]) -> Asked | None:
     spec = chosen_spec(given["scene"])
     static = spec.category == "static"
     if given["static"] and not static:
-        raise click.UsageError(f"{spec.id} is no still.")
+        raise click.UsageError(f"{spec.id} is not a static scene; leave out --static.")
     return Asked(spec.prompt, static, frames, spec.id)
 
 
@@ -104,7 +106,7 @@ def _own_cache() -> Path:
 
 
 def _tell(doing: object) -> None:
-    """Says on a terminal what is being done; elsewhere, nothing: it takes seconds."""
+    """Prints progress on a terminal; elsewhere nothing, since it takes seconds only."""
     if sys.stderr.isatty():
         click.echo(f"{doing} …", err=True)
 
@@ -169,7 +171,7 @@ def _as_json(
     }
 
 
-# Asking nobody
+# Dry run
 
 
 def _dry_run(wanted: Asked | None, given: dict[str, Any]) -> None:

@@ -21,20 +21,24 @@ _PATH = click.Path(path_type=Path)
 
 @click.command()
 @click.argument("results", type=_PATH, nargs=-1, required=True)
-@click.option("--baseline", metavar="SYSTEM", help="Compare all others with this one.  [default: the first]")
 @click.option(
-    "--html", type=_PATH, help="Write the page with every scene.  [default: report.html in the first RESULTS]"
+    "--baseline", metavar="SYSTEM", help="Compare all other systems with this one.  [default: the first]"
 )
-@click.option("--markdown", type=_PATH, help="Write the tables.")
 @click.option(
-    "--json", "as_json", type=_PATH, help="Write the numbers; '-' prints them instead of the tables."
+    "--html",
+    type=_PATH,
+    help="Where to write the page with every scene.  [default: report.html in the first RESULTS]",
 )
-@click.option("--paper", is_flag=True, help="Show the paper's published figures beside.")
+@click.option("--markdown", type=_PATH, help="Write the tables to this file.")
+@click.option(
+    "--json", "as_json", type=_PATH, help="Write the figures as JSON; '-' prints them instead of the tables."
+)
+@click.option("--paper", is_flag=True, help="Add the paper's published figures.")
 def report(results: tuple[Path, ...], **given: Any) -> None:
     """Print the tables of RESULTS, folders that 'bench run' wrote, and write a page with every scene.
 
-    The paper's Table 1 with 95 % intervals, coverage, systems compared by paired tests, ablations, cost. On the page:
-    frames, scores, what failed with the values seen, and what the judge said.
+    The tables: the paper's Table 1 with 95 % intervals, coverage, paired comparisons of systems, ablations, cost. The
+    page also has frames, scores, failed checks with the values seen, and the judge's verdicts.
     """
     from bench.markdown_tables import table  # noqa: PLC0415 - not for --help
     from bench.results.notes import notes  # noqa: PLC0415
@@ -44,7 +48,7 @@ def report(results: tuple[Path, ...], **given: Any) -> None:
     if given["baseline"] is not None and found.system(given["baseline"]) is None:
         names = ", ".join(system.name for system in found.systems)
         raise click.UsageError(
-            f"There is no system {given['baseline'][:80]!r} in these results; there are {names}."
+            f"There is no system {given['baseline'][:80]!r} in these results. Choose one of: {names}."
         )
     told = tables(found, baseline=given["baseline"], with_paper=given["paper"])
     said = notes(found)
@@ -67,38 +71,44 @@ def report(results: tuple[Path, ...], **given: Any) -> None:
 @click.command()
 @click.argument("results", type=_PATH, nargs=-1, required=True)
 @click.option(
-    "--systems", type=click.IntRange(1, 10_000), default=10, show_default=True, help="How many of them."
+    "--systems", type=click.IntRange(1, 10_000), default=10, show_default=True, help="Number of systems."
 )
-@click.option("--machines", type=click.IntRange(1, 100_000), default=20, show_default=True)
+@click.option(
+    "--machines",
+    type=click.IntRange(1, 100_000),
+    default=20,
+    show_default=True,
+    help="Number of machines.",
+)
 @click.option(
     "--jobs",
     type=click.IntRange(1, 256),
     default=2,
     show_default=True,
-    help="Scenes at a time on each machine.",
+    help="Scenes in parallel on each machine.",
 )
 @click.option(
     "--making",
     type=click.FloatRange(0),
     metavar="MINUTES",
-    help="What a system takes for a scene, instead of what was measured.",
+    help="Time that a system takes per scene, instead of the measured one.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def estimate(results: tuple[Path, ...], **given: Any) -> None:
-    """Tell how long all scenes take by many systems on many machines, from the times that RESULTS measured."""
+    """Estimate how long all scenes take for many systems on many machines, from the times measured in RESULTS."""
     from bench.results.estimate import estimate as run  # noqa: PLC0415 - not for --help
 
     making = given["making"] * 60 if given["making"] is not None else None
     sizes = {"systems": given["systems"], "machines": given["machines"], "at_a_time": given["jobs"]}
     found = run(_read(results), **sizes, making=making)
     if found is None:
-        click.echo("Error: no scene in these results was scored, so no time is known.", err=True)
+        click.echo("Error: no scene in these results was scored, so there are no measured times.", err=True)
         sys.exit(2)
     click.echo(json.dumps(asdict(found), indent=1) if given["as_json"] else "\n".join(_estimated(found)))
 
 
 def _read(folders: Sequence[Path]) -> Results:
-    """The results; ends the command where there are none."""
+    """The results; ends the command with exit code 2 if there are none."""
     from bench.results.scores import read_results  # noqa: PLC0415 - not for --help
     from bench.scenes.spec import BadSpec  # noqa: PLC0415
 
@@ -111,13 +121,13 @@ def _read(folders: Sequence[Path]) -> Results:
         for fault in found.faults:
             click.echo(fault, err=True)
         where = ", ".join(map(str, folders))
-        click.echo(f"Error: there are no results in {where}. 'simworlds bench run' makes them.", err=True)
+        click.echo(f"Error: there are no results in {where}. Make some with 'simworlds bench run'.", err=True)
         sys.exit(2)
     return found
 
 
 def _plain(text: str) -> str:
-    """Without what a terminal would act on: results may be anybody's."""
+    """A text without control characters, which results from anybody may contain."""
     return "".join(char if char.isprintable() or char == "\n" else " " for char in text)
 
 
@@ -136,7 +146,7 @@ def _write(path: Path, text: str) -> None:
 
 
 def _numbers(results: Results, baseline: str | None, said: Sequence[str]) -> dict[str, Any]:
-    """All figures as data, with how they were drawn."""
+    """All figures as data, with the settings of their statistics."""
     from bench.results import statistics  # noqa: PLC0415 - not for --help
     from bench.results.figures import ablations, comparisons, figures_of  # noqa: PLC0415
     from bench.results.scores import METRICS  # noqa: PLC0415
@@ -167,13 +177,13 @@ def _numbers(results: Results, baseline: str | None, said: Sequence[str]) -> dic
 
 
 def _estimated(found: Estimate) -> Iterator[str]:
-    yield f"measured: {found.measured} of {found.scenes} scenes; the others as their category, or as all"
+    yield f"times measured for {found.measured} of {found.scenes} scenes; the others get their category's mean"
     steps = {"produced": "making", "audited": "audit", "framed": "frames", "judged": "judge"}
     parts = ", ".join(f"{steps[step]} {_told(seconds)}" for step, seconds in found.work.items() if seconds)
     yield f"{found.scenes} scenes by one system, one after the other: {_told(found.one)} ({parts})"
     workers = found.machines * found.at_a_time
     yield (
-        f"{found.systems} systems on {found.machines} machines, {found.at_a_time} scenes at a time on each: "
+        f"{found.systems} systems on {found.machines} machines, {found.at_a_time} scenes in parallel on each: "
         f"{_told(found.together)}; the longest scene takes {_told(found.longest)}"
     )
     yield f"that is {found.systems * found.one / 3600:.1f} hours of work for {workers} workers"

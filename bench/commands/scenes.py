@@ -19,7 +19,7 @@ _WIDTH = 100
 
 
 def chosen_spec(name: str) -> Spec:
-    """The scene of that id, or in that YAML file; ends the command with code 2 if there is none."""
+    """The scene of that id, or in that YAML file; ends the command with exit code 2 if there is none."""
     try:
         path = Path(name)
         return read_spec(path) if path.suffix in (".yaml", ".yml") else spec_of(name)
@@ -39,7 +39,7 @@ def _near(name: str) -> str:
 
 
 @click.command("list")
-@click.option("--category", type=click.Choice(CATEGORIES), help="Only these.")
+@click.option("--category", type=click.Choice(CATEGORIES), help="Only scenes of this category.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_scenes(category: str | None, as_json: bool) -> None:
     """List the benchmark's scenes: id, how many actors, checks and relations, and the prompt."""

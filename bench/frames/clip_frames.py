@@ -1,9 +1,8 @@
-"""Frames for judge and page: five of a clip (at 0, 25, 50, 75, 100 %), one of a static scene (paper, on its judge).
+"""Frames for the judge and the report: five of a clip (0, 25, 50, 75, 100 %), one of a static scene (see the paper).
 
-A .blend is rendered by Cycles with few samples and a denoiser: Workbench knows neither light nor materials, which the
-judge is asked about, and EEVEE needs a graphics card. That happens in a Blender of its own, confined, see
-``bench.audit.untrusted_blend``. A video or a picture is decoded in a confined process, too. Whatever
-comes out of either is made anew from its pixels.
+A .blend is rendered by Cycles with few samples and a denoiser: Workbench shows no lights and materials, which are
+judged, and EEVEE needs a graphics card. It runs in a sandboxed Blender, see ``bench.audit.untrusted_blend``. A video or
+a picture is decoded in a sandboxed process, too. The output of either is re-encoded from its pixels.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
-SECONDS = 300.0  # for all frames of one file
+SECONDS = 300.0  # time limit for all frames of one file
 _LONGEST_SIDE = 1280  # pixels of a frame of a video
 _MOST_PIXELS = 60_000_000
 Source = Literal["blend", "video", "picture"]
@@ -36,7 +35,7 @@ Source = Literal["blend", "video", "picture"]
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """How a .blend is rendered: about so many ``pixels``, in the scene's own proportions, and ``samples`` of each."""
+    """How a .blend is rendered: about ``pixels`` pixels, in the scene's own proportions, with ``samples`` per pixel."""
 
     pixels: int = 480 * 270
     samples: int = 16
@@ -44,7 +43,7 @@ class Look:
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """Frames as PNG files, and in words what is to be known of them (a camera that was made, physics without bake)."""
+    """Frames as PNG files, and notes on them in words (an added camera, unbaked physics)."""
 
     source: Source
     paths: tuple[Path, ...]
@@ -59,7 +58,7 @@ class _Frame(BaseModel):
 
 
 class _Rendered(BaseModel):
-    """What ``bench/audit/inside/frames.py`` answers."""
+    """The reply of ``bench/audit/inside/frames.py``."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -76,18 +75,18 @@ def frames_of(source: Path, static: bool, folder: Path) -> tuple[Path, ...]:
 def take_frames(
     source: Path, static: bool, folder: Path, look: Look | None = None, means: Means | None = None
 ) -> Taken:
-    """As ``frames_of``, with what is to be known of them. Raises NotScored, CannotStart where no Blender works."""
+    """As ``frames_of``, with notes. Raises NotScored, or CannotStart if no Blender works."""
     shares = SHARES[:1] if static else SHARES
     kind = kind_of(source)
     if kind == "blend":
         return _of_blend(source, shares, folder, look or Look(), means or Means(seconds=SECONDS))
     if kind == "picture" and not static:
-        raise NotScored("a picture shows no clip")
+        raise NotScored("a picture has one frame only; a clip needs a video or a .blend")
     return Taken(kind, tuple(_kept(folder, shares, video.pictures(source, shares))))
 
 
 def kind_of(source: Path) -> Source:
-    """What a file is by its name."""
+    """The kind of a file, by its name."""
     suffix = source.suffix.lower()
     if suffix == ".blend":
         return "blend"
@@ -95,7 +94,7 @@ def kind_of(source: Path) -> Source:
 
 
 def _of_blend(blend: Path, shares: Sequence[float], folder: Path, look: Look, means: Means) -> Taken:
-    """Rendered as the whole clip would be; where that takes too long, or Blender does not survive it, by jumps."""
+    """Renders with unbaked physics simulated; if that takes too long or Blender ends, again without that physics."""
     notes: list[str] = []
     try:
         rendered = _rendered(blend, shares, look, means, jump=False)
@@ -105,11 +104,11 @@ def _of_blend(blend: Path, shares: Sequence[float], folder: Path, look: Look, me
             rendered = _rendered(blend, shares, look, means, jump=True)
         except NotScored:
             raise first from None
-        notes.append(f"frames stand alone, without physics that is not baked ({why})")
+        notes.append(f"rendered without unbaked physics, after a first try failed ({why})")
     else:
-        notes += [f"simulated while it was rendered: {each}" for each in rendered.unbaked]
+        notes += [f"not baked, simulated while rendering: {each}" for each in rendered.unbaked]
     if rendered.camera is None:
-        notes.append("the scene has no camera; one was made that sees all of it")
+        notes.append("the scene has no camera; one that sees all of it was added")
     return Taken("blend", tuple(_kept(folder, shares, _contents(rendered))), tuple(notes))
 
 
@@ -125,9 +124,9 @@ def _rendered(blend: Path, shares: Sequence[float], look: Look, means: Means, *,
     try:
         rendered = _Rendered.model_validate(answer)
     except ValidationError:
-        raise NotScored("what was rendered of it makes no sense") from None
+        raise NotScored("Blender's reply after rendering it was not valid") from None
     if len(rendered.frames) != len(shares):
-        raise NotScored("what was rendered of it is not what was asked for")
+        raise NotScored(f"Blender rendered {len(rendered.frames)} frames of it instead of {len(shares)}")
     return rendered
 
 
@@ -135,11 +134,11 @@ def _contents(rendered: _Rendered) -> list[bytes]:
     try:
         return [base64.b64decode(each.png, validate=True) for each in rendered.frames]
     except (binascii.Error, ValueError):
-        raise NotScored("what was rendered of it is no picture") from None
+        raise NotScored("a rendered frame of it is not a picture") from None
 
 
 def _kept(folder: Path, shares: Sequence[float], contents: Sequence[bytes]) -> list[Path]:
-    """Writes the pictures, by their share of the clip in per cent; others that lie there go. Raises NotScored."""
+    """Writes the pictures, named after their per cent of the clip, and deletes older ones. Raises NotScored."""
     pictures = [_anew(content) for content in contents]
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{round(100 * share):03}.png" for share in shares]
@@ -151,7 +150,7 @@ def _kept(folder: Path, shares: Sequence[float], contents: Sequence[bytes]) -> l
 
 
 def _anew(content: bytes) -> bytes:
-    """A PNG of the same pixels and nothing else, no larger than is looked at. Raises NotScored."""
+    """A PNG of the same pixels and nothing else, shrunk to the size that is judged. Raises NotScored."""
     try:
         with (
             warnings.catch_warnings(action="error"),
@@ -162,8 +161,8 @@ def _anew(content: bytes) -> bytes:
             plain = image.convert("RGB")
     except NotScored:
         raise
-    except Exception:  # a file that is no picture fails in any way
-        raise NotScored("a frame is no picture") from None
+    except Exception:  # a broken file can raise anything
+        raise NotScored("a frame is not a picture") from None
     plain.thumbnail((_LONGEST_SIDE, _LONGEST_SIDE))
     made = io.BytesIO()
     plain.save(made, "PNG")

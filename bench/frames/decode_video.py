@@ -1,6 +1,6 @@
-"""``python -I decode.py FILE FOLDER SHARES``: writes the pictures at ``SHARES`` (JSON) of a video as FOLDER/0.png, ….
+"""``python -I decode_video.py FILE FOLDER SHARES``: writes a video's frames at ``SHARES`` (JSON) as FOLDER/0.png, ….
 
-Runs by itself, confined, see ``bench.frames.video``. Of a picture file, the picture.
+A picture file gives the same picture for each share. Runs as a sandboxed script, see ``bench.frames.video``.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ _SIDE = 1280  # pixels
 
 
 def main(words: list[str]) -> None:
-    """Decodes twice: how many frames there are is known only when all have been seen."""
+    """Decodes twice: the number of frames is known only after the first pass."""
     source, folder = Path(words[0]), Path(words[1])
     shares: list[float] = json.loads(words[2])
     if source.suffix.lower() in {".png", ".jpg", ".jpeg", ".webp"}:
         return _keep_picture(source, folder, len(shares))
     count = sum(1 for _ in _frames(source))
     if not count:
-        sys.exit("there is no frame in it")
+        sys.exit("it has no frames")
     wanted = [round(share * (count - 1)) for share in shares]
     for number, frame in enumerate(_frames(source)):
         if number in wanted:
@@ -43,7 +43,7 @@ def _frames(source: Path) -> Iterator[Any]:
 
     with av.open(str(source)) as container:
         if not container.streams.video:
-            sys.exit("there is no video in it")
+            sys.exit("it has no video stream")
         stream = container.streams.video[0]
         if stream.width * stream.height > _MOST_PIXELS:
             sys.exit(f"{stream.width} by {stream.height} pixels are too many")

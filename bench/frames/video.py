@@ -1,8 +1,8 @@
-"""Pictures out of a video, or of a picture file, that nobody trusts.
+"""Frames of an untrusted video or picture file.
 
-Decoders are large programs that read what strangers write. They run in a process of their own (``decode_video.py``),
-confined as Blender is: no network, no second process, nothing to read but the file, nothing to write but one folder,
-limits of memory and time.
+Decoders are large programs that parse untrusted data. They run in their own process (``decode_video.py``), sandboxed
+like Blender: no network, no child process, read access to the file only, write access to one folder, limits of memory
+and time.
 """
 
 from __future__ import annotations
@@ -31,12 +31,14 @@ _LARGEST = 256 << 20  # bytes of a picture
 
 
 def pictures(source: Path, shares: Sequence[float]) -> list[bytes]:
-    """The pictures (PNG) at ``shares`` (0 to 1) of a video, or the one of a picture file. Raises NotScored."""
+    """The frames (PNG) at ``shares`` (0 to 1) of a video, or a picture file as a frame. Raises NotScored."""
     path = source.expanduser().resolve()
     if not path.is_file():
-        raise NotScored(f"there is no {source.name}")
+        raise NotScored(f"there is no file {source.name}")
     if path.suffix.lower() not in PICTURES and find_spec("av") is None:
-        raise NotScored("frames of a video need the package av: install simworlds with its extra 'video'")
+        raise NotScored(
+            "reading a video needs the package av: install it with pip install 'simworlds[video]'"
+        )
     with tempfile.TemporaryDirectory(prefix="simworlds-frames-", ignore_cleanup_errors=True) as place:
         folder = Path(place).resolve()
         _decode(path, shares, folder)
@@ -52,7 +54,9 @@ def _decode(path: Path, shares: Sequence[float], folder: Path) -> None:
             command, environment=clean_environment(folder), timeout=SECONDS, log=folder / "log", folder=folder
         )
     except CommandTimedOut:
-        raise NotScored(f"{path.name} was still being decoded when its {SECONDS:g} s were over") from None
+        raise NotScored(
+            f"{path.name} was still being decoded after the time limit of {SECONDS:g} s"
+        ) from None
     except CommandFailed as error:
         reason = error.tail.splitlines()[-1][:200] if error.tail else str(error)
         raise NotScored(f"{path.name} cannot be decoded: {reason}") from error
@@ -62,7 +66,7 @@ def _read(path: Path) -> bytes:
     """What the process wrote, if it is a plain file."""
     try:
         if path.is_symlink() or not path.is_file() or path.stat().st_size > _LARGEST:
-            raise NotScored("what was decoded is no picture")
+            raise NotScored("a decoded frame is not a picture")
         return path.read_bytes()
     except OSError as error:
-        raise NotScored(f"what was decoded cannot be read: {error.strerror or error}") from error
+        raise NotScored(f"a decoded frame cannot be read: {error.strerror or error}") from error

@@ -1,9 +1,9 @@
-"""How far repeated judgements of the same frames agree: item by item, by dimension, and over all.
+"""How far repeated judgements of the same frames agree: by item, by dimension, and overall.
 
 Fleiss' kappa for two categories: with n judgements of each of N items, and k_i of them positive, observed agreement is
 the mean over items of (k_i (k_i - 1) + (n - k_i)(n - k_i - 1)) / (n (n - 1)), agreement by chance p² + (1 - p)² with p
-the share of all verdicts that are positive, and kappa is (observed - chance) / (1 - chance). Where all verdicts are the
-same, chance explains everything and kappa is not defined; observed agreement is then 1, which is why both are told.
+the share of all verdicts that are positive, and kappa is (observed - chance) / (1 - chance). If all verdicts are the
+same, kappa is not defined while observed agreement is 1, so both are reported.
 (J. L. Fleiss, "Measuring nominal scale agreement among many raters", 1971.)
 """
 
@@ -23,10 +23,10 @@ _DIGITS = 6
 
 
 class Agreed(BaseModel):
-    """Of one dimension, or of all together.
+    """The agreement on one dimension, or on all items.
 
-    ``pairwise``: the share of pairs of judgements that say the same of an item, over all items. ``mean`` and ``sd``
-    (of a sample) are those of the score. None: not defined.
+    ``pairwise``: the share of pairs of judgements that agree on an item, over all items. ``mean`` and ``sd`` (of a
+    sample) are those of the score. None: not defined.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -39,7 +39,7 @@ class Agreed(BaseModel):
 
 
 class Agreement(BaseModel):
-    """``shares``: item → the share of judgements by which it holds."""
+    """The agreement of repeated judgements. ``shares``: item → the share of judgements in which it holds."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -50,12 +50,12 @@ class Agreement(BaseModel):
 
 
 def agreement(judgements: Sequence[Judgement]) -> Agreement:
-    """The agreement of at least two judgements of the same items. Raises ValueError for others."""
+    """The agreement of at least two judgements of the same items. Raises ValueError otherwise."""
     if len(judgements) < 2:
-        raise ValueError("agreement takes at least two judgements")
+        raise ValueError("agreement needs at least two judgements")
     first = judgements[0]
     if any(_asked(one.dimensions) != _asked(first.dimensions) for one in judgements):
-        raise ValueError("agreement takes judgements of the same items")
+        raise ValueError("agreement needs judgements of the same items")
     count = len(judgements)
     held = {
         name: [sum(one.dimensions[name][place].holds for one in judgements) for place in range(len(items))]
@@ -88,7 +88,7 @@ def observed_agreement(held: Sequence[int], count: int) -> float | None:
 
 
 def fleiss_kappa(held: Sequence[int], count: int) -> float | None:
-    """Fleiss' kappa of binary verdicts: of item i, ``held[i]`` of ``count`` are positive. None where not defined."""
+    """Fleiss' kappa of binary verdicts: for item i, ``held[i]`` of ``count`` are positive. None if not defined."""
     observed = observed_agreement(held, count)
     verdicts = count * len(held)
     if observed is None or sum(held) in (0, verdicts):

@@ -1,7 +1,7 @@
-"""What was asked and answered, kept by content: a file for each answer, written whole or not at all.
+"""A cache of answers, keyed by the content of the question: one file per answer, written atomically.
 
-An entry carries the digest of what it holds; one that does not fit it (half written, changed, of another shape) is as
-good as none, and is written anew. Who wants an answer that another process is just asking for waits for it.
+An entry has the digest of its value; an entry that does not match (damaged, edited, of another shape) is ignored and
+replaced. If another process is asking the same question, callers wait for its answer.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ _LOG = logging.getLogger(__name__)
 
 
 def key_of(ingredients: Mapping[str, object]) -> str:
-    """The SHA-256 of what an answer depends on."""
+    """The SHA-256 of everything that an answer depends on."""
     return hashlib.sha256(json.dumps(ingredients, sort_keys=True).encode()).hexdigest()
 
 
 class Store:
-    """A folder of answers. Without one, nothing is kept."""
+    """A folder of answers. Without a folder, nothing is kept."""
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = None if folder is None else folder.expanduser().absolute()
 
     def kept(self, kind: str, key: str, shape: type[M]) -> M | None:
-        """What is kept under a key, if it is sound."""
+        """The valid answer for a key, or None."""
         if self._folder is None:
             return None
         try:
@@ -48,9 +48,9 @@ class Store:
             return None
 
     def once(self, kind: str, key: str, shape: type[M], make: Callable[[], M]) -> M:
-        """What is kept under a key, or else what ``make`` gives, which is then kept.
+        """The answer for a key; if there is none, calls ``make`` and keeps its result.
 
-        Raises NotJudged, before anything is made, where nothing can be kept.
+        Raises NotJudged, before calling ``make``, if the folder cannot be written.
         """
         if self._folder is None:
             return make()
@@ -67,7 +67,7 @@ class Store:
 
     @contextmanager
     def _alone(self, key: str) -> Generator[None]:
-        """Holds the keys that begin as this one does, for one thread of one process."""
+        """Locks the keys with the same first two letters for one thread of one process."""
         import fcntl  # noqa: PLC0415 - not on Windows
 
         assert self._folder is not None
@@ -75,20 +75,22 @@ class Store:
             (self._folder / "locks").mkdir(parents=True, exist_ok=True)
             file = (self._folder / "locks" / key[:2]).open("w")
         except OSError as error:
-            raise NotJudged("cache", f"{self._folder} cannot keep answers: {error.strerror}.") from error
+            raise NotJudged(
+                "cache", f"Cannot keep answers in {self._folder}: {error.strerror}. Choose another --cache."
+            ) from error
         with file:
             fcntl.flock(file, fcntl.LOCK_EX)
             yield
 
     def _write(self, path: Path, value: BaseModel) -> None:
-        """An answer that cannot be kept is an answer all the same: it was paid for."""
+        """Writes an answer; if that fails, it only warns, since the answer is paid for and valid."""
         plain = value.model_dump(mode="json")
         written = json.dumps(plain, sort_keys=True)
         text = json.dumps({"sha256": _sha256(written), "value": plain}, indent=1, ensure_ascii=False)
         try:
             write_whole(path, text)
         except OSError as error:
-            _LOG.warning("%s cannot be written, so this will be asked again: %s", path, error.strerror)
+            _LOG.warning("Cannot write %s, so this question will be asked again: %s", path, error.strerror)
 
 
 def _sha256(text: str) -> str:

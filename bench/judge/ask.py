@@ -1,4 +1,4 @@
-"""One question, asked until its answer is one, and what that used up."""
+"""Asks a model one question, again if the answer is not valid, and counts the cost."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 TRIES = 3
-"""How often an answer may be wrong."""
+"""Attempts at a valid answer."""
 _REASONS: tuple[tuple[type[ModelError], Reason], ...] = (
     (OverBudget, "over budget"),
     (Refused, "refused"),
@@ -31,7 +31,7 @@ _REASONS: tuple[tuple[type[ModelError], Reason], ...] = (
 
 @dataclass(frozen=True, slots=True)
 class Answered(Generic[T]):
-    """What was answered, by which model (as the provider names it), and what all tries together used up."""
+    """The answer, the model that gave it (as the provider names it), and the cost of all attempts."""
 
     value: T
     by: str
@@ -39,7 +39,7 @@ class Answered(Generic[T]):
 
 
 def asked(provider: Provider, ask: Ask, reader: Reader[T]) -> Answered[T]:
-    """Asks; an answer that ``reader`` does not take goes back with what is wrong, a few times. Raises NotJudged."""
+    """Asks a question; an invalid answer goes back with its faults, up to TRIES times in all. Raises NotJudged."""
     spending = Spending(prices=provider.prices)
     try:
         found = ask_for(Metered(provider, spending), ask, reader, tries=TRIES)
@@ -57,7 +57,7 @@ def _reason(error: ModelError) -> Reason:
 
 def _words(error: ModelError) -> str:
     if isinstance(error, Misfit):
-        return f"The answer was none, {TRIES} times: {' '.join(str(error).split())}"[:600]
+        return f"All {TRIES} answers were invalid. The last: {' '.join(str(error).split())}"[:600]
     return str(error)
 
 

@@ -1,4 +1,4 @@
-"""What is judged (paper, "Itemized VLM judge"): three dimensions with items of the prompt, two with fixed ones."""
+"""The judged dimensions (paper, "Itemized VLM judge"): three with items from the prompt, two with fixed items."""
 
 from __future__ import annotations
 
@@ -30,5 +30,5 @@ CHECKLISTS: dict[Dimension, tuple[str, ...]] = {
 
 
 def dimensions(*, static: bool) -> tuple[Dimension, ...]:
-    """The dimensions of a scene: in a still, nothing happens."""
+    """The dimensions of a scene; a still has no actions."""
     return tuple(one for one in DIMENSIONS if not (static and one == "actions_visible"))

@@ -1,4 +1,4 @@
-"""Why there is no judgement. That is never a low score: nothing was judged."""
+"""The error for a missing judgement, which is never a low score."""
 
 from __future__ import annotations
 
@@ -7,21 +7,23 @@ from typing import Literal
 from bench.judge.usage import Spent
 
 Reason = Literal[
-    "prompt",  # there are no words to judge by
-    "frames",  # the frames cannot be shown
-    "cache",  # what was asked cannot be kept
+    "prompt",  # it is empty or too long
+    "frames",  # they cannot be read, or are too few or too many
+    "cache",  # answers cannot be kept
     "not set up",  # no key, or a package is missing
-    "over budget",  # it might cost more than may be spent
-    "rejected",  # the provider does not take the request
-    "unreachable",  # the provider gives no whole answer
+    "over budget",  # it might cost more than allowed
+    "rejected",  # the provider rejects the request
+    "unreachable",  # the provider gives no complete answer
     "refused",  # the model declined
-    "cut short",  # the answer ran into its limit
-    "malformed",  # the answer is not what was asked for, however often
+    "cut short",  # the answer reached its length limit
+    "malformed",  # all answers were invalid
 ]
+
+NO_OPENAI_PACKAGE = "The openai package is not installed. Install it with: pip install 'simworlds[openai]'"
 
 
 class NotJudged(Exception):  # noqa: N818 - reads as the state it names
-    """No judgement; the message says why and what to do. ``spent`` is what was used up all the same."""
+    """There is no judgement; the message says why and what to do. ``spent``: what it cost nevertheless."""
 
     def __init__(self, reason: Reason, message: str, spent: Spent | None = None) -> None:
         self.reason: Reason = reason

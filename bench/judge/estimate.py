@@ -1,7 +1,7 @@
-"""What a judgement would ask, how many tokens that is by estimate, and what it can cost; asks nobody.
+"""Dry run of a judgement: its questions, their estimated tokens, and what they can cost; no model is called.
 
-Tokens are estimated as everywhere in this project, rather too many (``simworlds.llm.tokens``). Nobody knows beforehand
-how long an answer is: the cost that is told is that of the question alone, and the most with the longest answer.
+Estimates of tokens tend to be too high (``simworlds.llm.tokens``). Since the length of an answer is unknown, the cost
+is given without the answer, and with the longest possible answer.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
     from simworlds.llm.prices import Prices
 
 ASSUMED_ITEMS = 20
-"""Of a prompt whose items nobody has listed yet, beside the fixed ones."""
+"""For a prompt whose items are not listed yet, beside the fixed ones."""
 ASSUMED_FRAMES = 5
 ASSUMED_SIZE = (1280, 720)
 _ITEM_TOKENS = 30
 
 
 class Question(BaseModel):
-    """A question, as it would be asked ``times`` times now; 0: the answer is kept.
+    """A question that would be asked ``times`` times now; 0 if the answer is cached.
 
-    ``said`` are the texts of the user's message, pictures in brackets. Costs are US dollars for one time, None where
-    no price is known: ``cost`` without the answer, ``most`` with the longest.
+    ``said``: the texts of the user's message, with pictures in brackets. Costs are US dollars per time, None if no
+    price is known: ``cost`` without the answer, ``most`` with the longest one.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -59,9 +59,9 @@ class Question(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What a judgement is wanted of. Without ``frames``, five (of a still, one) of a usual size are assumed.
+    """A request for a judgement; ``scene`` is its label.
 
-    ``scene`` is its label.
+    A dry run without ``frames`` assumes five (for a still, one) of ASSUMED_SIZE.
     """
 
     prompt: str
@@ -100,9 +100,7 @@ def _question(ask: Ask, model: str, prices: Prices, times: int, more: int = 0) -
     blocks = [block for message in ask.messages for block in message.content]
     said = [_told(block) for block in blocks if isinstance(block, (Text, Picture))]
     if more:
-        said.append(
-            f"[and the items that the first answer lists: {ASSUMED_ITEMS}, about {more} tokens, are assumed]"
-        )
+        said.append(f"[the items of the first answer: assumed to be {ASSUMED_ITEMS}, about {more} tokens]")
     return Question(
         stage=ask.stage,
         times=times,

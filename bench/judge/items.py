@@ -1,7 +1,7 @@
-"""What of a prompt is judged: its items, listed once from its words alone, so that every result has the same.
+"""The items of a prompt, which are what is judged: listed once, from the prompt alone, and shared by all results.
 
-Each item stands on words of the prompt. What a model lists is held to that: a list with an item that the prompt does
-not bear out, with the same item twice, or without end, goes back with what is wrong.
+Each item quotes words of the prompt. A model's list is checked: with an item that the prompt does not support, a
+repeated item or too many items, it goes back with its faults.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict
 
+from bench.judge.anchor_words import content_stems
 from bench.judge.answer_cache import key_of
 from bench.judge.ask import asked
 from bench.judge.dimensions import CHECKLISTS, Dimension, dimensions
 from bench.judge.questions import Enumeration, Named, enumeration, prompt_version
 from bench.judge.usage import Spent
-from kb_build.index.analysis import terms
 from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from bench.judge.providers import Provider
 
 MOST = 40
-"""Items of one list; the longest prompt names half as many things."""
-_LONGEST_QUOTE = 25  # words; more is no anchor
+"""Items of one list; the longest prompt names half as many."""
+_LONGEST_QUOTE = 25  # words
 _LONGEST_TEXT = 240
 _WORD = re.compile(r"\w+(?:['’-]\w+)*")
 _ARTICLES = frozenset({"a", "an", "the"})
@@ -40,7 +40,7 @@ _LISTS: dict[Dimension, str] = {
 
 
 class Anchored(BaseModel):
-    """An item, and the words of the prompt that it stands on; of a fixed item, none."""
+    """An item, and the words of the prompt that it quotes; "" for a fixed item."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -51,7 +51,7 @@ class Anchored(BaseModel):
 
 
 class Items(BaseModel):
-    """All items of a prompt, who listed them (``provider/model``), and what that used up."""
+    """All items of a prompt, who listed them (``provider/model``), and what that cost."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -60,12 +60,12 @@ class Items(BaseModel):
     spent: Spent
 
     def texts(self) -> dict[str, str]:
-        """Id → what is to be judged."""
+        """Id → the statement to judge."""
         return {item.id: item.text for item in self.items}
 
 
 def items_of(prompt: str, *, static: bool, provider: Provider, store: Store) -> Items:
-    """The items of a prompt: those that are kept for it, whoever listed them, or a new list. Raises NotJudged."""
+    """The items of a prompt: the cached ones, whoever listed them, or a new list. Raises NotJudged."""
 
     def ask() -> Items:
         found = asked(provider, enumeration(prompt, static=static), reader_of(prompt, static=static))
@@ -76,22 +76,22 @@ def items_of(prompt: str, *, static: bool, provider: Provider, store: Store) -> 
 
 
 def kept_items(prompt: str, *, static: bool, store: Store) -> Items | None:
-    """The items that are kept for a prompt, if there are any; asks nobody."""
+    """The cached items of a prompt, or None; asks no model."""
     return store.kept("items", items_key(prompt, static=static), Items)
 
 
 def items_key(prompt: str, *, static: bool) -> str:
-    """The key of a prompt's list. Who lists is no part of it: judges that are compared judge the same items."""
+    """The cache key of a prompt's items. It leaves out the provider, so that all judges judge the same items."""
     return key_of({"prompt_version": prompt_version(), "prompt": prompt, "static": static})
 
 
 def one_line(text: str) -> str:
-    """What a model wrote, fit to be printed: in one line, without control characters."""
+    """A model's text for printing: in one line, without control characters."""
     return " ".join("".join(char if char.isprintable() else " " for char in text).split())
 
 
 def reader_of(prompt: str, *, static: bool) -> Any:
-    """Takes an Enumeration that the prompt bears out."""
+    """Accepts an Enumeration whose items the prompt supports."""
     shaped = fits(Enumeration)
 
     def reader(data: Any) -> tuple[Enumeration | None, Sequence[object]]:
@@ -119,40 +119,40 @@ def _numbered(found: Enumeration, *, static: bool) -> tuple[Anchored, ...]:
 
 def _faults(found: Enumeration, prompt: str, *, static: bool) -> Iterator[str]:
     if not found.objects:
-        yield "objects: there is none; a request names at least one thing."
+        yield "objects: the list is empty; list at least one."
     if static and found.actions:
-        yield "actions: in a still, nothing happens; leave the list empty."
+        yield "actions: nothing happens in a still; leave the list empty."
     if not static and not found.actions:
-        yield "actions: there is none; what happens in the film that is asked for?"
+        yield "actions: the list is empty; list what happens in the film."
     said = _plain(prompt)
     for name in _LISTS.values():
         named: Sequence[Named] = getattr(found, name)
         if len(named) > MOST:
-            yield f"{name}: {len(named)} items are too many; at most {MOST}."
+            yield f"{name}: {len(named)} items are too many; list at most {MOST}."
         seen: dict[tuple[str, ...], int] = {}
         for place, one in enumerate(named):
             for fault in _faults_of(one, said):
                 yield f"{name}[{place}]: {fault}"
             plain = tuple(word for word in _plain(one.text) if word not in _ARTICLES)
             if plain in seen:
-                yield f"{name}[{place}]: the same as {name}[{seen[plain]}]."
+                yield f"{name}[{place}]: it is the same as {name}[{seen[plain]}]."
             seen.setdefault(plain, place)
 
 
 def _faults_of(one: Named, said: Sequence[str]) -> Iterator[str]:
     quote = _plain(one.words)
-    if not terms(one.words) or not _contains(said, quote):
-        yield f"the words {one.words[:80]!r} are not in the request, in one piece."
+    if not content_stems(one.words) or not _contains(said, quote):
+        yield f"the words {one.words[:80]!r} are not in the request in one piece."
     elif len(quote) > _LONGEST_QUOTE:
-        yield f"{len(quote)} words are no anchor; quote at most {_LONGEST_QUOTE}."
-    elif not set(terms(one.words)) & set(terms(one.text)):
-        yield f"the item {one.text[:80]!r} uses none of the words {one.words[:80]!r} that it stands on."
+        yield f"the quotation has {len(quote)} words; quote at most {_LONGEST_QUOTE}."
+    elif not set(content_stems(one.words)) & set(content_stems(one.text)):
+        yield f"the item {one.text[:80]!r} uses none of the words {one.words[:80]!r} that it quotes."
     if len(one.text) > _LONGEST_TEXT:
         yield f"the text is too long ({len(one.text)} characters; at most {_LONGEST_TEXT})."
 
 
 def _plain(text: str) -> tuple[str, ...]:
-    """Words alone, in one case: how a quotation is set and what stands around it does not matter."""
+    """The words of a text in lower case, without punctuation."""
     return tuple(_WORD.findall(text.casefold()))
 
 

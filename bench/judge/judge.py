@@ -1,7 +1,7 @@
-"""Judges frames by a prompt: lists what the prompt asks for, once, then asks for a verdict on each item.
+"""Judges frames by a prompt: lists the prompt's items, once, then asks for a verdict on each item.
 
-The judge sees the prompt and the frames, and nothing else: no plan, no audit, no name of a file or a system. What was
-asked is kept by its content and never asked again, whenever the process ends; ``repetition`` asks once more on purpose.
+The judge sees only the prompt and the frames: no plan, no audit, no name of a file or a system. Answers are cached by
+content, so that nothing is asked twice; another ``repetition`` asks again.
 """
 
 from __future__ import annotations
@@ -38,15 +38,15 @@ def judge(  # noqa: PLR0913
     repetition: int = 0,
     tell: Callable[[str], object] = lambda _: None,
 ) -> Judgement:
-    """The judgement of a result by its frames, evenly spread over a film, first and last included; of a still, one.
+    """Judges a result by its frames: evenly spaced over a film, with the first and the last; for a still, one.
 
-    ``cache`` is the folder that answers are kept in. ``scene`` labels the judgement and is shown to nobody. ``tell``
-    hears what is being done. Raises NotJudged.
+    ``cache`` is the folder of cached answers. ``scene`` labels the judgement; no model sees it. ``tell`` is called with
+    progress. Raises NotJudged.
     """
     words = checked(prompt)
     shown = read_frames(frames, static=static)
     store = Store(cache)
-    tell("Listing what the prompt asks for")
+    tell("Listing the prompt's items")
     items = items_of(words, static=static, provider=provider, store=store)
     key = verdicts_key(
         words, items, shown, provider.name, provider.model, static=static, repetition=repetition
@@ -76,21 +76,19 @@ def judge(  # noqa: PLR0913
 
 
 def checked(prompt: str) -> str:
-    """A prompt as it is asked about. Raises NotJudged for one without words, or with too many."""
-    words = clean(" ".join(prompt.split()))
-    if not words:
-        raise NotJudged("prompt", "The prompt has no words to judge by.")
-    if len(words) > LONGEST_PROMPT:
-        raise NotJudged(
-            "prompt", f"The prompt has {len(words)} characters; at most {LONGEST_PROMPT} are judged."
-        )
-    return words
+    """A prompt with its whitespace normalized. Raises NotJudged for an empty or too long one."""
+    text = clean(" ".join(prompt.split()))
+    if not text:
+        raise NotJudged("prompt", "The prompt is empty.")
+    if len(text) > LONGEST_PROMPT:
+        raise NotJudged("prompt", f"The prompt has {len(text)} characters; the most is {LONGEST_PROMPT}.")
+    return text
 
 
 def verdicts_key(  # noqa: PLR0913
     prompt: str, items: Items, shown: Shown, provider: str, model: str, *, static: bool, repetition: int
 ) -> str:
-    """The key of the verdicts: all that they depend on, and how often they were asked for before."""
+    """The cache key of the verdicts: everything they depend on, and the repetition."""
     ingredients = {
         "prompt_version": prompt_version(),
         "provider": provider,

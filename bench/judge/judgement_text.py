@@ -1,4 +1,4 @@
-"""Judgements, their agreement and what they cost, in lines for people."""
+"""Formats judgements, their agreement and their cost as lines of text."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _WIDTH = 110
 
 
 def judgement_lines(judged: Sequence[Judgement], agreed: Agreement | None, spent: Row) -> Iterator[str]:
-    """Each judgement, how far they agree, and what was spent on them now."""
+    """Each judgement, how far they agree, and what they cost now."""
     for one in judged:
         yield from _judgement(one)
         yield ""
@@ -26,7 +26,7 @@ def judgement_lines(judged: Sequence[Judgement], agreed: Agreement | None, spent
         yield from _agreement(agreed)
         yield ""
     if not spent.calls:
-        yield "Nothing was asked now: all answers were kept."
+        yield "Nothing was asked now: all answers were cached."
     else:
         cost = None if spent.unpriced else spent.cost
         yield (
@@ -46,7 +46,7 @@ def _judgement(one: Judgement) -> Iterator[str]:
             yield from _item(item)
     yield ""
     yield (
-        f"score {_number(one.score)}   {_usd(one.cost)} and, once for the prompt, {_usd(one.items_cost)}; "
+        f"score {_number(one.score)}   {_usd(one.cost)}, plus {_usd(one.items_cost)} once for the prompt; "
         f"{one.usage.input:,} tokens in, {one.usage.output:,} out"
     )
 
@@ -63,7 +63,7 @@ def _agreement(agreed: Agreement) -> Iterator[str]:
         yield _agreed(name, one)
     split = {name: share for name, share in agreed.shares.items() if 0 < share < 1}
     if split:
-        yield f"not of one mind on {', '.join(f'{name} ({share:.2f})' for name, share in split.items())}"
+        yield f"disagreement on {', '.join(f'{name} ({share:.2f})' for name, share in split.items())}"
 
 
 def _agreed(name: str, one: Agreed) -> str:
@@ -76,12 +76,12 @@ def _number(value: float | None) -> str:
 
 
 def _usd(value: float | None) -> str:
-    return "price not known" if value is None else f"${value:.4f}"
+    return "price unknown" if value is None else f"${value:.4f}"
 
 
 def question_lines(one: Question) -> Iterator[str]:
-    """A question as it would be asked."""
-    times = "kept, not asked" if not one.times else f"asked {one.times} time{'s' if one.times > 1 else ''}"
+    """A question of a dry run."""
+    times = "cached, not asked" if not one.times else f"asked {one.times} time{'s' if one.times > 1 else ''}"
     yield f"═══ {one.stage}: {times}, {one.pictures} pictures, about {one.tokens:,} tokens ═══"
     yield one.system
     yield "─── the user ───"
@@ -90,7 +90,7 @@ def question_lines(one: Question) -> Iterator[str]:
 
 
 def sum_lines(questions: Sequence[Question], who: str) -> Iterator[str]:
-    """What all questions together would take of ``who``."""
+    """What all questions together would cost at ``who``."""
     yield f"{who} would be asked:"
     for stage in dict.fromkeys(one.stage for one in questions):
         rows = [one for one in questions if one.stage == stage]
@@ -100,15 +100,15 @@ def sum_lines(questions: Sequence[Question], who: str) -> Iterator[str]:
             f"  {stage:<9}{sum(one.times for one in rows):>5} times, {size:>9,} tokens with {pictures} pictures in: "
             f"{_bounds(rows)}"
         )
-    yield "An answer that is none is asked for again, at most twice. Tokens are estimates, rather too many."
+    yield "An invalid answer is asked for again, at most twice. Tokens are estimates and tend to be too high."
 
 
 def _bounds(questions: Sequence[Question]) -> str:
     cost = _total((one.cost, one.times) for one in questions)
     most = _total((one.most, one.times) for one in questions)
     if cost is None or most is None:
-        return "the model's price is not known; give it with --price"
-    return f"{_usd(cost)} without the answers, {_usd(most)} with the longest there can be"
+        return "the model's price is unknown; give it with --price"
+    return f"{_usd(cost)} without the answers, {_usd(most)} with the longest possible ones"
 
 
 def _total(costs: Iterable[tuple[float | None, int]]) -> float | None:

@@ -1,7 +1,7 @@
-"""OpenAI's models, or whatever speaks their chat completions at another address, with structured outputs.
+"""OpenAI's models, or another server with their chat completions API, with structured outputs.
 
-Chat completions, not responses, since far more servers speak them. The package's own retries wait out what passes; what
-comes back is believed only where it fits. The one tool of an Ask is its answer's schema, which the API then enforces.
+It uses chat completions, not responses, since far more servers offer them. The openai package retries passing errors;
+replies are validated. The one tool of an Ask is the schema of its answer, which the API enforces.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import httpx2
 from pydantic import BaseModel, NonNegativeInt, ValidationError
 
-from bench.judge.errors import NotJudged
-from bench.judge.providers import MISSING
+from bench.judge.errors import NO_OPENAI_PACKAGE, NotJudged
 from simworlds.llm.errors import Rejected, TooLong, Unreachable
 from simworlds.llm.messages import Picture, Text, Turn, Usage, whole
 from simworlds.llm.request import clean
@@ -76,24 +75,26 @@ class Chat:
         try:
             import openai  # noqa: PLC0415 - an optional extra
         except ImportError as error:
-            raise NotJudged("not set up", MISSING) from error
+            raise NotJudged("not set up", NO_OPENAI_PACKAGE) from error
         self._package: ModuleType = openai
         self._prices = prices
         key = os.environ.get("OPENAI_API_KEY", "").strip()
         if not key:
             raise Rejected(
-                "There is no key for the model: set OPENAI_API_KEY (to any word for a server that needs none)."
+                "There is no API key: set OPENAI_API_KEY (to any word if the server needs no key)."
             )
         if not key.isascii() or not key.isprintable():
-            raise Rejected("OPENAI_API_KEY holds characters that no key has. Copy the key again.")
+            raise Rejected("OPENAI_API_KEY has characters that are not allowed in a key. Copy the key again.")
         timeout = openai.Timeout(_SECONDS, connect=_CONNECT_SECONDS)
         try:
             self._client = openai.OpenAI(api_key=key, base_url=base_url, timeout=timeout, max_retries=retries)
         except (httpx2.InvalidURL, openai.OpenAIError, ValueError, TypeError) as error:
-            raise Rejected(f"The model's address (OPENAI_BASE_URL) or a proxy's is none: {error}.") from error
+            raise Rejected(
+                f"The model's address (OPENAI_BASE_URL) or a proxy's is invalid: {error}."
+            ) from error
         address = self._client.base_url
         if address.scheme not in ("http", "https") or not address.host:
-            raise Rejected(f"The model's address (OPENAI_BASE_URL), {address}, is no web address.")
+            raise Rejected(f"The model's address (OPENAI_BASE_URL), {address}, is not a web address.")
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
         """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Refused, CutShort."""
@@ -117,7 +118,7 @@ class Chat:
             fault = error.errors(include_url=False)[0]
             where = ".".join(map(str, fault["loc"])) or "the whole"
             raise Unreachable(
-                f"What {self._client.base_url} answers is no completion ({where}: {fault['msg']})."
+                f"The reply of {self._client.base_url} is not a valid completion ({where}: {fault['msg']})."
             ) from error
         return whole(self._turn(ask, completion))
 
@@ -127,11 +128,11 @@ class Chat:
             return Unreachable(f"No answer from {self._client.base_url}: {words}.")
         kind = TooLong if status == 413 or "context_length_exceeded" in message else Rejected
         advice = _ADVICE.get(status, "")
-        return kind(f"{self._client.base_url} does not take the request: {words}.{advice}", status)
+        return kind(f"{self._client.base_url} rejects the request: {words}.{advice}", status)
 
     def _turn(self, ask: Ask, completion: _Completion) -> Turn:
         if not completion.choices:
-            raise Unreachable(f"What {self._client.base_url} answers has no choices.")
+            raise Unreachable(f"The reply of {self._client.base_url} has no choices.")
         choice = completion.choices[0]
         counted = completion.usage or _Usage()
         details = counted.prompt_tokens_details

@@ -1,8 +1,7 @@
-"""Frames as a judge sees them: plain pictures without names or metadata, and a digest of what they show.
+"""Frames as a judge sees them: plain pictures without names or metadata, and digests of their pixels.
 
-The digest is of decoded pixels: files of one rendering differ in what the renderer writes beside them (its date, how
-long it took, the scene's path), and encoders in how they pack. What is shown is encoded anew for the same reason: no
-path and no name of a system comes along.
+Digests are of decoded pixels, since renderers add metadata (date, duration, path) and encoders differ. The pictures are
+re-encoded, so that no metadata gives away a path or the name of a system.
 """
 
 from __future__ import annotations
@@ -14,42 +13,41 @@ from typing import TYPE_CHECKING
 
 from PIL import Image
 
-from agents.loop.edit.inputs import picture
-from agents.loop.errors import Unusable
 from bench.judge.errors import NotJudged
 from simworlds.llm.messages import Picture
+from simworlds.llm.picture_file import BadPicture, read_picture
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
 MOST = 20
-"""Of more pictures in one request, providers take only small ones."""
+"""Frames per request; with more, providers accept only small pictures."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """Pictures in the order of time, and the SHA-256 of the pixels of each."""
+    """Pictures in order of time, and the SHA-256 of the pixels of each."""
 
     pictures: tuple[Picture, ...]
     digests: tuple[str, ...]
 
 
 def read_frames(frames: Sequence[Path], *, static: bool) -> Shown:
-    """The frames of a film, or the one of a still. Raises NotJudged."""
+    """Reads the frames of a film, or the one frame of a still. Raises NotJudged."""
     if static and len(frames) != 1:
-        raise NotJudged("frames", f"A still is judged by one frame; {len(frames)} are given.")
+        raise NotJudged("frames", f"Give one frame for a still, not {len(frames)}.")
     if not static and not 2 <= len(frames) <= MOST:
-        raise NotJudged("frames", f"A film is judged by 2 to {MOST} frames; {len(frames)} are given.")
+        raise NotJudged("frames", f"Give 2 to {MOST} frames for a film, not {len(frames)}.")
     flat = [_flat(path) for path in frames]
     return Shown(tuple(map(_encoded, flat)), tuple(map(_digest, flat)))
 
 
 def _flat(path: Path) -> Image.Image:
-    """As a player shows it: what is transparent is black."""
+    """A frame without transparency, on black as in a video player."""
     try:
-        data = picture(path).data
-    except Unusable as error:
+        data = read_picture(path).data
+    except BadPicture as error:
         raise NotJudged("frames", str(error)) from error
     with Image.open(io.BytesIO(data)) as opened:
         seen = opened.convert("RGBA")

@@ -1,4 +1,4 @@
-"""Who judges: a model of a provider, reached when it is first asked, and the limit of what it may cost."""
+"""The judge: a provider's model, connected at its first question, and the limit of its cost."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from bench.judge.errors import NotJudged
+from bench.judge.errors import NO_OPENAI_PACKAGE, NotJudged
 from simworlds.llm.errors import Rejected
 from simworlds.llm.messages import Text
 from simworlds.llm.prices import Prices
@@ -21,13 +21,12 @@ if TYPE_CHECKING:
     from simworlds.llm.prices import Price
     from simworlds.llm.retries import Retry
 
-# One strong model with eyes of each: the newest of the line that builds the scenes, and the paper's own judge.
+# One strong vision model of each: the newest of the line that builds the scenes, and the paper's own judge.
 DEFAULTS = {"anthropic": "claude-opus-5-5", "openai": "gpt-5.5"}
-MISSING = "The openai package is not installed. Install it with: pip install 'simworlds[openai]'"
 
 
 class Provider:
-    """A Model for structured answers: what it gives to the one tool of an Ask is its text."""
+    """A Model for structured answers: the input of its call to the Ask's one tool becomes the text of its turn."""
 
     def __init__(
         self,
@@ -38,7 +37,7 @@ class Provider:
         spending: Spending | None = None,
         prices: Prices | None = None,
     ) -> None:
-        """``connect`` may raise Rejected, where a key is missing. ``spending`` counts, and holds the limit."""
+        """``connect`` may raise Rejected if a key is missing. ``spending`` counts the cost and holds the limit."""
         self.name = name
         self.model = model
         self.prices = prices or Prices()
@@ -48,7 +47,7 @@ class Provider:
         self._lock = threading.Lock()
 
     def ready(self) -> None:
-        """Finds out, without asking anything, whether a key and all packages are there. Raises NotJudged."""
+        """Checks, without asking anything, that the key and all packages are there. Raises NotJudged."""
         with self._lock:
             if self._connected is None:
                 try:
@@ -72,10 +71,10 @@ def provider_of(  # noqa: PLR0913
     price: Price | None = None,
     tell: Callable[[Retry], object] | None = None,
 ) -> Provider:
-    """A judge of that provider; ``openai`` needs the extra of that name. Nothing is connected yet.
+    """A judge of that provider, not yet connected; ``openai`` needs the extra of that name.
 
-    ``base_url``: another server that speaks the provider's API. ``max_cost``: US dollars, over all that it is asked.
-    ``price``: of a model that is in no list. ``tell`` hears of retries. Raises NotJudged, ValueError.
+    ``base_url``: another server with the provider's API. ``max_cost``: US dollars, over all questions. ``price``: of a
+    model without a list price. ``tell`` is called on retries. Raises NotJudged, ValueError.
     """
     if name not in DEFAULTS:
         raise ValueError(f"There is no provider {name!r}. Choose {' or '.join(DEFAULTS)}.")
@@ -94,13 +93,13 @@ def provider_of(  # noqa: PLR0913
         return Chat(base_url, prices)
 
     if name == "openai" and find_spec("openai") is None:
-        raise NotJudged("not set up", MISSING)
+        raise NotJudged("not set up", NO_OPENAI_PACKAGE)
     connect = {"anthropic": anthropic, "openai": openai}[name]
     return Provider(name, chosen, connect, spending=spending, prices=prices)
 
 
 def _as_text(turn: Turn) -> Turn:
-    """A turn whose words are the answer: what the tool was called with, or else what the model said."""
+    """A turn whose text is the answer: the input of the tool call, or else what the model wrote."""
     if not turn.calls:
         return turn
     given = "\n".join(json.dumps(call.input, ensure_ascii=False) for call in turn.calls)

@@ -1,8 +1,8 @@
-"""The two questions that a judge is asked, as requests to a model, and the version that follows from their wording.
+"""The judge's two questions as requests to a model, and their version, which follows from their wording.
 
-The texts are the Markdown files in ``prompts``. The shape of an answer is the schema of the one tool that the model is
-given: every field is required and none is bounded, which is what all providers' structured outputs have in common; the
-bounds are checked here, and what breaks them goes back.
+The texts are the Markdown files in ``prompts``. The shape of an answer is the schema of the one tool that the model
+gets: all fields are required and without bounds, as all providers' structured outputs demand; bounds are checked
+afterwards, and an answer that breaks them goes back. The classes' docstrings and fields are part of the wording.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).with_name("prompts")
 ITEMS, VERDICTS = "items", "verdicts"
-"""The two questions, as cost is counted by."""
+"""The names of the two questions, by which cost is counted."""
 MAX_TOKENS = 16_000
 _VERSION_DIGITS = 12
 _KINDS = {True: "a still", False: "a film"}
@@ -86,7 +86,7 @@ def judging(prompt: str, items: Mapping[str, str], pictures: Sequence[Picture], 
 
 @cache
 def prompt_version() -> str:
-    """Another one whenever anything is asked in other words: the digest of both questions about an example."""
+    """The version of the prompts, which changes with any wording: a digest of both questions about an example."""
     blank = (Picture(b""),)
     asked = [
         ask
@@ -102,7 +102,7 @@ def prompt_version() -> str:
 
 
 def _ask(stage: str, file: str, said: Sequence[Block], shape: type[BaseModel]) -> Ask:
-    """The model's name is the provider's to fill in."""
+    """A question without the model's name, which the provider fills in."""
     tool = Tool(stage, f"Gives the answer. {shape.__doc__}", schema_of(shape))
     return Ask("judge", stage, "", (_read(file),), (user(*said),), (tool,), MAX_TOKENS)
 

@@ -1,4 +1,4 @@
-"""What answers use up."""
+"""Tokens and cost of answers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pydantic import BaseModel, ConfigDict, NonNegativeInt
 
 
 class Usage(BaseModel):
-    """Tokens. ``cached`` are those of the ``input`` that the provider had kept, and charges less for."""
+    """Numbers of tokens. ``cached``: the part of ``input`` from the provider's cache, which costs less."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -16,7 +16,7 @@ class Usage(BaseModel):
 
 
 class Spent(BaseModel):
-    """Tokens, and their list price in US dollars; None where a price is not known."""
+    """Tokens, and their list price in US dollars; None if a price is unknown."""
 
     model_config = ConfigDict(frozen=True)
 

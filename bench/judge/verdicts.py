@@ -1,4 +1,4 @@
-"""One verdict for each item, and the judgement that they make together (paper, "Itemized VLM judge")."""
+"""Verdicts on items, and the judgement that they make together (paper, "Itemized VLM judge")."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LONGEST_EVIDENCE = 1000
 
 
 class Item(BaseModel):
-    """What was judged, and how: ``frames`` (counted from 1) show what ``evidence`` tells."""
+    """An item and its verdict: ``frames`` (counted from 1) show what ``evidence`` says."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -32,11 +32,11 @@ class Item(BaseModel):
 
 
 class Judgement(BaseModel):
-    """What a judge says of one result. ``dimensions`` are in their order; one without items has no score.
+    """The judgement of one result. ``dimensions`` are in their order; one without items has no score.
 
     ``scene`` is a label that no model saw. ``answered_by`` is the model as the provider names it, ``items_by`` who
-    listed the items. ``usage`` and ``cost`` (US dollars, None where no price is known) are of the verdicts, when they
-    were asked; ``items_usage`` and ``items_cost`` of the list, which is asked once for all results of a prompt.
+    listed the items. ``usage`` and ``cost`` (US dollars, None if no price is known) are those of the verdicts;
+    ``items_usage`` and ``items_cost`` of the list of items, which is made once for all results of a prompt.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -57,7 +57,7 @@ class Judgement(BaseModel):
     @computed_field
     @property
     def scores(self) -> dict[str, float | None]:
-        """Of each dimension, the share of its items that hold; None without items."""
+        """Dimension → the share of its items that hold; None without items."""
         return {name: _share(items) for name, items in self.dimensions.items()}
 
     @computed_field
@@ -69,7 +69,7 @@ class Judgement(BaseModel):
 
 
 class Given(BaseModel):
-    """Verdicts as they are kept: what was answered, by which model, and what that used up."""
+    """Verdicts as they are cached: with the model that gave them, and their cost."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -79,7 +79,7 @@ class Given(BaseModel):
 
 
 def reader_of(ids: Collection[str], frames: int) -> Reader[Verdicts]:
-    """Takes exactly one verdict for each item, borne out by frames that there are."""
+    """Accepts exactly one verdict for each item, with evidence in existing frames."""
     shaped = fits(Verdicts)
 
     def reader(data: Any) -> tuple[Verdicts | None, Sequence[object]]:
@@ -94,7 +94,7 @@ def reader_of(ids: Collection[str], frames: int) -> Reader[Verdicts]:
 
 def _faults(found: Verdicts, ids: Collection[str], frames: int) -> Iterator[str]:
     given = Counter(one.id for one in found.verdicts)
-    yield from (f"{name!r}: there is no verdict for this item." for name in ids if name not in given)
+    yield from (f"{name!r}: the verdict for this item is missing." for name in ids if name not in given)
     yield from (f"{name[:80]!r}: there is no such item." for name in given if name not in ids)
     yield from (f"{name!r}: there are {times} verdicts for it." for name, times in given.items() if times > 1)
     for one in found.verdicts:
@@ -110,7 +110,7 @@ def _faults_of(one: Verdict, frames: int) -> Iterator[str]:
     if none := sorted({number for number in one.frames if not 1 <= number <= frames}):
         yield f"there is no frame {', '.join(map(str, none))}; they are numbered from 1 to {frames}."
     elif one.holds and not one.frames:
-        yield "it holds, but no frame is named that shows it."
+        yield "it holds, but no frame that shows it is named."
     elif one.holds and one.id.startswith("actions_visible.") and len(set(one.frames)) < 2:
         yield "one frame shows no motion; name at least two that differ."
 

@@ -1,4 +1,4 @@
-"""What a report reads of an audit.json: as the audit writes it, in any version of it; other fields are left."""
+"""The parts of an audit.json that a report reads; fields of other versions are ignored."""
 
 from __future__ import annotations
 

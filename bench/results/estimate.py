@@ -1,4 +1,4 @@
-"""How long a sweep of many systems takes on many machines, from the times of tasks that were measured."""
+"""Estimates how long a sweep of many systems takes on many machines, from measured times."""
 
 from __future__ import annotations
 
@@ -20,11 +20,10 @@ STEPS = ("produced", "audited", "framed", "judged")
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """Seconds. ``work``: by step, over all scenes of one system; ``one``: done one after the other.
+    """Times in seconds. ``work``: by step, over all scenes of one system; ``one``: their sum, one after the other.
 
-    ``measured``: of how many scenes the times were measured; the others are taken to last as long as those of their
-    category do, or else as all do. ``together``: from begin to end, all systems on all machines. ``longest``: of one
-    scene.
+    ``measured``: how many scenes have measured times; the others get the mean of their category, or else of all.
+    ``together``: from start to end, all systems on all machines. ``longest``: of one scene.
     """
 
     measured: int
@@ -41,9 +40,9 @@ class Estimate:
 def estimate(
     results: Results, *, systems: int, machines: int, at_a_time: int, making: float | None = None
 ) -> Estimate | None:
-    """All scenes by so many systems like those measured, ``at_a_time`` on each machine; None without measurements.
+    """The estimate for all scenes by ``systems`` systems, ``at_a_time`` on each machine; None without measured times.
 
-    ``making``: seconds that a system takes for a scene, instead of those measured.
+    ``making``: seconds that a system takes for a scene, instead of the measured ones.
     """
     times = _measured(results)
     if not times:
@@ -68,7 +67,7 @@ def estimate(
 
 
 def makespan(tasks: Sequence[float], workers: int) -> float:
-    """When the last of ``workers`` is done, if each takes the next task when it is free, in the order given."""
+    """When the last of ``workers`` is done, if each takes the next task in order when it is free."""
     free = [0.0] * min(workers, max(1, len(tasks)))
     for seconds in tasks:
         heapq.heapreplace(free, free[0] + seconds)
@@ -76,7 +75,7 @@ def makespan(tasks: Sequence[float], workers: int) -> float:
 
 
 def _measured(results: Results) -> dict[str, dict[str, float]]:
-    """Scene → step → seconds, the mean over systems; a step that was not done is left out."""
+    """Scene → step → seconds, the mean over systems; steps that were not done are left out."""
     found: dict[str, dict[str, list[float]]] = {}
     for system in results.systems:
         for name, scene in system.scenes.items():
@@ -88,7 +87,7 @@ def _measured(results: Results) -> dict[str, dict[str, float]]:
 
 
 def _seconds(scene: Scored) -> Iterator[tuple[str, float]]:
-    """What a system took itself is in its minutes: it may have worked in several sittings."""
+    """Step → seconds. A system's own time is in its minutes, since it may have worked in several sessions."""
     record = scene.record
     if record.produced is not None:
         minutes = record.produced.minutes
@@ -99,7 +98,7 @@ def _seconds(scene: Scored) -> Iterator[tuple[str, float]]:
 
 
 def _of(spec: Spec, times: dict[str, dict[str, float]]) -> dict[str, float]:
-    """Of each step, what was measured of the scene, or else the mean of its category, or of all; 0 where of none."""
+    """Step → seconds: as measured for the scene, or else the mean of its category, or of all scenes, or 0."""
     kin = [each for name, each in times.items() if name.partition("_")[0] == spec.category]
     found: dict[str, float] = {}
     for step in STEPS:

@@ -1,7 +1,7 @@
-"""What lies behind a score, as a page shows it: frames, what failed and the values seen, what the judge said.
+"""The evidence for a scene's scores, as the report page shows it: frames, checks with the values seen, verdicts.
 
-Results may come from anybody: files are read only below a scene's own folder, pictures are made anew from their pixels,
-and what is not of its shape is left out, and said to be.
+Results may come from anybody: files are read only below a scene's own folder, pictures are re-encoded from their
+pixels, and invalid files are left out.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Something that was checked: whether it ``holds`` (None: undecided), and the values seen.
+    """A check: whether it ``holds`` (None: undecided), and the values seen.
 
-    ``name``: of the predicate or relation that it is. ``negated``: it is asked that this does not hold.
+    ``name``: of its predicate or relation. ``negated``: the predicate must not hold.
     """
 
     what: str
@@ -63,9 +63,9 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What belongs together: an actor's checks, the relations, the items of one dimension. ``how``: more of ``title``.
+    """A group of checks: of an actor, of the relations, or of one dimension. ``how``: a subtitle.
 
-    ``missing``: there is nothing to check, and so no check passes.
+    ``missing``: the actor was not found, so no check passes.
     """
 
     title: str
@@ -76,18 +76,18 @@ class Part:
 
     @property
     def failed(self) -> tuple[Line, ...]:
-        """What does not hold."""
+        """The checks that do not hold."""
         return tuple(line for line in self.lines if line.holds is False)
 
     @property
     def others(self) -> tuple[Line, ...]:
-        """What holds, or is undecided."""
+        """The checks that hold, or are undecided."""
         return tuple(line for line in self.lines if line.holds is not False)
 
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """All of one scene by one system. ``notices``: what there is not, or is to be known. ``made``: by whom, when."""
+    """All evidence of one scene by one system. ``notices``: what is missing, or special. ``made``: by whom, when."""
 
     frames: tuple[Frame, ...]
     notices: tuple[str, ...]
@@ -98,12 +98,12 @@ class Evidence:
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """All of them."""
+        """All groups of checks."""
         return (*self.mechanism, *self.relations, *self.judged)
 
 
 def evidence_of(scene: Scored) -> Evidence:
-    """What is there of a scene."""
+    """Reads the evidence of a scene."""
     record = scene.record
     audit = _audit(scene.folder, record.audited.file if record.audited is not None else None)
     judgement = _judgement(scene.folder, record.judged.file if record.judged is not None else None)
@@ -147,9 +147,9 @@ def _notices(scene: Scored, audit: AuditFile | None) -> Iterator[str]:
             why = f": {record.produced.why}" if record.produced.why else ""
             yield f"The system's run ended as {record.produced.outcome}{why}"
         if record.produced.prompt != scene.spec.prompt:
-            yield f"It was asked for something else: {record.produced.prompt}"
+            yield f"The system got another prompt: {record.produced.prompt}"
     if audit is not None and audit.blend.get("unplayed"):
-        yield f"Motion not looked at: {audit.blend['unplayed']}"
+        yield f"Motion not played: {audit.blend['unplayed']}"
     if record.framed is not None:
         yield from (f"Frames: {note}" for note in record.framed.notes)
         if record.framed.why:
@@ -157,7 +157,7 @@ def _notices(scene: Scored, audit: AuditFile | None) -> Iterator[str]:
 
 
 def _was_asked(scene: Scored) -> bool:
-    """Whether a judge was asked; that nobody was, a table says once for all scenes."""
+    """Whether a judge was asked; if none was, a table says so once for all scenes."""
     return scene.record.judged is not None and scene.record.judged.key != ""
 
 
@@ -199,7 +199,7 @@ def _relation(one: Relation) -> Line:
 
 
 def _told(values: Any) -> str:
-    """Values as a person reads them."""
+    """Formats values as text."""
     if isinstance(values, dict):
         return ", ".join(f"{str(name).replace('_', ' ')} {_told(value)}" for name, value in values.items())
     if isinstance(values, list):
@@ -252,7 +252,7 @@ def _frames(scene: Scored) -> Iterator[Frame]:
 
 
 def _read(folder: Path, file: File | None) -> bytes | None:
-    """A plain file of the scene's folder, wherever links lead."""
+    """The content of a file in the scene's folder; None if it is elsewhere (also by a link), or too large."""
     if file is None or file.source:
         return None
     try:
@@ -277,7 +277,7 @@ def _picture(content: bytes | None, label: str) -> Frame | None:
             small.thumbnail((_WIDTH, _WIDTH))
             made = io.BytesIO()
             small.save(made, "WEBP", quality=_QUALITY, method=4)
-    except Exception:  # a file that is no picture fails in any way
+    except Exception:  # a broken file can raise anything
         return None
     src = f"data:image/webp;base64,{base64.b64encode(made.getvalue()).decode()}"
     return Frame(src, label, small.width, small.height)

@@ -1,4 +1,4 @@
-"""The numbers of a report: of each system by category and overall, of pairs of systems, of ablations."""
+"""The figures of a report: of each system by category and overall, of pairs of systems, of ablations."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ OVERALL = "overall"
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A macro average over cells. ``low`` to ``high``: its 95 % interval, None where nothing is known of it.
+    """A macro average over cells. ``low`` to ``high``: its 95 % interval, None if unknown.
 
-    ``scenes`` were scored of those ``asked``, in so many ``cells``. ``bound``: the same with those not scored as 0;
-    None where no scene was.
+    ``scenes`` of the ``asked`` ones were scored, in ``cells`` cells. ``bound``: the average with unscored scenes as 0;
+    None if no scene was scored.
     """
 
     value: float | None
@@ -51,7 +51,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """One row of the ablations: a system with or without some of its parts, over scenes that all its kin have."""
+    """A row of the ablations: a system with or without some of its parts, over scenes that all its variants have."""
 
     system: str
     without: tuple[str, ...]
@@ -125,9 +125,9 @@ def comparisons(results: Results, baseline: str | None = None) -> list[Compariso
 
 
 def ablations(results: Results) -> list[Configuration]:
-    """The configurations of one system, the full one first; [] where no part of any was left out.
+    """The variants of each ablated system, the full one first; [] if no system was ablated.
 
-    They are of one system if all their settings are the same; their scores are over the scenes that all have.
+    Variants of one system have the same settings; their scores are over the scenes that all of them have.
     """
     kin: dict[str, list[SystemResults]] = {}
     for system in results.systems:

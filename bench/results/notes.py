@@ -1,4 +1,4 @@
-"""What a reader must know before believing a report: results of other code, other judges, what could not be read."""
+"""Warnings for the reader of a report: results of other code or other judges, results that could not be read."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ if TYPE_CHECKING:
 
 
 def notes(results: Results) -> list[str]:
-    """Sentences; [] if all is of one kind."""
+    """The warnings, as sentences."""
     return [*results.faults, *_of_audits(results), *_of_judges(results)]
 
 
 def _of_audits(results: Results) -> Iterator[str]:
-    """Audits of other code than this, or of specs as they were."""
+    """Warns of audits by other code, older specs or several Blenders."""
     code = code_of_audit()
     audits = [(scene, scene.record.audited) for scene in _all(results) if scene.record.audited is not None]
     scored = [(scene, audit) for scene, audit in audits if audit.why is None]
     if other := sum(audit.provenance.code != code for _, audit in scored):
-        yield f"{other} of {len(scored)} audits are of other code than this: see 'simworlds bench rescore'."
+        yield f"{other} of {len(scored)} audits were made by other code than this; run 'simworlds bench rescore'."
     if other := sum(audit.spec != digest_of(scene.spec.model_dump(mode="json")) for scene, audit in scored):
-        yield f"{other} of {len(scored)} audits are by specs that have changed since: see 'simworlds bench rescore'."
+        yield f"{other} of {len(scored)} audits used specs that have changed since; run 'simworlds bench rescore'."
     if len(versions := {audit.provenance.blender for _, audit in scored}) > 1:
-        yield f"Audits are of several Blenders: {', '.join(sorted(map(str, versions)))}."
+        yield f"Audits were made with several Blenders: {', '.join(sorted(map(str, versions)))}."
 
 
 def _of_judges(results: Results) -> Iterator[str]:
     judgements = [judged for scene in _all(results) if (judged := scene.record.judged) and judged.why is None]
     if len(judges := {f"{one.provider}/{one.model}, prompts {one.prompt_version}" for one in judgements}) > 1:
-        yield f"VLM scores are of several judges, and cannot be compared: {'; '.join(sorted(judges))}."
+        yield f"VLM scores come from several judges and cannot be compared: {'; '.join(sorted(judges))}."
 
 
 def _all(results: Results) -> Iterator[Scored]:

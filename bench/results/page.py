@@ -1,6 +1,6 @@
-"""The page of a report: tables, and every scene with its frames, what failed and why; one file, read without a network.
+"""The report page: tables, and every scene with its frames, failed checks and reasons; one HTML file, usable offline.
 
-Whatever comes from outside (prompts, names of objects, a judge's words) is text, and escaped as such.
+Text from outside (prompts, names of objects, a judge's words) is escaped.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 
 _FOLDER = Path(__file__).parent / "templates"
 _LEVELS = ("D1", "D2", "D3")
-# What HTML has no place for, and what turns the direction of the text that is read.
+# Characters that HTML does not allow, and those that change the direction of text.
 _UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
 
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """One scene by one system. ``scores``: title → value; ``best``: titles of those that no other system exceeds."""
+    """One scene by one system. ``scores``: title → value; ``best``: titles of scores that no other system exceeds."""
 
     system: str
     scene: Scored | None
@@ -50,7 +50,7 @@ class Card:
 
     @property
     def has_failed(self) -> bool:
-        """Whether anything of it does not hold, or was not audited."""
+        """Whether a check failed, or it was not audited."""
         if self.scene is None or self.evidence is None:
             return False
         not_audited = self.scene.why_not("mpr") or self.scene.why_not("spr")
@@ -66,12 +66,12 @@ class Shown:
 
     @property
     def has_failed(self) -> bool:
-        """Whether there is something to look into."""
+        """Whether any system failed something."""
         return any(card.has_failed for card in self.cards)
 
 
 def page(results: Results, tables: Sequence[Table], notes: Sequence[str], seal: Provenance) -> str:
-    """The page as HTML. ``seal``: of the code that makes it."""
+    """The page as HTML. ``seal``: the provenance of the code that makes it."""
     script = (_FOLDER / "script.js").read_text("utf-8")
     shown = _shown(results)
     text = (
@@ -136,13 +136,13 @@ def _cards(spec: Spec, systems: Sequence[SystemResults]) -> tuple[Card, ...]:
 
 
 def _best(scenes: Sequence[Scored | None], metric: Metric) -> float | None:
-    """The highest score, where there are several to choose from, and not all the same; -1 for none."""
+    """The highest of several different scores; -1 if there are none."""
     known = {score for scene in scenes if scene is not None and (score := scene.score(metric)) is not None}
     return max(known) if len(known) > 1 else -1.0
 
 
 def _glossary(scenes: Sequence[Shown]) -> dict[str, str]:
-    """What the predicates and relations that occur are, by name, as their code says it."""
+    """The definitions of the predicates and relations on the page, by name."""
     named = {
         line.name
         for scene in scenes

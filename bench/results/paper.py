@@ -1,4 +1,4 @@
-"""The figures that the paper published, to be shown beside; measured by others, on other hardware (its Tables 1, 3)."""
+"""The paper's published figures (its Tables 1 and 3), for comparison; measured by others, on other hardware."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TABLE_1: dict[str, dict[Metric, dict[str, float]]] = {
                 "overall": 0.78},
     },
 }  # fmt: skip
-# What was left out → metric → score, on 15 scenes.
+# Parts left out → metric → score, on 15 scenes.
 ABLATIONS: dict[tuple[str, ...], dict[Metric, float]] = {
     (): {"mpr": 0.97, "spr": 0.97, "vlm": 0.87},
     ("no-verifier",): {"mpr": 0.93, "spr": 0.87, "vlm": 0.84},

@@ -1,4 +1,4 @@
-"""Results as they lie on the disk, read for a report: for each system and scene three scores, or why there is none."""
+"""Reads results from disk for a report: for each system and scene three scores, or why there is none."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from bench.scenes.spec import BadSpec, spec_of
-from bench.sweep.records import BadSceneRecord, SceneRecord, SystemInfo, read_record
-from bench.sweep.sweep import scene_folders
+from bench.sweep.records import BadSceneRecord, SceneRecord, SystemInfo, read_record, scene_folders
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -29,13 +28,13 @@ class Scored:
     folder: Path
 
     def asks(self, metric: Metric) -> bool:
-        """Whether the scene counts for this score: a static one has no mechanism to pass."""
+        """Whether the scene counts for this score: static scenes have no MPR, scenes without relations no SPR."""
         if metric == "mpr":
             return self.spec.category != "static"
         return metric != "spr" or bool(self.spec.relations)
 
     def score(self, metric: Metric) -> float | None:
-        """From 0 to 1; None where it was not scored, or does not count."""
+        """From 0 to 1; None if it was not scored, or does not count."""
         if not self.asks(metric):
             return None
         if metric == "vlm":
@@ -47,31 +46,31 @@ class Scored:
         return audited.mpr if metric == "mpr" else audited.spr
 
     def why_not(self, metric: Metric) -> str:
-        """Why there is no score, in words; "" where there is one, or it does not count."""
+        """Why there is no score, in words; "" if there is one, or it does not count."""
         if not self.asks(metric) or self.score(metric) is not None:
             return ""
         step = self.record.judged if metric == "vlm" else self.record.audited
         if step is None:
-            return "not looked at yet"
-        return step.why or "nothing of it could be measured"
+            return "not done yet"
+        return step.why or "no check or relation could be scored"
 
 
 @dataclass(frozen=True, slots=True)
 class SystemResults:
-    """All scenes that a system was asked for, in the benchmark's order."""
+    """All scenes that a system was given, in the benchmark's order."""
 
     info: SystemInfo
     scenes: dict[str, Scored] = field(default_factory=dict[str, Scored])
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Its name."""
         return self.info.name
 
 
 @dataclass(frozen=True, slots=True)
 class Results:
-    """Systems, in the order of the folders that were named; ``faults``: what could not be read, in words."""
+    """Systems, in the order of their folders; ``faults``: results that could not be read, in words."""
 
     systems: tuple[SystemResults, ...]
     faults: tuple[str, ...] = ()
@@ -82,7 +81,7 @@ class Results:
 
 
 def read_results(folders: Iterable[Path]) -> Results:
-    """The results below these folders. Of two of a scene by one name, the first counts, the other is a fault."""
+    """Reads the results below these folders. If a system has two results for a scene, the second is a fault."""
     systems: dict[str, SystemResults] = {}
     faults: list[str] = []
     for folder in (found for each in folders for found in scene_folders(each)):
@@ -96,7 +95,7 @@ def read_results(folders: Iterable[Path]) -> Results:
         system = systems.setdefault(record.system.name, SystemResults(record.system))
         if record.scene in system.scenes:
             faults.append(
-                f"{folder}: {record.system.name} has another result for {record.scene}; it is left out"
+                f"{folder}: {record.system.name} has another result for {record.scene}; this one is ignored"
             )
         else:
             system.scenes[record.scene] = scored

@@ -1,7 +1,7 @@
-"""Macro averages over cells, how sure they are, and whether two systems differ. Pure functions of numbers.
+"""Macro averages over cells, their intervals, and tests whether two systems differ. Pure functions of numbers.
 
-Values are given by cell (category and level). A macro average is the mean of the cells' means, so that each scene
-weighs one over the number of cells times the number of scenes in its own.
+Values are grouped by cell (category and level). A macro average is the mean of the cells' means: a scene's weight is
+one over the number of cells, divided by the number of scenes in its cell.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ def macro(cells: Cells) -> float | None:
 def interval(cells: Cells, *, seed: int = SEED, draws: int = DRAWS) -> tuple[float, float] | None:
     """The 95 % interval of the macro average, by the bootstrap over scenes within cells (percentiles).
 
-    None where no cell has two values: then nothing is known of how scenes differ. With few scenes in a cell, it is
-    rather too narrow.
+    None if no cell has two values: then nothing is known of how scenes vary. With few scenes per cell, it is somewhat
+    too narrow.
     """
     filled = [numpy.asarray(values, dtype=numpy.float64) for values in cells.values() if values]
     if not any(len(values) > 1 for values in filled):
@@ -60,10 +60,10 @@ def differences(
 
 
 def permutation(cells: Cells, *, seed: int = SEED, draws: int = 2 * DRAWS) -> tuple[float, bool] | None:
-    """The two-sided p of paired differences, if each scene's two results might as well be swapped; whether it is exact.
+    """(two-sided p of the paired permutation test on differences, whether it is exact); None without pairs.
 
-    The statistic is the macro average of the differences. All swaps are counted where few scenes differ; else
-    ``draws`` of them are drawn, and the observed one counts as one of them, so that p is never 0. None without pairs.
+    The statistic is the macro average of the differences. If few scenes differ, all swaps are counted; otherwise
+    ``draws`` of them are drawn, and the observed one counts as one more, so that p is never 0.
     """
     filled = [numpy.asarray(values, dtype=numpy.float64) for values in cells.values() if values]
     if not filled:

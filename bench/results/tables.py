@@ -1,4 +1,4 @@
-"""The tables of a report, as texts: the paper's Table 1, coverage, comparisons, ablations, cost."""
+"""The tables of a report: the paper's Table 1, coverage, comparisons, ablations, cost."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ NAMES = {
 }
 _NOTE = (
     "A category's score is the mean of its levels' means; overall is the macro average over cells of category and "
-    "level, with its 95 % interval by the bootstrap over scenes within cells. The last row counts what was not scored "
-    "as 0."
+    "level, with its 95 % interval by the bootstrap over scenes within cells. The last row counts scenes that were not "
+    "scored as 0."
 )
 _SIDE_BY_SIDE = 2  # systems, with all metrics in one table as the paper has it
 
 
 def tables(results: Results, *, baseline: str | None = None, with_paper: bool = False) -> list[Table]:
-    """All tables that there is something to say in."""
+    """All tables that have content."""
     found = [*table_1(results, with_paper=with_paper), coverage(results)]
     if (missing := not_scored(results)) is not None:
         found.append(missing)
@@ -57,7 +57,7 @@ def tables(results: Results, *, baseline: str | None = None, with_paper: bool = 
 
 
 def table_1(results: Results, *, with_paper: bool = False) -> Iterator[Table]:
-    """Per category and overall; one table for few systems, else one for each metric."""
+    """Scores per category and overall: one table for few systems, else one for each metric."""
     columns = {system.name: _columns(system) for system in results.systems}
     if with_paper:
         columns |= {f"{name} ({paper.SOURCE})": _published(name) for name in paper.TABLE_1}
@@ -113,7 +113,7 @@ def cells_of(metric: Metric) -> int:
 
 
 def coverage(results: Results) -> Table:
-    """How much of the benchmark the scores stand on."""
+    """How many scenes each score is based on."""
     rows = [
         (
             system.name,
@@ -126,11 +126,11 @@ def coverage(results: Results) -> Table:
         for system in results.systems
     ]
     header = ("system", "scenes", *(f"{TITLES[metric]} scored" for metric in METRICS))
-    return Table("Coverage", header, tuple(rows), "Scenes that a system was not asked for count nowhere.")
+    return Table("Coverage", header, tuple(rows), "Scenes that a system was not given do not count.")
 
 
 def not_scored(results: Results) -> Table | None:
-    """What was not scored or judged, and why, the most frequent first; None where all was."""
+    """How many scenes were not scored or judged, by reason, most frequent first; None if all were."""
     whys = Counter(
         (system.name, "not judged" if metric == "vlm" else "not scored", why)
         for system in results.systems
@@ -167,7 +167,7 @@ def _comparisons(rows: Iterable[Comparison]) -> Table:
 
 
 def probability(one: Comparison) -> str:
-    """p, and whether it is exact."""
+    """p, marked if it is not exact."""
     return NONE if one.p is None else f"{one.p:.4f}{'' if one.exact else ' (drawn)'}"
 
 
@@ -192,17 +192,17 @@ def _ablations(rows: Sequence[Configuration], *, with_paper: bool) -> Table:
     return Table("Ablations", header, tuple(told), note)
 
 
-# What it took
+# Cost
 
 
 def cost(results: Results) -> Table:
-    """What a scene took: of the system, of scoring it, of judging it."""
-    header = ("system", "models", "$ a scene", "minutes a scene", "audit s", "frames s", "judge $")
+    """The mean cost and time per scene: of the system, of scoring, of judging."""
+    header = ("system", "models", "$ per scene", "minutes per scene", "audit s", "frames s", "judge $")
     rows = tuple(
         (system.name, ", ".join(models(system)) or NONE, *_took(system)) for system in results.systems
     )
-    note = "Means, with the median of the minutes in brackets; what is not known is left out."
-    return Table("What a scene takes", header, rows, note)
+    note = "Means over scenes with a known value; in brackets the median of the minutes."
+    return Table("Cost per scene", header, rows, note)
 
 
 def models(system: SystemResults) -> list[str]:
@@ -237,7 +237,7 @@ def _took(system: SystemResults) -> Iterator[str]:
 
 
 def number(value: float | None, *, signed: bool = False) -> str:
-    """Two digits behind the point, as the paper has them."""
+    """A value with two decimals, as in the paper."""
     if value is None:
         return NONE
     return f"{value:+.2f}".replace("-", "−") if signed else f"{value:.2f}"

@@ -1,7 +1,7 @@
-"""The difficulty of a scene, read off what its spec asks for (paper, "Benchmark Details").
+"""The difficulty level of a scene, derived from what its spec requires (paper, "Benchmark Details").
 
-D1: one solver actor as it comes. D2: more within the category: several solver actors, or a solver's inner workings. D3:
-solvers of two categories or more. Of static scenes, D1 is a room and D2 a place.
+D1: one solver actor with default features. D2: more within the category: several solver actors, or advanced features
+of a solver. D3: solvers of two or more categories. Static scenes: D1 is a room, D2 an outdoor place.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ SOLVER_GROUPS = {
     "particle": "particle",
     "soft": "soft body",
 }
-# What makes a single actor's solver more than its default.
+# Advanced features of a solver: with one of them, a single actor makes a scene D2.
 INNER = frozenset({
     "cloth_self_collision", "cloth_pin_group", "fluid_dynamic_effector", "fluid_guiding", "rigid_constraint",
     "rigid_constraint_no_collision", "particle_from_deformed", "particle_force_fields", "soft_goal_group",
 })  # fmt: skip
 _SOLVED = ("cloth", "soft", "fluid_domain", "rigid_active", "particle_emitter", "particle_hair")
-# A heap of bodies settles as one; from so many on, each has its part in a chain of events.
+# From so many bodies on, an actor is a chain of events.
 _CHAIN = 10
-# Metres that something of a place spans at least; a room has nothing of this length.
+# Metres: something in an outdoor place is at least as long; nothing in a room is.
 _PLACE = 15.0
 
 
 def solver_groups(spec: Spec) -> frozenset[str]:
-    """Groups of the solvers that the spec's actors must have."""
+    """Groups of the solvers that the spec's actors need."""
     found = {PREDICATES[check.predicate].group for actor in spec.actors for check in actor.must_have}
     return frozenset(found & set(SOLVER_GROUPS.values()))
 
 
 def level_of(spec: Spec) -> Level:
-    """The level that a spec's checks amount to. Its predicates must be known."""
+    """The level that follows from a spec's checks, whose predicates must be known."""
     if spec.category == "static":
         spans = [actor.hints.size[0] for actor in spec.actors if actor.hints.size]
         return "D2" if max(spans, default=0.0) >= _PLACE else "D1"

@@ -1,7 +1,7 @@
-"""A scene of 4DBuildBench: what is asked for, and what the result is held to (paper, "Benchmark Details").
+"""The spec of a 4DBuildBench scene: its prompt, and what the result is checked for (paper, "Benchmark Details").
 
-Specs are YAML files in ``bench/scenes``, one a scene, named after its id. A check is written as its name, or as a
-mapping of its name to its parameters.
+Specs are YAML files in ``bench/scenes``, one per scene, named after its id. A check is a predicate's name, or a mapping
+of this name to its parameters.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class BadSpec(Exception):  # noqa: N818 - reads as the state it names
-    """A spec that is none; the message says which file, where, and what is wrong."""
+    """An invalid spec; the message says which file, where, and what is wrong."""
 
 
 class _Part(BaseModel):
@@ -66,7 +66,7 @@ class Check(_Part):
 
 
 class Hints(_Part):
-    """What an actor looks like whose name is not known: the diagonal of its bounds (metres), its surface, its place."""
+    """How to find an actor without its name: the diagonal of its bounds (metres), its topology, its collection."""
 
     size: tuple[float, float] | None = None
     topology: Literal["open", "closed", "any"] = "any"
@@ -74,9 +74,9 @@ class Hints(_Part):
 
 
 class Actor(_Part):
-    """Something that the prompt names. ``count``: how many objects stand for it at least.
+    """Something that the prompt names. ``count``: how many units of it there must be.
 
-    ``implied``: the prompt does not name it, but nobody could build the scene without it (what pours, a floor).
+    ``implied``: the prompt does not name it, but the scene cannot be built without it (a source of fluid, a floor).
     """
 
     name: Name
@@ -90,9 +90,9 @@ class Actor(_Part):
 
 
 class Relation(_Part):
-    """``a`` stands so to ``b``, at these times of the clip; surfaces at most ``tolerance`` metres apart (or deep).
+    """How ``a`` stands to ``b`` at these times of the clip; ``tolerance``: metres apart, or deep.
 
-    Of an actor with a count each of ``a`` is meant; of any other, and of ``b``, all that was found of it together.
+    It must hold for each unit of ``a``, to all units of ``b`` together.
     """
 
     type: RelationType
@@ -103,7 +103,7 @@ class Relation(_Part):
 
 
 class Phase(_Part):
-    """What an actor does, from and to a share of the clip."""
+    """What an actor does, from ``start`` to ``end`` (shares of the clip)."""
 
     actor: Name
     kind: PhaseKind
@@ -112,7 +112,7 @@ class Phase(_Part):
 
 
 class Frames(_Part):
-    """The least length of the clip."""
+    """The minimum length of the clip (frames)."""
 
     min: int = Field(ge=2)
     fps: int = Field(default=24, ge=1)
@@ -133,7 +133,7 @@ class Spec(_Part):
 
     @property
     def cell(self) -> str:
-        """The cell of the result tables that it counts in: its category and level."""
+        """Its cell in the result tables: category and level."""
         return f"{self.category}_{self.level}"
 
     def actor(self, name: str) -> Actor | None:
@@ -144,13 +144,13 @@ class Spec(_Part):
     def _consistent(self) -> Spec:
         names = [actor.name for actor in self.actors]
         if not self.id.startswith(f"{self.category}_{self.level}_"):
-            raise ValueError(f"id: {self.id} is not of {self.category}, {self.level}")
-        if twice := {name for name in names if names.count(name) > 1}:
-            raise ValueError(f"actors: {', '.join(sorted(twice))} twice")
+            raise ValueError(f"id: {self.id} does not begin with {self.category}_{self.level}_")
+        if repeated := {name for name in names if names.count(name) > 1}:
+            raise ValueError(f"actors: {', '.join(sorted(repeated))}: this name is used twice")
         if unknown := {name for name in self._named() if name not in names}:
             raise ValueError(f"no actor is called {', '.join(sorted(unknown))}")
         if (self.frames is None) != (self.category == "static"):
-            raise ValueError("frames: a static scene has none, any other has some")
+            raise ValueError("frames: required, except for static scenes, which have none")
         return self
 
     def _named(self) -> Iterator[str]:
@@ -184,5 +184,5 @@ def spec_of(name: str) -> Spec:
     """The scene of that id. Raises BadSpec."""
     found = next((spec for spec in specs() if spec.id == name), None)
     if found is None:
-        raise BadSpec(f"There is no scene {name[:80]!r}; 'simworlds bench list' names them.")
+        raise BadSpec(f"There is no scene {name[:80]!r}. List them with 'simworlds bench list'.")
     return found

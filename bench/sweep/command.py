@@ -4,20 +4,28 @@ from __future__ import annotations
 
 import signal
 import subprocess
+import sys
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.setting import simworlds
 from simworlds.end_with_parent import ending_with_this
 from simworlds.processes import end_group, spawn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
 _GRACE_SECONDS = (2.0, 20.0)  # after the first Ctrl-C, which asks it to stop, and the second, which insists
 _LAST_CHARACTERS = 300
 _NOTHING = "it printed nothing"
+
+
+def simworlds_command() -> list[str]:
+    """The command ``simworlds`` of this environment, or the same run from the source."""
+    installed = Path(sys.executable).with_name("simworlds")
+    if installed.is_file():
+        return [str(installed)]
+    return [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
 
 
 def run_simworlds(words: Sequence[str], log: Path) -> int:
@@ -26,7 +34,9 @@ def run_simworlds(words: Sequence[str], log: Path) -> int:
     Its output is appended to ``log``.
     """
     with log.open("ab") as output:
-        process = spawn(ending_with_this([*simworlds(), *words]), stdout=output, stderr=subprocess.STDOUT)
+        process = spawn(
+            ending_with_this([*simworlds_command(), *words]), stdout=output, stderr=subprocess.STDOUT
+        )
     try:
         return process.wait()
     except KeyboardInterrupt:

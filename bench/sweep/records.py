@@ -170,3 +170,8 @@ def read_record(folder: Path) -> SceneRecord | None:
 def write_record(folder: Path, record: SceneRecord) -> None:
     """Writes the record, whole or not at all. Raises OSError."""
     write_whole(folder / NAME, record.model_dump_json(indent=1).encode() + b"\n")
+
+
+def scene_folders(out: Path) -> list[Path]:
+    """The folders with a record: of all systems in a folder of results, or of one, or the one of a scene; sorted."""
+    return sorted(path.parent for depth in ("", "*/", "*/*/") for path in out.glob(f"{depth}{NAME}"))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep.executor import Executor, FinishedTask
 from bench.sweep.judging import SweepJudge, judge_all
-from bench.sweep.records import NAME, BadSceneRecord, SystemInfo, read_record
+from bench.sweep.records import BadSceneRecord, SystemInfo, read_record, scene_folders
 from bench.sweep.run_steps import is_done
 from bench.sweep.scene_task import SceneTask
 from bench.sweep.steps import STEPS
@@ -155,8 +155,3 @@ def system_from_record(info: SystemInfo) -> SceneSystem:
     if info.kind == "folder":
         return FolderSystem(info, Path(str(info.settings.get("folder", ""))))
     return ReplaySystem(info) if info.kind == "replay" else SimWorldsSystem(info)
-
-
-def scene_folders(out: Path) -> list[Path]:
-    """The folders with a record: of all systems in a folder of results, or of one, or the one of a scene; sorted."""
-    return sorted(path.parent for depth in ("", "*/", "*/*/") for path in out.glob(f"{depth}{NAME}"))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from bench.setting import percentile
 from measurements.retrieval import Outcome, Query, is_hit, share
+from measurements.setting import percentile
 
 
 def labelled(*symbols: str, pages: tuple[str, ...] = ()) -> Query:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from bench.setting import BLENDER, QUERIES
 from kb_build.base_file import read_meta
 from kb_build.errors import StoreError
 from measurements.retrieval import KINDS, BadQueries, read_queries, unknown_labels
+from measurements.setting import BLENDER, QUERIES
 from simworlds.settings import base_path, home_folder
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from array import array
 
 from .json_values import called, number, text
 
-MOST_KEYS = 5_000_000  # of a file that are looked at; of further ones only the number
-_SAME = 1e-4  # metres, radians, factors: less is no motion
+MOST_KEYS = 5_000_000  # of a file that are read; further ones are only counted
+_SAME = 1e-4  # metres, radians, factors: smaller changes are not motion
 _GENERATORS = {"GENERATOR", "FNGENERATOR", "CYCLES", "NOISE"}
 _DEFORMING = {"ARMATURE", "LATTICE", "MESH_DEFORM", "SURFACE_DEFORM", "HOOK", "CURVE"}
 
@@ -14,19 +14,19 @@ _looked_at = [0]
 
 
 def forget():
-    """To be called when another file has been opened."""
+    """Forgets the counts of the last file; call it after another one is opened."""
     _looked_at[0] = 0
 
 
 class Watched:
-    """A driven property, whose values at the moments tell whether it varies. ``told`` is its channel."""
+    """A driven property, whose values at the sample frames show whether it varies; ``told`` is its channel."""
 
     def __init__(self, block, curve, told):
         self.block, self.path, self.index, self.told = block, curve.data_path, curve.array_index, told
         self.values = []
 
     def look(self):
-        """Takes down the value as it stands."""
+        """Records the current value."""
         try:
             value = self.block.path_resolve(self.path)
             value = value[self.index] if hasattr(value, "__getitem__") else value
@@ -70,7 +70,7 @@ def curves_of(action, slot):
 
 
 def _gather(found, way, curves, frames, scale=1.0):
-    """Adds curves to what was found, those of one property as one: the densest counts."""
+    """Adds curves to ``found``; the curves of one property become one channel, with the keys of the densest."""
     for curve in curves:
         if curve.mute:
             continue
@@ -103,7 +103,7 @@ def _keys(curve, frames):
         values += flat[1::2]
     if frames is not None:
         kept = [index for index, place in enumerate(places) if frames[0] - 1 <= place <= frames[1] + 1]
-        # Motion towards a key behind the clip is motion: what is left out is only the density there.
+        # Motion towards a key outside the clip is motion; only its density is not counted.
         varies = bool(values) and max(values) - min(values) > _SAME
         places = [places[index] for index in kept]
     else:
@@ -116,14 +116,14 @@ def _driven(found, block, curve, watched):
     told["generated"] = True
     driver = curve.driver
     if driver.type == "SCRIPTED" and not driver.is_simple_expression:
-        # It is not run: what it would have given cannot be seen.
+        # The expression is not run, so its values are unknown.
         told["varies"] = True
     else:
         watched.append(Watched(block, curve, told))
 
 
 def shapes_of(thing, frames, watched):
-    """(how many shape keys its data has, the animated properties of them and of the data's own points)."""
+    """(number of shape keys of its data, the animated properties of them and of the data's own points)."""
     data = thing.data
     keys = getattr(data, "shape_keys", None)
     found = []
@@ -136,7 +136,7 @@ def shapes_of(thing, frames, watched):
 
 
 def constraints_of(thing):
-    """Its constraints that act, each with what it takes motion from."""
+    """Its active constraints, each with the objects or files that it takes motion from."""
     found = []
     for constraint in thing.constraints:
         if constraint.mute or not constraint.enabled or constraint.influence == 0:

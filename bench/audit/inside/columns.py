@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Vertical lines through two surfaces: where on them either is, solid or sheet, and which is over the other."""
+"""Vertical lines through two surfaces: where each is on them, as solid or sheet, and which is over the other."""
 
 import numpy
 
 _SAME = 1e-5  # metres
 _SLIVER = 1e-14  # square metres, twice a triangle's area in plan
-_MOST_TRIED = 4_000_000  # pairs of a line and a triangle at a time
+_MOST_TRIED = 4_000_000  # pairs of a line and a triangle per batch
 GRID = 10
 
 
 class Columns:
-    """Lines at ``places`` (n, 2), and per line the stretches [(low, high), …] that surfaces ``a`` and ``b`` take up.
+    """Lines at ``places`` (n, 2), and per line the stretches [(low, high), …] of surfaces ``a`` and ``b``.
 
-    Stretches are sorted; a sheet's is a point.
+    Stretches are sorted; that of a sheet is a single height.
     """
 
     def __init__(self, first, second, near_first, near_second):
-        """``near_…`` (k, 3): points on either surface through which there shall be lines."""
+        """``near_…`` (k, 3): points on either surface through which to draw lines."""
         low = numpy.maximum(first.low[:2], second.low[:2]) - _SAME
         high = numpy.minimum(first.high[:2], second.high[:2]) + _SAME
         kept_first, kept_second = (_within(points, low, high) for points in (near_first, near_second))
@@ -33,7 +33,7 @@ def _within(points, low, high):
 
 
 def _grid(low, high):
-    """Places in a rectangle, off the lines that modellers like."""
+    """Places in a rectangle, at uneven positions so that they avoid grid-aligned edges."""
     steps = (numpy.arange(GRID) + 0.4637) / GRID
     x, y = numpy.meshgrid(
         low[0] + steps * (high[0] - low[0]), low[1] + (1 - steps * 0.9973) * (high[1] - low[1])
@@ -57,8 +57,8 @@ def _stretches(surface, places, known):
 
 
 def _stretched(hits):
-    """Stretches of one line's hits, from below: a height, with 1 where a solid begins, -1 where it ends, 0 a sheet."""
-    if sum(turn for _, turn in hits):  # it runs along an edge: no telling inside from outside
+    """Stretches of one line's hits, from below: heights with 1 where a solid begins, -1 where it ends, 0 on a sheet."""
+    if sum(turn for _, turn in hits):  # the line runs along an edge: inside and outside are undecided
         return sorted({(height, height) for height, _ in hits})
     found, depth, begun = [], 0, 0.0
     for height, turn in hits:
@@ -73,7 +73,7 @@ def _stretched(hits):
 
 
 def _hits(surface, places):
-    """(line, height, turn) of every place where a vertical line meets a triangle."""
+    """(line, height, turn) of every hit of a vertical line with a triangle."""
     found = [(numpy.empty(0, dtype=int), numpy.empty(0), numpy.empty(0, dtype=int))]
     if len(places) and len(surface.faces):
         order = numpy.argsort(places[:, 0], kind="stable")
@@ -85,7 +85,7 @@ def _hits(surface, places):
 
 
 def _tried(surface, x, y):
-    """Triangles and lines (numbers of both) that may meet, so many at a time; ``x`` is sorted."""
+    """Triangles and lines (indices of both) that may meet, in batches; ``x`` is sorted."""
     least, greatest = surface.boxes
     begin = numpy.searchsorted(x, least[:, 0])
     counts = numpy.searchsorted(x, greatest[:, 0], side="right") - begin
@@ -106,7 +106,7 @@ def _tried(surface, x, y):
 
 
 def _crossed(surface, which, x, y):
-    """(numbers of the pairs that meet, heights, turns)."""
+    """(indices of the pairs that meet, heights, turns)."""
     first, second, third = (corners[which] for corners in surface.triangles)
     one, two = second - first, third - first
     across = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
@@ -116,17 +116,17 @@ def _crossed(surface, which, x, y):
         v = (one[:, 0] * dy - one[:, 1] * dx) / across
         hit = (numpy.abs(across) > _SLIVER) & (u >= 0) & (v >= 0) & (u + v <= 1)
     height = first[hit, 2] + u[hit] * one[hit, 2] + v[hit] * two[hit, 2]
-    # A line from below leaves a solid where the outside of its surface looks up.
+    # A line from below leaves a solid where the surface's outside faces up.
     turns = -numpy.sign(across[hit]).astype(int) * surface.sides[which[hit]].astype(int)
     return numpy.flatnonzero(hit), height, turns
 
 
 def order_of(columns, tolerance):
-    """How ``a`` stands to ``b`` on the lines.
+    """How ``a`` is above or below ``b`` on the lines.
 
-    ``clearance``: the least free height between something of ``a`` and what of ``b`` lies beneath it (None: nothing
-    does), ``contact``: the height of ``b`` there. ``over``: of the stretches of ``a`` that have ``b`` on their line,
-    the share that lies over it; one that has it on both sides counts half. ``lines``: how many such stretches.
+    ``clearance``: the least gap between a stretch of ``a`` and a stretch of ``b`` below it (None if there is none);
+    ``contact``: the height of ``b`` there. ``over``: of the stretches of ``a`` with ``b`` on their line, the share that
+    is over it; one with ``b`` on both sides counts half. ``lines``: the number of these stretches.
     """
     clearance = contact = None
     over, met = 0.0, 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads the open file as ``bench/audit/facts.py`` describes it: settings first, then the motion, as played."""
+"""Reads the open file's facts, as ``bench/audit/facts.py`` describes them: settings first, then the played motion."""
 
 import os
 
@@ -22,7 +22,7 @@ def read_facts(play, most=MOST_OBJECTS):
     """
     scene = bpy.context.scene
     if len(scene.objects) > most:
-        raise Refused(f"the scene has {len(scene.objects):,} objects; at most {most:,} are looked at")
+        raise Refused(f"the scene has {len(scene.objects):,} objects; at most {most:,} can be audited")
     shapes.forget()
     channels.forget()
     watched = []
@@ -36,7 +36,7 @@ def read_facts(play, most=MOST_OBJECTS):
         rest = f" and {len(labels) - 4} more" if len(labels) > 4 else ""
         scene_facts["unplayed"] = f"unbaked: {', '.join(labels[:4])}{rest}"
     elif not play:
-        scene_facts["unplayed"] = "Blender does not survive the clip"
+        scene_facts["unplayed"] = "Blender ends while it plays the clip"
     scene_facts["objects"] = [facts for _, facts in sorted(told.items(), key=lambda item: item[1]["name"])]
     return scene_facts
 
@@ -82,7 +82,7 @@ def _is_there(path):
 
 
 def _scripts():
-    """What would have run on opening: registered texts, and drivers whose expression is Python."""
+    """What would have run on opening: registered texts, and drivers with Python expressions."""
     found = [f"text {text(each.name)}" for each in bpy.data.texts if each.use_module]
     for thing in bpy.data.objects:
         drivers = thing.animation_data.drivers if thing.animation_data is not None else ()
@@ -91,7 +91,7 @@ def _scripts():
     return sorted(found)[:20]
 
 
-# Collections, and what of them a render shows
+# Collections, and their objects that a render shows
 
 
 def _collections(scene):

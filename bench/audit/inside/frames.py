@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders frames of the open file as its camera sees them. The file is not saved, and nothing is left on the disk.
+"""Renders frames of the open file as its camera sees them. The file is not saved, and nothing is left on disk.
 
-What is baked is played from its cache. What is not is simulated from the first frame on, as a render of the whole clip
-would have it; a fluid, in a folder of this process. Where the caller asks to ``jump``, it is switched off instead.
+Baked physics plays from its cache. Unbaked physics is simulated from the first frame on, as in a render of the whole
+clip (a fluid writes to a folder of this process); with ``jump`` it is switched off instead.
 """
 
 import base64
@@ -17,9 +17,9 @@ from simworlds.sandbox.inside.refusal import Refused
 from . import sample_frames, solvers
 from .json_values import called
 
-_AROUND, _ABOVE = 0.6, 0.45  # radians: a made camera looks from the front, the right and above
-_LOOSE = 1.1  # times as far away as it would need to be
-_SETTING = 4.0  # times as large as all the rest: ground or sky, which a made camera need not show whole
+_AROUND, _ABOVE = 0.6, 0.45  # radians: the added camera looks from the front, right and above
+_LOOSE = 1.1  # times the least distance at which everything fits
+_SETTING = 4.0  # times as large as all the rest: ground or sky, which need not fit in the picture
 _LONGEST_SIDE = 4  # times the shorter one
 _MOST_FRAMES = 5000  # that are stepped through
 _UNSEEN = {"CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE", "ARMATURE", "LATTICE"}
@@ -27,10 +27,10 @@ _PICTURE = {"file_format": "PNG", "color_mode": "RGB", "color_depth": "8", "comp
 
 
 def render(shares, pixels, samples, jump=False):
-    """The frames at ``shares`` (0 to 1) of the clip, of about so many ``pixels``, by Cycles with so many ``samples``.
+    """Renders the frames at ``shares`` (0 to 1) of the clip by Cycles, with about ``pixels`` pixels and ``samples``.
 
-    Returns ``frames``: for each its number and ``png`` (base64); ``camera``: its name, None for one that was made;
-    ``unbaked``: in words, physics that has no bake. Raises Refused.
+    Returns ``frames``: for each its number and ``png`` (base64); ``camera``: its name, None if one was added;
+    ``unbaked``: physics without a bake, in words. Raises Refused.
     """
     scene = bpy.context.scene
     told = {thing: {"modifiers": solvers.modifiers_of(thing)} for thing in scene.objects}
@@ -48,7 +48,7 @@ def render(shares, pixels, samples, jump=False):
         camera, scene.camera = None, _camera(scene)
     steps = range(first, last + 1) if unbaked and not jump else sorted(set(wanted))
     if len(steps) > _MOST_FRAMES:
-        raise Refused(f"{len(steps):,} frames would have to be simulated; at most {_MOST_FRAMES:,} are")
+        raise Refused(f"{len(steps):,} frames would have to be simulated; the most is {_MOST_FRAMES:,}")
     pictures = {}
     for frame in steps:
         scene.frame_set(frame)
@@ -63,7 +63,7 @@ def render(shares, pixels, samples, jump=False):
 
 
 def _switch_off(scene, unbaked):
-    """Keeps physics from being simulated, in the render too."""
+    """Switches unbaked physics off, in the render too."""
     modifiers = [
         modifier for thing in scene.objects for modifier in thing.modifiers if modifier.show_viewport
     ]
@@ -74,7 +74,7 @@ def _switch_off(scene, unbaked):
 
 
 def _keep_fluids_here(scene):
-    """What a fluid that is simulated as it plays writes, it writes into this process's own folder."""
+    """Makes fluids that are simulated during playback write to a folder of this process."""
     for thing in scene.objects:
         for modifier in thing.modifiers:
             if modifier.type != "FLUID" or modifier.fluid_type != "DOMAIN" or not modifier.show_viewport:
@@ -85,7 +85,7 @@ def _keep_fluids_here(scene):
 
 
 def _settle(scene, pixels, samples):
-    """The camera's view of the scene alone: no strips of an editor, no border, no second eye."""
+    """Sets up the render: only the camera's view, without sequencer strips, border or stereo."""
     render, shape = scene.render, scene.render.resolution_x / max(1, scene.render.resolution_y)
     shape = min(_LONGEST_SIDE, max(1 / _LONGEST_SIDE, shape))
     render.resolution_x = max(4, round((pixels * shape) ** 0.5))
@@ -108,7 +108,7 @@ def _settle(scene, pixels, samples):
 
 
 def _picture(scene):
-    """The PNG of the current frame. What it is composited with may want a file that is not there: then it is not."""
+    """The PNG of the current frame (base64); without compositing if that fails, as when a file of it is missing."""
     path = scene.render.filepath
     for composited in dict.fromkeys((scene.render.use_compositing, False)):
         scene.render.use_compositing = composited
@@ -142,7 +142,7 @@ def _camera(scene):
 
 
 def _framed(scene, graph):
-    """The corners of all that is rendered, but for ground and sky."""
+    """The corners of all rendered objects, except ground and sky."""
     boxes = []
     for thing in scene.objects:
         evaluated = thing.evaluated_get(graph)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's values in JSON's terms: the same value gives the same text, on every run."""
+"""Converts Blender's values for JSON: the same value gives the same text, on every run."""
 
 import math
 
@@ -12,14 +12,14 @@ def text(value):
 
 
 def called(block):
-    """The name of a data-block, with its library's if it is linked; None for none."""
+    """The name of a data-block, with its library's if it is linked; None if there is no data-block."""
     if block is None:
         return None
     return text(block.name_full if block.library is not None else block.name)
 
 
 def number(value):
-    """Six significant digits: more would be noise of single precision. What is no number is 0."""
+    """A value rounded to six significant digits, the precision of Blender's floats; 0 if it is not finite or huge."""
     value = float(value)
     if not math.isfinite(value) or abs(value) > _LARGEST:
         return 0.0
@@ -27,7 +27,7 @@ def number(value):
 
 
 def vector(values, scale=1.0):
-    """Numbers, each times ``scale``, to a hundredth of a millimetre (playback may differ in the last bits)."""
+    """Numbers, each times ``scale``, to 0.01 mm (playback may differ in the last bits); 0 for those not finite."""
     found = []
     for each in values:
         value = float(each) * scale

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How things stand to each other at the start, middle and end of the clip; see audit/relation_measures.py.
+"""Measures how groups of objects stand to each other at the start, middle and end; see audit/relation_measures.py.
 
-To be asked after the facts, which have switched off what is not baked: nothing is simulated here.
+Call it after the facts were read, which switches off unbaked physics: nothing is simulated here.
 """
 
 import bpy
@@ -13,11 +13,11 @@ from .json_values import number
 from .sample_frames import frames_of, metres
 from .surfaces import Looker
 
-MOST_WHOLE = 60_000  # triangles; of more, only those near to the other thing
+MOST_WHOLE = 60_000  # triangles; of more, only those near the other surface are used
 _WALKS, _STEPS = 6, 8
 _TOUCHING = 1e-6
 _LEVEL = 0.7  # of a normal, upwards
-_LOOKED_AT = 64  # points of a thing that are asked whether they are enclosed
+_INSIDE_SAMPLES = 64  # points of a surface that are tested for being enclosed
 _SIDES = [
     Vector(side).normalized()
     for side in ((1, 0.03, 0.02), (-1, 0.02, 0.03), (0.03, 1, 0.02), (0.02, -1, 0.03))
@@ -25,14 +25,14 @@ _SIDES = [
 _ENDS = [Vector(end).normalized() for end in ((0.02, 0.03, 1), (0.03, 0.02, -1))]
 _CORNERS = [Vector((x, y, z)).normalized() for x in (-1, 1.03) for y in (-1.05, 1) for z in (-1.02, 1.04)]
 _AROUND = [*_SIDES, *_ENDS, *_CORNERS]
-_ENCLOSED = 8 / 14  # of the directions: a box without its lid has nine
+_ENCLOSED = 8 / 14  # of the directions: in a box without a lid, nine hit
 
 
 def measure(pairs):
-    """Measures pairs. Returns, per pair, {turn: what was measured}; turns are 0 start, 1 middle, 2 end.
+    """Measures pairs. Returns, per pair, {turn: measurements}; turns are 0 start, 1 middle, 2 end.
 
-    A pair has ``a`` and ``b`` (names of objects), ``turns`` at which it is wanted, ``tolerance`` (metres), and the
-    ``wants`` beyond the distance: ``depth``, ``columns`` (with depth), ``inside``, ``view``.
+    A pair has ``a`` and ``b`` (names of objects), ``turns``, ``tolerance`` (metres), and in ``wants`` what to measure
+    beyond the distance: ``depth``, ``columns`` (with depth), ``inside``, ``view``.
     """
     scene = bpy.context.scene
     looker = Looker(metres(scene))
@@ -57,7 +57,7 @@ def measure(pairs):
 
 
 def _view(scene, graph):
-    """Where the right is, (x, y), for who looks through the camera, or along y where there is none."""
+    """The direction (x, y) to the right of the camera, or of a view along +Y if there is none."""
     if scene.camera is None:
         return 1.0, 0.0
     x, y, _ = scene.camera.evaluated_get(graph).matrix_world.col[0].xyz
@@ -97,7 +97,7 @@ def _plain(values):
 
 
 def _along(first, second, axis):
-    """How far both reach along a horizontal direction: [low and high of the first, of the second]."""
+    """The extents of both along a horizontal direction: [low, high of the first, low, high of the second]."""
     found = []
     for one in (first, second):
         reached = numpy.concatenate([one.corners, one.points])[:, :2] @ numpy.array(axis)
@@ -106,7 +106,7 @@ def _along(first, second, axis):
 
 
 def _near(first, second, tolerance):
-    """Both, or of large ones the part that matters: what of it can be nearest to the other, or in it."""
+    """Both surfaces; of large ones only the part that can be nearest to the other, or in it."""
     found = []
     for one, other in ((first, second), (second, first)):
         if len(one.faces) <= MOST_WHOLE:
@@ -124,7 +124,7 @@ def _near(first, second, tolerance):
 
 
 def _gap(first, second):
-    """(least distance, 0 where they cross; points on the second near the first's seeds, and the reverse)."""
+    """(least distance, 0 if they intersect; points on the second nearest to the first's seeds, and the reverse)."""
     feet, reversed_feet = _feet(first, second), _feet(second, first)
     if first.tree is not None and second.tree is not None and first.tree.overlap(second.tree):
         return 0.0, feet[0], reversed_feet[0]
@@ -156,7 +156,7 @@ def _least_of_points(first, second, lengths, reversed_lengths):
 
 
 def _walked(point, one, other):
-    """From a point on the other surface to the nearest of the one, and back, until that brings nothing."""
+    """The distance after going from a point on one surface to the nearest on the other, and back, until it settles."""
     length = numpy.inf
     for _ in range(_STEPS):
         there = one.find_nearest(Vector(point))[0]
@@ -171,7 +171,7 @@ def _walked(point, one, other):
 
 
 def _stand(first, second, pair, feet, tolerance):
-    """What vertical lines tell: which is over which, how deep either is in the other, what share of it."""
+    """What vertical lines show: which is over which, how deep either is in the other, and what share of it."""
     on_second, on_first = feet
     columns = Columns(
         first,
@@ -189,9 +189,9 @@ def _stand(first, second, pair, feet, tolerance):
 
 
 def _depth(columns, first, second):
-    """How deep they are in each other: of their points that are in the other, the greatest distance to its surface.
+    """How deep they penetrate each other: the greatest distance to a surface of points of the other that are in it.
 
-    A level sheet has no inside: of a solid that it cuts, what sticks out on the lesser side counts.
+    A level sheet has no inside: of a solid that it cuts, the depth on the shallower side counts.
     """
     deepest = 0.0
     if first.tree is None or second.tree is None:
@@ -215,7 +215,7 @@ def _is_level(tree, point):
 
 
 def _share_in(one, stretches, places):
-    """The share of a thing's seeds that are in the other's solid."""
+    """The share of a surface's seeds that are in the other's solid."""
     known = {tuple(place): each for place, each in zip(places.tolist(), stretches, strict=True)}
     inner = sum(
         any(low + _TOUCHING < z < high - _TOUCHING for low, high in known.get((x, y), ()))
@@ -225,9 +225,9 @@ def _share_in(one, stretches, places):
 
 
 def _inside(first, second, tolerance):
-    """The share of the first's points that the second encloses, or that are as near to its bounds as is tolerated."""
+    """The share of the first's points that the second encloses, within its bounds grown by the tolerance."""
     seeds = first.seeds
-    seeds = seeds[numpy.linspace(0, len(seeds) - 1, min(_LOOKED_AT, len(seeds))).astype(int)]
+    seeds = seeds[numpy.linspace(0, len(seeds) - 1, min(_INSIDE_SAMPLES, len(seeds))).astype(int)]
     within = ((seeds >= second.low - tolerance) & (seeds <= second.high + tolerance)).all(axis=1)
     if second.tree is None:
         return 0.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opens the file that is to be audited. Nothing in it is executed, and nothing is written."""
+"""Opens the file to audit. Nothing in it is executed, and nothing is written."""
 
 import os
 
@@ -11,7 +11,7 @@ from .json_values import text
 
 
 def open_file(path):
-    """Opens ``path``. Returns ``objects``, how many there are. Raises Refused."""
+    """Opens ``path``. Returns ``objects``: how many it has. Raises Refused."""
     name = os.path.basename(path)
     try:
         bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
@@ -21,9 +21,9 @@ def open_file(path):
     saved, own = tuple(bpy.data.version)[:2], tuple(bpy.app.version)[:2]
     if saved > own:
         raise Refused(
-            f"it was saved by Blender {saved[0]}.{saved[1]}, and this is {own[0]}.{own[1]}, which loses what the newer "
-            "one added; name a newer Blender"
+            f"it was saved by Blender {saved[0]}.{saved[1]}, and this is Blender {own[0]}.{own[1]}, which cannot read "
+            "all of it; choose a newer Blender"
         )
     if bpy.context.scene is None:
-        raise Refused("there is no scene in it")
+        raise Refused("it has no scene")
     return {"objects": len(bpy.data.objects)}

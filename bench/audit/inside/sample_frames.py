@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where things are at the start, the middle and the end of the clip, as played from keys and baked caches.
+"""Where objects are at the start, the middle and the end of the clip, as played from keys and baked caches.
 
-Physics that is not baked is never jumped: it is switched off first (the file is not saved), and what it would have
-moved is looked at where it starts, alone.
+Unbaked physics is not simulated: it is switched off first (the file is not saved), and the objects that it would move
+are read at the start only.
 """
 
 from itertools import islice
@@ -16,35 +16,35 @@ from .json_values import called, number, vector
 MOST_VERTICES = 500_000  # of one mesh whose bounds are taken from its corners
 MOST_INSTANCES = 20_000
 _WITHOUT_EXTENT = {"CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE", "ARMATURE"}
-_HELD = 0.5  # of the frames that a cache should hold: with less it is no bake, whatever it is marked as
+_HELD = 0.5  # least share of its frames that a cache must hold to count as a bake, whatever it is marked as
 
 
 class Unbaked:
-    """Physics that is not baked: what it is in words, the objects that it moves, and its switch."""
+    """Unbaked physics: a label in words, the objects that it moves, and the setting that turns it off."""
 
     def __init__(self, label, things, holder, switch):
         self.label, self.things = label, things
         self._holder, self._switch = holder, switch
 
     def switch_off(self):
-        """Keeps it from being simulated."""
+        """Turns its simulation off."""
         setattr(self._holder, self._switch, False)
 
 
 def metres(scene):
-    """Metres of one unit of the scene."""
+    """Metres per unit of the scene."""
     units = scene.unit_settings
     return 1.0 if units.system == "NONE" else units.scale_length
 
 
 def frames_of(scene):
-    """The three frames."""
+    """The first, middle and last frame of the clip."""
     first, last = scene.frame_start, scene.frame_end
     return first, (first + last) // 2, last
 
 
 def play(scene, told, unbaked):
-    """Adds ``moments`` to each of ``told`` ({object: its facts}). Yields at each frame, with it set and evaluated."""
+    """Adds ``moments`` to each of ``told`` ({object: its facts}). Yields the dependency graph at each sample frame."""
     still = set()
     for each in unbaked:
         each.switch_off()
@@ -62,7 +62,7 @@ def play(scene, told, unbaked):
 
 
 def _show_all(told):
-    """Has the viewport evaluate what a render shows."""
+    """Makes the viewport evaluate what a render shows."""
     for layer in _layers(bpy.context.view_layer.layer_collection):
         layer.hide_viewport = layer.collection.hide_viewport = False
     for thing, facts in told.items():
@@ -101,7 +101,7 @@ def _falls(thing, world):
 
 
 def _unbaked(modifier, seen):
-    """In a word, what a modifier would have to simulate; "" for nothing."""
+    """What a modifier would have to simulate, in words; "" for nothing."""
     for key, word in (("cloth", "cloth"), ("soft", "soft body"), ("particles", "particles")):
         cache = (seen.get(key) or {}).get("cache")
         if cache is not None and (not cache["is_baked"] or cache["frames"] < _HELD * cache["expected"]):
@@ -140,7 +140,7 @@ def _moment(thing, frame, graph, instanced, scale):
 
 
 def _corners(evaluated):
-    """Points in world space whose bounds are the object's; None of what has no extent."""
+    """Points in world space whose bounds are the object's; None if it has no extent."""
     matrix = numpy.array(evaluated.matrix_world, dtype=numpy.float64)
     data = evaluated.data
     if isinstance(data, bpy.types.Mesh) and 0 < len(data.vertices) <= MOST_VERTICES:
@@ -171,7 +171,7 @@ def _instanced(graph, told):
 
 
 def surface_of(thing, graph):
-    """(vertices, faces) of an object as evaluated; of one whose modifiers leave nothing yet, of its own data."""
+    """(vertices, faces) of an object: those of its evaluated mesh or of its own data, whichever are more."""
     data = thing.evaluated_get(graph).data
     counts = [0, 0]
     for mesh in (data, thing.data):
@@ -187,5 +187,5 @@ def surface_of(thing, graph):
 
 
 def rate(scene):
-    """Frames a second."""
+    """Frames per second."""
     return number(scene.render.fps / scene.render.fps_base)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers what the audit asks about one untrusted .blend. No script of the file runs."""
+"""Serves the audit's jobs on one untrusted .blend. No script of the file runs."""
 
 from simworlds.sandbox.inside import mantaflow, service
 from simworlds.sandbox.inside.refusal import Refused
 
-# What is asked → the module and function that answer, with the arguments of the call as their own.
+# Job → the module and function that do it; they get the arguments of the call.
 JOBS = {
     "open": ("opening", "open_file"),
     "facts": ("facts", "read_facts"),
@@ -26,7 +26,7 @@ def serve(descriptor, jobs):
         try:
             return jobs.find(job)(**arguments)
         except MemoryError:
-            raise Refused("it needs more memory than it may have") from None
+            raise Refused("it needs more memory than its limit") from None
 
     mantaflow.mend()
     service.serve(descriptor, answer, largest=_LARGEST)

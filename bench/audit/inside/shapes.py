@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can be told of a mesh by itself: whether it is closed, of how many pieces it is, which groups have weights."""
+"""Facts of a mesh by itself: whether it is closed, how many loose pieces it has, which vertex groups have weights."""
 
 import bpy
 import numpy
@@ -15,12 +15,12 @@ _known = {}  # mesh (by address) → (topology, islands): linked duplicates shar
 
 
 def forget():
-    """To be called when another file has been opened."""
+    """Forgets the last file's meshes; call it after another one is opened."""
     _known.clear()
 
 
 def shape_of(data):
-    """(``"open"``, ``"closed"`` or None, pieces that do not hang together) of an object's data."""
+    """(``"open"``, ``"closed"`` or None, number of loose pieces) of an object's data."""
     if not isinstance(data, bpy.types.Mesh):
         return None, 0
     key = data.as_pointer()
@@ -30,7 +30,7 @@ def shape_of(data):
 
 
 def _topology(mesh):
-    """Closed: every edge of a face has two. Edges without a face are no surface: struts across a soft body's inside."""
+    """Closed: every edge of a face has two faces. Loose edges do not count: soft bodies have struts inside."""
     if not len(mesh.edges) or not len(mesh.polygons) or len(mesh.loops) > MOST_LOOPS:
         return "open"
     edges = numpy.empty(len(mesh.loops), dtype=numpy.int32)
@@ -58,7 +58,7 @@ def _islands(mesh):
 
 
 def vertex_groups_of(thing):
-    """Its groups, each with how many vertices have a weight above zero in it; read only of what is simulated."""
+    """Its groups, each with the number of vertices that have a weight above zero; counted for simulated meshes only."""
     data = thing.data
     if not thing.vertex_groups or not isinstance(data, bpy.types.Mesh):
         return []

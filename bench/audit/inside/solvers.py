@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Modifiers with the settings of what they simulate, rigid bodies, and every cache: in the file, and on disk."""
+"""Modifiers with the settings of their simulation, rigid bodies, and caches in the file and on disk."""
 
 import os
 import re
@@ -14,7 +14,7 @@ _FRAMES = re.compile(r"([\d,]+) frames?")
 _NUMBERED = re.compile(r"_(-?\d{4,})\.")
 _POINT_FILE = re.compile(r"(.*)_(-?\d{5,})_\d\d\.bphys$")
 _FLUID_PARTS = ("data", "noise", "mesh", "particles")
-# Weights of fields, by the type of field that each is for.
+# Type of force field → the name of its effector weight.
 _WEIGHTS = {
     "ALL": "all",
     "FORCE": "force",
@@ -143,7 +143,7 @@ def _domain(thing, settings):
 
 
 def _box_of(thing):
-    """The corners of the bounds, in world space, of an object's own mesh (not of what its modifiers make of it)."""
+    """The corners of the bounds, in world space, of an object's own mesh, before modifiers."""
     corners = [thing.matrix_world @ vertex.co for vertex in getattr(thing.data, "vertices", ())]
     corners = corners or [thing.matrix_world.translation]
     return [[choose(corner[axis] for corner in corners) for axis in range(3)] for choose in (min, max)]
@@ -235,7 +235,7 @@ def point_cache(cache, owner, lived=None):
 
 
 def _frames_held(cache, owner):
-    """How many frames are there: of caches on disk, how many there are files of, whatever Blender remembers."""
+    """How many frames it holds; for caches on disk, the number of frames with files, whatever Blender remembers."""
     if not cache.use_external and not cache.use_disk_cache:
         found = _FRAMES.search(cache.info)
         return int(found[1].replace(",", "")) if found else 0
@@ -271,7 +271,7 @@ def _fluid_cache(settings):
 
 
 def _fluid_folder(settings):
-    """Where a fluid's files are: where the file says, or else beside the file under the same name. (path, moved)."""
+    """(path, moved) of a fluid's cache: where the file says, or else a folder of the same name beside the file."""
     folder = os.path.normpath(bpy.path.abspath(settings.cache_directory))
     if os.path.isdir(folder) or not bpy.data.filepath:
         return folder, False
@@ -280,7 +280,7 @@ def _fluid_folder(settings):
 
 
 def take_moved_caches(things):
-    """Has fluids whose cache is not where the file says, but beside it, play from there. Files and flags stay."""
+    """Makes fluids whose cache was moved beside the file play from there. Files and flags stay."""
     for thing in things:
         for modifier in thing.modifiers:
             settings = getattr(modifier, "domain_settings", None) if modifier.type == "FLUID" else None
@@ -291,7 +291,7 @@ def take_moved_caches(things):
 
 
 def files_in(folder):
-    """Names of the files in a folder, sorted; of a very full one, the first that come; [] if it is not there."""
+    """Names of the files in a folder, sorted; at most MOST_FILES of them; [] if there is no such folder."""
     found = []
     try:
         with os.scandir(folder) as entries:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an actor's objects look like at the current frame: one soup of triangles, and loose points, in metres.
+"""The surface of an actor's objects at the current frame: one set of triangles, and loose points, in metres.
 
-Evaluated meshes, curves and texts as meshes, everything that instances show, liquids' surfaces, particles as points.
-Of a closed piece of mesh it is known on which side its inside is, whatever way its normals look.
+It holds evaluated meshes, curves and texts as meshes, instances, the surfaces of liquids, and particles as points. For
+closed pieces of mesh it knows which side is inside, whichever way their normals point.
 """
 
 import hashlib
@@ -15,16 +15,16 @@ from mathutils.bvhtree import BVHTree
 
 from .json_values import called
 
-MOST_TRIANGLES = 400_000  # of one actor; what goes beyond is looked at as boxes
+MOST_TRIANGLES = 400_000  # of one actor; further objects become boxes
 MOST_WITH_BOXES = 600_000
 MOST_INSTANCES = 20_000
 MOST_POINTS = 20_000
 SEEDS = 200
-_DRAWN = 0.003  # of the way to the middle
+_INSET = 0.003  # of the way to the middle
 _CONVERTED = {"CURVE", "SURFACE", "FONT", "META"}
 _BOXED = {"VOLUME", "POINTCLOUD", "CURVES", "GREASEPENCIL"}
 _SMALLEST_VOLUME = 1e-12
-_FARTHEST = 1e9  # metres; what is further, or no number, is not there
+_FARTHEST = 1e9  # metres; corners further away, or not finite, are ignored
 _FACES = "013032467475045051237276026064157173"
 _BOX = numpy.array([int(corner) for corner in _FACES]).reshape(-1, 3)
 _LOOKING_OUT = numpy.ones(len(_BOX), dtype=numpy.int8)
@@ -33,10 +33,10 @@ _STEPS = numpy.array([0.7548776662466927, 0.5698402909980532])
 
 
 class Surface:
-    """``corners`` (c, 3), ``faces`` (n, 3) of their numbers; ``points`` (m, 3): what has no surface.
+    """Triangles: ``corners`` (c, 3) and ``faces`` (n, 3), their indices; ``points`` (m, 3): loose points.
 
-    ``sides`` (n): 1 where a triangle's normal looks out of a solid, -1 where into one, 0 of a sheet. ``low`` and
-    ``high`` are the corners of its bounds.
+    ``sides`` (n): 1 where a triangle's normal points out of a solid, -1 into one, 0 on a sheet. ``low`` and ``high``
+    are the corners of its bounds.
     """
 
     def __init__(self, corners, faces, sides, points):
@@ -48,7 +48,7 @@ class Surface:
 
     @cached_property
     def tree(self):
-        """Its triangles for look-ups; None of mere points."""
+        """Its triangles as a BVH tree; None without triangles."""
         if not len(self.faces):
             return None
         return BVHTree.FromPolygons(self.corners.tolist(), self.faces.tolist(), all_triangles=True)
@@ -67,11 +67,11 @@ class Surface:
 
     @cached_property
     def seeds(self):
-        """Points spread over it by area, its lowest and highest corners, and of loose points an even choice."""
+        """Points spread over it by area, its lowest and highest corners, and an even selection of loose points."""
         return numpy.concatenate([self._spread(), self._ends(), _chosen(self.points)])
 
     def part(self, low, high):
-        """What of its triangles reaches into a box, with all of its points; None if nothing does."""
+        """Its triangles that reach into a box, with all of its points; None if there are none."""
         least, greatest = self.boxes
         kept = ((greatest >= low) & (least <= high)).all(axis=1)
         if not kept.any():
@@ -96,12 +96,12 @@ class Surface:
         return first[at] * (1 - u - v) + second[at] * u + third[at] * v
 
     def _ends(self):
-        """The corners that are lowest and highest, drawn a little inwards: a line through them meets faces."""
+        """The lowest and highest corners, moved slightly inwards so that vertical lines through them hit faces."""
         if not len(self.corners):
             return numpy.empty((0, 3))
         order = numpy.argsort(self.corners[:, 2].round(5), kind="stable")
         ends = self.corners[numpy.concatenate([order[:24], order[-8:]])]
-        ends[:, :2] += (self.corners[:, :2].mean(axis=0) - ends[:, :2]) * _DRAWN
+        ends[:, :2] += (self.corners[:, :2].mean(axis=0) - ends[:, :2]) * _INSET
         return ends
 
 
@@ -112,7 +112,7 @@ def _chosen(points):
 
 
 class Looker:
-    """Builds surfaces, and keeps those that are the same at another frame."""
+    """Builds surfaces, and reuses those that are the same at another frame."""
 
     def __init__(self, scale):
         self._scale = scale
@@ -122,7 +122,7 @@ class Looker:
         self._pieces, self._surfaces, self._locals = {}, {}, {}
 
     def surfaces(self, groups, graph):
-        """The surface of each group (tuple of objects' names) at the frame that ``graph`` stands at."""
+        """The surface of each group (tuple of object names) at the current frame of ``graph``."""
         self._locals.clear()
         wanted = {name for group in groups for name in group}
         parts = {name: [] for name in wanted}
@@ -164,7 +164,7 @@ class Looker:
                 points.append(found)
 
     def _shown(self, wanted, graph, parts, counts):
-        """Adds what the wanted objects show as instances."""
+        """Adds the instances that the wanted objects show."""
         if not any(_shows(self._things[name]) for name in wanted & self._things.keys()):
             return
         for instance in islice(graph.object_instances, MOST_INSTANCES):
@@ -191,7 +191,7 @@ class Looker:
         parts.append((corners, faces, -sides if turned else sides))
 
     def _local(self, evaluated):
-        """(corners, triangles, sides) in the object's own space; None of what has no surface."""
+        """(corners, triangles, sides) in the object's own space; None if it has no surface."""
         data = evaluated.data
         if isinstance(data, bpy.types.Mesh):
             return self._of_mesh(data)
@@ -218,18 +218,18 @@ class Looker:
 
 
 def sides_of(corners, faces, pieces, closed):
-    """Per triangle: 1 where its normal looks out of the closed piece that it is of, -1 into it, 0 of open ones."""
+    """Per triangle: 1 if its normal points out of its closed piece, -1 if into it, 0 if the piece is open."""
     first, second, third = (corners[faces[:, place]] for place in range(3))
     parts = (first * numpy.cross(second, third)).sum(axis=1)
     volumes = numpy.where(closed, numpy.bincount(pieces, parts, len(closed)), 0.0)
-    # Far from the origin the parts of a flat piece's volume do not cancel to the last bit.
+    # Far from the origin, the terms of a flat piece's volume do not cancel exactly.
     least = max(_SMALLEST_VOLUME, 1e-12 * float(numpy.abs(corners).max()) ** 3)
     volumes[numpy.abs(volumes) <= least] = 0
     return numpy.sign(volumes[pieces]).astype(numpy.int8)
 
 
 def pieces_of(count, faces):
-    """(per triangle the piece that it hangs together with, per piece whether each of its edges has two triangles)."""
+    """(per triangle the connected piece it belongs to, per piece whether each of its edges has two triangles)."""
     labels = numpy.arange(count)
     first, second, third = faces.T
     while True:
@@ -260,13 +260,13 @@ def _digest(*arrays):
 
 def _box(evaluated):
     corners = numpy.array([tuple(corner) for corner in evaluated.bound_box], dtype=numpy.float64)
-    # Blender lists the corners around each end; here they are in the order of their bits x, y, z.
+    # Blender lists the corners around each end; here they are ordered by their bits x, y, z.
     corners = corners[[0, 1, 3, 2, 4, 5, 7, 6]]
     return corners, _BOX, _LOOKING_OUT
 
 
 def _is_bare_domain(thing, evaluated):
-    """Whether it is a liquid's domain that shows its box: that is not the liquid."""
+    """Whether it is a liquid's domain that shows its box instead of the liquid."""
     found = [each for each in thing.modifiers if each.type == "FLUID" and each.fluid_type == "DOMAIN"]
     liquid = any(each.domain_settings and each.domain_settings.domain_type == "LIQUID" for each in found)
     return liquid and len(evaluated.data.vertices) == len(thing.data.vertices)
@@ -278,12 +278,12 @@ def _shows(thing):
 
 
 def _only_particle(instance):
-    """Particles count as points, whatever is shown in their place."""
+    """Whether an instance shows a particle: particles count as points."""
     return instance.particle_system is not None
 
 
 def _alive(system):
-    """Where the particles are that live; of hair, none."""
+    """The positions of live particles; none for hair."""
     settings = system.settings
     if settings is None or settings.type == "HAIR" or not len(system.particles):
         return numpy.empty((0, 3))

@@ -1,4 +1,4 @@
-"""What tells a simulation from its imitation, and a still scene from one with physics. All are asked for as absent."""
+"""Signs of an imitated simulation, and of physics in a static scene. Specs list all of them as ``must_not_have``."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ if TYPE_CHECKING:
     from bench.audit.facts import Channel, Modifier, Object
     from bench.audit.predicates.predicate import Params, Stage, Unit
 
-# A pose animated by hand has a key every 8 to 12 frames; motion that was sampled has one every frame or two. At one in
-# four, both are told apart with room on either side.
+# Hand-made animation has a key every 8 to 12 frames; sampled motion has one every frame or two. One key in four frames
+# separates the two with a margin on either side.
 DENSE_KEYS_PER_FRAME = 0.25
-# A push or a letting go takes a handful of keys close together: fewer than this many are no recording.
+# A push or a release takes a handful of keys close together: fewer than this many are not a recording.
 DENSE_LEAST_KEYS = 8
 _TRANSFORMS = ("location", "rotation", "scale", "delta_")
-# Constraints that give an object a motion which no key of its own shows.
+# Constraints that move an object without keys of its own.
 _MOVERS = ("TRANSFORM_CACHE", "FOLLOW_PATH", "FOLLOW_TRACK", "OBJECT_SOLVER", "ACTION")
 _GEOMETRY_CACHES = ("MESH_CACHE", "MESH_SEQUENCE_CACHE")
 _MOST_FOLLOWED = 64
 
 
 def dense_transform_keys(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The actor is moved by a recording: an object of it has a location, rotation or scale that varies and has at
-    least 8 keys (or samples), at one for every 4 frames or more between the first and the last of them, in its action
-    or its NLA strips; or that a driver or an f-curve modifier gives at every frame; or a constraint that plays a
-    path, a track or a cache. Of an actor that no solver moves, the objects that it follows count too (parents,
-    armatures, targets of constraints): there they are what moves it. Hands set a key every 8 to 12 frames; exported
-    simulations have one at each.
+    """The actor is moved by recorded motion. One of its objects has a location, rotation or scale that varies and is
+    densely keyed: at least 8 keys (or samples) in its action or NLA strips, with at least one key per 4 frames between
+    the first and the last. A driver or an f-curve modifier, which sets a value at every frame, counts too, and so does
+    a constraint that plays a path, a track or a cache. If no solver moves the actor, the objects that it follows
+    (parents, armatures, constraint targets) are checked as well, since they move it. Animation by hand has a key every
+    8 to 12 frames; an exported simulation has one at every frame.
     """
     del params
     moved_by_solver = any(simulates(one, stage.scene) for one in unit.objects)
@@ -50,7 +50,7 @@ def dense_transform_keys(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def is_dense(channel: Channel) -> bool:
-    """Whether a channel is a recording, or made at every frame."""
+    """Whether a channel is densely keyed, or has a value generated at every frame."""
     if not channel.varies:
         return False
     dense = channel.keys >= DENSE_LEAST_KEYS and channel.keys >= DENSE_KEYS_PER_FRAME * (channel.span + 1)
@@ -80,10 +80,10 @@ def _followed(unit: Unit, stage: Stage) -> Iterator[Object]:
 
 
 def animated_shape_keys(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The actor's surface is moved by stored shapes and not by a solver: one of its objects has shape keys whose
-    values vary over the clip (keys, drivers, NLA), vertices with keys of their own, or a modifier that plays a mesh
-    from a file (mesh cache, Alembic or USD) and is on in the viewport or in renders. However few keys: two are enough
-    to blend one shape into the other.
+    """The actor's surface is moved by stored shapes instead of a solver. One of its objects has shape keys whose values
+    vary over the clip (keys, drivers, NLA), keyed vertices, or a modifier that plays a mesh from a file (mesh cache,
+    Alembic or USD) and is on in the viewport or in renders. The number of keys does not matter: two are enough to
+    blend one shape into another.
     """
     del stage, params
     found: dict[str, Any] = {}
@@ -98,8 +98,8 @@ def animated_shape_keys(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def static_has_cache(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """Something in the scene is baked: a point cache of a cloth, soft body, particle system or rigid-body world that
-    is marked as baked, or a fluid that is, or has frames on disk. A still scene has nothing to bake.
+    """Something in the scene is baked: the point cache of a cloth, soft body, particle system or rigid-body world is
+    marked as baked, or a fluid is marked as baked or has frames on disk. A static scene has nothing to bake.
     """
     del unit, params
     found: list[str] = []
@@ -117,7 +117,7 @@ def static_has_cache(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def static_has_rigid_world(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The scene has a rigid-body world with at least one body in it. An empty world does nothing, and is let pass."""
+    """The scene has a rigid-body world with at least one body in it. An empty world does nothing and is allowed."""
     del unit, params
     bodies = [
         one.name for one in stage.scene.objects if one.rigid_body is not None and one.rigid_body.in_world
@@ -127,8 +127,8 @@ def static_has_rigid_world(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 def static_has_solver(unit: Unit, stage: Stage, params: Params) -> Verdict:
     """An object of the scene has a modifier that simulates (cloth, soft body, fluid, particles, dynamic paint), on or
-    off. Hair without dynamics is how rugs and grass are made, and is let pass; so are collision modifiers, which move
-    nothing.
+    off. Two things are allowed: hair without dynamics, which rugs and grass are made of, and collision modifiers, which
+    move nothing.
     """
     del unit, params
     found = sorted(f"{one.name}: {modifier.type}" for one, modifier in _solvers(stage))

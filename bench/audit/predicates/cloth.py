@@ -1,4 +1,4 @@
-"""Cloth: its modifier, its cache, and what it meets."""
+"""Cloth: its modifier, its cache, its collisions."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def cloth_modifier(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def cloth_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The cloth's motion is kept: its point cache is marked as baked, its range covers 95 % of the scene's frames and
-    of the least length of the clip, and it holds 95 % of the frames of its own range. A bake is what makes the film
-    the same wherever it is rendered; the frames are counted since a cache can be marked as baked while it is empty.
+    """The cloth's motion is baked: its point cache is marked as baked, its range covers 95 % of the scene's frames and
+    of the clip's minimum length, and it holds 95 % of the frames of its own range. Only a bake plays the same wherever
+    it is rendered. The frames are counted because a cache can be marked as baked while it is empty.
     """
     del params
     found = [cloth.cache for _, cloth in _cloths(unit)]
@@ -40,7 +40,7 @@ def cloth_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def cloth_self_collision(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The cloth collides with itself: self collision is on in its collision settings. Without it folds pass through
+    """The cloth collides with itself: self-collision is on in its collision settings. Without it, folds pass through
     each other.
     """
     del stage, params
@@ -49,8 +49,8 @@ def cloth_self_collision(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def cloth_pin_group(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The cloth hangs from somewhere: its pin group is named, exists on the object, and has at least one vertex with
-    a weight above zero. A name alone pins nothing.
+    """The cloth is pinned: its pin group is set, exists on the object, and has at least one vertex with a weight above
+    zero. A name alone pins nothing.
     """
     del stage, params
     groups = [
@@ -65,9 +65,9 @@ def _weighted(one: Object, name: str) -> int:
 
 
 def cloth_collision_partners(unit: Unit, stage: Stage, params: Partners) -> Verdict:
-    """What the cloth meets can stop it: each partner (without any: at least one other object) has an object with a
-    COLLISION modifier that is on, within the cloth's collision collection where it has one, and the cloth's own
-    object collisions are on. Cloth passes through whatever carries no such modifier.
+    """The cloth collides with its partners: each partner (if none is named: at least one other object) has an object
+    with a COLLISION modifier that is on and, if the cloth has a collision collection, is in it; and the cloth's own
+    object collisions are on. Cloth passes through anything without this modifier.
     """
     seen: dict[str, list[str]] = {}
     for _, cloth in _cloths(unit):

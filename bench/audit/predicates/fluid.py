@@ -1,4 +1,4 @@
-"""Fluids: domains, what flows into them, what stands in their way, and what is on disk."""
+"""Fluids: domains, flows, effectors, and caches on disk."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ Behavior = Literal["INFLOW", "OUTFLOW", "GEOMETRY"]
 
 
 class FluidType(Params):
-    """``type``: DOMAIN, FLOW, EFFECTOR. ``kind``: of a domain LIQUID, GAS, of a flow LIQUID, SMOKE, BOTH, FIRE, of an
-    effector COLLISION, GUIDE, or several that will do; ``behavior``: of a flow. None: any.
+    """``type``: DOMAIN, FLOW, EFFECTOR. ``kind``: of a domain LIQUID, GAS; of a flow LIQUID, SMOKE, BOTH, FIRE; of an
+    effector COLLISION, GUIDE; or a list of accepted kinds. ``behavior``: of a flow. None: any.
     """
 
     type: Literal["DOMAIN", "FLOW", "EFFECTOR"]
@@ -47,7 +47,7 @@ class DomainKind(Params):
 
 
 class Flows(Params):
-    """``min``: how many; ``kind`` and ``behavior`` as for fluid_type (None: any, of behaviors all but OUTFLOW)."""
+    """``min``: how many at least. ``kind``, ``behavior``: as for fluid_type; None: any (of behaviors, not OUTFLOW)."""
 
     min: int = Field(default=1, ge=1)
     kind: FlowKind | tuple[FlowKind, ...] | None = None
@@ -55,7 +55,7 @@ class Flows(Params):
 
 
 class Resolution(Params):
-    """``min``: divisions of the domain's longest side."""
+    """``min``: least divisions of the domain's longest side."""
 
     min: int = Field(default=32, ge=1)
 
@@ -94,8 +94,8 @@ def fluid_modifier(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def fluid_type(unit: Unit, stage: Stage, params: FluidType) -> Verdict:
-    """The actor takes the part in the fluid simulation that it should: one of its FLUID modifiers has the type asked
-    for, and the kind and behavior where they are named (a flow that gives smoke where liquid is asked for does not).
+    """The actor has the right part in the fluid simulation: one of its FLUID modifiers has the required type, and the
+    required kind and behavior if these are given. A flow of smoke does not pass where liquid is required.
     """
     del stage
     found = [
@@ -117,16 +117,16 @@ def fluid_type(unit: Unit, stage: Stage, params: FluidType) -> Verdict:
 
 
 def _takes_in(domain: Domain, one: Object, stage: Stage, *, flow: bool) -> bool:
-    """Whether a domain has to do with a flow or effector: in its collection, and where it reaches."""
+    """Whether a flow or effector acts in a domain: it is in the domain's collection and touches its box."""
     within = members(stage.scene, domain.flows if flow else domain.effectors)
     return (within is None or one.name in within) and reaches(domain, one)
 
 
 def fluid_domain_exists(unit: Unit, stage: Stage, params: DomainKind) -> Verdict:
-    """There is a domain for the actor to be fluid in: an object of the scene with a FLUID modifier of type DOMAIN, of
-    the kind asked for. Where the actor is a flow or an effector, its bounds must meet the domain's at the start,
-    middle or end of the clip, and it must be in the domain's collection for such, where it has one: outside of them
-    it does nothing. Whose role it is to flow or to stand in the way, and who does neither, is in no domain.
+    """The actor has a fluid domain: an object of the scene with a FLUID modifier of type DOMAIN, of the required kind.
+    If the actor is a flow or an effector, its bounds must overlap the domain's at the start, middle or end of the clip,
+    and it must be in the domain's flow or effector collection if there is one: elsewhere it has no effect. An actor
+    whose role is flow or effector but that has no such modifier fails.
     """
     found = [
         (one, domain) for one, domain in _domains(stage.scene.objects) if admits(params.kind, domain.kind)
@@ -143,9 +143,9 @@ def fluid_domain_exists(unit: Unit, stage: Stage, params: DomainKind) -> Verdict
 
 
 def fluid_flow_count(unit: Unit, stage: Stage, params: Flows) -> Verdict:
-    """Enough flows into the scene's domains: at least ``min`` objects have a FLUID modifier of type FLOW that is on
-    and used, of the kind and behavior asked for (outflows count only when asked for), in reach of a domain and of its
-    collection of flows.
+    """Enough fluid flows into the scene's domains: at least ``min`` objects have a FLUID modifier of type FLOW that is
+    on and used, has the required kind and behavior (outflows count only if required), overlaps a domain, and is in the
+    domain's flow collection if there is one.
     """
     del unit
     domains = list(_domains(stage.scene.objects))
@@ -162,11 +162,11 @@ def fluid_flow_count(unit: Unit, stage: Stage, params: Flows) -> Verdict:
 
 
 def fluid_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The fluid is there to be seen: the domain's cache range covers 95 % of the scene's frames and of the least
-    length of the clip, the files on disk of all that it shows (data; with a mesh also mesh, with noise also noise)
-    number 95 % of these frames, and Blender calls these parts baked, or the cache is of type REPLAY, which knows no
-    bake and plays what is on disk. Both are looked at, as a flag survives the loss of the files and files that of the
-    flag. For an actor that is no domain itself, the domains that it flows into are looked at.
+    """The fluid's motion is baked: the domain's cache range covers 95 % of the scene's frames and of the clip's minimum
+    length, and 95 % of these frames have files on disk for every part that is shown (data; mesh and noise if they are
+    used). Blender must also mark these parts as baked, unless the cache type is REPLAY, which has no bake and plays
+    what is on disk. Both are checked because the flag outlives deleted files, and files outlive the flag. If the actor
+    is not a domain, the domains in which it acts are checked.
     """
     del params
     own = list(_domains(unit.objects))
@@ -203,9 +203,9 @@ def _cache_seen(one: Object, domain: Domain, stage: Stage) -> dict[str, Any]:
 
 
 def fluid_dynamic_effector(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The actor pushes the fluid as it moves: one of its objects has a FLUID modifier of type EFFECTOR that is on and
-    used, and that object went at least a centimetre or turned at least a degree between the start, the middle and the
-    end of the clip, as played from keys and caches. What was not played (unbaked physics) is not known to move.
+    """The actor pushes the fluid by moving: one of its objects has a FLUID modifier of type EFFECTOR that is on and
+    used, and by the middle or the end of the clip that object has moved at least 1 cm or turned at least 1 degree from
+    its start, as played from keys and caches. Unbaked physics is not played and counts as no motion.
     """
     del stage, params
     found = [one for one, _ in _working(unit.objects, "EFFECTOR")]
@@ -214,9 +214,9 @@ def fluid_dynamic_effector(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def fluid_guiding(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The fluid is led: a domain of the actor (or, where the actor is no domain, one of the scene) uses guiding, and
-    has what guides it: an object of the scene with an EFFECTOR of kind GUIDE that is on and used, or, where another
-    domain leads, that domain. Where the actor is an effector, it must be such a guide itself.
+    """The fluid is guided: a domain of the actor (or, if the actor is not a domain, any domain of the scene) uses
+    guiding and has a guide: an object with an EFFECTOR of kind GUIDE that is on and used, or, if the guide source is a
+    domain, that domain. If the actor is an effector, it must be such a guide itself.
     """
     del params
     guides = [one.name for one, fluid in _working(stage.scene.objects, "EFFECTOR") if fluid.kind == "GUIDE"]
@@ -233,8 +233,8 @@ def fluid_guiding(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def fluid_resolution(unit: Unit, stage: Stage, params: Resolution) -> Verdict:
-    """The fluid is fine enough to read as one: a domain of the actor has at least ``min`` divisions along its longest
-    side. At fewer than 32, a stream of a tenth of that side is three cells wide, and comes apart in blobs.
+    """The fluid is resolved finely enough: a domain of the actor has at least ``min`` divisions along its longest side.
+    Below 32, a stream a tenth of that side wide is only three cells wide and breaks into blobs.
     """
     del stage
     found = {one.name: domain.resolution for one, domain in _domains(unit.objects)}
@@ -242,8 +242,8 @@ def fluid_resolution(unit: Unit, stage: Stage, params: Resolution) -> Verdict:
 
 
 def fluid_mesh(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The liquid has a surface: a domain of the actor is of kind LIQUID and gives a mesh. Without one, a render shows
-    the domain's box, or particles.
+    """The liquid has a surface: a domain of the actor is of kind LIQUID and makes a mesh. Without a mesh, a render
+    shows the domain's box, or particles.
     """
     del stage, params
     found = {

@@ -1,4 +1,4 @@
-"""Particles: systems, where they come from, what they meet and what moves them."""
+"""Particles: systems, their source, collisions and force fields."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class SystemType(Params):
 
 
 class Source(Params):
-    """``source``: VERT, FACE, VOLUME, or several that will do (None: any). ``min``: how many particles at least."""
+    """``source``: VERT, FACE, VOLUME, or a list of accepted ones (None: any). ``min``: least number of particles."""
 
     source: SourceKind | tuple[SourceKind, ...] | None = None
     min: int = Field(default=1, ge=1)
@@ -62,7 +62,7 @@ FieldType = Literal[
 
 
 class Fields(Params):
-    """``min``: how many; ``types``: those that count (WIND, TURBULENCE, …); of none, all."""
+    """``min``: how many at least. ``types``: those that count (WIND, TURBULENCE, …); an empty list: all."""
 
     min: int = Field(default=1, ge=1)
     types: tuple[FieldType, ...] = ()
@@ -76,8 +76,8 @@ def _systems(unit: Unit) -> Iterator[tuple[Object, Particles]]:
 
 
 def particle_system(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The actor has a particle system of its own: an emitter or hair, on or off (see solver_enabled); not one that
-    only shows the particles of a fluid.
+    """The actor has its own particle system: an emitter or hair, on or off (see solver_enabled). A system that only
+    shows the particles of a fluid does not count.
     """
     del stage, params
     found = [f"{one.name}: {system.name}" for one, system in _systems(unit)]
@@ -85,8 +85,8 @@ def particle_system(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def particle_type(unit: Unit, stage: Stage, params: SystemType) -> Verdict:
-    """The actor's particles are of the kind that is asked for: one of its systems is of that type, EMITTER for what
-    is born and dies, HAIR for what stays where it grew.
+    """The actor's particles are of the required kind: one of its systems is of that type, EMITTER for particles that
+    are born and die, HAIR for strands that stay in place.
     """
     del stage
     found = [system.type for _, system in _systems(unit)]
@@ -94,8 +94,8 @@ def particle_type(unit: Unit, stage: Stage, params: SystemType) -> Verdict:
 
 
 def particle_source(unit: Unit, stage: Stage, params: Source) -> Verdict:
-    """Particles do come out of the actor: one of its systems has at least ``min`` of them, the source that is asked
-    for (vertices, faces, volume), a mesh that has it, and, for an emitter, a birth within the clip.
+    """The actor does emit particles: one of its systems has at least ``min`` of them, the required source (vertices,
+    faces, volume), a mesh that has such elements, and, for an emitter, births within the clip.
     """
     seen = [
         {
@@ -120,10 +120,10 @@ def _comes_out(one: Object, system: Particles, stage: Stage, params: Source) -> 
 
 
 def particle_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The particles' motion is kept: the cache of one of its emitters, or of its hair with dynamics, is marked as
-    baked, its range covers 95 % of the scene's frames and of the least length of the clip, not counting those before
-    the first particle is born (Blender begins the cache there), and it holds 95 % of the frames in which there are
-    particles. Hair without dynamics has no cache, and fails.
+    """The particles' motion is baked: the cache of one of the actor's emitters, or of its hair with dynamics, is marked
+    as baked, its range covers 95 % of the scene's frames and of the clip's minimum length, and it holds 95 % of the
+    frames in which there are particles. Frames before the first birth do not count, since Blender starts the cache
+    there. Hair without dynamics has no cache and fails.
     """
     del params
     found = [(system.cache, system) for _, system in _systems(unit) if system.cache is not None]
@@ -137,9 +137,9 @@ def _since(system: Particles) -> float | None:
 
 
 def particle_collision_partners(unit: Unit, stage: Stage, params: Partners) -> Verdict:
-    """What the particles meet can stop them: each partner (without any: at least one other object) has an object with
-    a COLLISION modifier that is on, within the collision collection of the particles where there is one. Particles
-    fly through whatever carries no such modifier.
+    """The particles collide with their partners: each partner (if none is named: at least one other object) has an
+    object with a COLLISION modifier that is on and, if the particles have a collision collection, is in it. Particles
+    fly through anything without this modifier.
     """
     seen: dict[str, list[str]] = {}
     for _, system in _systems(unit):
@@ -151,9 +151,9 @@ def particle_collision_partners(unit: Unit, stage: Stage, params: Partners) -> V
 
 
 def particle_from_deformed(unit: Unit, stage: Stage, params: Deformer) -> Verdict:
-    """Particles come from the surface as it is deformed: on one object, a modifier that deforms (the one asked for,
-    or any) that is on stands before the particle system's in the stack. Particles are born on the mesh as it is where
-    their modifier stands; below it, the surface moves away from under them.
+    """Particles come from the deformed surface: on one object, a deforming modifier (the required one, or any) is on
+    and stands above the particle system in the modifier stack. Particles are born on the mesh as it is at their place
+    in the stack; a deformer further down would move the surface away from them.
     """
     del stage
     wanted = (params.deformer,) if params.deformer else DEFORMERS
@@ -170,9 +170,9 @@ def particle_from_deformed(unit: Unit, stage: Stage, params: Deformer) -> Verdic
 
 
 def particle_force_fields(unit: Unit, stage: Stage, params: Fields) -> Verdict:
-    """Something moves the particles besides gravity: at least ``min`` objects of the scene have a force field of the
-    types asked for, with a strength other than zero or an animated one, that reaches the actor's particles: in the
-    collection of their effectors, where they have one, and with a weight above zero for such fields and for all.
+    """Force fields move the particles: at least ``min`` objects of the scene have a force field of a required type,
+    with a strength that is not zero or is animated, that acts on the actor's particles: it is in their effector
+    collection if they have one, and their weights for this field type and for all fields are above zero.
     """
     found: set[str] = set()
     for _, system in _systems(unit):

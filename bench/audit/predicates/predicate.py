@@ -1,6 +1,6 @@
-"""What a predicate is: facts and parameters in, a verdict with the values seen out.
+"""Types of a predicate: a pure function from facts and parameters to a verdict with the values that decided it.
 
-A predicate is a pure function. Its docstring is its definition: what is looked at, the threshold, and why.
+A predicate's docstring is its definition: what is checked, the threshold, and why.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Outcome = Literal["passed", "failed", "not_applicable"]
 Group = Literal["universal", "cloth", "fluid", "rigid body", "particle", "soft body", "anti-cheat"]
-# unit: judged for each object (with its parts) that stands for the actor. scene: once, over the whole scene.
+# unit: judged for each unit of the actor. scene: once, over the whole scene.
 Scope = Literal["unit", "scene"]
 GROUPS: tuple[Group, ...] = (
     "universal", "cloth", "fluid", "rigid body", "particle", "soft body", "anti-cheat",
@@ -27,36 +27,36 @@ GROUPS: tuple[Group, ...] = (
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether a predicate holds, and the values that this was read off (JSON: text, numbers, switches, lists)."""
+    """Whether a predicate holds, and the values that decided it (JSON data)."""
 
     outcome: Outcome
     seen: dict[str, Any] = field(default_factory=dict[str, Any])
 
 
 def judged(holds: object, **seen: Any) -> Verdict:
-    """Passed if it holds, else failed."""
+    """A verdict: passed if ``holds``, else failed; the other arguments are the values seen."""
     return Verdict("passed" if holds else "failed", seen)
 
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """One of the things that stand for an actor: its object and what belongs to it, first the object itself."""
+    """One instance of an actor in the file: its main object, then the objects that belong to it."""
 
     objects: tuple[Object, ...]
     role: str = "static"
 
     @property
     def name(self) -> str:
-        """The object that it is named after; "" for none."""
+        """The name of its main object; "" without objects."""
         return self.objects[0].name if self.objects else ""
 
     @property
     def names(self) -> frozenset[str]:
-        """Of all its objects."""
+        """The names of all its objects."""
         return frozenset(one.name for one in self.objects)
 
     def modifiers(self, *types: str) -> Iterator[tuple[Object, Modifier]]:
-        """Its modifiers of these types, with the objects that they stand on."""
+        """Its modifiers of these types, each with its object."""
         for one in self.objects:
             for modifier in one.of_type(*types):
                 yield one, modifier
@@ -64,26 +64,26 @@ class Unit:
 
 @dataclass(frozen=True)
 class Stage:
-    """What surrounds a unit: the scene, whoever else was found in it, and the least length of the clip (frames)."""
+    """The surroundings of a unit: the scene, the units of all actors, and the clip's minimum length (frames)."""
 
     scene: Scene
     cast: Mapping[str, tuple[Unit, ...]] = field(default_factory=dict[str, tuple["Unit", ...]])
     least_frames: int = 1
 
     def named(self, actor: str) -> tuple[Object, ...]:
-        """All objects of an actor's units; () where it was not found."""
+        """All objects of an actor's units; () if it was not found."""
         return tuple(one for unit in self.cast.get(actor, ()) for one in unit.objects)
 
 
 class Params(BaseModel):
-    """Parameters of a predicate that has none; those of others derive from it."""
+    """Base of the parameters of predicates; by itself, of those without any."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 @dataclass(frozen=True, slots=True)
 class Predicate:
-    """A row of the table. ``judge`` gets a unit, the stage and ``params``."""
+    """An entry of the catalogue. ``judge`` gets a unit, its context and ``params``."""
 
     name: str
     group: Group
@@ -93,11 +93,11 @@ class Predicate:
 
     @property
     def definition(self) -> str:
-        """What it looks at, its threshold and why: one paragraph."""
+        """What it checks, its threshold and why: one paragraph."""
         return " ".join((inspect.getdoc(self.judge) or "").split())
 
     def read(self, given: Mapping[str, Any]) -> Params:
-        """Its parameters from a spec's. Raises ValueError, saying which one is wrong."""
+        """Its parameters, read from a spec's. Raises ValueError that names the wrong one."""
         try:
             return self.params.model_validate(dict(given))
         except ValidationError as error:

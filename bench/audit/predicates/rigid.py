@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 # Blender keeps masses from falling below a gram: that is what a mass that was set to nothing reads.
 _NO_MASS = 0.00101
-# A mesh as shape has no inside: bodies that move fall into each other, and through it.
+# A MESH shape has no inside: moving bodies sink into it and fall through.
 _SOLID = ("BOX", "SPHERE", "CAPSULE", "CYLINDER", "CONE", "CONVEX_HULL", "COMPOUND")
 
 Shape = Literal["BOX", "SPHERE", "CAPSULE", "CYLINDER", "CONE", "CONVEX_HULL", "MESH", "COMPOUND"]
@@ -34,7 +34,7 @@ class BodyType(Params):
 
 
 class Shapes(Params):
-    """``shapes``: those that will do; of none, all for a passive body, all but MESH for an active one."""
+    """``shapes``: the accepted ones; an empty list: any for a passive body, any but MESH for an active one."""
 
     shapes: tuple[Shape, ...] = ()
 
@@ -47,9 +47,9 @@ class Mass(Params):
 
 
 class Tie(Params):
-    """``type``: one of Blender's, or several that will do (None: any).
+    """``type``: one of Blender's, or a list of accepted ones (None: any).
 
-    ``partners``: actors that one end must be of. ``min``: how many ties.
+    ``partners``: actors of which one must be at the other end. ``min``: how many constraints at least.
     """
 
     type: TieType | tuple[TieType, ...] | None = None
@@ -64,8 +64,8 @@ def _bodies(unit: Unit) -> Iterator[tuple[Object, RigidBody]]:
 
 
 def rigid_settings(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The actor is a rigid body: one of its objects has rigid-body settings and belongs to the collection of the
-    scene's rigid-body world. Settings outside of a world simulate nothing.
+    """The actor is a rigid body: one of its objects has rigid-body settings and is in the collection of the scene's
+    rigid-body world. Outside that world, the settings have no effect.
     """
     del stage, params
     found = {one.name: body.in_world for one, body in _bodies(unit)}
@@ -73,9 +73,9 @@ def rigid_settings(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def rigid_type(unit: Unit, stage: Stage, params: BodyType) -> Verdict:
-    """The actor takes the part in the simulation that it should: one of its objects is a rigid body of the type asked
-    for. An ACTIVE one that is animated (kinematic) at the clip's start and never let go is moved by keys, and does
-    not count; whether it is let go shows in an animated switch.
+    """The actor has the right part in the simulation: one of its objects is a rigid body of the required type. An
+    ACTIVE body that is animated (kinematic) at the start and never released is moved by keys and does not count; a
+    release is an animated Animated setting.
     """
     del stage
     found = {one.name: body.type for one, body in _bodies(unit)}
@@ -92,9 +92,9 @@ def _let_go(one: Object) -> bool:
 
 
 def rigid_shape(unit: Unit, stage: Stage, params: Shapes) -> Verdict:
-    """The actor collides as the thing that it is: one of its rigid bodies has a collision shape of those asked for.
-    Where none are named, an active body must have a solid one (anything but MESH, whose faces have no inside for
-    others to be pushed out of); a passive body may have any.
+    """The actor collides with the right shape: one of its rigid bodies has an accepted collision shape. If none is
+    given, an active body needs a solid one (any but MESH, which has no inside to push other bodies out of); a passive
+    body may have any.
     """
     del stage
     found = {one.name: body.shape for one, body in _bodies(unit)}
@@ -119,9 +119,9 @@ def rigid_world_populated(unit: Unit, stage: Stage, params: Least) -> Verdict:
 
 
 def rigid_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The motion of the rigid-body world is kept: its point cache is marked as baked, its range covers 95 % of the
-    scene's frames and of the least length of the clip, and it holds 95 % of the frames of its own range. That Blender
-    calls it outdated says nothing: it does so of every such world when its file is opened.
+    """The rigid-body world's motion is baked: its point cache is marked as baked, its range covers 95 % of the scene's
+    frames and of the clip's minimum length, and it holds 95 % of the frames of its own range. The outdated mark is
+    ignored: Blender sets it on every rigid-body world when it opens a file.
     """
     del unit, params
     world = stage.scene.rigid_world
@@ -131,18 +131,18 @@ def rigid_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def rigid_constraint(unit: Unit, stage: Stage, params: Tie) -> Verdict:
-    """The actor is tied to another body: at least ``min`` rigid-body constraints that are enabled, in the world and
-    of the type asked for stand on it or name it, and both their ends are rigid bodies of the world; one end is a
-    partner's where partners are named. A constraint with an end missing ties nothing.
+    """The actor is connected to another body: at least ``min`` rigid-body constraints are on the actor or name it, are
+    enabled, in the world and of a required type, and have rigid bodies of the world at both ends, one of them a
+    partner's if partners are given. A constraint with a missing end connects nothing.
     """
     ties = _ties(unit, stage, params)
     return judged(len(ties) >= params.min, ties=[_tie_seen(*tie) for tie in ties][:8], min=params.min)
 
 
 def rigid_constraint_no_collision(unit: Unit, stage: Stage, params: Tie) -> Verdict:
-    """What ties the actor keeps the two bodies from colliding with each other: all constraints that count for
-    rigid_constraint have their collisions disabled, and there is one. Bodies that overlap at a joint would else be
-    thrown apart.
+    """The actor's constraints keep the connected bodies from colliding with each other: there is at least one
+    constraint that counts for rigid_constraint, and all of them have collisions disabled. Otherwise, bodies that
+    overlap at a joint are thrown apart.
     """
     ties = _ties(unit, stage, params)
     disabled = [tie.disable_collisions for _, tie in ties]
@@ -182,8 +182,8 @@ def _tie_seen(name: str, tie: RigidConstraint) -> dict[str, object]:
 
 
 def rigid_collision_modifier(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The rigid body can be felt by cloth, soft bodies and particles: one of its objects that is a rigid body also
-    carries a COLLISION modifier that is on. Deforming solvers know nothing of the rigid-body world.
+    """Cloth, soft bodies and particles collide with the rigid body: one of the actor's rigid bodies also has a
+    COLLISION modifier that is on. These solvers ignore the rigid-body world.
     """
     del stage, params
     found = {one.name: collides(one) for one, _ in _bodies(unit)}
@@ -191,8 +191,8 @@ def rigid_collision_modifier(unit: Unit, stage: Stage, params: Params) -> Verdic
 
 
 def rigid_positive_mass(unit: Unit, stage: Stage, params: Mass) -> Verdict:
-    """The rigid body weighs something: one has a mass above a gram, within ``min`` and ``max`` where they are given.
-    A gram is the least that Blender keeps, and what a mass of zero turns into.
+    """The rigid body has a mass: one has a mass above a gram, and within ``min`` and ``max`` if they are given. A gram
+    is the least mass that Blender stores, and what it turns zero into.
     """
     del stage
     found = {one.name: number(body.mass) for one, body in _bodies(unit)}

@@ -1,4 +1,4 @@
-"""What several predicates look at: caches over the clip, partners, motion. Thresholds that they share stand here."""
+"""Readings that several predicates share: cache coverage, partners, motion; and their common thresholds."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ if TYPE_CHECKING:
     from bench.audit.facts import Domain, Object, PointCache, Scene, Vector
     from bench.audit.predicates.predicate import Stage, Unit
 
-# Of the clip's frames, and of a bake's: the first or last may be one off without anyone seeing it; a cache that was
-# freed, or baked for another clip, holds far less.
+# Share of the clip's frames, and of a bake's. A frame missing at either end is not seen; a cache that was freed, or
+# baked for another clip, holds far less.
 COVERED = 0.95
-# A thing that moved less than a centimetre and turned less than a degree stands still to whoever looks.
+# An object that moved less than a centimetre and turned less than a degree looks still.
 MOVED_METRES, MOVED_DEGREES = 0.01, 1.0
 
 
 class Partners(Params):
-    """``partners``: names of actors. None: anything else in the scene will do."""
+    """``partners``: names of actors; an empty list: any other object of the scene."""
 
     partners: tuple[str, ...] = ()
 
 
 class Least(Params):
-    """``min``: how many there must be."""
+    """``min``: how many at least."""
 
     min: int = Field(default=1, ge=1)
 
 
 def admits(wanted: str | tuple[str, ...] | None, found: str) -> bool:
-    """Whether a value is the one asked for, or one of those; of none, any is."""
+    """Whether a value is the wanted one, or one of several; without a wanted one, any is."""
     return not wanted or found in ((wanted,) if isinstance(wanted, str) else wanted)
 
 
 def number(value: float) -> float:
-    """As it is reported: four digits behind the point, and no minus before zero."""
+    """A number as it is reported: rounded to four decimals, never minus zero."""
     return round(value, 4) + 0.0
 
 
@@ -50,9 +50,9 @@ def common(first: tuple[int, int], second: tuple[int, int]) -> int:
 
 
 def spans(frames: tuple[int, int], stage: Stage, since: float | None = None) -> bool:
-    """Whether a range covers the scene's, and the least length that the scene's spec asks for.
+    """Whether a range covers the scene's frames, and the minimum length that the spec asks for.
 
-    ``since``: the first frame at which there is anything; those of the scene before it need not be covered.
+    ``since``: the first frame at which there is anything; earlier frames need not be covered.
     """
     shared = common(frames, stage.scene.range)
     before = max(0.0, since - stage.scene.range[0]) if since is not None else 0.0
@@ -80,7 +80,7 @@ def cache_seen(cache: PointCache, stage: Stage) -> dict[str, Any]:
 
 
 def parts_of(domain: Domain) -> tuple[str, ...]:
-    """The parts of its cache that a domain needs for what it is to show."""
+    """The parts of its cache that a domain needs for what it shows."""
     if domain.kind == "LIQUID":
         return ("data", "mesh") if domain.use_mesh else ("data",)
     return ("data", "noise") if domain.use_noise else ("data",)
@@ -119,13 +119,13 @@ def collides(one: Object) -> bool:
 
 
 def blows(one: Object) -> bool:
-    """Whether it is a force field that has a strength, or at some time gets one: a gust begins with none."""
+    """Whether it is a force field whose strength is not zero, or is animated: a gust starts from zero."""
     animated = any(channel.path == "field.strength" and channel.varies for channel in one.channels)
     return one.force is not None and (one.force.strength != 0 or animated)
 
 
 def partners_of(unit: Unit, stage: Stage, names: Iterable[str]) -> Iterator[tuple[str, tuple[Object, ...]]]:
-    """Each partner's name with its objects; of none, ``"anything"`` with all objects but the unit's."""
+    """Each partner's name with its objects; without partners, ``"anything"`` with all objects but the unit's."""
     given = tuple(names)
     for name in given:
         yield name, stage.named(name)
@@ -134,9 +134,9 @@ def partners_of(unit: Unit, stage: Stage, names: Iterable[str]) -> Iterator[tupl
 
 
 def travel(one: Object) -> tuple[float, float] | None:
-    """How far its corners or origin went (metres), and how far it turned (degrees), since the start.
+    """How far its corners or origin moved (metres), and how far it turned (degrees), since the start.
 
-    At the middle or at the end, whichever is more; None where its motion was not played.
+    At the middle or at the end, whichever is more; None if its motion was not played.
     """
     if len(one.moments) < 2:
         return None
@@ -153,13 +153,13 @@ def travel(one: Object) -> tuple[float, float] | None:
 
 
 def moved(one: Object) -> bool:
-    """Whether it went or turned further than nobody would see."""
+    """Whether it visibly moved or turned."""
     way = travel(one)
     return way is not None and (way[0] >= MOVED_METRES or way[1] >= MOVED_DEGREES)
 
 
 def reaches(domain: Domain, one: Object) -> bool:
-    """Whether an object's bounds meet the domain's box at one of the moments."""
+    """Whether an object's bounds overlap the domain's box at the start, middle or end."""
     boxes = ((moment.low, moment.high) for moment in one.moments)
     return any(low and high and _meet(domain.low, domain.high, low, high) for low, high in boxes)
 

@@ -1,4 +1,4 @@
-"""Soft bodies: the modifier, the cache, the goal, and what they meet."""
+"""Soft bodies: the modifier, the cache, the goal, collisions."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def soft_modifier(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def soft_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The soft body's motion is kept: its point cache is marked as baked, its range covers 95 % of the scene's frames
-    and of the least length of the clip, and it holds 95 % of the frames of its own range, as for cloth.
+    """The soft body's motion is baked: its point cache is marked as baked, its range covers 95 % of the scene's frames
+    and of the clip's minimum length, and it holds 95 % of the frames of its own range, as for cloth.
     """
     del params
     found = [soft.cache for _, soft in _softs(unit)]
@@ -41,9 +41,9 @@ def soft_cache_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def soft_collision_partners(unit: Unit, stage: Stage, params: Partners) -> Verdict:
-    """What the soft body meets can stop it: each partner (without any: at least one other object) has an object with
-    a COLLISION modifier that is on, within the soft body's collision collection where it has one. A soft body falls
-    through whatever carries no such modifier.
+    """The soft body collides with its partners: each partner (if none is named: at least one other object) has an
+    object with a COLLISION modifier that is on and, if the soft body has a collision collection, is in it. A soft body
+    falls through anything without this modifier.
     """
     seen: dict[str, list[str]] = {}
     for _, soft in _softs(unit):
@@ -55,9 +55,8 @@ def soft_collision_partners(unit: Unit, stage: Stage, params: Partners) -> Verdi
 
 
 def soft_goal_group(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """Part of the soft body is held in its place: its goal is on, and its goal's vertex group is named, exists, and
-    has at least one vertex with a weight above zero. With the goal off, or without a group, all of it or none is
-    held.
+    """Part of the soft body is held in place: its goal is on, and the goal's vertex group is set, exists, and has at
+    least one vertex with a weight above zero. With the goal off, none of it is held; without a group, all of it is.
     """
     del stage, params
     groups = [
@@ -74,10 +73,10 @@ def soft_goal_group(unit: Unit, stage: Stage, params: Params) -> Verdict:
 
 
 def soft_rigid_partners(unit: Unit, stage: Stage, params: Partners) -> Verdict:
-    """The rigid things that meet the soft body take part in both simulations: each partner (without any: at least one
-    other object) has an object that is a rigid body of the scene's world and carries a COLLISION modifier that is on.
-    The two solvers do not know of each other: the rigid body moves by the one, and presses by the other. Applies to
-    what has a soft body; anything else fails.
+    """The soft body's rigid partners take part in both simulations: each partner (if none is named: at least one other
+    object) has an object that is a rigid body of the scene's world and has a COLLISION modifier that is on. The two
+    solvers ignore each other: the rigid-body world moves the object, the modifier lets it press on the soft body. An
+    actor without a soft body fails.
     """
     if not any(True for _ in _softs(unit)):
         return judged(False, soft=[])

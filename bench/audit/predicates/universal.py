@@ -1,4 +1,4 @@
-"""What holds for actors of every kind."""
+"""Predicates for actors of every kind."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def renderable(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """The actor can be seen in a render. At least one of its objects is geometry, or shows a collection, is not
-    hidden in renders by itself, its collections, its view layer or its ray visibility, and has something to show:
-    faces, particles, or bounds with an extent. No more is asked: whether the camera catches it is the judge's part.
+    """The actor can be seen in a render: at least one of its objects is geometry or instances a collection, is not
+    hidden in renders (by itself, its collections, its view layer or its ray visibility), and has something to show:
+    faces, particles, or bounds with an extent. Whether the camera sees it is left to the judge.
     """
     del params
     shown = [one for one in unit.objects if one.renders and _has_substance(one, stage)]
@@ -35,11 +35,10 @@ def _has_substance(one: Object, stage: Stage) -> bool:
 
 
 def solver_enabled(unit: Unit, stage: Stage, params: Params) -> Verdict:
-    """What simulates the actor is switched on where it is edited and where it is rendered. Looked at are the
-    modifiers of its role (for a role without any, its solver modifiers), each of which must be shown in the viewport
-    and in renders, since a solver that is off in one of the two leaves a different film; of a rigid body, that the
-    body and its world are enabled; of a force field, that it has a strength other than zero or an animated one. An
-    actor without a solver fails, unless its role needs none: then this does not apply.
+    """The actor's solver is on in the viewport and in renders: every modifier of its role (for a role without
+    modifiers, every solver modifier) is shown in both, since a solver that is off in one of them gives a different
+    film. A rigid body and its world must be enabled. A force field must have a strength that is not zero or is
+    animated. An actor without a solver fails, unless its role needs none: then this does not apply.
     """
     del params
     seen: dict[str, Any] = {}

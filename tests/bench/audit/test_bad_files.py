@@ -168,7 +168,7 @@ def test_half_of_a_file_is_not_scored(files: Path, spec: Spec, tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("content", "said"), [(None, "no such file"), (b"", "it is empty"), (b"PK\x03\x04 a zip", "no .blend")]
+    ("content", "said"), [(None, "no such file"), (b"", "it is empty"), (b"PK\x03\x04 a zip", "not a .blend")]
 )
 def test_what_is_no_blend_is_not_scored(content: bytes | None, said: str, spec: Spec, tmp_path: Path) -> None:
     path = tmp_path / "scene.blend"
@@ -202,11 +202,11 @@ def test_a_file_that_needs_too_much_memory_is_not_scored(files: Path, spec: Spec
     ("name", "said"),
     [
         ("crash", "ended while opening it: it crashed (SIGSEGV)"),
-        ("hang", "still opening it when its 3 s were over"),
+        ("hang", "still opening it after its time limit of 3 s"),
         ("garbage", "not valid"),
         ("other", "not valid"),
         ("long", "not valid"),
-        ("senseless", "makes no sense"),
+        ("senseless", "Blender's facts of it were not valid"),
         ("playing", "it was asked without playing"),
         ("ends", "ended while opening it: it was ended from inside, with exit code 3"),
     ],

@@ -241,7 +241,7 @@ def test_baked_physics_is_looked_at_where_it_has_come_to(told: dict[str, Any]) -
 
 def test_physics_that_is_not_baked_is_not_jumped_to_but_said_to_be_unscored(told: dict[str, Any]) -> None:
     [end] = relations(told, "falling")
-    assert (end["outcome"], end["why"]) == ("not scored", "not played: unbaked: rigid-body world")
+    assert (end["outcome"], end["why"]) == ("not scored", "motion not played: unbaked: rigid-body world")
     assert told["falling"][0]["spr"] is None
     assert outcomes(told, "falling", 1) == ["does not hold"]  # at the start it can be seen
     assert outcomes(told, "falling", 2) == ["does not hold"]

@@ -111,7 +111,7 @@ def test_skips_a_task_that_links_out_of_the_set(tmp_path: Path) -> None:
         ("start.py", b"#" * (1 << 20) + b"#", "has more than 1,048,576 bytes"),
         ("start.py", b"\xe9", "is not UTF-8 text"),
         ("blender_file.blend", b"", "it is empty"),
-        ("blender_file.blend", b"PK\x03\x04", "it is no .blend"),
+        ("blender_file.blend", b"PK\x03\x04", "it is not a .blend file"),
         (GOAL, b"GIF89a", "is not a PNG"),
         (GOAL, b"\x89PNG\r\n\x1a\n", "is not a PNG"),
     ],

@@ -97,7 +97,7 @@ def test_what_is_not_baked_is_simulated_as_in_a_render_of_the_clip_and_that_is_t
     seen = [colour(path) for path in found.paths]
     assert (seen[0], seen[-1]) == (GREEN, BLUE)
     assert seen == [colour(path) for path in taken("baked", files, tmp_path / "baked").paths]
-    assert found.notes == ("simulated while it was rendered: cloth of Cloth",)
+    assert found.notes == ("not baked, simulated while rendering: cloth of Cloth",)
 
 
 @pytest.mark.blender
@@ -107,13 +107,13 @@ def test_what_would_take_too_long_to_simulate_is_left_out_and_that_is_told(
     found = taken("endless", files, tmp_path)
     assert {colour(path) for path in found.paths} == {GREEN}
     (note,) = found.notes
-    assert note.startswith("frames stand alone, without physics that is not baked (9,000 frames")
+    assert note.startswith("rendered without unbaked physics, after a first try failed (9,000 frames")
 
 
 @pytest.mark.blender
 def test_without_a_camera_one_is_made_that_sees_all_but_the_ground_whole(files: Path, tmp_path: Path) -> None:
     found = taken("no_camera", files, tmp_path, static=True)
-    assert found.notes == ("the scene has no camera; one was made that sees all of it",)
+    assert found.notes == ("the scene has no camera; one that sees all of it was added",)
     with Image.open(found.paths[0]) as image:
         pixels = numpy.asarray(image.convert("RGB")).astype(int)
     for dominant in (0, 1):
@@ -132,7 +132,7 @@ def test_strips_of_an_editor_do_not_cover_the_scene(files: Path, tmp_path: Path)
 
 def test_what_is_no_blend_has_no_frames_and_says_why(tmp_path: Path) -> None:
     (tmp_path / "scene.blend").write_bytes(b"PK\x03\x04 a zip")
-    with pytest.raises(NotScored, match=r"no \.blend"):
+    with pytest.raises(NotScored, match=r"not a \.blend"):
         frames_of(tmp_path / "scene.blend", False, tmp_path / "frames")
     assert not (tmp_path / "frames").exists()
 
@@ -159,7 +159,7 @@ def test_a_picture_stands_for_a_static_scene_alone(tmp_path: Path) -> None:
     Image.new("RGB", (40, 20), RED).save(tmp_path / "still.png")
     (only,) = frames_of(tmp_path / "still.png", True, tmp_path / "frames")
     assert colour(only) == RED
-    with pytest.raises(NotScored, match="no clip"):
+    with pytest.raises(NotScored, match="a picture has one frame only"):
         frames_of(tmp_path / "still.png", False, tmp_path / "frames")
 
 
@@ -204,12 +204,12 @@ def test_a_decoder_reads_nothing_but_the_file_and_writes_nothing_beside_it(
         "sys.exit(f'did {done}' if done else 0)\n"
     )
     monkeypatch.setattr(video, "_SCRIPT", taken_over)
-    with pytest.raises(NotScored, match="what was decoded is no picture"):
+    with pytest.raises(NotScored, match="a decoded frame is not a picture"):
         frames_of(source, True, tmp_path / "frames")
 
 
 def test_frames_of_a_moved_file_are_not_those_of_another(tmp_path: Path) -> None:
     path = written(tmp_path / "clip.mp4", 3)
     shutil.move(path, tmp_path / "other.mp4")
-    with pytest.raises(NotScored, match=r"there is no clip\.mp4"):
+    with pytest.raises(NotScored, match=r"there is no file clip\.mp4"):
         frames_of(path, False, tmp_path / "frames")

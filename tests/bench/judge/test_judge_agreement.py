@@ -100,5 +100,5 @@ def test_a_dimension_without_items_has_no_agreement():
     ],
 )
 def test_one_judgement_or_judgements_of_other_items_are_not_compared(judgements):
-    with pytest.raises(ValueError, match="agreement takes"):
+    with pytest.raises(ValueError, match="agreement needs"):
         agreement(judgements)

@@ -44,12 +44,12 @@ def test_it_prints_each_dimension_with_items_verdicts_evidence_score_and_cost(cl
         "  ✓ two parrots",
         "  ✗ a bamboo perch",
         "      Seen in the middle. [1, 5]",
-        "score 0.900   $0.0080 and, once for the prompt, $0.0080; 1,000 tokens in, 200 out",
+        "score 0.900   $0.0080, plus $0.0080 once for the prompt; 1,000 tokens in, 200 out",
         "Asked now: 2 requests, $0.0160, 2,000 tokens in, 400 out",
     ):
         assert line in found.output.splitlines()
     again = run(*frames, "--prompt", PROMPT, "--base-url", claude.server.base_url)
-    assert "Nothing was asked now: all answers were kept." in again.output
+    assert "Nothing was asked now: all answers were cached." in again.output
     assert len(claude.server.requests) == 2
 
 
@@ -91,7 +91,7 @@ def test_where_judgements_part_the_items_are_named(claude, frames):
         }
     )
     words = run(*frames, "--prompt", PROMPT, "--repeat", 2, "--base-url", claude.server.base_url).output
-    assert "not of one mind on objects_present.1 (0.50)" in words
+    assert "disagreement on objects_present.1 (0.50)" in words
 
 
 def test_a_judgement_that_fails_is_told_and_the_others_stand(claude, frames):
@@ -168,7 +168,7 @@ def test_a_dry_run_shows_what_would_be_asked_and_needs_no_key(frames, provider):
     assert "═══ verdicts: asked 1 time, 5 pictures" in found.output
     assert found.output.count("[picture, 64 × 36, about 6 tokens]") == 5
     assert PROMPT in found.output
-    assert ("price is not known" in found.output) == (provider == "openai")
+    assert ("price is unknown" in found.output) == (provider == "openai")
 
 
 @pytest.mark.usefixtures("_alone")

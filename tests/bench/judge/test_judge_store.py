@@ -64,7 +64,7 @@ def test_entries_are_json_that_people_can_read(claude, frames, store):
 
 def test_where_nothing_can_be_kept_nothing_is_asked(claude, frames, store):
     store.write_text("a file")
-    with pytest.raises(NotJudged, match="cannot keep answers") as caught:
+    with pytest.raises(NotJudged, match="Cannot keep answers") as caught:
         judged(claude, frames, store)
     assert (caught.value.reason, claude.server.requests) == ("cache", [])
 
@@ -73,7 +73,7 @@ def test_an_answer_that_cannot_be_kept_is_given_all_the_same(claude, frames, sto
     store.mkdir()
     (store / "verdicts").write_text("a file")
     assert judged(claude, frames, store).score == 0.9
-    assert "this will be asked again" in caplog.text
+    assert "this question will be asked again" in caplog.text
 
 
 def test_two_who_want_the_same_ask_once(claude, frames, store):

@@ -126,7 +126,7 @@ def test_the_papers_figures_stand_beside_and_are_called_published(results: Writt
 def test_a_scene_takes_what_was_measured(results: Written) -> None:
     results.add("mine", "cloth_D1_01", 1.0, 1.0, 1.0, minutes=10, cost=0.5, seconds=(4, 8, 2))
     results.add("mine", "cloth_D1_02", 1.0, 1.0, minutes=20, cost=1.5, seconds=(6, 10, 99), frames=1)
-    ((*_, dollars, minutes, audit, frames, judge),) = named(tables(results.read()), "What a scene takes").rows
+    ((*_, dollars, minutes, audit, frames, judge),) = named(tables(results.read()), "Cost per scene").rows
     assert (dollars, minutes, audit, frames, judge) == ("1.00", "15.0 (15.0)", "5.0", "10.0", "0.010")
 
 

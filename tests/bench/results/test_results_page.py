@@ -156,7 +156,7 @@ def test_systems_stand_side_by_side_and_why_one_was_not_scored_is_told(full: Wri
     cards = [one for one in seen.of("section") if one.get("class") == "card"]
     assert len(cards) == 4
     assert f"MPR: not scored: {EVIL}" in seen.text
-    assert "not asked for this scene" in seen.text
+    assert "this scene was not given to the system" in seen.text
 
 
 def test_nothing_of_what_results_hold_is_taken_for_html(full: Written) -> None:
@@ -255,20 +255,20 @@ def test_two_results_of_one_scene_by_one_name_are_not_mixed(full: Written, tmp_p
     second = type(full)(tmp_path / "second")
     second.add("mine", "cloth_D1_01", 1.0, 1.0)
     done = CliRunner().invoke(main, ["bench", "report", str(full.folder), str(second.folder)])
-    assert "mine has another result for cloth_D1_01; it is left out" in done.stdout
+    assert "mine has another result for cloth_D1_01; this one is ignored" in done.stdout
 
 
 def test_without_results_or_with_an_unknown_system_it_says_so(full: Written, tmp_path: Path) -> None:
     done = CliRunner().invoke(main, ["bench", "report", str(tmp_path / "none")])
-    assert (done.exit_code, "'simworlds bench run' makes them" in done.stderr) == (2, True)
+    assert (done.exit_code, "Make some with 'simworlds bench run'" in done.stderr) == (2, True)
     done = reported(full, "--baseline", "viga")
-    assert (done.exit_code, "there are mine, theirs" in done.stderr) == (2, True)
+    assert (done.exit_code, "Choose one of: mine, theirs" in done.stderr) == (2, True)
 
 
 def test_an_estimate_is_told_in_words_and_as_numbers(full: Written) -> None:
     done = CliRunner().invoke(main, ["bench", "estimate", str(full.folder)])
     assert done.exit_code == 0
-    assert "measured: 2 of 50 scenes" in done.stdout
-    assert "10 systems on 20 machines, 2 scenes at a time on each" in done.stdout
+    assert "times measured for 2 of 50 scenes" in done.stdout
+    assert "10 systems on 20 machines, 2 scenes in parallel on each" in done.stdout
     numbers = json.loads(CliRunner().invoke(main, ["bench", "estimate", str(full.folder), "--json"]).stdout)
     assert numbers["work"]["audited"] == 50

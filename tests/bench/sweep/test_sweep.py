@@ -75,7 +75,7 @@ def results(done: Path, tmp_path: Path) -> Path:
 def test_every_record_has_scores_or_a_reason(done: Path) -> None:
     found = scores(done)
     assert found["cloth_D1_03"] == (None, None, "no file")
-    assert found["rigid_D1_01"] == (None, None, "it is no .blend")
+    assert found["rigid_D1_01"] == (None, None, "it is not a .blend file")
     for scene in ("cloth_D1_01", "cloth_D1_02", "static_D1_01"):
         audit = json.loads((done / scene / "audit.json").read_text())
         assert found[scene] == (audit["mpr"], audit["spr"], None)

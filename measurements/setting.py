@@ -1,4 +1,4 @@
-"""What one run of the benchmark works with, and how it runs ``simworlds``."""
+"""What one run of the measurements works with: paths, the environment of measured processes, small helpers."""
 
 from __future__ import annotations
 
@@ -31,16 +31,8 @@ class Setting:
 
 
 def say(text: str) -> None:
-    """Tells on stderr what is being done."""
+    """Prints on stderr, with the time, what is being done."""
     print(f"[{time.strftime('%H:%M:%S')}] {text}", file=sys.stderr, flush=True)
-
-
-def simworlds() -> list[str]:
-    """The command ``simworlds`` of this environment, or the same run from the source."""
-    installed = Path(sys.executable).with_name("simworlds")
-    if installed.is_file():
-        return [str(installed)]
-    return [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
 
 
 def environment(home: Path) -> dict[str, str]:
