@@ -6,7 +6,6 @@ import gc
 import json
 import threading
 import time
-from collections import deque
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -212,12 +211,9 @@ def _page_reader(work: _Build) -> PageReader:
 
 
 def _load_ahead() -> None:
-    """Loads what comes after Blender's answer while Blender works on it, and fills the cache of stems."""
+    """Loads what comes after Blender's answer while Blender works on it."""
     for name in _LOADED_AHEAD:
         import_module(name)
-    from kb_build.index.synonyms import load_near_words, near_stems  # noqa: PLC0415 - off the main thread
-
-    deque(near_stems(load_near_words(), frozenset()), maxlen=0)
 
 
 def _extract(work: _Build) -> Extract:

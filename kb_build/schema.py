@@ -15,7 +15,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's own place for telling whose file it is
 
 # How a key came about, in the order in which an answer prefers them.
@@ -108,10 +108,6 @@ CREATE TABLE postings (stem TEXT NOT NULL UNIQUE, units INTEGER NOT NULL, data B
 
 -- The corpus' words: stem and most used spelling.
 CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWID;
-
--- English words → stems of the corpus that mean nearly the same, each followed by the similarity in hundredths;
--- empty for a word that is known and near to none.
-CREATE TABLE near (word TEXT PRIMARY KEY, stems TEXT NOT NULL) WITHOUT ROWID;
 """
 
 INDEXES = """

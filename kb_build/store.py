@@ -29,7 +29,6 @@ from kb_build.index.documents import (
     weight_of,
 )
 from kb_build.index.query_expansions import load_uses
-from kb_build.index.synonyms import load_near_words, near_stems
 from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
@@ -206,7 +205,6 @@ def _write_index(connection: sqlite3.Connection, units: Sequence[Doc], uses: Map
     levels = (0, told), (len(units), around), (len(units) + len(topics), phrases)
     _insert(connection, "postings", packed(*levels), 3)
     _insert(connection, "vocabulary", vocabulary(units, cut), 2)
-    _insert(connection, "near", near_stems(load_near_words(), set(told.numbers)), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:

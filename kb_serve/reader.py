@@ -189,18 +189,6 @@ class Reader:
         rows = self.rows("SELECT version FROM since WHERE path = ?", path)
         return rows[0][0] if rows else ""
 
-    def near(self, words: Collection[str]) -> dict[str, list[tuple[str, float]]]:
-        """Stems of the corpus that mean nearly what English words mean, with the similarity, nearest first.
-
-        What is no English word, a name or a misspelling, is left out.
-        """
-        rows = self.rows_of("SELECT word, stems FROM near WHERE word", words)
-        told = ((word, stems.split()) for word, stems in rows)
-        return {
-            word: [(parts[i], int(parts[i + 1]) / 100) for i in range(0, len(parts), 2)]
-            for word, parts in told
-        }
-
     def units(self, numbers: Collection[int]) -> dict[int, tuple[str, str, str, str, str]]:
         """Number → (ref, kind, title, anchor, page) of what is retrieved; page: the one that explains a class or
         operator, as a link's target.

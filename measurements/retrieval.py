@@ -189,7 +189,6 @@ def compared(base: Path, home: Path, *, quick: bool) -> Iterator[tuple[str, Call
         ("… without the topic around a unit", "TOPIC_WEIGHT"),
         ("… without phrases as a whole", "ASKED_WEIGHT"),
         ("… without the chapters' votes", "CHAPTER_WEIGHT"),
-        ("… without near words", "NEAR_WEIGHT"),
         ("… without looking for code", "CODE_WEIGHT"),
     ):
         with ExitStack() as stack:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep.executor import Executor, FinishedTask
 from bench.sweep.judging import SweepJudge, judge_all
-from bench.sweep.records import BadSceneRecord, SystemInfo, read_record, scene_folders
+from bench.sweep.records import NAME, BadSceneRecord, SystemInfo, read_record, scene_folders
 from bench.sweep.run_steps import is_done
 from bench.sweep.scene_task import SceneTask
 from bench.sweep.steps import STEPS

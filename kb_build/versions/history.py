@@ -1,17 +1,16 @@
 """Which symbol exists in which Blender version: identifiers and versions, nothing else.
 
-The file is a tree in plain text. A line is its depth in blanks, a mark for how the path goes on (``.``
-member, ``(`` parameter, ``:`` enum item, ``<`` input and ``>`` output of a node), a span where it is not that
-of the path above, a blank, and the names that share all of this; deeper lines go on from the last name. Spans
-are ``4.3-`` (since then), ``-4.5`` (until then), ``4.2`` (only then), joined by commas where there are gaps,
-``-`` for all versions and ``!`` for what is no symbol itself. ``=name`` behind a name: it has the items of
-the shared enumeration ``name``.
+The file is a table, CSV in gzip. Its columns: ``path``; ``items_of``, the shared enumeration whose items a property or
+parameter has (they are then not listed again); and one for each version, 1 where it has the symbol.
 """
 
 from __future__ import annotations
 
-import json
+import csv
+import gzip
+import io
 import re
+import zlib
 from collections import defaultdict
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -26,11 +25,8 @@ if TYPE_CHECKING:
 
     from kb_build.blender.extract_reader import Extract
 
-HISTORY_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "api.txt"
-FORMAT = "1"
-_WIDTH = 110
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\S+')
-_PLAIN = re.compile(r'[^\s"=][^\s"]*')
+HISTORY_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "api.csv.gz"
+COLUMNS = ["path", "items_of"]  # and one for each version
 _PATH = re.compile(r'(.*)\.(inputs|outputs)\["(.*)"\]|(.*)\(([^()]*)\)', re.DOTALL)
 _JOINED = {"<": ("inputs", "<"), ">": ("outputs", ">")}
 _SHARED = "rna_enum_"
@@ -132,8 +128,8 @@ class History:
         """The history in a file; by default the one that comes with the package. Raises StoreError."""
         source = path or HISTORY_FILE
         try:
-            return parse_history(source.read_text(encoding="utf-8"))
-        except (OSError, UserError, UnicodeError, ValueError, KeyError, IndexError) as error:
+            return cls.from_bytes(source.read_bytes())
+        except (OSError, EOFError, zlib.error, csv.Error, ValueError, UserError) as error:
             raise StoreError(
                 f"{source} is not a readable history ({error}); make it again: simworlds kb history"
             ) from error
@@ -210,10 +206,39 @@ class History:
                 found[path] = self.versions[first]
         return found
 
-    def text(self) -> str:
-        """The file's content. Equal histories give equal texts."""
-        head = [f"format {FORMAT}", *(f"version {patch}" for patch in self.patches), ""]
-        return "\n".join([*head, *_tree_lines(self), ""])
+    def to_bytes(self) -> bytes:
+        """The file's content. Equal histories give equal bytes (with one release of zlib)."""
+        text = io.StringIO(newline="")
+        table = csv.writer(text, lineterminator="\n")
+        table.writerow((*COLUMNS, *self.patches))
+        for path, mask in sorted(self.masks.items()):
+            cells = (mask >> number & 1 for number in range(len(self.patches)))
+            table.writerow((path, self.shared.get(path, ""), *cells))
+        return gzip.compress(text.getvalue().encode(), mtime=0)
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> History:
+        """The inverse of :meth:`to_bytes`. Raises OSError, EOFError, zlib.error, csv.Error, ValueError or UserError."""
+        table = csv.reader(io.StringIO(gzip.decompress(data).decode(), newline=""))
+        head = next(table, [])
+        patches = tuple(head[len(COLUMNS) :])
+        if head[: len(COLUMNS)] != COLUMNS or not patches or [*patches] != sorted(patches, key=version_key):
+            raise ValueError(
+                f"its columns are {', '.join(head)[:60]!r}, not {', '.join(COLUMNS)} and versions"
+            )
+        masks: dict[str, int] = {}
+        shared: dict[str, str] = {}
+        by_cells: dict[str, int] = {}
+        for row in table:
+            cells = "".join(row[len(COLUMNS) :])
+            if cells not in by_cells:
+                if len(row) != len(head):
+                    raise ValueError(f"line {table.line_num} has {len(row)} cells, not {len(head)}")
+                by_cells[cells] = int(cells[::-1], 2)
+            masks[row[0]] = by_cells[cells]
+            if row[1]:
+                shared[row[0]] = row[1]
+        return cls(tuple(map(minor_of, patches)), patches, masks, shared)
 
     def _number(self, version: str) -> int | None:
         minor = minor_of(version)
@@ -256,118 +281,3 @@ def _share(masks: dict[str, int]) -> tuple[dict[str, int], dict[str, str]]:
                 break
     dropped = {f"{path}:{item}" for path in shared for item in items[path]}
     return {path: mask for path, mask in masks.items() if path not in dropped}, shared
-
-
-def _span_text(mask: int, above: int, versions: tuple[str, ...]) -> str:
-    if mask == above:
-        return ""
-    if not mask:
-        return "!"
-    newest = len(versions) - 1
-    texts: list[str] = []
-    for first, last in _runs(mask):
-        start, end = "" if first == 0 else versions[first], "" if last == newest else versions[last]
-        texts.append(start if first == last and start else f"{start}-{end}")
-    return ",".join(texts)
-
-
-def _span_mask(text: str, versions: tuple[str, ...]) -> int:
-    mask = 0
-    for run in text.split(","):
-        start, dash, end = run.partition("-")
-        first = versions.index(start) if start else 0
-        last = (versions.index(end) if end else len(versions) - 1) if dash else first
-        mask |= (2 << last) - (1 << first)
-    return mask
-
-
-def _quoted(name: str) -> str:
-    return name if _PLAIN.fullmatch(name) else json.dumps(name, ensure_ascii=False)
-
-
-def _children(history: History) -> dict[str, dict[str, list[str]]]:
-    """Path → mark → names below it, with the paths in between that are no symbols."""
-    below: dict[str, dict[str, list[str]]] = {"": {}}
-    known = {""}
-
-    def add(path: str) -> None:
-        if path in known:
-            return
-        known.add(path)
-        above, mark, name = split_path(path)
-        add(above)
-        below.setdefault(above, {}).setdefault(mark, []).append(name)
-
-    for path in sorted(history.masks):
-        add(path)
-    return below
-
-
-def _tree_lines(history: History) -> Iterator[str]:
-    below = _children(history)
-    versions, everywhere = history.versions, (1 << len(history.versions)) - 1
-
-    def lines(path: str, inherited: int, depth: int) -> Iterator[str]:
-        for mark, names in sorted(below[path].items()):
-            leaves: defaultdict[str, list[str]] = defaultdict(list)
-            nodes: list[tuple[str, str]] = []
-            for name in names:
-                child = join_path(path, mark, name)
-                span = _span_text(history.masks.get(child, 0), inherited, versions)
-                if child in below or child in history.shared:
-                    nodes.append((child, f"{' ' * depth}{mark}{span} {_quoted(name)}"))
-                else:
-                    leaves[span].append(_quoted(name))
-            for span, tokens in sorted(leaves.items()):
-                yield from _wrapped(f"{' ' * depth}{mark}{span}", tokens)
-            for child, line in nodes:
-                shared = history.shared.get(child)
-                yield f"{line} ={shared}" if shared else line
-                if child in below:
-                    yield from lines(child, history.masks.get(child, 0) or inherited, depth + 1)
-
-    return lines("", everywhere, 0)
-
-
-def _wrapped(head: str, tokens: Iterable[str]) -> Iterator[str]:
-    line = head
-    for token in tokens:
-        if len(line) + len(token) >= _WIDTH and line != head:
-            yield line
-            line = head
-        line = f"{line} {token}"
-    yield line
-
-
-def parse_history(text: str) -> History:
-    """The inverse of :meth:`History.text`. Raises ValueError, KeyError, IndexError or UserError."""
-    head, _, body = text.partition("\n\n")
-    kind, *rows = head.splitlines()
-    if kind != f"format {FORMAT}":
-        raise ValueError(f"its first line is {kind[:40]!r}, not 'format {FORMAT}'")
-    patches = tuple(row.removeprefix("version ") for row in rows)
-    versions = tuple(map(minor_of, patches))
-    masks: dict[str, int] = {}
-    shared: dict[str, str] = {}
-    spans: dict[str, int] = {}
-    everywhere = (1 << len(versions)) - 1
-    stack: list[tuple[str, int]] = [("", everywhere)]
-    for line in body.splitlines():
-        content = line.lstrip(" ")
-        depth = len(line) - len(content)
-        above, inherited = stack[depth]
-        marked, _, rest = content.partition(" ")
-        span = marked[1:]
-        if span and span not in spans:
-            spans[span] = 0 if span == "!" else _span_mask(span, versions)
-        mask = spans[span] if span else inherited
-        path = above
-        for token in _TOKEN.findall(rest) if '"' in rest else rest.split(" "):
-            if token[0] == "=":
-                shared[path] = token[1:]
-                continue
-            path = join_path(above, marked[0], json.loads(token) if token[0] == '"' else token)
-            if mask:
-                masks[path] = mask
-        stack[depth + 1 :] = [(path, mask or inherited)]
-    return History(versions, patches, masks, shared)

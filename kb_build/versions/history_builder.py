@@ -73,17 +73,17 @@ def build_history(  # noqa: PLR0913 - all but the first are named
             _refuse_poorer(old, found, output)
     progress("Writing the history", 0, None)
     history = History.of(found)
-    text = history.text()
-    written = old is None or old.text() != text
+    data = history.to_bytes()
+    written = old != history
     if written:
-        _write(output, text)
+        _write(output, data)
     return HistoryReport(
         path=output,
         written=written,
         asked=tuple(sorted(set(found) - set(kept), key=version_key)),
         kept=kept,
         symbols=len(set().union(*found.values())),
-        size=len(text.encode()),
+        size=len(data),
         missing=missing,
         faults=tuple(faults),
     )
@@ -158,10 +158,10 @@ def _refuse_poorer(old: History, found: Mapping[str, set[str]], output: Path) ->
             )
 
 
-def _write(output: Path, text: str) -> None:
+def _write(output: Path, data: bytes) -> None:
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
         with staged_file(output) as part:
-            part.write_text(text, encoding="utf-8", newline="\n")
+            part.write_bytes(data)
     except OSError as error:
         raise StoreError(f"{output} cannot be written: {error}. The old one, if any, stands.") from error

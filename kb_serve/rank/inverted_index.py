@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Scores = NDArray[np.float32]
 
 K1 = 2.2
-_KEPT = 600  # stems; a query has a dozen, with their near ones
+_KEPT = 600  # stems; a query has a dozen
 
 
 @dataclass(frozen=True, slots=True)

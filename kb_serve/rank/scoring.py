@@ -1,4 +1,4 @@
-"""BM25 over concepts: of the stems that stand for one word of a query, a document's best counts, once.
+"""BM25 over the concepts of a query.
 
 Only the documents that have any of the query's stems are looked at: a few thousand of the base's thirty.
 """
@@ -6,8 +6,6 @@ Only the documents that have any of the query's stems are looked at: a few thous
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import groupby
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,10 +20,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Concept:
-    """One word of the query: corpus stems with weights, and how much the word tells (idf)."""
+    """One word of the query: its stem in the corpus ("" if it has none), the stem's weight, and its idf."""
 
     word: str
-    stems: tuple[tuple[str, float], ...]
+    stem: str
+    weight: float
     idf: float
 
 
@@ -53,37 +52,21 @@ class Scorer:
     def score(self, concepts: Sequence[Concept]) -> Scored:
         """The documents and phrases that have any of the stems."""
         lists = [
-            (place, weight, min(concept.idf, found.idf) if weight < 1 else concept.idf, found)
-            for place, concept in enumerate(concepts)
-            for term, weight in concept.stems
-            if len((found := self._index.postings(term)).numbers)
+            (concept, postings)
+            for concept in concepts
+            if concept.stem and len((postings := self._index.postings(concept.stem)).numbers)
         ]
         if not lists:
             nothing = np.zeros(0, np.float32)
             return Scored(np.zeros(0, np.intp), nothing, nothing)
-        # By weight: of several for one document, the last that is written stays.
-        lists.sort(key=itemgetter(0, 1))
-        numbers, columns = self._distinct(np.concatenate([found.numbers for *_, found in lists]))
+        numbers, columns = self._distinct(np.concatenate([postings.numbers for _, postings in lists]))
         scores, coverage = np.zeros(len(numbers), np.float32), np.zeros(len(numbers), np.float32)
         end = 0
-        for place, alike in groupby(lists, key=itemgetter(0)):
-            stems = [*alike]
-            lengths = [len(found.numbers) for *_, found in stems]
-            start, end = end, end + sum(lengths)
+        for concept, postings in lists:
+            start, end = end, end + len(postings.numbers)
             where = columns[start:end]
-            told = np.concatenate(
-                [np.float32(weight * tells) * found.saturated for _, weight, tells, found in stems]
-            )
-            spoken = np.repeat(np.asarray([weight for _, weight, *_ in stems], np.float32), lengths)
-            if len(stems) > 1:  # each document's best
-                best, most = np.zeros(len(numbers), np.float32), np.zeros(len(numbers), np.float32)
-                np.maximum.at(best, where, told)
-                most[where] = spoken
-                scores += best
-                coverage += np.float32(concepts[place].idf) * most
-            else:
-                scores[where] += told
-                coverage[where] += np.float32(concepts[place].idf) * spoken
+            scores[where] += np.float32(concept.weight * concept.idf) * postings.saturated
+            coverage[where] += np.float32(concept.weight) * np.float32(concept.idf)
         coverage /= np.float32(sum(concept.idf for concept in concepts) or 1.0)
         return Scored(numbers, scores, coverage)
 

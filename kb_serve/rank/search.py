@@ -1,9 +1,7 @@
 """Ranks what the base holds for a query in plain words.
 
-BM25F over two levels (a unit and the topic around it), with six additions, each measured in ``make bench``:
+BM25F over two levels (a unit and the topic around it), with five additions, each measured in ``make bench``:
 
-- *Concepts*: a word stands for itself and, less, for the corpus' words that mean nearly the same; the best of them
-  counts, once.
 - *Coverage*: a document's score is scaled by how much of the query, by rarity, it speaks of at all.
 - *Phrases*: a document gains by how nearly the query is one of the phrases that it is asked for by.
 - *Chapters*: what the best documents mostly come from is probably what the query is about (pseudo-relevance
@@ -35,8 +33,6 @@ if TYPE_CHECKING:
     from kb_serve.rank.inverted_index import Scores
     from kb_serve.reader import Reader
 
-NEAR_WEIGHT = 0.7  # a near word counts by its similarity, times this
-RARE = 3.0  # idf from which on a word's near words are looked at: a common one is Blender's own already
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
@@ -50,6 +46,8 @@ CODE_WORDS = frozenset(
 CODE_WEIGHT = 0.6
 FAILED_WEIGHT = 0.3  # the same for an error's message, which a setting may be to blame for too
 UNKNOWN_IDF = 6.0
+_CORRECTED_WEIGHT = 0.95  # what a corrected word counts, next to one that was written so
+_TWO_TYPOS = 9  # letters from which on two may be wrong
 _MAX_WORDS = 40
 _CANDIDATES = 400
 _READ_AHEAD = 16
@@ -97,7 +95,7 @@ class Searcher:
         """The corpus' word that an unknown one was probably meant to be; empty when none is near."""
         if len(word) < 4 or not word.isalpha():
             return ""
-        allowed = 1 if len(word) < 6 else 2
+        allowed = 1 if len(word) < _TWO_TYPOS else 2
         matches = process.extract(word, self._spellings, scorer=OSA.distance, score_cutoff=allowed, limit=5)
         same_start = [match for match in matches if match[0][0] == word[0]]
         ranked = sorted(
@@ -106,35 +104,26 @@ class Searcher:
         return ranked[0][0] if ranked else ""
 
     def concepts(self, text: str) -> list[Concept]:
-        """The query's words with what stands for each in this corpus."""
+        """The query's distinct words, each with its stem in this corpus."""
         asked: dict[str, str] = {}
         for word in words(text)[:_MAX_WORDS]:
             if word not in STOP_WORDS:
                 asked.setdefault(stem(word), word)
         self.index.load(asked)
-        near = self._reader.near(asked.values())
-        concepts = [self._concept(word, own, near.get(word)) for own, word in asked.items()]
-        self.index.load(term for concept in concepts for term, _ in concept.stems)
-        return concepts
+        return [self._concept(word, own) for own, word in asked.items()]
 
-    def _concept(self, word: str, own: str, near: Sequence[tuple[str, float]] | None) -> Concept:
-        """What stands for a word; ``near`` is None for one that is no English."""
-        idf = self.index.idf(own)
-        stems: dict[str, float] = {own: 1.0} if idf else {}
-        if not idf or idf >= RARE:
-            for other, similarity in near or ():
-                stems.setdefault(other, NEAR_WEIGHT * similarity)
-        if not stems and near is None and (corrected := self.correction(word)):
-            stems[stem(corrected)] = 0.95
-        if not idf:
-            self.index.load(stems)
-            idf = max((self.index.idf(term) for term in stems), default=UNKNOWN_IDF)
-        return Concept(word, tuple(stems.items()), idf)
+    def _concept(self, word: str, own: str) -> Concept:
+        """The word by its own stem, or else by that of its correction."""
+        if idf := self.index.idf(own):
+            return Concept(word, own, 1.0, idf)
+        if corrected := stem(self.correction(word)):
+            return Concept(word, corrected, _CORRECTED_WEIGHT, self.index.idf(corrected))
+        return Concept(word, "", 0.0, UNKNOWN_IDF)
 
     def search(self, text: str, limit: int = 50, *, failed: bool = False) -> list[Found]:
         """The best documents for a text, best first, each id once. ``failed`` where it is an error's message."""
         concepts = self.concepts(text)
-        if not self.index.levels[0].count or not any(concept.stems for concept in concepts):
+        if not self.index.levels[0].count or not any(concept.stem for concept in concepts):
             return []
         units, topics = self.index.levels
         found = self._scorer.score(concepts)

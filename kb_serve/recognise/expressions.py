@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import Walked, Walker
 
 _FEW = 3
-_SHORTEST_NAME = 4
 _NEARLY = 0.9  # how alike a class must be for a name to be its misspelling, not a variable's
 _CLEAR = 0.85  # a variable's name that hardly means another class
 _LIKELY = 0.5  # readings that fit less well than this share of the best are no readings
@@ -46,7 +45,6 @@ class Expressions:
         """Adds what the expressions among ``chains`` lead to, and what bare words of them name."""
         self._expressions(chains, found)
         self._class_with_member(chains, found)
-        self._api_words(chains, found)
 
     def _expressions(self, chains: list[Chain], found: Identified) -> None:
         code = [chain for chain in chains if chain.is_code and _is_api(chain)]
@@ -176,27 +174,6 @@ class Expressions:
             elif entry.kind == "class" and chain.steps:
                 sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
             found.add(entry.path, sure - 0.03 * rank, "name")
-
-    def _api_words(self, chains: list[Chain], found: Identified) -> None:
-        """Words among prose that are names and no English (``fcurves``, ``depsgraph``): likely what it is about."""
-        prose = {stem(word) for chain in chains for word in words(chain.root)}
-        names = [chain.root for chain in chains if not chain.is_code]
-        names = [name for name in names if len(name) >= _SHORTEST_NAME and name.islower()]
-        for name in self._no_english(names):
-            rows = [
-                entry
-                for entry in self._reader.by_name(name)
-                if entry.group != "ui" and entry.kind != "module"
-            ]
-            ranked = sorted(rows, key=lambda entry: -self._affinity(entry, prose))
-            for rank, entry in enumerate(ranked[:_FEW]):
-                found.add(entry.path, 0.79 - 0.03 * rank, "name")
-
-    def _no_english(self, names: list[str]) -> list[str]:
-        """Those of some lower-case words that no dictionary has, in either number."""
-        names = [name for name in names if name not in STOP_WORDS]
-        known = self._reader.near({form for name in names for form in (name, name.removesuffix("s"))})
-        return [name for name in names if name not in known and name.removesuffix("s") not in known]
 
     def _affinity(self, entry: Entry, prose: set[str]) -> float:
         """How many of the words around a name belong to its owner, and how usual the owner is."""

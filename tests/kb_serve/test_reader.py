@@ -99,7 +99,7 @@ def test_no_look_up_reads_a_whole_table(base: Path) -> None:
         lambda r: r.by_name("quality"), lambda r: r.by_key("quality"), lambda r: r.enum_owners("emitter"),
         lambda r: r.removed("x"), lambda r: r.removed_by_key("x"), lambda r: r.replacements("x"),
         lambda r: r.since("x"),
-        lambda r: r.near(["cloth"]), lambda r: r.links_from("bpy.types.Object", "manual"),
+        lambda r: r.links_from("bpy.types.Object", "manual"),
         lambda r: r.page_entry("physics/index"), lambda r: r.page_children("physics/index"),
         lambda r: r.symbols_of_page("physics/index"), lambda r: r.page("physics/cloth/introduction"),
     ]  # fmt: skip

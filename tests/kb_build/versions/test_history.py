@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import gzip
 from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.errors import StoreError
-from kb_build.versions.history import History, join_path, parse_history, split_path
+from kb_build.versions.history import History, join_path, split_path
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -66,7 +67,7 @@ def test_the_committed_history_reaches_from_3_4_to_5_2(committed: History) -> No
 
 
 def test_the_committed_history_gives_itself_when_it_is_written_again(committed: History) -> None:
-    assert parse_history(committed.text()) == committed
+    assert History.from_bytes(committed.to_bytes()) == committed
 
 
 def test_what_5_1_lacks_and_what_it_has_gained_is_listed_with_versions(committed: History) -> None:
@@ -79,7 +80,7 @@ def test_what_5_1_lacks_and_what_it_has_gained_is_listed_with_versions(committed
 
 
 def test_every_path_of_every_version_is_found_again() -> None:
-    history = parse_history(History.of(PATHS).text())
+    history = History.from_bytes(History.of(PATHS).to_bytes())
     for version, paths in PATHS.items():
         expected = paths | {"aud"} if version == "4.3.0" else paths
         assert set(history.paths(version)) == expected
@@ -113,13 +114,21 @@ def test_a_path_taken_apart_and_put_together_is_the_same(path: str) -> None:
     assert join_path(*split_path(path)) == path
 
 
+TABLE = b"path,items_of,4.2.1,4.3.0\n"
+
+
 @pytest.mark.parametrize(
-    "text",
-    ["", "format 99\n\n. bpy\n", "format 1\nversion x\n\n. a\n", "format 1\nversion 4.2.0\n\n    . deep\n",
-     "format 1\nversion 4.2.0\n\n.7.7- a\n", "\x00\x01"],
+    "data",
+    [
+        b"", b"\x00\x01", TABLE, gzip.compress(TABLE + b"bpy,,1,0\n")[:-9], gzip.compress(b""),
+        gzip.compress(b"path,items_of\nbpy,\n"), gzip.compress(b"path,4.2.1\nbpy,1\n"),
+        gzip.compress(b"path,items_of,4.3.0,4.2.1\nbpy,,1,0\n"), gzip.compress(b"path,items_of,x\nbpy,,1\n"),
+        gzip.compress(TABLE + b"bpy,,1\n"), gzip.compress(TABLE + b"bpy,,1,yes\n"),
+        gzip.compress(TABLE + b"\xff,,1,1\n"),
+    ],
 )  # fmt: skip
-def test_a_file_that_is_no_history_is_refused_with_what_to_do(tmp_path: Path, text: str) -> None:
-    file = tmp_path / "api.txt"
-    file.write_text(text, encoding="utf-8")
+def test_refuses_a_file_that_is_not_a_history_and_says_what_to_do(tmp_path: Path, data: bytes) -> None:
+    file = tmp_path / "api.csv.gz"
+    file.write_bytes(data)
     with pytest.raises(StoreError, match="simworlds kb history"):
         History.load(file)

@@ -32,21 +32,21 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_what_one_blender_has_is_written(version: str, home: Path, tmp_path: Path) -> None:
-    report = build_history([version], home=home, output=tmp_path / "api.txt")
-    history = History.load(tmp_path / "api.txt")
+    report = build_history([version], home=home, output=tmp_path / "api.csv.gz")
+    history = History.load(tmp_path / "api.csv.gz")
     assert (report.written, report.asked, report.missing) == (True, (version,), {})
     assert history.patches == (version,)
     assert history.exists("bpy.ops.object.modifier_add(type):NODES", version)
-    assert report.size == (tmp_path / "api.txt").stat().st_size
-    again = build_history([version], home=home, output=tmp_path / "api.txt")
+    assert report.size == (tmp_path / "api.csv.gz").stat().st_size
+    again = build_history([version], home=home, output=tmp_path / "api.csv.gz")
     assert not again.written
 
 
 def test_versions_that_cannot_be_had_are_named_and_kept_from_the_old_file(
     version: str, home: Path, tmp_path: Path
 ) -> None:
-    output = tmp_path / "api.txt"
-    output.write_text(History.of({"3.4.1": {"bpy", "bpy.old"}}).text(), encoding="utf-8")
+    output = tmp_path / "api.csv.gz"
+    output.write_bytes(History.of({"3.4.1": {"bpy", "bpy.old"}}).to_bytes())
     absent = tmp_path / "no-blender-here"
     report = build_history([version], home=home, output=output, blender_exes=[absent])
     assert report.kept == ("3.4.1",)
@@ -57,9 +57,9 @@ def test_versions_that_cannot_be_had_are_named_and_kept_from_the_old_file(
 def test_a_poorer_extract_does_not_replace_what_the_file_knows(
     version: str, home: Path, tmp_path: Path
 ) -> None:
-    output = tmp_path / "api.txt"
+    output = tmp_path / "api.csv.gz"
     richer = {f"bpy.types.Lost.p{n}" for n in range(100_000)}
-    output.write_text(History.of({version: richer}).text(), encoding="utf-8")
+    output.write_bytes(History.of({version: richer}).to_bytes())
     before = output.read_bytes()
     with pytest.raises(StoreError, match=r"lost: bpy\.types\.Lost\.p0"):
         build_history([version], home=home, output=output)
@@ -69,7 +69,7 @@ def test_a_poorer_extract_does_not_replace_what_the_file_knows(
 
 
 def test_with_no_blender_at_all_the_file_stays_and_the_reasons_are_given(home: Path, tmp_path: Path) -> None:
-    output = tmp_path / "api.txt"
+    output = tmp_path / "api.csv.gz"
     output.write_text("whatever", encoding="utf-8")
     with pytest.raises(KBBuildError, match="not one Blender"):
         build_history(["2.79"], home=home, output=output, force=True)
@@ -80,4 +80,4 @@ def test_a_folder_that_cannot_be_written_is_a_clear_error(version: str, home: Pa
     blocked = tmp_path / "file"
     blocked.write_text("", encoding="utf-8")
     with pytest.raises(StoreError, match="cannot be written"):
-        build_history([version], home=home, output=blocked / "api.txt")
+        build_history([version], home=home, output=blocked / "api.csv.gz")
