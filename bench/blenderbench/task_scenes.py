@@ -1,8 +1,9 @@
 """A task's scenes in a confined Blender: makes the one to be edited from the raw file, and renders results.
 
 A raw file must not be used before its ``start.py`` has run: that of a camera task already holds the goal's camera.
-Both the code and the files are untrusted. They run and are opened in a sandbox (``simworlds/sandbox/confined_command.py``):
-no network, nothing written but to a folder that goes with the process, a deadline, limits of memory and disk.
+Both the code and the files are untrusted. They run and are opened in a sandbox
+(``simworlds/sandbox/confined_command.py``): no network, nothing written but to a folder that goes with the process, a
+deadline, limits of memory and disk.
 """
 
 from __future__ import annotations

@@ -34,7 +34,10 @@ pytestmark = pytest.mark.blender
 
 DEBIANS = Path("/usr/bin/blender")
 NAMES = "sorted(o.name for o in bpy.data.objects)"
-STANDS = r"A new Blender was started from checkpoint \d+ \([^\n]*, \d\d:\d\d:\d\d\), which is the scene as it was before\."
+STANDS = (
+    r"A new Blender was started from checkpoint \d+ \([^\n]*, \d\d:\d\d:\d\d\), "
+    r"which is the scene as it was before\."
+)
 
 
 def adding(name: str) -> str:
