@@ -15,8 +15,8 @@ from pydantic import BaseModel, NonNegativeInt, ValidationError
 
 from bench.judge.errors import NotJudged
 from bench.judge.providers import MISSING
-from simworlds.llm.errors import Rejected, TooLong, Unreachable
-from simworlds.llm.messages import Picture, Text, Turn, Usage, whole
+from simworlds.llm.errors import Rejected, TooLong, Unreachable, raise_for_stop
+from simworlds.llm.messages import Picture, Text, Turn, Usage
 from simworlds.llm.request import clean
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ class Chat:
             raise Unreachable(
                 f"What {self._client.base_url} answers is no completion ({where}: {fault['msg']})."
             ) from error
-        return whole(self._turn(ask, completion))
+        return raise_for_stop(self._turn(ask, completion))
 
     def _told(self, status: int, message: str) -> Rejected | Unreachable:
         words = f"{status} {' '.join(message.split())}"[:300]
