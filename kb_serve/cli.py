@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kb_serve.errors import KBServeError
+from simworlds.errors import UserError
 from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def docs(  # noqa: PLR0913 - one for each option
             base = bases.pick()
             answer = base.query(readable(" ".join(query)), limit=limit, max_tokens=max_tokens, part=part)
             found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
-    except KBServeError as error:
+    except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
     sys.exit(0 if found else _NOTHING_FOUND)
@@ -152,7 +152,7 @@ def serve(  # noqa: PLR0913 - one for each option
 
             _loaded()
             run_stdio(make_server(service), service.upkeep.stop)
-    except KBServeError as error:
+    except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
     finally:

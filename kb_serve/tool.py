@@ -9,7 +9,7 @@ from mcp_types import Tool, ToolAnnotations
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kb_serve.errors import BadQuery
-from simworlds.mcp_transport.schemas import schema_of
+from simworlds.schemas.json_schema import schema_of
 
 NAME = "blender_docs"
 
