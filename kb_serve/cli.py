@@ -16,7 +16,7 @@ from simworlds.errors import UserError
 from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
-    from kb_serve.answer.answer import Answer
+    from kb_serve.answer.composer import DocsAnswer
     from kb_serve.bases import Bases
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.service import Service
@@ -67,7 +67,7 @@ def docs(  # noqa: PLR0913 - one for each option
     sys.exit(0 if found else _NOTHING_FOUND)
 
 
-def _print_answer(answer: Answer, *, as_json: bool) -> bool:
+def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
     if as_json:
         from dataclasses import asdict  # noqa: PLC0415 - the other ways do without
 
@@ -82,7 +82,7 @@ def _print_answer(answer: Answer, *, as_json: bool) -> bool:
     return answer.kind != "none"
 
 
-def _print_raw(base: KnowledgeBase, answer: Answer) -> bool:
+def _print_raw(base: KnowledgeBase, answer: DocsAnswer) -> bool:
     from kb_build.records import to_json  # noqa: PLC0415 - the other ways do without
 
     for hit in answer.hits[:1]:

@@ -30,7 +30,7 @@ class Concept:
 
 
 @dataclass(frozen=True, slots=True)
-class Scored:
+class ScoredDocuments:
     """The documents and phrases that speak of a query, by number, rising; of each its score (of a phrase: the share of
     it, by rarity, that the query speaks of), and its coverage: the share of the query that it speaks of.
     """
@@ -50,7 +50,7 @@ class Scorer:
         self._listed = np.zeros(index.ends[-1], np.bool_)
         self._places = np.empty(index.ends[-1], np.intp)
 
-    def score(self, concepts: Sequence[Concept]) -> Scored:
+    def score(self, concepts: Sequence[Concept]) -> ScoredDocuments:
         """The documents and phrases that have any of the stems."""
         lists = [
             (place, weight, min(concept.idf, found.idf) if weight < 1 else concept.idf, found)
@@ -60,7 +60,7 @@ class Scorer:
         ]
         if not lists:
             nothing = np.zeros(0, np.float32)
-            return Scored(np.zeros(0, np.intp), nothing, nothing)
+            return ScoredDocuments(np.zeros(0, np.intp), nothing, nothing)
         # By weight: of several for one document, the last that is written stays.
         lists.sort(key=itemgetter(0, 1))
         numbers, columns = self._distinct(np.concatenate([found.numbers for *_, found in lists]))
@@ -85,7 +85,7 @@ class Scorer:
                 scores[where] += told
                 coverage[where] += np.float32(concepts[place].idf) * spoken
         coverage /= np.float32(sum(concept.idf for concept in concepts) or 1.0)
-        return Scored(numbers, scores, coverage)
+        return ScoredDocuments(numbers, scores, coverage)
 
     def _distinct(self, numbers: NDArray[np.uint32]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """The distinct ones of numbers, rising, and for each number its place among them."""
