@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kb_serve.errors import KBServeError
+from simworlds.errors import UserError
 from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
-    from kb_serve.answer.answer import Answer
+    from kb_serve.answer.composer import DocsAnswer
     from kb_serve.bases import Bases
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.service import Service
@@ -61,13 +61,13 @@ def docs(  # noqa: PLR0913 - one for each option
             base = bases.pick()
             answer = base.query(readable(" ".join(query)), limit=limit, max_tokens=max_tokens, part=part)
             found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
-    except KBServeError as error:
+    except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
     sys.exit(0 if found else _NOTHING_FOUND)
 
 
-def _print_answer(answer: Answer, *, as_json: bool) -> bool:
+def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
     if as_json:
         from dataclasses import asdict  # noqa: PLC0415 - the other ways do without
 
@@ -82,7 +82,7 @@ def _print_answer(answer: Answer, *, as_json: bool) -> bool:
     return answer.kind != "none"
 
 
-def _print_raw(base: KnowledgeBase, answer: Answer) -> bool:
+def _print_raw(base: KnowledgeBase, answer: DocsAnswer) -> bool:
     from kb_build.records import to_json  # noqa: PLC0415 - the other ways do without
 
     for hit in answer.hits[:1]:
@@ -152,7 +152,7 @@ def serve(  # noqa: PLR0913 - one for each option
 
             _loaded()
             run_stdio(make_server(service), service.upkeep.stop)
-    except KBServeError as error:
+    except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
     finally:

@@ -1,22 +1,22 @@
 """What can go wrong while a knowledge base answers.
 
 KBServeError
-├── BaseMissing      no knowledge base for the version asked for
+├── BaseMissing      there is no knowledge base for this version
 ├── BaseUnreadable   the file is corrupt, truncated, of something else, or newer than this program
-└── BadQuery         the query cannot be answered as it is (empty, part out of range)
-
-Every message says what was wrong, where, and what to do.
+└── BadQuery         the query cannot be answered (empty, part out of range)
 """
 
 from __future__ import annotations
 
+from simworlds.errors import UserError
 
-class KBServeError(Exception):
-    """Base of everything that a caller is told instead of a traceback."""
+
+class KBServeError(UserError):
+    """Base of the errors of a knowledge base."""
 
 
 class BaseMissing(KBServeError):  # noqa: N818 - reads as the state it names
-    """No knowledge base for the version asked for."""
+    """There is no knowledge base for this version."""
 
 
 class BaseUnreadable(KBServeError):  # noqa: N818 - reads as the state it names
@@ -24,4 +24,4 @@ class BaseUnreadable(KBServeError):  # noqa: N818 - reads as the state it names
 
 
 class BadQuery(KBServeError):  # noqa: N818 - reads as the state it names
-    """The query cannot be answered as it is."""
+    """The query cannot be answered; the message says what to change."""

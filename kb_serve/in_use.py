@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -31,6 +30,8 @@ def _installed() -> str | None:
 
 
 def _version_of(executable: Path) -> str | None:
+    import subprocess  # noqa: PLC0415 - most callers name no executable
+
     try:
         done = subprocess.run(
             [str(executable), "--version"],

@@ -5,9 +5,9 @@ from __future__ import annotations
 from threading import Lock
 from typing import TYPE_CHECKING, Self
 
-from kb_serve.answer.answer import LIMIT, MAX_TOKENS, Answer, Answerer
+from kb_serve.answer.composer import LIMIT, MAX_TOKENS, AnswerComposer, DocsAnswer
 from kb_serve.locate import find_base
-from kb_serve.reader import Reader
+from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,8 +21,8 @@ class KnowledgeBase:
 
     def __init__(self, path: Path) -> None:
         """Opens a base file. Raises BaseMissing or BaseUnreadable, saying what to do."""
-        self._reader = Reader(path)
-        self._answerer = Answerer(self._reader)
+        self._reader = BaseReader(path)
+        self._composer = AnswerComposer(self._reader)
         self._lock = Lock()
 
     @classmethod
@@ -34,14 +34,16 @@ class KnowledgeBase:
         """
         return cls(find_base(version, home))
 
-    def query(self, text: str, *, limit: int = LIMIT, max_tokens: int = MAX_TOKENS, part: int = 1) -> Answer:
+    def query(
+        self, text: str, *, limit: int = LIMIT, max_tokens: int = MAX_TOKENS, part: int = 1
+    ) -> DocsAnswer:
         """Answers a query in any form: a name, an expression, an error message, a question, a topic.
 
         ``limit`` bounds the hits, ``max_tokens`` the text of the answer; what does not fit is in the further
         parts, counted from 1. Raises BadQuery when there is nothing to answer.
         """
         with self._lock:
-            return self._answerer.answer(text, limit, max_tokens, part)
+            return self._composer.answer(text, limit, max_tokens, part)
 
     def symbol(self, path: str) -> Symbol | None:
         """The raw record of an identifier, as the base spells it."""

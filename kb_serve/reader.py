@@ -25,7 +25,7 @@ _REBUILD = "Build it again: simworlds kb build --force"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class SymbolEntry:
     """The part of a symbol that resolving needs; the whole record is read when it is answered.
 
     ``line`` is how its owner lists it.
@@ -72,7 +72,7 @@ def open_file(path: Path) -> sqlite3.Connection:
         raise BaseUnreadable(f"{path}: {error}. {_REBUILD}") from error
 
 
-class Reader:
+class BaseReader:
     """Look-ups in one base. Results of the hot ones are kept; the file never changes while it is open."""
 
     def __init__(self, path: Path) -> None:
@@ -117,25 +117,25 @@ class Reader:
         """Facts about the base: version, build, fingerprint, sources, missing sources, …"""
         return dict(self.rows("SELECT name, value FROM meta"))
 
-    def _entry(self, path: str) -> Entry | None:
+    def _entry(self, path: str) -> SymbolEntry | None:
         rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE path = ?", path)
-        return Entry(*rows[0]) if rows else None
+        return SymbolEntry(*rows[0]) if rows else None
 
-    def _members(self, owner: str) -> dict[str, Entry]:
+    def _members(self, owner: str) -> dict[str, SymbolEntry]:
         rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE owner = ? ORDER BY id", owner)
-        return {row[3] if row[1] != "socket" else row[0][len(owner) + 1 :]: Entry(*row) for row in rows}
+        return {row[3] if row[1] != "socket" else row[0][len(owner) + 1 :]: SymbolEntry(*row) for row in rows}
 
-    def _subclasses(self, path: str) -> tuple[Entry, ...]:
+    def _subclasses(self, path: str) -> tuple[SymbolEntry, ...]:
         rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE base = ? AND base != '' ORDER BY path", path)
-        return tuple(Entry(*row) for row in rows)
+        return tuple(SymbolEntry(*row) for row in rows)
 
-    def descendants(self, path: str) -> Iterator[Entry]:
+    def descendants(self, path: str) -> Iterator[SymbolEntry]:
         """Every class below a class, nearest first."""
         for child in self.subclasses(path):
             yield child
             yield from self.descendants(child.path)
 
-    def lineage(self, path: str) -> Iterator[Entry]:
+    def lineage(self, path: str) -> Iterator[SymbolEntry]:
         """A class and its bases up to bpy_struct."""
         entry = self.entry(path)
         while entry is not None:
@@ -151,15 +151,15 @@ class Reader:
         rows = self.rows("SELECT record FROM symbols WHERE path = ?", path)
         return self._record(symbol_from_json, rows[0][0]) if rows else None
 
-    def by_name(self, name: str) -> list[Entry]:
+    def by_name(self, name: str) -> list[SymbolEntry]:
         """Every symbol whose last part is exactly ``name``."""
-        return [Entry(*row) for row in self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ?", name)]
+        return [SymbolEntry(*row) for row in self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ?", name)]
 
-    def pointing_at(self, cls: str) -> list[Entry]:
+    def pointing_at(self, cls: str) -> list[SymbolEntry]:
         """The pointer properties whose value is a class, given by its name."""
         sql = f"""SELECT {_ENTRY} FROM symbols
             WHERE target = ? AND target != '' AND kind = 'property' AND type = 'pointer' ORDER BY path"""
-        return [Entry(*row) for row in self.rows(sql, cls)]
+        return [SymbolEntry(*row) for row in self.rows(sql, cls)]
 
     def by_key(self, key: str) -> list[tuple[int, str]]:
         """(form, id) of everything spelled like ``key`` (see analysis.key), preferred forms first."""

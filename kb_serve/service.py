@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from kb_serve.errors import BadQuery, BaseMissing, KBServeError
 
 if TYPE_CHECKING:
     from kb_build.records import Page, Symbol
-    from kb_serve.answer.answer import Answer
+    from kb_serve.answer.composer import DocsAnswer
     from kb_serve.bases import Bases
     from kb_serve.rebuild import Upkeep
 
@@ -30,13 +31,15 @@ class Service:
         self.upkeep = upkeep
 
     def warm(self) -> None:
-        """Loads and finds out what the first answer needs."""
+        """Loads what the first answer needs, and looks up which Blender is in use."""
+        import_module("kb_serve.rank.search")  # else loaded by the first search
+
         with contextlib.suppress(KBServeError):
             self.upkeep.note(self.bases.pick().meta, None)
 
     def ask(
         self, query: str, *, blender: str | None, limit: int, max_tokens: int, part: int
-    ) -> tuple[Answer, str]:
+    ) -> tuple[DocsAnswer, str]:
         """The answer, and the full version of the Blender that it holds for. Raises KBServeError."""
         if len(query) > LONGEST_QUERY:
             raise BadQuery(
@@ -48,8 +51,8 @@ class Service:
         version = base.meta.get("blender", "")
         if not note:
             return base.query(query, limit=limit, max_tokens=max_tokens, part=part), version
-        from kb_serve.answer.answer import LEAST_TOKENS  # noqa: PLC0415 - loaded with the base
         from kb_serve.answer.budget import tokens  # noqa: PLC0415
+        from kb_serve.answer.composer import LEAST_TOKENS  # noqa: PLC0415 - loaded with the base
 
         lead = f"> {note}\n\n"
         room = max_tokens - tokens(lead) - 1

@@ -9,7 +9,7 @@ from mcp_types import Tool, ToolAnnotations
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kb_serve.errors import BadQuery
-from simworlds.mcp_transport.schemas import schema_of
+from simworlds.schemas.json_schema import schema_of
 
 NAME = "blender_docs"
 
@@ -34,10 +34,10 @@ what belongs to it
 The answer names the best hit in full and lists others by `id`; ask for an id to see it. A long answer \
 comes in parts: repeat the call with `part=2`, `part=3`. `max_tokens` bounds one part. `blender="4.5"` \
 asks about another version that was built here. `notes` tell of corrections, missing sources and version \
-drift: heed them."""
+removed: heed them."""
 
 
-class Ask(BaseModel):
+class DocsArguments(BaseModel):
     """The arguments of a call."""
 
     model_config = ConfigDict(extra="forbid", coerce_numbers_to_str=True, title="blender_docs")
@@ -51,7 +51,7 @@ class Ask(BaseModel):
     part: int = Field(default=1, ge=1, description="Which part of a long answer.")
 
 
-class Found(BaseModel):
+class DocsHit(BaseModel):
     """One thing that the answer is about."""
 
     id: str = Field(description="Symbol path or page slug; also a query that finds exactly this.")
@@ -61,7 +61,7 @@ class Found(BaseModel):
     url: str = Field(description="The public manual page, where there is one.")
 
 
-class Reply(BaseModel):
+class DocsReply(BaseModel):
     """The structured content of a result."""
 
     model_config = ConfigDict(title="blender_docs answer")
@@ -71,8 +71,8 @@ class Reply(BaseModel):
         json_schema_extra={"enum": ["schema", "page", "candidates", "none"]},
     )
     text: str = Field(description="The answer in Markdown.")
-    hits: list[Found] = Field(description="What was found, best first.")
-    notes: list[str] = Field(description="Corrections, version drift, missing sources.")
+    hits: list[DocsHit] = Field(description="What was found, best first.")
+    notes: list[str] = Field(description="Corrections, version removed, missing sources.")
     part: int
     parts: int = Field(description="How many parts the answer has.")
     blender: str = Field(description="The Blender version that the answer holds for.")
@@ -85,8 +85,8 @@ def tool() -> Tool:
         name=NAME,
         title="Blender documentation",
         description=DESCRIPTION,
-        input_schema=schema_of(Ask),
-        output_schema=schema_of(Reply),
+        input_schema=schema_of(DocsArguments),
+        output_schema=schema_of(DocsReply),
         annotations=ToolAnnotations(
             title="Blender documentation",
             read_only_hint=True,
@@ -97,10 +97,10 @@ def tool() -> Tool:
     )
 
 
-def parse(arguments: dict[str, Any] | None) -> Ask:
+def parse(arguments: dict[str, Any] | None) -> DocsArguments:
     """The arguments of a call, checked. Raises BadQuery, naming each that is wrong."""
     try:
-        return Ask.model_validate(arguments or {})
+        return DocsArguments.model_validate(arguments or {})
     except ValidationError as error:
         wrong = "; ".join(
             f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']}"

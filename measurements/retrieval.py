@@ -18,14 +18,14 @@ from kb_build.pipeline import BuildOptions, build
 from kb_serve.answer.budget import tokens
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.rank import search
-from kb_serve.reader import Reader
+from kb_serve.reader import BaseReader
 from measurements.report import Figure, Part
 from measurements.setting import corpora, percentile, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from kb_serve.answer.answer import Answer
+    from kb_serve.answer.composer import DocsAnswer
     from measurements.setting import Setting
 
 LIMIT = 8
@@ -139,7 +139,7 @@ def ask_all(ask: Callable[[str], Sequence[str]], queries: Sequence[Query]) -> li
 
 def unknown_labels(queries: Sequence[Query], base: Path) -> list[str]:
     """Ids in the labels that the base does not have, as ``query id: label``."""
-    with closing(Reader(base)) as reader:
+    with closing(BaseReader(base)) as reader:
         known = {row[0] for row in reader.rows("SELECT path FROM symbols UNION ALL SELECT slug FROM pages")}
     return [
         f"{query.id}: {label}"
@@ -152,7 +152,7 @@ def unknown_labels(queries: Sequence[Query], base: Path) -> list[str]:
 # The systems compared
 
 
-def ids_of(answer: Answer) -> list[str]:
+def ids_of(answer: DocsAnswer) -> list[str]:
     """The ids of an answer, best first."""
     return [hit.id for hit in answer.hits]
 
@@ -163,13 +163,13 @@ def _ours(base: Path, stack: ExitStack) -> Callable[[str], Sequence[str]]:
 
 
 def _words_only(base: Path, stack: ExitStack) -> Callable[[str], Sequence[str]]:
-    searcher = search.Searcher(stack.enter_context(closing(Reader(base))))
+    searcher = search.Searcher(stack.enter_context(closing(BaseReader(base))))
     return lambda text: [found.ref for found in searcher.search(text, LIMIT)]
 
 
 def _base_without_uses(base: Path, home: Path, folder: Path) -> Path:
     """A base of the same version and sources, without the table of :mod:`kb_build.index.query_expansions`."""
-    with closing(Reader(base)) as reader:
+    with closing(BaseReader(base)) as reader:
         version = reader.meta["blender"]
     options = BuildOptions(corpora=corpora(), offline=True, output=folder / base.name)
     with mock.patch("kb_build.store.load_uses", dict):
@@ -246,7 +246,7 @@ def _figures(outcomes: Sequence[Outcome], title: str) -> Iterator[Figure]:
 
 def _promises(base: Path, queries: Sequence[Query]) -> Iterator[Figure]:
     """What holds for every answer: names resolve, and none is longer than its budget."""
-    with closing(Reader(base)) as reader:
+    with closing(BaseReader(base)) as reader:
         members = reader.rows(
             "SELECT path FROM symbols WHERE kind IN ('property', 'function') AND owner LIKE 'bpy.types.%' ORDER BY path"
         )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -33,6 +32,8 @@ class Release:
 
 @cache
 def _table() -> dict[str, Any]:
+    import tomllib  # noqa: PLC0415 - most commands need no table
+
     return tomllib.loads(_TABLE.read_text(encoding="utf-8"))
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from kb_build.blender.extract_reader import Extract
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 
 # What tests get from a Blender, or from the documentation sources, by asking for a fixture.
@@ -66,11 +66,11 @@ def extract(base: Path) -> Extract:
 
 
 @pytest.fixture(scope="session")
-def reader(base: Path) -> Iterator[Reader]:
+def reader(base: Path) -> Iterator[BaseReader]:
     """Look-ups in ``base``."""
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
-    with closing(Reader(base)) as opened:
+    with closing(BaseReader(base)) as opened:
         yield opened
 
 

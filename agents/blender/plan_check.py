@@ -14,7 +14,7 @@ from agents.protocol.report.folding import folded, told_ids
 from agents.protocol.rules.catalogue import RULES
 from agents.protocol.rules_by_stage import begins, rules_of
 from agents.protocol.verify_request import plan_from
-from simworlds.schema_notation import lean_schema_of
+from simworlds.schemas.json_schema import lean_schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

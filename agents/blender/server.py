@@ -21,8 +21,8 @@ from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
 from agents.blender.tool_catalogue import BY_NAME, TOOLS
 from agents.blender.tools.base import Call
-from simworlds.mcp_transport.schemas import schema_of
 from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
+from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Awaitable, Callable, Iterable

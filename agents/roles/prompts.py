@@ -17,7 +17,7 @@ from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
 from agents.protocol.guide import guide, told_rules
-from simworlds.schema_notation import shape_of
+from simworlds.schemas.notation import shape_of
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -74,7 +74,7 @@ def stage_title(stage: Stage) -> str:
 @cache
 def shapes_text(role: Role, *, edit: bool = False) -> str:
     """The shapes of the plans that a role reads and of what it answers, without what the protocol's guide tells."""
-    told = shape_of(EditPlan if edit else ScenePlan, *_SHAPES[role], told=protocol_text())
+    told = shape_of(EditPlan if edit else ScenePlan, *_SHAPES[role], before=protocol_text())
     return (
         "# Shapes of plans and answers\n\n"
         "JSON, written as types: `name?` may be left out and is then the value behind `=`, or null; what stands behind "

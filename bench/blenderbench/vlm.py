@@ -23,7 +23,7 @@ from bench.judge.usage import Spent
 from simworlds.llm.canonical import form_of
 from simworlds.llm.messages import Ask, Picture, Text, Tool, user
 from simworlds.llm.structured import fits
-from simworlds.mcp_transport.schemas import schema_of
+from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,8 +14,8 @@ import httpx2
 from pydantic import BaseModel, NonNegativeInt, ValidationError
 
 from bench.judge.errors import NO_OPENAI_PACKAGE, NotJudged
-from simworlds.llm.errors import Rejected, TooLong, Unreachable
-from simworlds.llm.messages import Picture, Text, Turn, Usage, whole
+from simworlds.llm.errors import Rejected, TooLong, Unreachable, raise_for_stop
+from simworlds.llm.messages import Picture, Text, Turn, Usage
 from simworlds.llm.request import clean
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ class Chat:
             raise Unreachable(
                 f"The reply of {self._client.base_url} is not a valid completion ({where}: {fault['msg']})."
             ) from error
-        return whole(self._turn(ask, completion))
+        return raise_for_stop(self._turn(ask, completion))
 
     def _told(self, status: int, message: str) -> Rejected | Unreachable:
         words = f"{status} {' '.join(message.split())}"[:300]

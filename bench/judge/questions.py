@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from simworlds.llm.canonical import form_of
 from simworlds.llm.messages import Ask, Picture, Text, Tool, user
-from simworlds.mcp_transport.schemas import schema_of
+from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

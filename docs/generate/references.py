@@ -19,7 +19,7 @@ from docs.generate.rule_pages import FOLDER as RULE_PAGES
 from docs.generate.rule_pages import rule_pages
 from kb_serve.server import BASE_LIST, INSTRUCTIONS, TEMPLATES
 from kb_serve.tool import tool
-from simworlds.schema_notation import shape_of
+from simworlds.schemas.notation import shape_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -30,7 +30,7 @@ def clip(text: str, budget: int) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class AnswerBlock:
     """A piece of an answer that belongs together; ``name`` is what a reader calls it when it did not fit."""
 
     text: str
@@ -55,7 +55,7 @@ def _split(text: str, room: int) -> tuple[str, str]:
     return head, text[len(head) :].lstrip(" ")
 
 
-def paginate(blocks: Sequence[Block], budget: int) -> list[tuple[str, list[str]]]:
+def paginate(blocks: Sequence[AnswerBlock], budget: int) -> list[tuple[str, list[str]]]:
     """(text, names of the blocks that come later) for every part, each within ``budget`` tokens.
 
     Blocks keep their order. One that does not fit is continued in the next part, or moved there whole when

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import definitions_in, first_sentence, literal, type_text
-from kb_serve.answer.budget import Block
-from kb_serve.reader import STRUCT, TYPES, Entry, Reader
+from kb_serve.answer.budget import AnswerBlock
+from kb_serve.reader import STRUCT, TYPES, BaseReader, SymbolEntry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -92,31 +92,31 @@ def _parameter_line(parameter: Parameter) -> str:
     return text
 
 
-def _parameters(symbol: Symbol) -> Iterator[Block]:
+def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
     if symbol.parameters:
         lines = "\n".join(map(_parameter_line, symbol.parameters))
-        yield Block(f"**Parameters**\n{lines}", "parameters")
+        yield AnswerBlock(f"**Parameters**\n{lines}", "parameters")
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
-        yield Block(f"**Returns**\n{lines}", "returns")
+        yield AnswerBlock(f"**Returns**\n{lines}", "returns")
     for parameter in symbol.parameters:
         items = parameter.enum_items
         if len(items) > _NAMED_ITEMS or (len(items) > 3 and any(item.description for item in items)):
-            yield Block(
+            yield AnswerBlock(
                 f"**Values of `{parameter.name}`**\n{_items(items)}",
                 f"values of {parameter.name}",
             )
 
 
 @dataclass(frozen=True, slots=True)
-class Renderer:
+class MarkdownRenderer:
     """Writes ids as Markdown blocks, most wanted first."""
 
-    reader: Reader
+    reader: BaseReader
 
-    def symbol(self, symbol: Symbol) -> Iterator[Block]:
+    def symbol(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         """One identifier. A class lists its members compactly, an operator or function its call."""
-        yield Block(self._head(symbol), "description")
+        yield AnswerBlock(self._head(symbol), "description")
         if symbol.kind == "class":
             yield from self._class(symbol)
         elif symbol.kind in {"operator", "function"}:
@@ -124,12 +124,12 @@ class Renderer:
         elif symbol.kind in {"module", "data"} and self.reader.members(symbol.path):
             yield from self._module(symbol)
         if symbol.enum_items:
-            yield Block(f"**Values**\n{_items(symbol.enum_items)}", "values")
+            yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
         definition = self.manual_definition(symbol)
         if definition:
-            yield Block(definition, "the manual on it")
+            yield AnswerBlock(definition, "the manual on it")
 
-    def page(self, slug: str, anchor: str = "") -> Iterator[Block]:
+    def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section with ``anchor`` comes before the others."""
         page, entry = self.reader.page(slug), self.reader.page_entry(slug)
         if page is None or entry is None:
@@ -139,18 +139,18 @@ class Renderer:
         others = [section.title for section in page.sections[1:]]
         if len(others) > 1:
             head += "\n\nSections: " + ", ".join(others)
-        yield Block(head, "heading")
+        yield AnswerBlock(head, "heading")
         wanted = [section for section in page.sections if anchor and section.anchor == anchor]
         for section in (*wanted, *(section for section in page.sections if section not in wanted)):
             mark = "#" * min(6, section.level + 2)
             if section.text:
-                yield Block(f"{mark} {section.title}\n\n{section.text}", section.title)
+                yield AnswerBlock(f"{mark} {section.title}\n\n{section.text}", section.title)
         if page.children:
             lines = [
                 f"- `{child.slug}` ({child.title}) {first_sentence(child.summary)}"
                 for child in self.reader.page_children(slug)
             ]
-            yield Block("**Pages below**\n" + "\n".join(lines), "pages below")
+            yield AnswerBlock("**Pages below**\n" + "\n".join(lines), "pages below")
 
     def _head(self, symbol: Symbol) -> str:
         lines = [f"## `{symbol.path}`"]
@@ -216,12 +216,12 @@ class Renderer:
                 return f"**In the manual** ({page.title if page else ''})\n{text}"
         return ""
 
-    def _class(self, symbol: Symbol) -> Iterator[Block]:
+    def _class(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         members = list(self.reader.members(symbol.path).values())
         lineage = list(self.reader.lineage(symbol.path))[1:]
         if lineage:
-            yield Block("base classes: " + ", ".join(f"`{entry.name}`" for entry in lineage), "bases")
-        groups: tuple[tuple[str, Iterable[Entry]], ...] = (
+            yield AnswerBlock("base classes: " + ", ".join(f"`{entry.name}`" for entry in lineage), "bases")
+        groups: tuple[tuple[str, Iterable[SymbolEntry]], ...] = (
             ("Inputs and outputs", [entry for entry in members if entry.kind == "socket"]),
             ("Properties", [entry for entry in members if entry.kind in {"property", "data"}]),
             (
@@ -232,23 +232,23 @@ class Renderer:
         for title, entries in groups:
             lines = ["- " + entry.line for entry in entries]
             if lines:
-                yield Block(f"**{title}**\n" + "\n".join(lines), title.lower())
+                yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), title.lower())
         for ancestor in lineage:
             names = [e.name for e in self.reader.members(ancestor.path).values() if e.kind != "class"]
             names = [name for name in names if not name.startswith("bl_rna_get_subclass")]
             if names and ancestor.path != STRUCT:
-                yield Block(
+                yield AnswerBlock(
                     f"**Inherited from `{ancestor.name}`**: {', '.join(names)}", f"members of {ancestor.name}"
                 )
         below = [entry.name for entry in self.reader.subclasses(symbol.path) if entry.group in {"data", ""}]
         if below:
-            yield Block(f"**Subclasses**: {', '.join(below)}", "subclasses")
+            yield AnswerBlock(f"**Subclasses**: {', '.join(below)}", "subclasses")
 
-    def _module(self, symbol: Symbol) -> Iterator[Block]:
+    def _module(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         members = [entry for entry in self.reader.members(symbol.path).values() if entry.group != "ui"]
         lines = ["- " + entry.line for entry in members]
         if lines:
-            yield Block("**Contents**\n" + "\n".join(lines), "contents")
+            yield AnswerBlock("**Contents**\n" + "\n".join(lines), "contents")
 
 
 def definition_of(label: str, sections: Iterable[Section]) -> str:

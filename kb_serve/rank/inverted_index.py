@@ -21,7 +21,7 @@ from kb_build.schema import POSTING_BYTES, TOPICS, UNITS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 Scores = NDArray[np.float32]
 
@@ -41,7 +41,7 @@ class Level:
 
 
 @dataclass(frozen=True, slots=True)
-class Postings:
+class StemPostings:
     """The documents and phrases that have a stem, and for each how much it says of it: of documents, BM25's saturated
     frequency; of phrases, the share that a unit of idf is of all that the phrase tells.
 
@@ -54,15 +54,15 @@ class Postings:
     idf: float
 
 
-_NOWHERE = Postings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0.0)
+_NOWHERE = StemPostings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0.0)
 
 
 class InvertedIndex:
     """What one base's index tells of stems."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
-        self._kept: OrderedDict[str, Postings] = OrderedDict()
+        self._kept: OrderedDict[str, StemPostings] = OrderedDict()
 
     @cached_property
     def levels(self) -> tuple[Level, Level]:
@@ -101,7 +101,7 @@ class InvertedIndex:
         while len(self._kept) > max(_KEPT, len(wanted)):
             self._kept.popitem(last=False)
 
-    def postings(self, stem: str) -> Postings:
+    def postings(self, stem: str) -> StemPostings:
         """Where a stem stands; nowhere, if it is unknown."""
         if stem not in self._kept:
             self.load((stem,))
@@ -131,7 +131,7 @@ class InvertedIndex:
             raise self._reader.damaged(f"level {level} of its index")
         return read
 
-    def _postings(self, rows: Sequence[tuple[str, int, bytes]]) -> Iterator[tuple[str, Postings]]:
+    def _postings(self, rows: Sequence[tuple[str, int, bytes]]) -> Iterator[tuple[str, StemPostings]]:
         """Of (stem, units, data): checked and weighed all at once, which costs less than one by one."""
         if not rows:
             return
@@ -155,7 +155,7 @@ class InvertedIndex:
         for (stem, having, _), array in zip(rows, numbers, strict=True):
             first, last = last, last + len(array)
             # Copies, not to keep the lists of all for one, nor what was read for a part of it.
-            yield stem, Postings(array.copy(), saturated[first:last].copy(), having, idf(units, having))
+            yield stem, StemPostings(array.copy(), saturated[first:last].copy(), having, idf(units, having))
 
 
 def _within(numbers: NDArray[Any], low: int, high: int) -> bool:

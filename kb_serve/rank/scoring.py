@@ -29,7 +29,7 @@ class Concept:
 
 
 @dataclass(frozen=True, slots=True)
-class Scored:
+class ScoredDocuments:
     """The documents and phrases that speak of a query, by number, rising; of each its score (of a phrase: the share of
     it, by rarity, that the query speaks of), and its coverage: the share of the query that it speaks of.
     """
@@ -49,7 +49,7 @@ class Scorer:
         self._listed = np.zeros(index.ends[-1], np.bool_)
         self._places = np.empty(index.ends[-1], np.intp)
 
-    def score(self, concepts: Sequence[Concept]) -> Scored:
+    def score(self, concepts: Sequence[Concept]) -> ScoredDocuments:
         """The documents and phrases that have any of the stems."""
         lists = [
             (concept, postings)
@@ -58,7 +58,7 @@ class Scorer:
         ]
         if not lists:
             nothing = np.zeros(0, np.float32)
-            return Scored(np.zeros(0, np.intp), nothing, nothing)
+            return ScoredDocuments(np.zeros(0, np.intp), nothing, nothing)
         numbers, columns = self._distinct(np.concatenate([postings.numbers for _, postings in lists]))
         scores, coverage = np.zeros(len(numbers), np.float32), np.zeros(len(numbers), np.float32)
         end = 0
@@ -68,7 +68,7 @@ class Scorer:
             scores[where] += np.float32(concept.weight * concept.idf) * postings.saturated
             coverage[where] += np.float32(concept.weight) * np.float32(concept.idf)
         coverage /= np.float32(sum(concept.idf for concept in concepts) or 1.0)
-        return Scored(numbers, scores, coverage)
+        return ScoredDocuments(numbers, scores, coverage)
 
     def _distinct(self, numbers: NDArray[np.uint32]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """The distinct ones of numbers, rising, and for each number its place among them."""

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kb_serve.rank.inverted_index import Scores
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
@@ -58,7 +58,7 @@ _FEEDBACK_POWER = 3  # the weaker half of the feedback documents hardly votes
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class SearchHit:
     """One ranked document. ``coverage`` is the share of the query, by rarity, that it speaks of."""
 
     ref: str
@@ -72,7 +72,7 @@ class Found:
 class Searcher:
     """Searches one base."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self.index = InvertedIndex(reader)
 
@@ -120,7 +120,7 @@ class Searcher:
             return Concept(word, corrected, _CORRECTED_WEIGHT, self.index.idf(corrected))
         return Concept(word, "", 0.0, UNKNOWN_IDF)
 
-    def search(self, text: str, limit: int = 50, *, failed: bool = False) -> list[Found]:
+    def search(self, text: str, limit: int = 50, *, failed: bool = False) -> list[SearchHit]:
         """The best documents for a text, best first, each id once. ``failed`` where it is an error's message."""
         concepts = self.concepts(text)
         if not self.index.levels[0].count or not any(concept.stem for concept in concepts):
@@ -158,21 +158,23 @@ class Searcher:
         np.maximum.at(best, self.index.asked[phrases - documents], alike)
         return np.maximum(best[numbers], np.where(topic >= 0, best[units + topic], 0))
 
-    def _varied(self, numbers: NDArray[np.intp], scores: Scores, coverage: Scores, limit: int) -> list[Found]:
+    def _varied(
+        self, numbers: NDArray[np.intp], scores: Scores, coverage: Scores, limit: int
+    ) -> list[SearchHit]:
         """Of the ranked units each ref once, and the first member of a name before other members of that name.
 
         A class or operator and the page that explains it say the same: the second of them waits until the first
         few different things have been named.
         """
-        first: list[Found] = []
-        waiting: list[Found] = []
-        later: list[Found] = []
+        first: list[SearchHit] = []
+        waiting: list[SearchHit] = []
+        later: list[SearchHit] = []
         seen: set[str] = set()
         told = zip(scores.tolist(), coverage.tolist(), self._documents(numbers.tolist()), strict=True)
         for score, share, (ref, kind, title, anchor, page) in told:
             if ref in seen:
                 continue
-            found = Found(ref, kind, title, anchor, score, share)
+            found = SearchHit(ref, kind, title, anchor, score, share)
             name = f".{ref.rpartition('.')[2]}" if kind in _MEMBERS else ref
             explained = page.partition("#")[0] or ref
             if name in seen:

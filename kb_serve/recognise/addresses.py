@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 _URL = re.compile(r"https?://[\w.]*blender\.org/(manual|api)/([^\s'\"<>)]*)")
 _BEFORE_SLUG = {"manual": 2, "api": 1}  # language and version; version
 
 
-def addressed(query: str, reader: Reader) -> Iterator[str]:
+def ids_in_urls(query: str, reader: BaseReader) -> Iterator[str]:
     """The symbols and pages whose web addresses stand in a query; of one address, the closest first."""
     for site, rest in _URL.findall(query):
         page, _, anchor = rest.rstrip(".,;:!?").partition("#")
@@ -23,11 +23,11 @@ def addressed(query: str, reader: Reader) -> Iterator[str]:
         for symbol in (anchor, path):
             if symbol and reader.entry(symbol):
                 yield symbol
-        if slug := page_named(path, reader):
+        if slug := find_page(path, reader):
             yield slug
 
 
-def page_named(text: str, reader: Reader) -> str:
+def find_page(text: str, reader: BaseReader) -> str:
     """The slug of the page that a text names: as it is, without ``/index``, or with a suffix; "" for none."""
     if reader.page_entry(text):
         return text

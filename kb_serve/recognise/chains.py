@@ -23,7 +23,7 @@ StepKind = Literal["attr", "key", "index", "call"]
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ChainStep:
     """``attr`` and ``key`` carry a name; ``index`` and ``call`` the text between their brackets."""
 
     kind: StepKind
@@ -38,7 +38,7 @@ class Chain:
     """
 
     root: str
-    steps: tuple[Step, ...]
+    steps: tuple[ChainStep, ...]
     source: str
     assigned: bool = False
 
@@ -84,17 +84,17 @@ def _bracket(text: str, start: int) -> tuple[str, int]:
     return text[start + 1 :], len(text)
 
 
-def _step(text: str, position: int) -> tuple[Step, int] | None:
+def _step(text: str, position: int) -> tuple[ChainStep, int] | None:
     dot = _DOT.match(text, position)
     if dot:
         name = _IDENTIFIER.match(text, dot.end())
-        return (Step("attr", name.group()), name.end()) if name else None
+        return (ChainStep("attr", name.group()), name.end()) if name else None
     if position < len(text) and text[position] in _CLOSING:
         content, end = _bracket(text, position)
         if text[position] == "(":
-            return Step("call", content), end
+            return ChainStep("call", content), end
         quoted = _QUOTED.match(content)
-        return (Step("key", quoted.group(2)) if quoted else Step("index", content.strip())), end
+        return (ChainStep("key", quoted.group(2)) if quoted else ChainStep("index", content.strip())), end
     return None
 
 
@@ -105,7 +105,7 @@ def find_chains(text: str) -> list[Chain]:
     text = text[:MAX_QUERY]
     while match := _IDENTIFIER.search(text, position):
         start, position = match.span()
-        steps: list[Step] = []
+        steps: list[ChainStep] = []
         while taken := _step(text, position):
             step, position = taken
             steps.append(step)

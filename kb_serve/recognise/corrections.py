@@ -7,17 +7,14 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rapidfuzz import process
-from rapidfuzz.distance import OSA
-
 from kb_build.index.analysis import key, words
-from kb_serve.reader import TYPES, Reader
-from kb_serve.recognise.chains import Chain, Step
+from kb_serve.reader import TYPES, BaseReader
+from kb_serve.recognise.chains import Chain, ChainStep
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from kb_serve.recognise.resolver import Walked, Walker
+    from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
 _CONTAINED = 0.8  # of a name whose words are all in the other: ``select`` and ``select_set``
@@ -36,7 +33,7 @@ class Correction:
 
 
 @dataclass(frozen=True, slots=True)
-class Drift:
+class RemovedSymbol:
     """A symbol of another version: its path, first and last version, and what this version has instead."""
 
     path: str
@@ -51,6 +48,8 @@ def similarity(written: str, name: str) -> float:
 
 
 def _alike(written: str, mine: set[str], name: str) -> float:
+    from rapidfuzz.distance import OSA  # noqa: PLC0415 - names that exist need no correction
+
     right = key(name)
     if written == right:
         return 1.0
@@ -72,9 +71,9 @@ def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[st
 class Corrector:
     """Finds what a chain with a wrong name in it was meant to be."""
 
-    def __init__(self, reader: Reader, walker: Walker) -> None:
+    def __init__(self, reader: BaseReader, resolver: Resolver) -> None:
         self._reader = reader
-        self._walker = walker
+        self._resolver = resolver
 
     @cached_property
     def _roots(self) -> dict[str, str]:
@@ -89,10 +88,7 @@ class Corrector:
         """A class or module that a misspelt first name stands for."""
         if len(written) < 5:
             return None
-        found = process.extractOne(
-            key(written), self._roots.keys(), scorer=OSA.normalized_similarity, score_cutoff=0.8
-        )
-        return Correction(written, self._roots[found[0]], found[1]) if found else None
+        return _closest(written, self._roots, 0.8)
 
     @cached_property
     def _members(self) -> dict[str, str]:
@@ -106,10 +102,7 @@ class Corrector:
         """A name of several words, ``use_self_colision``, whose owner was not given."""
         if len(written) < _LONG or "_" not in written:
             return None
-        found = process.extractOne(
-            key(written), self._members.keys(), scorer=OSA.normalized_similarity, score_cutoff=_CLOSE
-        )
-        return Correction(written, self._members[found[0]], found[1]) if found else None
+        return _closest(written, self._members, _CLOSE)
 
     def member_names(self, owner: str) -> list[str]:
         """The names that may follow after ``owner``: own, inherited, and its contents for a module."""
@@ -120,53 +113,64 @@ class Corrector:
             names.update(dict.fromkeys(self._reader.members(owner)))
         return list(names)
 
-    def corrected(self, chain: Chain) -> tuple[Walked, list[Correction]] | None:
+    def corrected(self, chain: Chain) -> tuple[ResolvedChain, list[Correction]] | None:
         """A chain read with its wrong names replaced by likely ones; None when nothing likely was found."""
         corrections: list[Correction] = []
-        readings = self._walker.walk(chain)
+        readings = self._resolver.resolve(chain)
         if not readings or readings[0].fit < 1.0:
             root = self.root(chain.root)
             if root and root.similarity < 1.0 and chain.root[:1].isupper():
                 corrections.append(root)
                 chain = replace(chain, root=root.meant)
-                readings = self._walker.walk(chain)
+                readings = self._resolver.resolve(chain)
         for _ in range(_ROUNDS):
             if not readings or readings[0].complete:
                 break
-            walked = readings[0]
-            found = nearest(walked.missing, self.member_names(walked.owner), 1)
+            resolved = readings[0]
+            found = nearest(resolved.missing, self.member_names(resolved.owner), 1)
             if not found:
                 break
-            corrections.append(Correction(walked.missing, found[0][0], found[0][1]))
-            chain = _with_step(chain, len(chain.steps) - walked.steps_left, found[0][0])
-            readings = self._walker.walk(chain)
+            corrections.append(Correction(resolved.missing, found[0][0], found[0][1]))
+            chain = _with_step(chain, len(chain.steps) - resolved.steps_left, found[0][0])
+            readings = self._resolver.resolve(chain)
         if corrections and readings and readings[0].complete:
             return readings[0], corrections
         return None
 
 
+def _closest(written: str, names: Mapping[str, str], cutoff: float) -> Correction | None:
+    """The name whose key is most like what was written, if it is at least ``cutoff`` alike."""
+    from rapidfuzz import process  # noqa: PLC0415 - names that exist need no correction
+    from rapidfuzz.distance import OSA  # noqa: PLC0415
+
+    hit = process.extractOne(
+        key(written), names.keys(), scorer=OSA.normalized_similarity, score_cutoff=cutoff
+    )
+    return Correction(written, names[hit[0]], hit[1]) if hit else None
+
+
 def _with_step(chain: Chain, number: int, name: str) -> Chain:
     steps = list(chain.steps)
-    steps[number] = Step(
+    steps[number] = ChainStep(
         "key" if steps[number].kind == "key" else "attr", name.partition('["')[2].rstrip('"]') or name
     )
     return replace(chain, steps=tuple(steps))
 
 
-class Drifts:
+class RemovedSymbols:
     """Looks up symbols that other versions had."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
-    def of_member(self, owner: str, name: str) -> Drift | None:
+    def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
         """A former member of a class, of its bases, or of a module."""
         for ancestor in [entry.path for entry in self._reader.lineage(owner)] or [owner]:
-            if drift := self.of_path(f"{ancestor}.{name}"):
-                return drift
+            if removed := self.of_path(f"{ancestor}.{name}"):
+                return removed
         return None
 
-    def of_socket(self, owner: str, name: str, variable: str) -> Drift | None:
+    def of_socket(self, owner: str, name: str, variable: str) -> RemovedSymbol | None:
         """A former socket, ``inputs["Subsurface"]``, of a node below ``owner``: the variable may tell which."""
         paths = [path for path in self._reader.removed_by_key(key(name)) if '["' in path]
         below = [
@@ -177,7 +181,7 @@ class Drifts:
         below.sort(key=lambda path: (key(variable) not in key(path), path))
         return self.of_path(below[0]) if below else None
 
-    def of_variables_socket(self, chain: Chain) -> Drift | None:
+    def of_variables_socket(self, chain: Chain) -> RemovedSymbol | None:
         """A former socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells of."""
         for before, step in pairwise(chain.steps[:2]):
             if step.kind == "key" and before.text in {"inputs", "outputs"}:
@@ -186,12 +190,12 @@ class Drifts:
                 return self.of_path(named[0]) if named else None
         return None
 
-    def of_path(self, path: str) -> Drift | None:
+    def of_path(self, path: str) -> RemovedSymbol | None:
         """A symbol of another version by its exact path."""
         span = self._reader.removed(path)
-        return Drift(path, *span, tuple(self._reader.replacements(path))) if span else None
+        return RemovedSymbol(path, *span, tuple(self._reader.replacements(path))) if span else None
 
-    def spelled(self, text: str) -> Iterator[Drift]:
+    def spelled(self, text: str) -> Iterator[RemovedSymbol]:
         """Symbols of other versions under any usual spelling; enum items alone only as code writes them."""
         for path in self._reader.removed_by_key(key(text)):
             if (
@@ -200,5 +204,5 @@ class Drifts:
                 and not (text.isupper() and not self._reader.enum_owners(key(text)))
             ):
                 continue
-            if drift := self.of_path(path):
-                yield drift
+            if removed := self.of_path(path):
+                yield removed

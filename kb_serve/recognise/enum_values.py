@@ -11,8 +11,8 @@ from kb_build.index.analysis import key, terms
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_serve.reader import Reader
-    from kb_serve.recognise.identified import Identified
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
 
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
@@ -23,10 +23,10 @@ _FITTING = 0.5  # how far the words around a bare value must fit the property th
 class EnumValues:
     """Recognises enum values against one base."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
-    def recognise(self, query: str, found: Identified) -> None:
+    def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds the properties and parameters that take the values in a query, and classes that are quoted."""
         text = _ERROR.sub(" ", query)
         quoted = [a or b for a, b in _QUOTED.findall(text)]
@@ -36,7 +36,7 @@ class EnumValues:
         for value in quoted:
             for entry in self._reader.by_name(value):
                 if entry.kind == "class":
-                    found.add(entry.path, 0.82, "quoted name")
+                    recognition.add(entry.path, 0.82, "quoted name")
         rest = text
         for value in values:
             rest = rest.replace(value, " ")
@@ -47,7 +47,7 @@ class EnumValues:
                 break
             fits = alone or quoted or self._owner_fit(owner, around) >= _FITTING
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
-            found.add(owner.partition("(")[0], sure, "enum item")
+            recognition.add(owner.partition("(")[0], sure, "enum item")
 
     @staticmethod
     def values(query: str) -> list[str]:

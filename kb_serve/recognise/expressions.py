@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
-from kb_serve.recognise.identified import Missing
+from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
-    from kb_serve.reader import Entry, Reader
+    from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.chains import Chain
-    from kb_serve.recognise.corrections import Corrector, Drift, Drifts
-    from kb_serve.recognise.identified import Identified
-    from kb_serve.recognise.resolver import Walked, Walker
+    from kb_serve.recognise.corrections import Corrector, RemovedSymbol, RemovedSymbols
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
 _NEARLY = 0.9  # how alike a class must be for a name to be its misspelling, not a variable's
@@ -35,125 +35,133 @@ def _is_api(chain: Chain) -> bool:
 class Expressions:
     """Recognises code against one base."""
 
-    def __init__(self, reader: Reader, walker: Walker, corrector: Corrector, drifts: Drifts) -> None:
+    def __init__(
+        self, reader: BaseReader, resolver: Resolver, corrector: Corrector, removed: RemovedSymbols
+    ) -> None:
         self._reader = reader
-        self._walker = walker
+        self._resolver = resolver
         self._corrector = corrector
-        self._drifts = drifts
+        self._removed = removed
 
-    def recognise(self, chains: list[Chain], found: Identified) -> None:
+    def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` lead to, and what bare words of them name."""
-        self._expressions(chains, found)
-        self._class_with_member(chains, found)
+        self._expressions(chains, recognition)
+        self._class_with_member(chains, recognition)
 
-    def _expressions(self, chains: list[Chain], found: Identified) -> None:
+    def _expressions(self, chains: list[Chain], recognition: Recognition) -> None:
         code = [chain for chain in chains if chain.is_code and _is_api(chain)]
         prose = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
         for position, chain in enumerate(code):
             later = 0.02 * min(position, 5)
-            readings = self._walker.walk(chain)
-            if self._former(chain, readings, found):
+            readings = self._resolver.resolve(chain)
+            if self._names_removed(chain, readings, recognition):
                 continue
-            broken = max((walked for walked in readings if walked.missing), key=lambda w: w.fit, default=None)
+            broken = max(
+                (resolved for resolved in readings if resolved.missing), key=lambda w: w.fit, default=None
+            )
             if (
                 readings
                 and self._trusted(chain, readings[0], broken)
                 and not self._misspelt(chain, readings[0])
             ):
-                self._reading(chain, readings, later, found)
-            elif not self._corrected(chain, later, found):
+                self._reading(chain, readings, later, recognition)
+            elif not self._corrected(chain, later, recognition):
                 if broken:
-                    self._broken_off(chain, broken, later, found)
-                self._loose_name(chain, prose, found)
+                    self._broken_off(chain, broken, later, recognition)
+                self._loose_name(chain, prose, recognition)
 
     @staticmethod
-    def _trusted(chain: Chain, walked: Walked, broken: Walked | None) -> bool:
+    def _trusted(chain: Chain, resolved: ResolvedChain, broken: ResolvedChain | None) -> bool:
         """Whether a reading stands on more than a guess at what a variable or a bare word is.
 
         A variable that clearly bears a class' name, and lacks the one attribute, is believed before a class that
         merely has it.
         """
-        if not walked.complete:
+        if not resolved.complete:
             return False
-        if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and walked.fit < 0.5:
+        if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and resolved.fit < 0.5:
             return False
-        return walked.fit >= 1.0 or len(chain.attributes) >= (1 if walked.fit >= _OWN_CLASS else 2)
+        return resolved.fit >= 1.0 or len(chain.attributes) >= (1 if resolved.fit >= _OWN_CLASS else 2)
 
-    def _misspelt(self, chain: Chain, walked: Walked) -> bool:
+    def _misspelt(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether what looks like a class is nearly one: ``PoimtLight`` is no variable that holds a light."""
-        if walked.fit >= 1.0 or not chain.root[:1].isupper():
+        if resolved.fit >= 1.0 or not chain.root[:1].isupper():
             return False
         meant = self._corrector.root(chain.root)
         return meant is not None and _NEARLY <= meant.similarity < 1.0
 
-    def _former(self, chain: Chain, readings: list[Walked], found: Identified) -> bool:
+    def _names_removed(self, chain: Chain, readings: list[ResolvedChain], recognition: Recognition) -> bool:
         """Whether the chain names what another version had: on the likeliest class, or under its own path."""
         if not (readings and readings[0].complete and readings[0].fit >= 0.85):
-            if drift := self._drifts.of_variables_socket(chain):
-                found.drifts.append(drift)  # beside what else has a socket of the name
-            if whole := self._drifts.of_path(chain.dotted) if chain.steps else None:
-                found.drifts.append(whole)
+            if removed := self._removed.of_variables_socket(chain):
+                recognition.removed.append(removed)  # beside what else has a socket of the name
+            if whole := self._removed.of_path(chain.dotted) if chain.steps else None:
+                recognition.removed.append(whole)
                 return True
-            for walked in readings:
-                if drift := self._drift(chain, walked):
-                    found.drifts.append(drift)
+            for resolved in readings:
+                if removed := self._removed_symbol(chain, resolved):
+                    recognition.removed.append(removed)
                     return True
-            for drift in self._drifts.spelled(chain.dotted) if chain.is_code else ():
-                found.drifts.append(drift)
+            for removed in self._removed.spelled(chain.dotted) if chain.is_code else ():
+                recognition.removed.append(removed)
                 return True
         return False
 
-    def _drift(self, chain: Chain, walked: Walked) -> Drift | None:
+    def _removed_symbol(self, chain: Chain, resolved: ResolvedChain) -> RemovedSymbol | None:
         """The former symbol that a broken reading stops at."""
-        if "puts[" in walked.missing:
-            former = self._drifts.of_member(walked.owner, walked.missing)
-            return former or self._drifts.of_socket(walked.owner, walked.missing, chain.root)
+        if "puts[" in resolved.missing:
+            former = self._removed.of_member(resolved.owner, resolved.missing)
+            return former or self._removed.of_socket(resolved.owner, resolved.missing, chain.root)
         return (
-            self._drifts.of_member(walked.owner, walked.missing)
-            if walked.missing and walked.fit >= 0.6
+            self._removed.of_member(resolved.owner, resolved.missing)
+            if resolved.missing and resolved.fit >= 0.6
             else None
         )
 
-    def _reading(self, chain: Chain, readings: list[Walked], later: float, found: Identified) -> None:
+    def _reading(
+        self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
+    ) -> None:
         """The best reading of one chain, and what lies on the way to it."""
         bare = not chain.attributes  # a class with a call or an index behind it
         likely = [
-            walked for walked in readings[:4] if walked.complete and walked.fit >= _LIKELY * readings[0].fit
+            resolved
+            for resolved in readings[:4]
+            if resolved.complete and resolved.fit >= _LIKELY * readings[0].fit
         ]
-        for rank, walked in enumerate(likely):
+        for rank, resolved in enumerate(likely):
             sure = 0.78 if bare and chain.steps else 0.97
-            found.add(walked.symbols[-1], sure - 0.04 * rank - later, "expression")
+            recognition.add(resolved.symbols[-1], sure - 0.04 * rank - later, "expression")
         for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
-            found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
+            recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
 
-    def _corrected(self, chain: Chain, later: float, found: Identified) -> bool:
+    def _corrected(self, chain: Chain, later: float, recognition: Recognition) -> bool:
         """Reads a chain with its misspelt names mended."""
         if not chain.steps and not chain.root[:1].isupper():
             return False
         mended = self._corrector.corrected(chain)
         if mended is None:
             return False
-        walked, corrections = mended
-        found.corrections += corrections
-        found.add(
-            walked.symbols[-1], 0.93 * min(c.similarity for c in corrections) ** 0.25 - later, "correction"
+        resolved, corrections = mended
+        recognition.corrections += corrections
+        recognition.add(
+            resolved.symbols[-1], 0.93 * min(c.similarity for c in corrections) ** 0.25 - later, "correction"
         )
-        for step, symbol in enumerate(reversed(walked.symbols[:-1])):
-            found.add(symbol, 0.5 - 0.05 * step - later, "on the way")
+        for step, symbol in enumerate(reversed(resolved.symbols[:-1])):
+            recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
 
     @staticmethod
-    def _broken_off(chain: Chain, walked: Walked, later: float, found: Identified) -> None:
+    def _broken_off(chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
         """As far as a chain could be followed."""
-        assigned = chain.assigned and walked.steps_left == 1
-        found.missing.append(Missing(walked.missing, walked.owner, assigned))
-        for step, symbol in enumerate(reversed(walked.symbols)):
+        assigned = chain.assigned and resolved.steps_left == 1
+        recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned))
+        for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'
             )  # one that takes no value of its own is still what was meant
-            found.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
+            recognition.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
 
-    def _loose_name(self, chain: Chain, prose: set[str], found: Identified) -> None:
+    def _loose_name(self, chain: Chain, prose: set[str], recognition: Recognition) -> None:
         """A name of code without its owner (``thickness_outer``): its owners, by the words around it."""
         name = chain.attributes[-1] if chain.attributes else chain.root
         rows = [
@@ -163,7 +171,7 @@ class Expressions:
         ]
         rows = [entry for entry in rows if entry.name == name] or rows  # before the same letters
         if not rows and not name.isupper() and (mended := self._corrector.member(name)):
-            found.corrections.append(mended)
+            recognition.corrections.append(mended)
             rows = [entry for entry in self._reader.by_name(mended.meant) if entry.group != "ui"]
         if chain.attributes and len(rows) > _FEW:
             return  # a common name whose owner was given, and does not have it
@@ -173,9 +181,9 @@ class Expressions:
                 sure = 0.55
             elif entry.kind == "class" and chain.steps:
                 sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
-            found.add(entry.path, sure - 0.03 * rank, "name")
+            recognition.add(entry.path, sure - 0.03 * rank, "name")
 
-    def _affinity(self, entry: Entry, prose: set[str]) -> float:
+    def _affinity(self, entry: SymbolEntry, prose: set[str]) -> float:
         """How many of the words around a name belong to its owner, and how usual the owner is."""
         owner = self._reader.entry(entry.owner)
         about = set(terms(entry.owner.replace("bpy.types.", "") + " " + (owner.label if owner else "")))
@@ -183,7 +191,7 @@ class Expressions:
         usual = 0.2 if entry.group != "ui" and entry.kind in {"property", "function", "operator"} else 0.0
         return len(about & prose) - 0.05 * len(about) + usual
 
-    def _class_with_member(self, chains: list[Chain], found: Identified) -> None:
+    def _class_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
         """``SoftBodySettings goal_spring``: a class and one of its members, side by side."""
         classes = [
             entry
@@ -194,6 +202,6 @@ class Expressions:
             for chain in chains:
                 if chain.steps or chain.root == cls.name:
                     continue
-                member = self._walker.member(cls.path, chain.root)
+                member = self._resolver.member(cls.path, chain.root)
                 if member and ("_" in chain.root or chain.root not in STOP_WORDS):
-                    found.add(member.path, 0.96, "class and member")
+                    recognition.add(member.path, 0.96, "class and member")

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_serve.reader import TYPES
-from kb_serve.recognise import message_forms as forms
+from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import NO_OVERRIDE, OVERRIDE, unknown_keywords
 from kb_serve.recognise.corrections import nearest
-from kb_serve.recognise.identified import Missing
+from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
-    from kb_serve.reader import Entry, Reader
-    from kb_serve.recognise.corrections import Drift, Drifts
+    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.recognise.corrections import RemovedSymbol, RemovedSymbols
     from kb_serve.recognise.enum_values import EnumValues
-    from kb_serve.recognise.identified import Identified
-    from kb_serve.recognise.resolver import Walker
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
 _MANY = 8  # places that may hold None: of more, none is likely enough to be named
@@ -29,53 +29,57 @@ _ON_FREED = "info_gotchas_crashes"
 class Messages:
     """Recognises error messages against one base."""
 
-    def __init__(self, reader: Reader, walker: Walker, drifts: Drifts, enum_values: EnumValues) -> None:
+    def __init__(
+        self, reader: BaseReader, resolver: Resolver, removed: RemovedSymbols, enum_values: EnumValues
+    ) -> None:
         self._reader = reader
-        self._walker = walker
-        self._drifts = drifts
+        self._resolver = resolver
+        self._removed = removed
         self._enum_values = enum_values
 
-    def recognise(self, query: str, found: Identified) -> None:
+    def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what a message names: a class without an attribute, an operator, the owner of an enumeration."""
-        self._attributes(query, found)
-        self._operators(query, found)
-        self._values(query, found)
-        self._data(query, found)
+        self._attributes(query, recognition)
+        self._operators(query, recognition)
+        self._values(query, recognition)
+        self._data(query, recognition)
 
-    def explain(self, query: str, found: Identified) -> None:
+    def explain(self, query: str, recognition: Recognition) -> None:
         """Adds what can be said only once the query's names are known: the right argument, a former socket."""
         for match in forms.BAD_KEYWORD.finditer(query):
-            self._keyword(match["name"], found)
+            self._keyword(match["name"], recognition)
         for match in forms.NO_KEY.finditer(query):
-            self._key(match["on"], match["name"], query, found)
+            self._key(match["on"], match["name"], query, recognition)
 
     # Attributes
 
-    def _attributes(self, query: str, found: Identified) -> None:
+    def _attributes(self, query: str, recognition: Recognition) -> None:
         for pattern in (forms.HAS_NO, forms.MODULE_HAS_NO):
             for match in pattern.finditer(query):
                 if match["owner"] == "NoneType":
-                    self._none(match["name"], query, found)
+                    self._none(match["name"], query, recognition)
                     continue
                 owner = self._class_path(match["owner"])
-                if former := self._former_owner(match["owner"], match["name"], owner):
-                    found.drifts.extend(former)
-                elif owner and not self._walker.member(owner, match["name"]):
-                    found.missing.append(Missing(match["name"], owner))
-                    found.add(owner, 0.6, "error message")
+                if former := self._removed_owner(match["owner"], match["name"], owner):
+                    recognition.removed.extend(former)
+                elif owner and not self._resolver.member(owner, match["name"]):
+                    recognition.missing.append(MissingName(match["name"], owner))
+                    recognition.add(owner, 0.6, "error message")
         for match in forms.READ_ONLY.finditer(query):
             owner = "bpy.context" if match["context"] else TYPES + match["owner"]
             entry = self._named(owner, match["context"] or match["name"])
             if entry:
-                found.add(entry.path, 0.98, "error message")
-                found.said.append(f"`{entry.path}` can be read, not assigned.")
+                recognition.add(entry.path, 0.98, "error message")
+                recognition.notes.append(f"`{entry.path}` can be read, not assigned.")
         for match in forms.WRONG_TYPE.finditer(query):
             if match["path"] and (entry := self._named(*match["path"].rpartition(".")[::2])):
-                found.add(entry.path, 0.98, "error message")
+                recognition.add(entry.path, 0.98, "error message")
 
-    def _none(self, name: str, query: str, found: Identified) -> None:
+    def _none(self, name: str, query: str, recognition: Recognition) -> None:
         """What may be None where ``.name`` was asked of it: the pointers to classes that have the name."""
-        found.said.append(f"What stands before `.{name}` is None: it does not exist (yet), or was not found.")
+        recognition.notes.append(
+            f"What stands before `.{name}` is None: it does not exist (yet), or was not found."
+        )
         owners = {
             entry.owner.removeprefix(TYPES)
             for entry in self._reader.by_name(name)
@@ -94,19 +98,19 @@ class Messages:
         if len(owners) <= _FEW and len(holders) <= _MANY:
             told = told or holders
         for rank, entry in enumerate(told[:_FEW]):
-            found.add(entry.path, 0.86 - 0.01 * rank, "may be None")
-            found.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "asked of None")
+            recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
+            recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "asked of None")
 
-    def _is_never_none(self, entry: Entry) -> bool:
+    def _is_never_none(self, entry: SymbolEntry) -> bool:
         symbol = self._reader.symbol(entry.path)
         return symbol is not None and "never-none" in symbol.flags
 
-    def _former_owner(self, written: str, name: str, owner: str) -> list[Drift]:
+    def _removed_owner(self, written: str, name: str, owner: str) -> list[RemovedSymbol]:
         """The members, or else the classes, that other versions had under a name that is not a class here."""
         if self._reader.entry(TYPES + written):
             return []
-        members = [*self._drifts.spelled(f"{written}.{name}")]
-        return members if members or owner else [*self._drifts.spelled(written)]
+        members = [*self._removed.spelled(f"{written}.{name}")]
+        return members if members or owner else [*self._removed.spelled(written)]
 
     def _class_path(self, name: str) -> str:
         for candidate in (TYPES + name, name):
@@ -118,66 +122,68 @@ class Messages:
                 return identifier
         return ""
 
-    def _named(self, owner: str, name: str) -> Entry | None:
+    def _named(self, owner: str, name: str) -> SymbolEntry | None:
         cls = self._class_path(owner)
-        return (self._walker.member(cls, name) or self._reader.entry(f"{cls}.{name}")) if cls else None
+        return (self._resolver.member(cls, name) or self._reader.entry(f"{cls}.{name}")) if cls else None
 
     # Operators
 
-    def _operators(self, query: str, found: Identified) -> None:
+    def _operators(self, query: str, recognition: Recognition) -> None:
         for match in forms.POLL.finditer(query):
             if self._reader.entry(match["path"]):
-                found.add(match["path"], 0.98, "error message")
-                found.said.append(
+                recognition.add(match["path"], 0.98, "error message")
+                recognition.notes.append(
                     f"`{match['path']}.poll()` refuses: the operator wants another mode, active object, selection "
                     f"or editor than the context has. `{OVERRIDE}` gives it one."
                 )
-                self._page(_ON_OPERATORS, found)
-                found.add(OVERRIDE, 0.82, "error message")
+                self._page(_ON_OPERATORS, recognition)
+                recognition.add(OVERRIDE, 0.82, "error message")
         for match in forms.WRONG_TYPE.finditer(query):
             if match["operator"]:
                 module, _, name = match["operator"].partition("_OT_")
                 if entry := self._reader.entry(f"bpy.ops.{module.lower()}.{name}"):
-                    found.add(entry.path, 0.98, "error message")
+                    recognition.add(entry.path, 0.98, "error message")
         if forms.POSITIONAL.search(query):
-            found.said.append(NO_OVERRIDE)
-            found.add(OVERRIDE, 0.9, "error message")
-            self._page(_ON_OPERATORS, found)
+            recognition.notes.append(NO_OVERRIDE)
+            recognition.add(OVERRIDE, 0.9, "error message")
+            self._page(_ON_OPERATORS, recognition)
         for match in forms.NOT_AN_OPERATOR.finditer(query):
             names = self._reader.members("bpy.ops").keys() | self._reader.members("bmesh.ops").keys()
             for name, alike in nearest(match["name"], names, _FEW):
                 if entry := self._reader.entry(f"bmesh.ops.{name}"):
-                    found.add(entry.path, max(0.82, 0.95 * alike), "similar name")
-            found.said.append(f"`bmesh.ops` has no `{match['name']}`.")
+                    recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
+            recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")
 
-    def _keyword(self, name: str, found: Identified) -> None:
+    def _keyword(self, name: str, recognition: Recognition) -> None:
         """The arguments that a call has, in place of one that it has not."""
-        for match in sorted(found.matches, key=lambda match: -match.sure):
+        for match in sorted(recognition.matches, key=lambda match: -match.sure):
             symbol = self._reader.symbol(match.id)
             if symbol is not None and symbol.parameters:
-                found.said += unknown_keywords(symbol, [name])
+                recognition.notes += unknown_keywords(symbol, [name])
                 return
 
     # Values
 
-    def _values(self, query: str, found: Identified) -> None:
+    def _values(self, query: str, recognition: Recognition) -> None:
         for match in forms.BAD_ENUM.finditer(query):
             items = re.findall(r"'([^']+)'", match["items"])
             for rank, (owner, _) in enumerate(self._enum_values.owners(items)):
                 if rank >= 2:
                     break
                 path = owner.partition("(")[0]
-                found.add(path, 0.95 - 0.02 * rank, "error message")
-                if drift := self._drifts.of_path(f"{path}:{match['name']}"):
-                    found.drifts.append(drift)
+                recognition.add(path, 0.95 - 0.02 * rank, "error message")
+                if removed := self._removed.of_path(f"{path}:{match['name']}"):
+                    recognition.removed.append(removed)
             if similar := [f"`{name}`" for name, _ in nearest(match["name"], items)]:
-                found.said.append(f"`{match['name']}` is no item here; closest: {', '.join(similar)}.")
+                recognition.notes.append(f"`{match['name']}` is no item here; closest: {', '.join(similar)}.")
 
-    def _key(self, collection: str, name: str, query: str, found: Identified) -> None:
+    def _key(self, collection: str, name: str, query: str, recognition: Recognition) -> None:
         """A collection has no such element; what was a socket's name in another version is likely that."""
         if collection == "bpy_prop_collection":
-            found.said.append(f'The collection has no element `{name}`; `.get("{name}")` would give None.')
-        if found.drifts or any(match.sure >= 0.9 for match in found.matches):
+            recognition.notes.append(
+                f'The collection has no element `{name}`; `.get("{name}")` would give None.'
+            )
+        if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
         around = set(terms(query)) - set(terms(name))
         paths = [
@@ -187,32 +193,32 @@ class Messages:
         ]
         paths.sort(key=lambda path: -len(around & set(terms(path.partition('puts["')[0]))))
         for path in paths[:1]:
-            if drift := self._drifts.of_path(path):
-                found.drifts.append(drift)
+            if removed := self._removed.of_path(path):
+                recognition.removed.append(removed)
 
     # Data that is gone
 
-    def _data(self, query: str, found: Identified) -> None:
+    def _data(self, query: str, recognition: Recognition) -> None:
         for match in forms.FREED.finditer(query):
-            found.said.append(
+            recognition.notes.append(
                 "The variable outlived its data, which was removed or freed, or moved by an undo or by another "
                 "element's adding: look it up again, by name."
             )
-            self._page(_ON_FREED, found)
+            self._page(_ON_FREED, recognition)
             if match["module"]:
-                found.add("bmesh.types.BMesh.free", 0.84, "error message")
+                recognition.add("bmesh.types.BMesh.free", 0.84, "error message")
                 continue
             for entry in self._reader.members(f"{TYPES}BlendData").values():
                 if entry.target == match["type"] and (
-                    remove := self._walker.member(TYPES + entry.collection, "remove")
+                    remove := self._resolver.member(TYPES + entry.collection, "remove")
                 ):
-                    found.add(remove.path, 0.84, "error message")
+                    recognition.add(remove.path, 0.84, "error message")
         for match in forms.NO_NODE_TYPE.finditer(query):
             if entry := self._reader.entry(TYPES + match["type"]):
-                found.add(entry.path, 0.95, "error message")
+                recognition.add(entry.path, 0.95, "error message")
             else:
-                found.drifts.extend(self._drifts.spelled(match["type"]))
+                recognition.removed.extend(self._removed.spelled(match["type"]))
 
-    def _page(self, slug: str, found: Identified) -> None:
+    def _page(self, slug: str, recognition: Recognition) -> None:
         if self._reader.page_entry(slug):
-            found.add(slug, 0.86, "error message")
+            recognition.add(slug, 0.86, "error message")

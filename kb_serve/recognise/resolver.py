@@ -8,12 +8,12 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_serve.reader import COLLECTION, TYPES, Entry, Reader
+from kb_serve.reader import COLLECTION, TYPES, BaseReader, SymbolEntry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_serve.recognise.chains import Chain, Step
+    from kb_serve.recognise.chains import Chain, ChainStep
 
 _MATH = {
     "TRANSLATION": "Vector", "XYZ": "Vector", "DIRECTION": "Vector", "VELOCITY": "Vector", "ACCELERATION": "Vector",
@@ -39,7 +39,7 @@ _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "b
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ChainValue:
     """Where a walk stands: on an instance of ``cls``, on a collection of it, or on a module or function.
 
     ``origin`` is the class that the last attribute was read from, which may inherit it.
@@ -53,7 +53,7 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Walked:
+class ResolvedChain:
     """A chain as far as it could be followed.
 
     ``symbols`` are the ids of the steps that were found, in order; ``missing`` is the first name that the
@@ -90,14 +90,14 @@ def variable_fit(variable: str, cls: str) -> float:
     return 0.0
 
 
-class Walker:
+class Resolver:
     """Resolves chains against one base."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self._returned = lru_cache(maxsize=500)(self._returned_class)
 
-    def member(self, cls: str, name: str) -> Entry | None:
+    def member(self, cls: str, name: str) -> SymbolEntry | None:
         """A class's own or inherited member."""
         for ancestor in self._reader.lineage(cls):
             found = self._reader.members(ancestor.path).get(name)
@@ -105,20 +105,23 @@ class Walker:
                 return found
         return None
 
-    def walk(self, chain: Chain) -> list[Walked]:
+    def resolve(self, chain: Chain) -> list[ResolvedChain]:
         """Every reading of a chain, best first: most steps found, then the likelier class for a variable."""
-        walks = [
+        readings = [
             replace(self._follow(place, chain.steps[used:]), fit=fit)
             for place, used, fit in self._starts(chain)
         ]
-        unique = {(walked.symbols[-1:], walked.missing): walked for walked in reversed(self._ranked(walks))}
+        unique = {
+            (resolved.symbols[-1:], resolved.missing): resolved
+            for resolved in reversed(self._ranked(readings))
+        }
         return self._ranked(unique.values())
 
     @staticmethod
-    def _ranked(walks: Iterable[Walked]) -> list[Walked]:
-        return sorted(walks, key=lambda w: (w.steps_left, -w.fit, -len(w.symbols)))
+    def _ranked(readings: Iterable[ResolvedChain]) -> list[ResolvedChain]:
+        return sorted(readings, key=lambda w: (w.steps_left, -w.fit, -len(w.symbols)))
 
-    def _starts(self, chain: Chain) -> Iterator[tuple[Place, int, float]]:
+    def _starts(self, chain: Chain) -> Iterator[tuple[ChainValue, int, float]]:
         """(place, steps used, fit) for everything that the chain's root can stand for."""
         exact = self._rooted(chain)
         if exact:
@@ -129,7 +132,7 @@ class Walker:
         for cls, fit in self._typed_variables(chain.root):
             if cls not in seen:
                 seen.add(cls)
-                yield Place(cls, cls), 0, fit
+                yield ChainValue(cls, cls), 0, fit
         if chain.steps:
             for entry in self._reader.by_name(chain.root)[:_MAX_BRANCHES]:
                 if (
@@ -146,16 +149,16 @@ class Walker:
                 owner = self._reader.entry(entry.owner)
                 if owner and owner.kind == "class" and entry.owner not in seen:
                     seen.add(entry.owner)
-                    yield Place(owner.path, owner.path), 0, 0.3 * variable_fit(chain.root, owner.name)
+                    yield ChainValue(owner.path, owner.path), 0, 0.3 * variable_fit(chain.root, owner.name)
 
-    def _has(self, place: Place, chain: Chain) -> bool:
+    def _has(self, place: ChainValue, chain: Chain) -> bool:
         """Whether a collection can be what a variable of its name is: indexed, or asked for what only it has."""
         step = chain.steps[0]
         return step.kind in {"key", "index"} or (
             step.kind == "attr" and self.member(place.container, step.text) is not None
         )
 
-    def _rooted(self, chain: Chain) -> tuple[Place, int, float] | None:
+    def _rooted(self, chain: Chain) -> tuple[ChainValue, int, float] | None:
         """The longest leading part that is a path of its own: a module, a class, ``bpy.context``."""
         names = chain.dotted.split(".")
         names[:1] = _ROOTS.get(names[0], names[0]).split(".")
@@ -184,26 +187,26 @@ class Walker:
             if entry and entry.kind == "class":
                 yield entry.path, 0.9
 
-    def _place(self, entry: Entry, came_from: str = "") -> Place:  # noqa: PLR0911 - one return a kind
+    def _place(self, entry: SymbolEntry, came_from: str = "") -> ChainValue:  # noqa: PLR0911 - one return a kind
         """Where one stands after a step to ``entry``."""
         if entry.path in _INSTANCES:
-            return Place(entry.path, _INSTANCES[entry.path])
+            return ChainValue(entry.path, _INSTANCES[entry.path])
         if entry.kind in {"module", "class"}:
-            return Place(entry.path, entry.path)
+            return ChainValue(entry.path, entry.path)
         if entry.kind == "socket":
-            return Place(entry.path, self._socket_class(entry))
+            return ChainValue(entry.path, self._socket_class(entry))
         if entry.type == "collection":
             container = TYPES + entry.collection if entry.collection else COLLECTION
-            return Place(entry.path, TYPES + entry.target, many=True, container=container)
+            return ChainValue(entry.path, TYPES + entry.target, many=True, container=container)
         if entry.target and entry.kind != "operator":
-            return Place(entry.path, TYPES + entry.target)
+            return ChainValue(entry.path, TYPES + entry.target)
         if entry.kind == "function":
-            return Place(entry.path, container=came_from)
+            return ChainValue(entry.path, container=came_from)
         if found := self._classes_in(entry.type, entry.path, whole=True):
             return self._sequence(entry.path, found)
-        return Place(entry.path, self._value_class(entry))
+        return ChainValue(entry.path, self._value_class(entry))
 
-    def _socket_class(self, entry: Entry) -> str:
+    def _socket_class(self, entry: SymbolEntry) -> str:
         """A socket's own class: what the record calls its target may be the data-block that it takes."""
         own = f"{TYPES}NodeSocket{entry.type.title()}"
         return (
@@ -212,7 +215,7 @@ class Walker:
             else TYPES + entry.target
         )
 
-    def _value_class(self, entry: Entry) -> str:
+    def _value_class(self, entry: SymbolEntry) -> str:
         """The class of a plain property's value: mathutils for coordinates and colours."""
         symbol = self._reader.symbol(entry.path)
         if symbol and symbol.subtype in _MATH:
@@ -238,16 +241,16 @@ class Walker:
                 found.append(first.path)
         return found
 
-    def _sequence(self, symbol: str, classes: list[str]) -> Place:
+    def _sequence(self, symbol: str, classes: list[str]) -> ChainValue:
         """An instance of the first class; where that is a sequence, its elements are what it names or makes."""
         first, *others = classes
         if first.endswith("Seq"):
             makes = self.member(first, "new")
             element = others[0] if others else self._returned(makes.path) if makes else ""
-            return Place(symbol, element, many=True, container=first)
-        return Place(symbol, first)
+            return ChainValue(symbol, element, many=True, container=first)
+        return ChainValue(symbol, first)
 
-    def _follow(self, place: Place, steps: tuple[Step, ...]) -> Walked:
+    def _follow(self, place: ChainValue, steps: tuple[ChainStep, ...]) -> ResolvedChain:
         """One step after the other; alternatives are tried where a base class stands for its descendants."""
         symbols = [place.symbol]
         places = [place]
@@ -255,20 +258,20 @@ class Walker:
             following = [after for before in places for after in self._step(before, step)]
             if not following:
                 missing, owner = self._lost(places[0], step)
-                return Walked(tuple(symbols), missing, owner, steps_left=len(steps) - number)
+                return ResolvedChain(tuple(symbols), missing, owner, steps_left=len(steps) - number)
             places = following[:_MAX_BRANCHES]
             if step.kind == "attr" or places[0].symbol != symbols[-1]:
                 symbols.append(places[0].symbol)
-        return Walked(tuple(symbols))
+        return ResolvedChain(tuple(symbols))
 
     @staticmethod
-    def _lost(place: Place, step: Step) -> tuple[str, str]:
+    def _lost(place: ChainValue, step: ChainStep) -> tuple[str, str]:
         """(name, owner) of a step that leads nowhere; a socket is missing on its node, not on its collection."""
         if step.kind == "key" and place.many:
             return f'{place.symbol.rpartition(".")[2]}["{step.text}"]', place.origin or place.cls
         return step.text, place.cls or place.symbol
 
-    def _step(self, place: Place, step: Step) -> Iterator[Place]:
+    def _step(self, place: ChainValue, step: ChainStep) -> Iterator[ChainValue]:
         if step.kind == "attr":
             yield from self._attribute(place, step.text)
         elif step.kind == "call":
@@ -283,7 +286,7 @@ class Walker:
     def _takes_custom_properties(self, cls: str) -> bool:
         return any(entry.name in _CUSTOMISABLE for entry in self._reader.lineage(cls))
 
-    def _attribute(self, place: Place, name: str) -> Iterator[Place]:
+    def _attribute(self, place: ChainValue, name: str) -> Iterator[ChainValue]:
         if place.many:
             found = self.member(place.container, name) or self.member(COLLECTION, name)
             if found:
@@ -308,7 +311,7 @@ class Walker:
         entry = self._reader.entry(path)
         return entry is not None and entry.type.startswith("list")
 
-    def _item(self, place: Place, step: Step) -> Iterator[Place]:
+    def _item(self, place: ChainValue, step: ChainStep) -> Iterator[ChainValue]:
         """An element of a collection; the name in the brackets may tell its class or its socket."""
         declared, _, side = place.symbol.rpartition(".")
         owner = place.origin or declared
@@ -317,9 +320,9 @@ class Walker:
             return
         named = set(self._named_classes(place.cls, step.text)) if step.kind == "key" else set[str]()
         for path in self._in_tree(sorted(named, key=lambda path: (len(path), path)), owner):
-            yield Place(path, path)
+            yield ChainValue(path, path)
         if not named:
-            yield Place(place.symbol, place.cls)
+            yield ChainValue(place.symbol, place.cls)
 
     def _in_tree(self, nodes: list[str], tree: str) -> list[str]:
         """Of nodes that share a name, those that the tree takes; all where that does not tell them apart."""
@@ -339,14 +342,14 @@ class Walker:
                 if identifier.startswith(TYPES) and self._reader.descends(identifier, cls):
                     yield identifier
 
-    def _socket(self, owner: str, side: str, name: str) -> Iterator[Place]:
+    def _socket(self, owner: str, side: str, name: str) -> Iterator[ChainValue]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""
         for entry in self._reader.by_name(name):
             on_side = entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
             if on_side and self._reader.descends(entry.owner, owner):
                 yield self._place(entry)
 
-    def _call(self, place: Place) -> Place:
+    def _call(self, place: ChainValue) -> ChainValue:
         """What a call returns; a function that promises some ID returns what it was called on."""
         entry = self._reader.entry(place.symbol)
         if entry is None or entry.kind != "function":
@@ -358,7 +361,7 @@ class Walker:
             and any(base.path == returned for base in self._reader.lineage(place.container))
         ):
             returned = place.container
-        return Place(place.symbol, returned)
+        return ChainValue(place.symbol, returned)
 
     def _returned_class(self, path: str) -> str:
         symbol = self._reader.symbol(path)

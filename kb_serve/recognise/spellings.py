@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_serve.reader import TYPES
-from kb_serve.recognise.addresses import page_named
+from kb_serve.recognise.addresses import find_page
 
 if TYPE_CHECKING:
-    from kb_serve.reader import Reader
-    from kb_serve.recognise.corrections import Drifts
-    from kb_serve.recognise.identified import Identified
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.corrections import RemovedSymbols
+    from kb_serve.recognise.recognition import Recognition
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
@@ -48,46 +48,46 @@ def _called(text: str) -> str:
 class Spellings:
     """Recognises whole spellings against one base."""
 
-    def __init__(self, reader: Reader, drifts: Drifts) -> None:
+    def __init__(self, reader: BaseReader, removed: RemovedSymbols) -> None:
         self._reader = reader
-        self._drifts = drifts
+        self._removed = removed
 
-    def recognise(self, query: str, found: Identified) -> None:
+    def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what the query as a whole is a spelling of."""
         text = query.strip().strip("`'\"").rstrip(".:;,?!")
         for path in (text, f"bpy.{text}"):
             if self._reader.entry(path):
-                found.add(path, 1.0, "exact")
+                recognition.add(path, 1.0, "exact")
                 return
-        if slug := page_named(text, self._reader):
-            found.add(slug, 1.0, "exact")
+        if slug := find_page(text, self._reader):
+            recognition.add(slug, 1.0, "exact")
             return
         called = _MEMBER.sub(".", _called(text))
         if " " in text:
-            self._labelled(text, found)
+            self._labelled(text, recognition)
         rows = self._reader.by_key(key(called))
         if rows:
-            self._spelled(called, rows, found)
-        if found.best is None or found.best.sure < 1:
-            found.drifts.extend(self._drifts.spelled(called))
+            self._spelled(called, rows, recognition)
+        if recognition.best is None or recognition.best.sure < 1:
+            recognition.removed.extend(self._removed.spelled(called))
 
-    def _spelled(self, text: str, rows: list[tuple[int, str]], found: Identified) -> None:
+    def _spelled(self, text: str, rows: list[tuple[int, str]], recognition: Recognition) -> None:
         """Symbols and pages that share the key of what was typed; the fuller the spelling, the surer."""
         dotted = "." in text
         plain = " " not in text.strip()
         strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
-        typed = 0 in strange.values() or self._is_enum_item(text) or self._is_former(text)
+        typed = 0 in strange.values() or self._is_enum_item(text) or self._is_removed(text)
         for form, identifier in sorted(rows, key=lambda row: strange[row[1]]):
             if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
                 # ``view_layers`` and ``ViewLayers`` share a key: what is written otherwise was hardly meant.
-                found.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")
+                recognition.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")
             elif form in {FORM_NAME, FORM_LABEL} and not dotted:
                 same = self._last_part(identifier) == text
-                found.add(identifier, 0.9 if same and plain and "_" in text else 0.7, "name")
+                recognition.add(identifier, 0.9 if same and plain and "_" in text else 0.7, "name")
             else:
-                found.add(identifier, 0.75, "title")
+                recognition.add(identifier, 0.75, "title")
 
-    def _labelled(self, text: str, found: Identified) -> None:
+    def _labelled(self, text: str, recognition: Recognition) -> None:
         """The classes and operators that the interface calls just so; of modifiers, what Blender names new ones."""
         entries = [
             entry
@@ -97,14 +97,14 @@ class Spellings:
         ]
         named = [entry for entry in entries if entry.kind in {"class", "operator"}]
         for rank, entry in enumerate(named[:_FEW]):
-            found.add(entry.path, 0.9 if len(named) == 1 else 0.83 - 0.01 * rank, "label")
+            recognition.add(entry.path, 0.9 if len(named) == 1 else 0.83 - 0.01 * rank, "label")
 
     def _is_enum_item(self, text: str) -> bool:
         if not (text.isupper() and "_" in text):
             return False
         return any(text == identifier for _, identifier, _ in self._reader.enum_owners(key(text)))
 
-    def _is_former(self, text: str) -> bool:
+    def _is_removed(self, text: str) -> bool:
         return any(self._reader.removed(path) for path in (text, TYPES + text))
 
     @staticmethod

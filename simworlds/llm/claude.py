@@ -17,15 +17,15 @@ from typing import TYPE_CHECKING, TypeVar
 import httpx2
 from anthropic import Anthropic, APIStatusError
 
-from simworlds.llm import stream
-from simworlds.llm.errors import ModelError, Rejected, TooLong, Unreachable
-from simworlds.llm.messages import Usage, whole
+from simworlds.llm.errors import ModelError, Rejected, TooLong, Unreachable, raise_for_stop
+from simworlds.llm.messages import Usage
 from simworlds.llm.prices import Prices
 from simworlds.llm.request import params_of
-from simworlds.llm.retries import FAULTS, Patience, Retry, asked_pause, in_words, lasting
+from simworlds.llm.retries import FAULTS, Patience, Retry, asked_pause, in_words, is_midstream, lasting
+from simworlds.llm.stream import LimitedBytes, StreamedAnswer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable, Iterator
+    from collections.abc import Callable, Generator
 
     from simworlds.llm.messages import Ask, Turn
 
@@ -95,38 +95,31 @@ class Claude:
         """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Refused, CutShort."""
         lost: list[Usage] = []
         for failed in itertools.count(1):
-            answer = stream.Answer()
+            answer = StreamedAnswer()
             try:
-                with closing(self._said(ask, answer)) as said:
-                    for text in said:
+                with closing(self._read(ask, answer)) as texts:
+                    for text in texts:
                         if text and on_text:
                             on_text(text)
             except _Fault as fault:
                 lost.append(answer.usage())
                 self._wait(ask, failed, fault.error, lost)
             else:
-                return whole(self._priced(answer.turn(), ask, lost))
+                return raise_for_stop(self._priced(answer.turn(), ask, lost))
         raise AssertionError("unreachable")
 
-    def _said(self, ask: Ask, answer: stream.Answer) -> Generator[str]:
-        """Reads a whole answer, and yields what of it is for people. Raises _Fault for all that a server can do."""
+    def _read(self, ask: Ask, answer: StreamedAnswer) -> Generator[str]:
+        """Reads a whole answer, and yields its words as they come. Raises _Fault for all that a server can do."""
         try:
-            with self._client.messages.create(**params_of(ask)) as reply:
+            with self._client.messages.stream(**params_of(ask)) as events:
                 self._heard = True
-                for event in stream.events(self._in_time(reply.response.iter_bytes())):
-                    yield answer.take(event)
-                    if answer.done:
-                        break
+                response = events.response
+                assert isinstance(response.stream, httpx2.SyncByteStream)
+                response.stream = LimitedBytes(response.stream, self._settings.longest, self._clock)
+                yield from answer.read(events)
             answer.turn()
         except FAULTS as error:
             raise _Fault(error) from error
-
-    def _in_time(self, chunks: Iterable[bytes]) -> Iterator[bytes]:
-        end = self._clock() + self._settings.longest
-        for chunk in chunks:
-            yield chunk
-            if self._clock() > end:
-                raise stream.Broken(f"it takes more than {self._settings.longest:.0f} s")
 
     def _wait(self, ask: Ask, failed: int, error: Exception, lost: list[Usage]) -> None:
         """Returns when the request may be sent again. Raises Rejected, TooLong, Unreachable."""
@@ -151,7 +144,7 @@ class Claude:
         self._pause(retry.pause)
 
     def _rejected(self, error: Exception) -> Rejected:
-        status = error.status_code if isinstance(error, APIStatusError) else 0
+        status = error.status_code if isinstance(error, APIStatusError) and not is_midstream(error) else 0
         words = in_words(error)
         if status == 413 or any(sign in words for sign in _TOO_LONG):
             return TooLong(f"The conversation is too long for the model: {words}.", status)

@@ -90,3 +90,14 @@ class Drifted(ModelError):  # noqa: N818
 
 class BadRecord(ModelError):  # noqa: N818
     """A record that cannot be read; the message says where and why."""
+
+
+def raise_for_stop(turn: Turn) -> Turn:
+    """``turn``, if the conversation can go on from it. Raises Refused, CutShort."""
+    if turn.stop_reason == "refusal":
+        why = f": {turn.stop_details}" if turn.stop_details else ""
+        raise Refused(f"The model ({turn.model}) declined to answer{why}", turn)
+    if turn.stop_reason in ("max_tokens", "model_context_window_exceeded"):
+        limit = "its limit" if turn.stop_reason == "max_tokens" else "the end of the model's context"
+        raise CutShort(f"The answer was cut off at {limit}, after {turn.usage.output} tokens.", turn)
+    return turn

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
-from simworlds.llm.errors import CutShort, Refused
-
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -163,14 +161,3 @@ class Model(Protocol):
         What came of an attempt that broke off is not taken back; the whole answer follows. Raises ModelError.
         """
         ...
-
-
-def whole(turn: Turn) -> Turn:
-    """``turn``, if it is one to go on from. Raises Refused, CutShort."""
-    if turn.stop_reason == "refusal":
-        why = f": {turn.stop_details}" if turn.stop_details else ""
-        raise Refused(f"The model ({turn.model}) declined to answer{why}", turn)
-    if turn.stop_reason in ("max_tokens", "model_context_window_exceeded"):
-        limit = "its limit" if turn.stop_reason == "max_tokens" else "the end of the model's context"
-        raise CutShort(f"The answer was cut off at {limit}, after {turn.usage.output} tokens.", turn)
-    return turn

@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import BaseModel, ValidationError
 
 from simworlds.llm.canonical import Form, alike, form_of
-from simworlds.llm.errors import BadRecord, Drifted, Stopped
-from simworlds.llm.messages import Text, ToolResult, Turn, whole
+from simworlds.llm.errors import BadRecord, Drifted, Stopped, raise_for_stop
+from simworlds.llm.messages import Text, ToolResult, Turn
 from simworlds.llm.transcript import Written, read_folder
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ class Recorded:
         turn = replace(found.turn, live=False)
         if on_text and turn.text:
             on_text(turn.text)
-        return whole(turn)
+        return raise_for_stop(turn)
 
     def _find(self, ask: Ask, lane: list[Heard | Written]) -> Heard | Written | None:
         """The turn for ``ask``; None: it is for ``then``. Raises Drifted."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         TextBlockParam,
         ToolParam,
     )
-    from anthropic.types.message_create_params import MessageCreateParamsStreaming
+    from anthropic.types.message_create_params import MessageCreateParamsBase
 
 _MARK = {"type": "ephemeral"}
 _SILENT = "(no words)"
@@ -29,17 +29,16 @@ _EMPTY = "(nothing)"
 _THINKS = re.compile(r"\bclaude-[a-z]+-([5-9]|\d\d)(?!\d)")
 
 
-def params_of(ask: Ask) -> MessageCreateParamsStreaming:
-    """The parameters of ``messages.create``."""
+def params_of(ask: Ask) -> MessageCreateParamsBase:
+    """The parameters of ``messages.create`` and ``messages.stream``."""
     messages = [_message(message) for message in ask.messages]
     users = [message for message in messages if message["role"] == "user"]
     for message in users[-2:]:
         message["content"][-1]["cache_control"] = _MARK
-    params: MessageCreateParamsStreaming = {
+    params: MessageCreateParamsBase = {
         "model": ask.model,
         "max_tokens": ask.max_tokens,
         "messages": cast("list[MessageParam]", messages),
-        "stream": True,
     }
     system = [_text(part) for part in ask.system if part.strip()]
     if system:

@@ -12,7 +12,7 @@ import httpx2
 from anthropic import AnthropicError, APIStatusError
 
 from simworlds.llm.messages import Usage
-from simworlds.llm.stream import Broken, Failed
+from simworlds.llm.stream import BrokenStream
 
 if TYPE_CHECKING:
     import random
@@ -26,8 +26,7 @@ FAULTS = (
     httpx2.InvalidURL,  # a redirection to nowhere
     json.JSONDecodeError,
     UnicodeDecodeError,
-    Broken,
-    Failed,
+    BrokenStream,
 )
 """What asking can raise through a server's fault; of these, ``lasting`` tells those that do not pass."""
 
@@ -82,14 +81,19 @@ class Retry:
 
 def lasting(error: Exception) -> bool:
     """Whether a fault of ``FAULTS`` would be the same another time."""
-    if isinstance(error, Failed):
-        return error.kind in _LASTING
     if not isinstance(error, APIStatusError):
         return False
+    if is_midstream(error):
+        return error.type in _LASTING
     told = error.response.headers.get("x-should-retry")
     if told in ("true", "false"):
         return told == "false"
     return not (error.status_code in (408, 409, 429) or error.status_code >= 500)
+
+
+def is_midstream(error: APIStatusError) -> bool:
+    """Whether the server failed after it had begun to answer; ``error.type`` says how, the status does not."""
+    return error.status_code < 400
 
 
 def asked_pause(error: Exception) -> float:
@@ -113,10 +117,10 @@ def asked_pause(error: Exception) -> float:
 def in_words(error: Exception) -> str:
     """A fault for people, in a line."""
     if isinstance(error, APIStatusError):
-        said = f"{error.status_code} {error.api_message or error.message}"
-    elif isinstance(error, Failed):
-        said = f"the server broke off with {error.kind}: {error}"
-    elif isinstance(error, Broken):
+        words = error.api_message or error.message
+        status = f"the server broke off with {error.type}:" if is_midstream(error) else error.status_code
+        said = f"{status} {words}"
+    elif isinstance(error, BrokenStream):
         said = f"the answer is not whole: {error}"
     else:
         # The package wraps what the network raised in words of its own.

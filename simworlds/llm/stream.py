@@ -1,282 +1,185 @@
-"""Reads a streamed answer of the Messages API, byte by byte, and believes nothing of it until it is whole.
+"""One streamed answer of the Messages API, of which nothing counts until it is whole.
 
-The API may add kinds of events, blocks and deltas: those that are not known here are passed over or kept as they came.
+The anthropic package accumulates the events, but leniently: it makes a message of a stream that ends early, of blocks
+that were never closed, and of half a tool call. Here these are errors. Kinds of events, blocks and deltas that are not
+known yet are ignored or kept as they came.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, NonNegativeInt, ValidationError
+import httpx2
+from pydantic import BaseModel, NonNegativeInt
 from pydantic_core import from_json
 
 from simworlds.llm import tokens
 from simworlds.llm.messages import Block, Kept, Text, ToolUse, Turn, Usage
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterator
 
-_LARGEST = 16_000_000  # bytes of one event
+    from anthropic.lib.streaming import MessageStream, ParsedMessageStreamEvent
+
+_LARGEST = 50_000_000  # bytes of one answer
 _CUT = ("max_tokens", "model_context_window_exceeded", "refusal")
+_DELTAS = {"text_delta": "text", "thinking_delta": "thinking", "input_json_delta": "partial_json"}
+_JUNK = (ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, TypeError, ValueError)
+"""What the package raises for events that are not of the API's form: it does not validate them."""
 
 
-class Broken(Exception):  # noqa: N818 - reads as the state it names
-    """What comes is not a whole answer, or none at all."""
+class BrokenStream(Exception):  # noqa: N818 - reads as the state it names
+    """The stream did not give a whole answer."""
 
 
-class Failed(Exception):  # noqa: N818
-    """The server says in the middle of a stream that it failed. ``kind`` is the API's name for it."""
+class LimitedBytes(httpx2.SyncByteStream):
+    """The bytes of an answer, for a limited time and up to a limited size. Raises BrokenStream.
 
-    def __init__(self, kind: str, message: str) -> None:
-        self.kind = kind
-        super().__init__(message)
+    Only here are all bytes seen: the package drops pings, so that a server could keep a client waiting forever.
+    """
+
+    def __init__(self, source: httpx2.SyncByteStream, seconds: float, clock: Callable[[], float]) -> None:
+        self._source, self._seconds, self._clock = source, seconds, clock
+        self._end = clock() + seconds
+
+    def __iter__(self) -> Iterator[bytes]:
+        """The chunks of the source."""
+        size = 0
+        for chunk in self._source:
+            yield chunk
+            size += len(chunk)
+            if self._clock() > self._end:
+                raise BrokenStream(f"it takes more than {self._seconds:.0f} s")
+            if size > _LARGEST:
+                raise BrokenStream(f"it has more than {_LARGEST} bytes")
+
+    def close(self) -> None:
+        """Closes the source."""
+        self._source.close()
 
 
-class _Usage(BaseModel):
+class _Counts(BaseModel, from_attributes=True):
     input_tokens: NonNegativeInt | None = None
     output_tokens: NonNegativeInt | None = None
     cache_creation_input_tokens: NonNegativeInt | None = None
     cache_read_input_tokens: NonNegativeInt | None = None
 
 
-class _Message(BaseModel):
-    model: str
-    usage: _Usage
-
-
-class _Start(BaseModel):
-    message: _Message
-
-
-class _Typed(BaseModel, extra="allow"):
-    type: str
-
-
-class _BlockStart(BaseModel):
-    index: int
-    content_block: _Typed
-
-
-class _Delta(BaseModel):
-    type: str
-    text: str = ""
-    thinking: str = ""
-    signature: str = ""
-    partial_json: str = ""
-
-
-class _BlockDelta(BaseModel):
-    index: int
-    delta: _Delta
-
-
-class _BlockStop(BaseModel):
-    index: int
-
-
-class _StopDetails(BaseModel):
+class _StopDetails(BaseModel, from_attributes=True):
     category: str | None = None
     explanation: str | None = None
 
 
-class _Stop(BaseModel):
+class _Checked(BaseModel, from_attributes=True):
+    """What is read of the package's message, which it does not check."""
+
+    content: list[Any]
+    model: str
     stop_reason: str | None = None
     stop_details: _StopDetails | None = None
+    usage: _Counts
 
 
-class _MessageDelta(BaseModel):
-    delta: _Stop
-    usage: _Usage = _Usage()
-
-
-class _MessageStop(BaseModel):
-    pass
-
-
-class _Fault(BaseModel):
-    type: str = "api_error"
-    message: str = ""
-
-
-class _Error(BaseModel):
-    error: _Fault
-
-
-_EVENTS: dict[str, type[BaseModel]] = {
-    "message_start": _Start,
-    "content_block_start": _BlockStart,
-    "content_block_delta": _BlockDelta,
-    "content_block_stop": _BlockStop,
-    "message_delta": _MessageDelta,
-    "message_stop": _MessageStop,
-    "error": _Error,
-}
-
-
-def events(chunks: Iterable[bytes]) -> Iterator[BaseModel]:
-    """The events in ``chunks``, those of unknown kinds left out. Raises Broken."""
-    for data in _payloads(chunks):
-        try:
-            kind = _Typed.model_validate_json(data).type
-            known = _EVENTS.get(kind)
-            if known:
-                yield known.model_validate_json(data)
-        except ValidationError as error:
-            fault = error.errors(include_url=False, include_context=False)[0]
-            raise Broken(f"an event that is none ({fault['msg']}): {data[:80]!r}") from None
-
-
-def _payloads(chunks: Iterable[bytes]) -> Iterator[bytes]:
-    data: list[bytes] = []
-    for line in _lines(chunks):
-        if not line and data:
-            yield b"\n".join(data)
-            data = []
-        elif line.startswith(b"data:"):
-            data.append(line[5:].lstrip(b" "))
-
-
-def _lines(chunks: Iterable[bytes]) -> Iterator[bytes]:
-    rest = b""
-    for chunk in chunks:
-        *lines, rest = (rest + chunk).split(b"\n")
-        if len(rest) > _LARGEST:
-            raise Broken("an event without end")
-        for line in lines:
-            yield line.removesuffix(b"\r")
-
-
-@dataclass(slots=True)
-class _Growing:
-    """A block as far as it has come."""
-
-    start: dict[str, Any]
-    pieces: list[str] = field(default_factory=list[str])
-    signature: str = ""
-
-    @property
-    def kind(self) -> str:
-        return self.start["type"]
-
-
-class Answer:
-    """A message that grows event by event."""
+class StreamedAnswer:
+    """A message that grows while ``read`` goes on."""
 
     def __init__(self) -> None:
-        self._model = ""
-        self._usage: _Usage | None = None
-        self._blocks: list[_Growing] = []
-        self._is_open = False
-        self._stop = _Stop()
-        self.done = False
+        self._message: _Checked | None = None
+        self._pieces: defaultdict[int, list[str]] = defaultdict(list)  # by block; of tool calls, their JSON
+        self._open: int | None = None  # the block that is being sent
+        self._is_whole = False
 
-    def take(self, event: BaseModel) -> str:
-        """Adds an event; what of it is for people to read. Raises Broken, Failed."""
-        if isinstance(event, _Error):
-            raise Failed(event.error.type, event.error.message)
-        if (self._usage is None) != isinstance(event, _Start) or self.done:
-            raise Broken(f"events out of order ({_name_of(event)})")
-        match event:
-            case _Start():
-                self._model, self._usage = event.message.model, event.message.usage
-            case _BlockStart():
-                self._expect(event.index == len(self._blocks) and not self._is_open, event)
-                self._blocks.append(_Growing(event.content_block.model_dump()))
-                self._is_open = True
-            case _BlockDelta():
-                self._expect(event.index == len(self._blocks) - 1 and self._is_open, event)
-                return self._grow(event.delta)
-            case _BlockStop():
-                self._expect(event.index == len(self._blocks) - 1 and self._is_open, event)
-                self._is_open = False
-            case _MessageDelta():
-                self._stop = event.delta
-                self._count(event.usage)
-            case _:
-                self._expect(self._stop.stop_reason is not None and not self._is_open, event)
-                self.done = True
-        return ""
+    def read(self, stream: MessageStream[None]) -> Iterator[str]:
+        """Reads until the message is whole, and yields what of it people may read: texts and thinking.
+
+        Raises BrokenStream, and what the package raises for errors of the server and the network.
+        """
+        while not self._is_whole:
+            try:
+                event = next(stream, None)
+                if event is None:
+                    raise BrokenStream("the stream ended in the middle")
+                yield self._take(event, stream)
+            except _JUNK as error:
+                raise BrokenStream(f"an invalid event ({type(error).__name__}: {error})") from error
 
     def turn(self) -> Turn:
-        """The whole answer, without its cost. Raises Broken."""
-        reason = self._stop.stop_reason
-        if not self.done or reason is None:
-            raise Broken("the stream ended in the middle")
-        blocks = [self._block(block, reason) for block in self._blocks]
-        details = self._stop.stop_details
-        said = [details.category, details.explanation] if details else []
+        """The whole answer, without its cost. Raises BrokenStream."""
+        message = self._message
+        if not self._is_whole or message is None or message.stop_reason is None:
+            raise BrokenStream("the stream ended in the middle")
+        last = len(message.content) - 1 if message.stop_reason in _CUT else None
+        blocks = [
+            self._block(place, block, is_cut=place == last) for place, block in enumerate(message.content)
+        ]
+        details = message.stop_details or _StopDetails()
         return Turn(
             content=tuple(block for block in blocks if block is not None),
-            stop_reason=reason,
+            stop_reason=message.stop_reason,
             usage=self.usage(),
-            model=self._model,
-            stop_details=": ".join(part for part in said if part),
+            model=message.model,
+            stop_details=": ".join(filter(None, (details.category, details.explanation))),
             live=True,
         )
 
     def usage(self) -> Usage:
         """The tokens so far; of an answer that is not whole, its output by estimate."""
-        if self._usage is None:
+        if self._message is None:
             return Usage()
-        output = self._usage.output_tokens or 0
-        if not self.done:
-            output = max(output, sum(tokens.of_text("".join(block.pieces)) for block in self._blocks))
+        counts = self._message.usage
+        output = counts.output_tokens or 0
+        if not self._is_whole:
+            output = max(output, sum(tokens.of_text("".join(pieces)) for pieces in self._pieces.values()))
         return Usage(
-            self._usage.input_tokens or 0,
+            counts.input_tokens or 0,
             output,
-            self._usage.cache_read_input_tokens or 0,
-            self._usage.cache_creation_input_tokens or 0,
+            counts.cache_read_input_tokens or 0,
+            counts.cache_creation_input_tokens or 0,
         )
 
-    def _expect(self, holds: bool, event: BaseModel) -> None:
-        if not holds:
-            raise Broken(f"events out of order ({_name_of(event)})")
+    def _take(self, event: ParsedMessageStreamEvent[None], stream: MessageStream[None]) -> str:
+        """Checks that an event comes in the API's order; what of it people may read. Raises BrokenStream."""
+        text, in_order = "", True
+        match event.type:
+            case "message_start":
+                in_order = self._message is None
+                self._message = _Checked.model_validate(stream.current_message_snapshot)
+            case "content_block_start":
+                in_order = self._open is None
+                self._open = event.index
+                in_order &= event.index == len(stream.current_message_snapshot.content) - 1
+            case "content_block_delta":
+                in_order = event.index == self._open
+                kind = event.delta.type
+                piece = str(getattr(event.delta, _DELTAS.get(kind, ""), ""))
+                self._pieces[event.index].append(piece)
+                text = "" if kind == "input_json_delta" else piece
+            case "content_block_stop":
+                in_order = event.index == self._open
+                self._open = None
+            case "message_delta" | "message_stop":
+                self._message = _Checked.model_validate(stream.current_message_snapshot)
+                if event.type == "message_stop":
+                    self._is_whole = in_order = self._open is None and self._message.stop_reason is not None
+            case _:
+                pass
+        if not in_order:
+            raise BrokenStream(f"events out of order ({event.type})")
+        return text
 
-    def _grow(self, delta: _Delta) -> str:
-        block = self._blocks[-1]
-        if delta.type == "signature_delta":
-            block.signature = delta.signature
-            return ""
-        if delta.type == "input_json_delta":
-            block.pieces.append(delta.partial_json)
-            return ""
-        shown = {"text_delta": delta.text, "thinking_delta": delta.thinking}.get(delta.type, "")
-        block.pieces.append(shown)
-        return shown
-
-    def _count(self, later: _Usage) -> None:
-        """Counts are totals; one that is missing leaves the earlier standing."""
-        assert self._usage is not None
-        self._usage = self._usage.model_copy(update=later.model_dump(exclude_none=True))
-
-    def _block(self, block: _Growing, reason: str) -> Block | None:
-        grown = "".join(block.pieces)
-        if block.kind == "text":
-            text = str(block.start.get("text", "")) + grown
-            return Text(text) if text else None
-        if block.kind == "thinking":
-            signature = block.signature or block.start.get("signature", "")
-            return Kept(
-                {
-                    **block.start,
-                    "thinking": str(block.start.get("thinking", "")) + grown,
-                    "signature": signature,
-                }
-            )
-        if block.kind != "tool_use":
-            return Kept(block.start)
+    def _block(self, place: int, block: Any, *, is_cut: bool) -> Block | None:
+        if block.type == "text":
+            return Text(block.text) if block.text else None
+        if block.type != "tool_use":
+            return Kept(block.to_dict(warnings=False))
+        text = "".join(self._pieces[place])
         try:
-            given = from_json(grown or "{}", allow_inf_nan=False)
+            arguments = from_json(text or "{}", allow_inf_nan=False)
         except ValueError:
-            given = None
-        name, call = block.start.get("name"), block.start.get("id")
-        if isinstance(given, dict) and isinstance(name, str) and isinstance(call, str):
-            return ToolUse(call, name, given)
-        if reason in _CUT and block is self._blocks[-1]:
-            return None  # unfinished where the answer ends
-        raise Broken(f"a tool call that is none: {grown[:80]!r}")
-
-
-def _name_of(event: BaseModel) -> str:
-    return next((name for name, known in _EVENTS.items() if isinstance(event, known)), "?")
+            arguments = None
+        if isinstance(arguments, dict) and isinstance(block.name, str) and isinstance(block.id, str):
+            return ToolUse(block.id, block.name, arguments)
+        if is_cut:
+            return None
+        raise BrokenStream(f"an invalid tool call: {text[:80]!r}")

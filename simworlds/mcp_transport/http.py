@@ -1,4 +1,4 @@
-"""Streamable HTTP for any MCP server: who may reach it, and who may ask."""
+"""Serves any MCP server over streamable HTTP, with a bearer token and a check of host names."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mcp.server.transport_security import TransportSecuritySettings
 from starlette.datastructures import Headers
 from starlette.responses import Response
 
-from kb_serve.errors import KBServeError
+from simworlds.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,16 +30,16 @@ _BACKLOG = 1024
 _GRACE_SECONDS = 3
 
 
-class CannotServe(KBServeError):  # noqa: N818 - reads as the state it names
-    """The server cannot be started as asked."""
+class CannotServe(UserError):  # noqa: N818 - reads as the state it names
+    """The server cannot start with this address or token."""
 
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """Where to listen, and who is let in.
+    """Where to listen, and which clients are accepted.
 
-    ``port`` 0 takes a free one. ``token`` is what clients must send as a bearer token. ``names`` are host
-    names by which clients reach the server, besides ``host`` and this machine's own.
+    ``port`` 0 takes a free one. Clients must send ``token`` as a bearer token, if there is one. ``names`` are
+    further host names of the server, besides ``host`` and this machine's own.
     """
 
     host: str = "127.0.0.1"
@@ -53,8 +53,8 @@ def run_http(
 ) -> None:
     """Serves until Ctrl-C or SIGTERM. Raises CannotServe, saying what to do.
 
-    ``make_app`` makes the application from the path where it is to answer, and the host names and origins that it
-    is to let in. ``what`` is served, in words for stderr.
+    ``make_app`` makes the application from the path where it answers, and the host names and origins that it
+    accepts. ``what`` names the service on stderr.
     """
     check(address)
     listener = _listen(address)
@@ -68,7 +68,7 @@ def run_http(
     server = uvicorn.Server(config)
     sys.stderr.write(f"Serving {what} at {url(address.host, listener)}\n")
     sys.stderr.flush()
-    # uvicorn raises the signal that ended it once more, when all is done; that must not look like a crash.
+    # uvicorn raises the signal that ended it again after the shutdown; that must not look like a crash.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         server.run(sockets=[listener])
@@ -79,12 +79,12 @@ def run_http(
 
 
 def check(address: Address) -> None:
-    """Refuses to let the network in without a token. Raises CannotServe."""
+    """Raises CannotServe for an address that other machines can reach, unless there is a token."""
     if not address.token and not is_loopback(address.host):
         raise CannotServe(
-            f"On {address.host} others could reach the server: that takes a token. Set SIMWORLDS_TOKEN (or "
-            "give --token) to a secret, which clients send as 'Authorization: Bearer …'; to make one: "
-            "python -c 'import secrets; print(secrets.token_urlsafe())'. Without a token, stay on 127.0.0.1."
+            f"Other machines can reach the server on {address.host}, so it needs a token. Set SIMWORLDS_TOKEN (or "
+            "--token) to a secret, which clients send as 'Authorization: Bearer …'. To make one: "
+            "python -c 'import secrets; print(secrets.token_urlsafe())'. To do without, serve on 127.0.0.1."
         )
 
 
@@ -101,13 +101,13 @@ def _guarded(app: ASGIApp, address: Address) -> ASGIApp:
 
 
 def url(host: str, listener: socket.socket) -> str:
-    """The address for a client on this machine."""
+    """The URL for clients on this machine."""
     port = listener.getsockname()[1]
     return f"http://{f'[{host}]' if ':' in host else host}:{port}{PATH}"
 
 
 class RequireToken:
-    """Lets requests through that carry the bearer token."""
+    """Answers 401 to requests without the bearer token; passes on the others."""
 
     def __init__(self, app: ASGIApp, token: str) -> None:
         self._app = app
@@ -117,7 +117,7 @@ class RequireToken:
         """ASGI."""
         if scope["type"] == "http" and not self._carries_token(Headers(scope=scope)):
             refusal = Response(
-                "Send the server's token: Authorization: Bearer …\n",
+                "Unauthorized: send the server's token in the header 'Authorization: Bearer …'.\n",
                 status_code=401,
                 headers={"WWW-Authenticate": "Bearer"},
             )
@@ -127,13 +127,13 @@ class RequireToken:
 
     def _carries_token(self, headers: Headers) -> bool:
         scheme, _, token = headers.get("authorization", "").partition(" ")
-        # Compared as a whole: how long it takes must not tell how much of a guess is right.
-        right = hmac.compare_digest(token.strip().encode("latin-1"), self._token)
-        return right and scheme.lower() == "bearer"
+        # In constant time: how long it takes must not tell how much of a guess is right.
+        is_right = hmac.compare_digest(token.strip().encode("latin-1"), self._token)
+        return is_right and scheme.lower() == "bearer"
 
 
 def _security(address: Address) -> TransportSecuritySettings:
-    """Lets in who uses a name of this server: another one would be a web page's that points here."""
+    """Accepts requests whose Host header is one of this server's names (others would be DNS rebinding)."""
     names = dict.fromkeys([*_LOOPBACK, *_bracketed(address.host), *address.names])
     if address.host in _ANY:
         names |= dict.fromkeys(_own_names())
@@ -153,10 +153,10 @@ def _bracketed(host: str) -> list[str]:
 
 def _own_names() -> list[str]:
     name = socket.gethostname()
-    found = [name, socket.getfqdn()]
+    names = [name, socket.getfqdn()]
     with contextlib.suppress(OSError):
-        found += [str(entry[4][0]) for entry in socket.getaddrinfo(name, None)]
-    return [entry for one in found for entry in _bracketed(one)]
+        names += [str(entry[4][0]) for entry in socket.getaddrinfo(name, None)]
+    return [bracketed for known in names for bracketed in _bracketed(known)]
 
 
 def _listen(address: Address) -> socket.socket:
@@ -166,9 +166,9 @@ def _listen(address: Address) -> socket.socket:
     except OSError as error:
         raise CannotServe(
             f"Cannot listen on {address.host}, port {address.port}: {error.strerror or error}. "
-            "Give another one (--host, --port)."
+            "Choose another one with --host or --port."
         ) from error
-    # Connections inherit it. asyncio sets it only on sockets that name their protocol, and without it each
-    # answer, sent in two pieces, waits 40 ms for the client to acknowledge the first.
+    # Connections inherit it. asyncio sets it only on sockets with an explicit protocol; without it each answer,
+    # sent in two pieces, waits 40 ms for the client to acknowledge the first.
     listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     return listener

@@ -1,4 +1,4 @@
-"""stdio for any MCP server: one client, nothing but protocol on stdout."""
+"""Serves any MCP server on stdio: one client, and nothing but the protocol on stdout."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 def run_stdio(server: Server[Any], stop: Callable[[], None]) -> None:
-    """Serves one client on stdin and stdout until it closes them; whatever else is printed goes to stderr.
+    """Serves one client on stdin and stdout until it closes them; other output goes to stderr.
 
-    ``stop`` is called when a signal ends the process: nothing else will be.
+    ``stop`` is called when a signal ends the process; nothing else is cleaned up then.
     """
-    # Kept from here on, not only while serving: importing and shutting down may print too.
+    # Redirected from here to the end, not only while serving: imports and the shutdown may print too.
     wire = os.fdopen(os.dup(1), "wb", closefd=False)
     os.dup2(2, 1)
     _end_on_signals(stop)
@@ -35,7 +35,7 @@ async def _serve(server: Server[Any], out: TextIOWrapper) -> None:
 
 
 def _end_on_signals(stop: Callable[[], None]) -> None:
-    """Ends at once: the thread that waits for a line on stdin cannot be interrupted."""
+    """Ends the process at once: the thread that waits for a line on stdin cannot be interrupted."""
 
     def end(_number: int, _frame: object) -> None:
         stop()

@@ -17,7 +17,7 @@ from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, pack, unpack
 from kb_build.store import Contents, write_base
 from kb_build.versions.removed_symbols import Former
 from kb_serve.knowledge_base import KnowledgeBase
-from kb_serve.reader import Reader
+from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -79,13 +79,13 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def small(path: Path) -> Iterator[Reader]:
-    with closing(Reader(path)) as opened:
+def small(path: Path) -> Iterator[BaseReader]:
+    with closing(BaseReader(path)) as opened:
         yield opened
 
 
 @pytest.mark.parametrize("symbol", SYMBOLS, ids=lambda symbol: symbol.name)
-def test_a_symbol_reads_back_as_it_was_written(small: Reader, symbol: Symbol) -> None:
+def test_a_symbol_reads_back_as_it_was_written(small: BaseReader, symbol: Symbol) -> None:
     assert small.symbol(symbol.path) == symbol
     entry = small.entry(symbol.path)
     assert entry is not None
@@ -97,7 +97,7 @@ def test_a_symbol_reads_back_as_it_was_written(small: Reader, symbol: Symbol) ->
     )
 
 
-def test_a_page_reads_back_whole(small: Reader) -> None:
+def test_a_page_reads_back_whole(small: BaseReader) -> None:
     assert small.page(PAGE.slug) == PAGE
     entry = small.page_entry(PAGE.slug)
     assert entry is not None
@@ -119,25 +119,25 @@ def test_a_page_reads_back_whole(small: Reader) -> None:
         ("cloth", PAGE.slug), ("Cloth Simulation", PAGE.slug),
     ],
 )  # fmt: skip
-def test_every_usual_spelling_is_kept(small: Reader, spelled: str, identifier: str) -> None:
+def test_every_usual_spelling_is_kept(small: BaseReader, spelled: str, identifier: str) -> None:
     assert identifier in {row[1] for row in small.by_key(key(spelled))}
 
 
-def test_fuller_spellings_come_first(small: Reader) -> None:
+def test_fuller_spellings_come_first(small: BaseReader) -> None:
     forms = [form for form, _ in small.by_key(key("ClothSettings"))]
     assert forms == sorted(forms)
 
 
-def test_labels_of_panels_are_no_names(small: Reader) -> None:
+def test_labels_of_panels_are_no_names(small: BaseReader) -> None:
     assert PANEL.path not in {row[1] for row in small.by_key(key("X"))}
 
 
-def test_enum_items_lead_to_their_property_or_argument(small: Reader) -> None:
+def test_enum_items_lead_to_their_property_or_argument(small: BaseReader) -> None:
     assert small.enum_owners("high") == [(STEPS.path, "HIGH", "High")]
     assert small.enum_owners("cloth") == [(f"{ADD.path}(type)", "CLOTH", "Cloth")]
 
 
-def test_links_meta_and_other_versions_read_back(small: Reader) -> None:
+def test_links_meta_and_other_versions_read_back(small: BaseReader) -> None:
     assert small.links_from(STEPS.path, "manual") == ["physics/cloth/index#steps"]
     assert small.symbols_of_page("physics/index") == [ADD.path]
     assert small.meta == {"minor": "5.1", "fingerprint": "f"}
@@ -204,7 +204,7 @@ def test_the_prefix_that_people_leave_out_is_left_out(path: str, short: str) -> 
     assert short_path(path) == short
 
 
-def test_all_of_blender_reads_back(extract: Extract, reader: Reader) -> None:
+def test_all_of_blender_reads_back(extract: Extract, reader: BaseReader) -> None:
     for symbol in extract.symbols[::7]:
         assert reader.symbol(symbol.path) == symbol
 

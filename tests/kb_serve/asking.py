@@ -10,28 +10,28 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_serve.answer.answer import Answer
+    from kb_serve.answer.composer import DocsAnswer
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import Entry, Reader
+    from kb_serve.reader import BaseReader, SymbolEntry
 
 TYPES = "bpy.types."
 SEED = 20
 
 
-def paths(reader: Reader, kind: str, count: int = 300, where: str = "1") -> list[str]:
+def paths(reader: BaseReader, kind: str, count: int = 300, where: str = "1") -> list[str]:
     """A sample of the paths of one kind."""
     rows = reader.rows(f"SELECT path FROM symbols WHERE kind = ? AND {where} ORDER BY path", kind)
     found = [row[0] for row in rows]
     return random.Random(SEED).sample(found, min(count, len(found)))
 
 
-def of_data(reader: Reader, kind: str, count: int = 300) -> list[str]:
+def of_data(reader: BaseReader, kind: str, count: int = 300) -> list[str]:
     """A sample of members of the data classes of ``bpy.types``."""
     owners = "owner IN (SELECT path FROM symbols WHERE kind = 'class' AND grp = 'data' AND path LIKE 'bpy.types.%')"
     return paths(reader, kind, count, owners)
 
 
-def classes(reader: Reader, group: str = "data", count: int = 300) -> list[str]:
+def classes(reader: BaseReader, group: str = "data", count: int = 300) -> list[str]:
     """A sample of the classes of ``bpy.types``."""
     return paths(reader, "class", count, f"path LIKE 'bpy.types.%' AND grp = '{group}'")
 
@@ -68,12 +68,12 @@ def misspelt(name: str, chance: random.Random) -> str:
             return wrong
 
 
-def descendants(reader: Reader, path: str) -> Iterator[Entry]:
+def descendants(reader: BaseReader, path: str) -> Iterator[SymbolEntry]:
     """Every class below a class."""
     yield from reader.descendants(path)
 
 
-def first_id(answer: Answer) -> str:
+def first_id(answer: DocsAnswer) -> str:
     """The id of the best hit, or nothing."""
     return answer.hits[0].id if answer.hits else ""
 

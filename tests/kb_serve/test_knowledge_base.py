@@ -14,7 +14,7 @@ from kb_serve.knowledge_base import KnowledgeBase
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 
 def test_one_query_in_two_lines(base: Path) -> None:
@@ -22,7 +22,7 @@ def test_one_query_in_two_lines(base: Path) -> None:
         assert kb.query("ClothSettings.quality").hits[0].id == "bpy.types.ClothSettings.quality"
 
 
-def test_the_raw_record_of_a_symbol_is_the_whole_of_it(kb: KnowledgeBase, reader: Reader) -> None:
+def test_the_raw_record_of_a_symbol_is_the_whole_of_it(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in paths(reader, "operator", 30):
         symbol = kb.symbol(path)
         assert isinstance(symbol, Symbol)

@@ -17,7 +17,7 @@ from kb_build.index.analysis import key
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION
 from kb_serve.errors import BaseMissing, BaseUnreadable
 from kb_serve.knowledge_base import KnowledgeBase
-from kb_serve.reader import Reader
+from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,7 +32,7 @@ def copy(base: Path, tmp_path: Path) -> Path:
 # Look-ups
 
 
-def test_members_come_in_blenders_order_and_belong_to_their_owner(reader: Reader) -> None:
+def test_members_come_in_blenders_order_and_belong_to_their_owner(reader: BaseReader) -> None:
     for path in classes(reader, count=100):
         for name, entry in reader.members(path).items():
             assert entry.owner == path
@@ -41,7 +41,7 @@ def test_members_come_in_blenders_order_and_belong_to_their_owner(reader: Reader
     assert list(reader.members("bpy.types.RigidBodyObject"))[:3] == ["type", "mesh_source", "enabled"]
 
 
-def test_the_lineage_ends_at_bpy_struct(reader: Reader) -> None:
+def test_the_lineage_ends_at_bpy_struct(reader: BaseReader) -> None:
     assert [entry.name for entry in reader.lineage("bpy.types.ClothModifier")] == [
         "ClothModifier",
         "Modifier",
@@ -56,7 +56,7 @@ def test_the_lineage_ends_at_bpy_struct(reader: Reader) -> None:
     assert list(reader.lineage("bpy.types.Nothing")) == []
 
 
-def test_descendants_are_those_that_have_the_class_in_their_lineage(reader: Reader) -> None:
+def test_descendants_are_those_that_have_the_class_in_their_lineage(reader: BaseReader) -> None:
     below = {entry.path for entry in reader.descendants("bpy.types.Modifier")}
     assert "bpy.types.ClothModifier" in below
     assert len(below) > 60
@@ -64,7 +64,7 @@ def test_descendants_are_those_that_have_the_class_in_their_lineage(reader: Read
         assert "bpy.types.Modifier" in {entry.path for entry in reader.lineage(path)}
 
 
-def test_entries_and_records_agree(reader: Reader) -> None:
+def test_entries_and_records_agree(reader: BaseReader) -> None:
     for kind in ("class", "property", "function", "operator", "socket", "context"):
         for path in paths(reader, kind, 60):
             entry, symbol = reader.entry(path), reader.symbol(path)
@@ -78,7 +78,7 @@ def test_entries_and_records_agree(reader: Reader) -> None:
 @pytest.mark.parametrize(
     "text", ["", "x_y_z", "bpy.types.", "' OR 1=1 --", "%", "*", "\x00", "\ud800", "x" * 10_000]
 )
-def test_what_is_not_there_is_not_found(reader: Reader, text: str) -> None:
+def test_what_is_not_there_is_not_found(reader: BaseReader, text: str) -> None:
     assert reader.entry(text) is None
     assert reader.symbol(text) is None
     assert reader.page(text) is None
@@ -93,7 +93,7 @@ def test_what_is_not_there_is_not_found(reader: Reader, text: str) -> None:
 
 def test_no_look_up_reads_a_whole_table(base: Path) -> None:
     """SQLite says how it would answer each query that the reader makes: by an index, never by a scan."""
-    calls: list[Callable[[Reader], object]] = [
+    calls: list[Callable[[BaseReader], object]] = [
         lambda r: r.entry("bpy.types.Object"), lambda r: r.members("bpy.types.Object"),
         lambda r: r.subclasses("bpy.types.Modifier"), lambda r: r.symbol("bpy.types.Object"),
         lambda r: r.by_name("quality"), lambda r: r.by_key("quality"), lambda r: r.enum_owners("emitter"),
@@ -103,7 +103,7 @@ def test_no_look_up_reads_a_whole_table(base: Path) -> None:
         lambda r: r.page_entry("physics/index"), lambda r: r.page_children("physics/index"),
         lambda r: r.symbols_of_page("physics/index"), lambda r: r.page("physics/cloth/introduction"),
     ]  # fmt: skip
-    with closing(Reader(base)) as reader, closing(sqlite3.connect(base)) as file:
+    with closing(BaseReader(base)) as reader, closing(sqlite3.connect(base)) as file:
         asked: list[str] = []
         reader._connection.set_trace_callback(asked.append)
         for call in calls:
@@ -115,7 +115,7 @@ def test_no_look_up_reads_a_whole_table(base: Path) -> None:
 
 
 def test_a_base_is_shared_by_threads(base: Path) -> None:
-    with KnowledgeBase(base) as kb, closing(Reader(base)) as reader:
+    with KnowledgeBase(base) as kb, closing(BaseReader(base)) as reader:
         sample = of_data(reader, "property", 80)
         expected = {path: kb.query(path) for path in sample}
         wrong: list[object] = []
@@ -142,7 +142,7 @@ def test_a_base_is_shared_by_threads(base: Path) -> None:
 def test_a_file_that_is_not_there_is_missing_with_the_command_that_makes_it(tmp_path: Path) -> None:
     for path in (tmp_path / "no.sqlite", tmp_path):
         with pytest.raises(BaseMissing, match="simworlds kb build"):
-            Reader(path)
+            BaseReader(path)
 
 
 @pytest.mark.parametrize(
@@ -238,7 +238,7 @@ def test_a_path_with_odd_characters_is_opened(base: Path, tmp_path: Path) -> Non
     folder = tmp_path / "a b?c#d%20é&mode=rwc"
     folder.mkdir()
     path = Path(shutil.copy(base, folder / "kb.sqlite"))
-    with closing(Reader(path)) as reader:
+    with closing(BaseReader(path)) as reader:
         assert reader.by_key(key("ClothSettings.quality"))
 
 

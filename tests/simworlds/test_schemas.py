@@ -1,4 +1,4 @@
-"""What models are told of data: JSON Schema without references, and types in a notation of a few lines."""
+"""Pydantic models as JSON Schema without references, and in a short notation of types."""
 
 from __future__ import annotations
 
@@ -8,12 +8,9 @@ from typing import Any, Literal
 import pytest
 from jsonschema import Draft202012Validator
 from pydantic import BaseModel, Field
-from small_plan import small_plan
 
-from agents.blender.tool_catalogue import TOOLS
-from agents.plan.scene import ScenePlan
-from simworlds.mcp_transport.schemas import schema_of
-from simworlds.schema_notation import lean_schema_of, shape_of
+from simworlds.schemas.json_schema import lean_schema_of, schema_of
+from simworlds.schemas.notation import shape_of
 
 
 class Wheel(BaseModel):
@@ -34,7 +31,7 @@ class Cart(BaseModel):
     marks: dict[str, int] = {}
 
 
-def test_types_are_told_in_a_few_lines_each_meaning_once() -> None:
+def test_notation_is_short_and_has_each_description_once() -> None:
     assert shape_of(Cart) == "\n".join(
         [
             "Cart {",
@@ -56,36 +53,24 @@ def test_types_are_told_in_a_few_lines_each_meaning_once() -> None:
     )
 
 
-def test_what_is_told_elsewhere_is_not_told_again() -> None:
-    assert "Wheel {\n" in shape_of(Cart, told="There is this: A wheel; `size` is in metres. And more.")
+def test_descriptions_given_before_are_not_repeated() -> None:
+    assert "Wheel {\n" in shape_of(Cart, before="There is this: A wheel; `size` is in metres. And more.")
 
 
-def test_a_model_that_two_use_is_told_once() -> None:
+def test_a_shared_model_is_written_once() -> None:
     assert shape_of(Cart, Wheel) == shape_of(Cart)
 
 
-@pytest.mark.parametrize("model", [ScenePlan, *(tool.arguments for tool in TOOLS)])
-def test_schemas_refer_to_nothing_and_are_schemas(model: type[BaseModel]) -> None:
-    for schema in (schema_of(model), lean_schema_of(model)):
-        assert "$ref" not in json.dumps(schema)
-        Draft202012Validator.check_schema(schema)
+@pytest.mark.parametrize("schema", [schema_of(Cart), lean_schema_of(Cart)])
+def test_schemas_are_valid_and_have_no_references(schema: dict[str, Any]) -> None:
+    assert "$ref" not in json.dumps(schema)
+    Draft202012Validator.check_schema(schema)
 
 
-def test_the_lean_schema_takes_what_the_plan_takes_and_still_knows_its_fields() -> None:
-    lean = Draft202012Validator(lean_schema_of(ScenePlan))
-    assert list(lean.iter_errors(small_plan())) == []
-    broken: dict[str, Any] = small_plan() | {"fps": "many"}
-    broken["objects"][0]["dimensions"] = [1, 2]
-    broken["objects"][1]["role"] = "furniture"
-    del broken["objects"][2]["name"]
-    assert {"/".join(map(str, error.path)) for error in lean.iter_errors(broken)} == {
-        "fps",
-        "objects/0/dimensions",
-        "objects/1/role",
-        "objects/2",
-    }
-
-
-def test_the_lean_schema_is_much_shorter() -> None:
-    assert len(json.dumps(lean_schema_of(ScenePlan))) < 0.7 * len(json.dumps(schema_of(ScenePlan)))
-    assert len(shape_of(ScenePlan)) < 0.4 * len(json.dumps(schema_of(ScenePlan)))
+def test_lean_schema_has_each_description_once_and_no_generous_bounds() -> None:
+    lean = lean_schema_of(Cart)["properties"]
+    assert "description" in lean["name"]
+    assert "description" not in lean["owner"]
+    assert "maxLength" not in lean["name"]
+    assert lean["place"] == {"maxItems": 2, "minItems": 2, "items": {"type": "number"}, "type": "array"}
+    assert lean["wheels"]["items"]["properties"]["size"] == {"exclusiveMinimum": 0, "type": "number"}

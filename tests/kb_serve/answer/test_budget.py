@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from kb_serve.answer.budget import Block, clip, paginate, tokens
+from kb_serve.answer.budget import AnswerBlock, clip, paginate, tokens
 
 WORDS = (
     "the",
@@ -62,7 +62,8 @@ def test_what_fits_is_not_clipped() -> None:
 def test_every_part_fits_and_nothing_is_lost(seed: int) -> None:
     chance = random.Random(seed)
     blocks = [
-        Block(text_of(chance, chance.randrange(1, 120)), f"block {n}") for n in range(chance.randrange(1, 12))
+        AnswerBlock(text_of(chance, chance.randrange(1, 120)), f"block {n}")
+        for n in range(chance.randrange(1, 12))
     ]
     budget = chance.randrange(10, 400)
     parts = paginate(blocks, budget)
@@ -72,17 +73,21 @@ def test_every_part_fits_and_nothing_is_lost(seed: int) -> None:
 
 
 def test_what_is_left_is_named_in_order() -> None:
-    blocks = [Block("a " * 60, "first"), Block("b " * 60, "second"), Block("c " * 60, "third")]
+    blocks = [
+        AnswerBlock("a " * 60, "first"),
+        AnswerBlock("b " * 60, "second"),
+        AnswerBlock("c " * 60, "third"),
+    ]
     assert [left for _, left in paginate(blocks, 45)] == [["second", "third"], ["third"], []]
 
 
 def test_what_fits_together_stays_together() -> None:
-    blocks = [Block("one", "a"), Block("two", "b"), Block("three", "c")]
+    blocks = [AnswerBlock("one", "a"), AnswerBlock("two", "b"), AnswerBlock("three", "c")]
     assert paginate(blocks, 100) == [("one\n\ntwo\n\nthree", [])]
 
 
 def test_a_block_is_not_begun_where_little_room_is_left() -> None:
-    blocks = [Block("x" * 80), Block("y\n" * 30)]
+    blocks = [AnswerBlock("x" * 80), AnswerBlock("y\n" * 30)]
     assert [text[:1] for text, _ in paginate(blocks, 32)] == ["x", "y"]
 
 

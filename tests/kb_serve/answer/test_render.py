@@ -8,21 +8,21 @@ import pytest
 from asking import classes, of_data, paths
 
 from kb_build.records import Deprecation, EnumItem, Parameter, Section, Symbol
-from kb_serve.answer.render import Renderer, definition_of, facts
+from kb_serve.answer.render import MarkdownRenderer, definition_of, facts
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 ALL = 1_000_000
 
 
 @pytest.fixture(scope="module")
-def renderer(reader: Reader) -> Renderer:
-    return Renderer(reader)
+def renderer(reader: BaseReader) -> MarkdownRenderer:
+    return MarkdownRenderer(reader)
 
 
-def shown(renderer: Renderer, symbol: Symbol) -> str:
+def shown(renderer: MarkdownRenderer, symbol: Symbol) -> str:
     return "\n\n".join(block.text for block in renderer.symbol(symbol))
 
 
@@ -57,7 +57,7 @@ def test_facts_are_what_is_known(symbol: Symbol, expected: list[str]) -> None:
     assert list(facts(symbol)) == expected
 
 
-def test_every_fact_of_every_property_is_shown(renderer: Renderer, reader: Reader) -> None:
+def test_every_fact_of_every_property_is_shown(renderer: MarkdownRenderer, reader: BaseReader) -> None:
     for path in of_data(reader, "property", 300):
         symbol = reader.symbol(path)
         assert symbol is not None
@@ -73,7 +73,7 @@ def test_every_fact_of_every_property_is_shown(renderer: Renderer, reader: Reade
 
 
 def test_an_operator_shows_its_call_with_defaults_and_every_argument(
-    kb: KnowledgeBase, reader: Reader
+    kb: KnowledgeBase, reader: BaseReader
 ) -> None:
     for path in paths(reader, "operator", 100):
         symbol = reader.symbol(path)
@@ -96,7 +96,9 @@ def test_a_function_shows_what_it_takes_and_gives(kb: KnowledgeBase) -> None:
     assert "- (Vector)" in text
 
 
-def test_a_class_lists_its_own_members_and_names_inherited_ones(kb: KnowledgeBase, reader: Reader) -> None:
+def test_a_class_lists_its_own_members_and_names_inherited_ones(
+    kb: KnowledgeBase, reader: BaseReader
+) -> None:
     for path in classes(reader, count=80):
         text = kb.query(path, max_tokens=ALL).text
         for entry in reader.members(path).values():
@@ -132,14 +134,14 @@ def test_a_context_member_says_which_editors_provide_it(kb: KnowledgeBase) -> No
     assert "provided by: " in kb.query("bpy.context.active_bone").text
 
 
-def test_deprecation_is_said_with_versions(renderer: Renderer) -> None:
+def test_deprecation_is_said_with_versions(renderer: MarkdownRenderer) -> None:
     symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b.", "5.0", "6.0"))
     assert "**Deprecated** since 5.0, removal planned for 6.0: Use b." in shown(renderer, symbol)
     symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b."))
     assert "**Deprecated**: Use b." in shown(renderer, symbol)
 
 
-def test_what_later_versions_brought_says_which(renderer: Renderer, reader: Reader) -> None:
+def test_what_later_versions_brought_says_which(renderer: MarkdownRenderer, reader: BaseReader) -> None:
     ((path, version),) = reader.rows("SELECT path, version FROM since WHERE path LIKE 'bpy.types.%' LIMIT 1")
     for named, expected in ((path, True), ("bpy.types.Object.location", False)):
         symbol = reader.symbol(named)
@@ -147,7 +149,7 @@ def test_what_later_versions_brought_says_which(renderer: Renderer, reader: Read
         assert (f"since Blender {version}" in shown(renderer, symbol)) is expected
 
 
-def test_arguments_tell_type_default_range_unit_and_choices(renderer: Renderer) -> None:
+def test_arguments_tell_type_default_range_unit_and_choices(renderer: MarkdownRenderer) -> None:
     items = tuple(EnumItem(f"I{n}", f"Item {n}", f"Meaning {n}") for n in range(50))
     symbol = Symbol(
         "m.f", "function", "m", signature="f(a, b=1)",
@@ -163,7 +165,7 @@ def test_arguments_tell_type_default_range_unit_and_choices(renderer: Renderer) 
     assert all(f"Meaning {n}" in text for n in range(50))
 
 
-def test_choices_that_nothing_is_said_of_are_all_named_too(renderer: Renderer) -> None:
+def test_choices_that_nothing_is_said_of_are_all_named_too(renderer: MarkdownRenderer) -> None:
     items = tuple(EnumItem(f"ICON_{n}") for n in range(300))
     symbol = Symbol("m.f", "function", "m", parameters=(Parameter("icon", "enum", enum_items=items),))
     text = shown(renderer, symbol)
@@ -181,7 +183,7 @@ def test_a_page_shows_where_it_stands_and_every_section(kb: KnowledgeBase) -> No
         assert section.text in text
 
 
-def test_the_section_asked_for_comes_first(renderer: Renderer, kb: KnowledgeBase) -> None:
+def test_the_section_asked_for_comes_first(renderer: MarkdownRenderer, kb: KnowledgeBase) -> None:
     page = kb.page("physics/cloth/settings/collisions")
     assert page is not None
     last = page.sections[-1]
@@ -190,7 +192,7 @@ def test_the_section_asked_for_comes_first(renderer: Renderer, kb: KnowledgeBase
     assert sorted(block.text for block in blocks) == sorted(block.text for block in renderer.page(page.slug))
 
 
-def test_what_is_not_there_is_shown_as_nothing(renderer: Renderer) -> None:
+def test_what_is_not_there_is_shown_as_nothing(renderer: MarkdownRenderer) -> None:
     assert list(renderer.page("nowhere")) == []
     assert renderer.manual_page("bpy.types.Nothing") == ""
 
@@ -217,7 +219,7 @@ def test_what_the_manual_says_of_a_property_is_found_by_its_label(label: str, te
     assert definition_of(label, sections).strip() == text.strip()
 
 
-def test_no_symbol_of_any_kind_fails_to_be_shown(renderer: Renderer, reader: Reader) -> None:
+def test_no_symbol_of_any_kind_fails_to_be_shown(renderer: MarkdownRenderer, reader: BaseReader) -> None:
     for kind in ("module", "class", "property", "function", "operator", "socket", "data", "context", "enum"):
         for path in paths(reader, kind, 150):
             symbol = reader.symbol(path)
@@ -228,7 +230,7 @@ def test_no_symbol_of_any_kind_fails_to_be_shown(renderer: Renderer, reader: Rea
             assert "\n\n\n\n" not in text
 
 
-def test_how_a_member_is_reached_is_that_of_its_class(kb: KnowledgeBase, reader: Reader) -> None:
+def test_how_a_member_is_reached_is_that_of_its_class(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in of_data(reader, "property", 60):
         cls = reader.symbol(path.rpartition(".")[0])
         if cls and cls.reached:

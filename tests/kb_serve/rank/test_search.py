@@ -15,15 +15,15 @@ from kb_serve.rank import search
 from kb_serve.rank.search import Searcher
 
 if TYPE_CHECKING:
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 
 @pytest.fixture(scope="module")
-def searcher(reader: Reader) -> Searcher:
+def searcher(reader: BaseReader) -> Searcher:
     return Searcher(reader)
 
 
-def test_a_description_finds_its_own_symbol(reader: Reader, searcher: Searcher) -> None:
+def test_a_description_finds_its_own_symbol(reader: BaseReader, searcher: Searcher) -> None:
     found, asked = 0, 0
     for path in of_data(reader, "property", 400):
         symbol = reader.symbol(path)
@@ -43,7 +43,7 @@ def test_a_description_finds_its_own_symbol(reader: Reader, searcher: Searcher) 
     assert found >= 0.85 * asked
 
 
-def test_what_something_is_asked_for_by_finds_it_in_any_order(reader: Reader, searcher: Searcher) -> None:
+def test_what_something_is_asked_for_by_finds_it_in_any_order(reader: BaseReader, searcher: Searcher) -> None:
     chance, found, asked = random.Random(SEED), 0, 0
     uses = [
         (path, row)

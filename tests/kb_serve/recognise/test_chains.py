@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from kb_serve.recognise.chains import MAX_QUERY, Step, find_chains
+from kb_serve.recognise.chains import MAX_QUERY, ChainStep, find_chains
 
 
 def steps(text: str) -> list[tuple[str, str]]:
@@ -95,4 +95,4 @@ def test_any_text_is_read() -> None:
         text = "".join(chance.choices(alphabet, k=60))
         for chain in find_chains(text):
             assert chain.source in text
-            assert all(isinstance(step, Step) for step in chain.steps)
+            assert all(isinstance(step, ChainStep) for step in chain.steps)

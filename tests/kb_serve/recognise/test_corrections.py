@@ -10,16 +10,16 @@ import pytest
 from asking import SEED, classes, misspelt, of_data, owner_and_name
 
 from kb_serve.recognise.chains import find_chains
-from kb_serve.recognise.corrections import LIKELY, Corrector, Drifts, nearest, similarity
-from kb_serve.recognise.resolver import Walker
+from kb_serve.recognise.corrections import LIKELY, Corrector, RemovedSymbols, nearest, similarity
+from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 
 @pytest.fixture(scope="module")
-def corrector(reader: Reader) -> Corrector:
-    return Corrector(reader, Walker(reader))
+def corrector(reader: BaseReader) -> Corrector:
+    return Corrector(reader, Resolver(reader))
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_the_nearest_come_first_and_only_the_likely_ones() -> None:
     assert nearest("anything", []) == []
 
 
-def test_similarity_and_nearest_agree(reader: Reader) -> None:
+def test_similarity_and_nearest_agree(reader: BaseReader) -> None:
     chance, names = random.Random(SEED), list(reader.members("bpy.types.Object"))
     for _ in range(50):
         written = misspelt(chance.choice([name for name in names if len(name) > 6]), chance)
@@ -57,7 +57,7 @@ def test_similarity_and_nearest_agree(reader: Reader) -> None:
             assert alike == similarity(written, name)
 
 
-def test_thousands_of_names_are_compared_in_no_time(reader: Reader) -> None:
+def test_thousands_of_names_are_compared_in_no_time(reader: BaseReader) -> None:
     names = list(reader.members("bpy.types"))
     assert len(names) > 3_500
     start = time.perf_counter()
@@ -65,7 +65,9 @@ def test_thousands_of_names_are_compared_in_no_time(reader: Reader) -> None:
     assert time.perf_counter() - start < 0.5
 
 
-def test_a_misspelt_class_is_found_and_a_right_one_left_alone(reader: Reader, corrector: Corrector) -> None:
+def test_a_misspelt_class_is_found_and_a_right_one_left_alone(
+    reader: BaseReader, corrector: Corrector
+) -> None:
     chance = random.Random(SEED)
     for path in classes(reader, count=100):
         name = path.rpartition(".")[2]
@@ -85,11 +87,11 @@ def test_a_name_near_to_nothing_is_not_corrected(corrector: Corrector, written: 
     assert corrector.member(written) is None
 
 
-def test_two_mistakes_in_one_expression_are_both_mended(reader: Reader, corrector: Corrector) -> None:
+def test_two_mistakes_in_one_expression_are_both_mended(reader: BaseReader, corrector: Corrector) -> None:
     mended = corrector.corrected(find_chains("bpy.context.object.rigid_bodi.colision_shape")[0])
     assert mended is not None
-    walked, corrections = mended
-    assert walked.symbols[-1] == "bpy.types.RigidBodyObject.collision_shape"
+    resolved, corrections = mended
+    assert resolved.symbols[-1] == "bpy.types.RigidBodyObject.collision_shape"
     assert [(c.written, c.meant) for c in corrections] == [
         ("rigid_bodi", "rigid_body"),
         ("colision_shape", "collision_shape"),
@@ -103,31 +105,31 @@ def test_names_that_may_follow_include_inherited_ones(corrector: Corrector) -> N
     assert corrector.member_names("nothing") == []
 
 
-def test_former_members_are_found_on_the_class_and_on_its_bases(reader: Reader) -> None:
-    drifts = Drifts(reader)
+def test_former_members_are_found_on_the_class_and_on_its_bases(reader: BaseReader) -> None:
+    drifts = RemovedSymbols(reader)
     own = drifts.of_member("bpy.types.Action", "fcurves")
     assert own is not None
     assert (own.path, own.last) == ("bpy.types.Action.fcurves", "4.5")
     assert drifts.of_member("bpy.types.Action", "location") is None
     assert drifts.of_path("bpy.types.Object.location") is None
-    assert "bpy.types.Action.fcurves" in {drift.path for drift in drifts.spelled("action fcurves")}
+    assert "bpy.types.Action.fcurves" in {removed.path for removed in drifts.spelled("action fcurves")}
 
 
-def test_replacements_come_best_first_and_exist(reader: Reader) -> None:
-    drifts, checked = Drifts(reader), 0
+def test_replacements_come_best_first_and_exist(reader: BaseReader) -> None:
+    drifts, checked = RemovedSymbols(reader), 0
     for (path,) in reader.rows("SELECT DISTINCT path FROM replacements ORDER BY path LIMIT 400"):
-        drift = drifts.of_path(path)
-        if drift is not None:
-            scores = [score for _, score in drift.instead]
+        removed = drifts.of_path(path)
+        if removed is not None:
+            scores = [score for _, score in removed.instead]
             assert scores == sorted(scores, reverse=True)
-            for target, _ in drift.instead:
+            for target, _ in removed.instead:
                 plain = target.partition(":")[0].partition("(")[0] if '["' not in target else target
                 assert reader.entry(plain), target
             checked += 1
     assert checked > 100
 
 
-def test_a_right_member_needs_no_correction(reader: Reader, corrector: Corrector) -> None:
+def test_a_right_member_needs_no_correction(reader: BaseReader, corrector: Corrector) -> None:
     for path in of_data(reader, "property", 40):
         owner, name = owner_and_name(path)
         assert corrector.corrected(find_chains(f"{owner}.{name}")[0]) is None

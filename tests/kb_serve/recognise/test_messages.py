@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.message_forms import prose_of
+from kb_serve.recognise.message_patterns import prose_of
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from kb_serve.answer.answer import Answer
+    from kb_serve.answer.composer import DocsAnswer
     from kb_serve.service import Service
 
     MakeBase = Callable[..., Path]
@@ -37,7 +37,7 @@ WITHOUT_PAGES = {"options": {"pages": False, "summaries": "none"}, "sources": []
 SECONDS = 120.0
 
 
-def ask(service: Service, blender: str | None = None, **more: int) -> tuple[Answer, str]:
+def ask(service: Service, blender: str | None = None, **more: int) -> tuple[DocsAnswer, str]:
     arguments = {"limit": 8, "max_tokens": 1500, "part": 1, **more}
     return service.ask("ClothSettings.quality", blender=blender, **arguments)
 

@@ -12,8 +12,8 @@ import pytest
 from mcp import Client
 from mcp.shared.exceptions import MCPError
 
-from kb_serve.answer.answer import Answer, Hit
 from kb_serve.answer.budget import tokens
+from kb_serve.answer.composer import DocsAnswer, Hit
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.server import make_server
 from kb_serve.service import Service
@@ -73,7 +73,7 @@ async def test_the_arguments_and_their_defaults_are_those_of_the_interface() -> 
 async def test_the_output_schema_is_the_answer_and_the_version_it_holds_for() -> None:
     schema = tool().output_schema
     assert schema is not None
-    assert set(schema["properties"]) == {field.name for field in fields(Answer)} | {"blender"}
+    assert set(schema["properties"]) == {field.name for field in fields(DocsAnswer)} | {"blender"}
     assert set(schema["properties"]["hits"]["items"]["properties"]) == {field.name for field in fields(Hit)}
     assert set(schema["required"]) == set(schema["properties"])
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asks import ask
 
-from simworlds.llm.errors import BadRecord, CutShort, Drifted, Refused
-from simworlds.llm.messages import Message, Text, ToolResult, ToolUse, user, whole
+from simworlds.llm.errors import BadRecord, CutShort, Drifted, Refused, raise_for_stop
+from simworlds.llm.messages import Message, Text, ToolResult, ToolUse, user
 from simworlds.llm.recorded import Recorded
 from simworlds.llm.transcript import read_turn
 
@@ -120,7 +120,7 @@ def test_turns_may_end_badly():
     for stop, error in (("refusal", Refused), ("max_tokens", CutShort)):
         turn = read_turn("1.md", f"role: coder\nstop: {stop}\n---\nNo.").turn
         with pytest.raises(error):
-            whole(turn)
+            raise_for_stop(turn)
 
 
 def test_longer_fences_hold_shorter_ones():

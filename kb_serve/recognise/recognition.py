@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from kb_serve.recognise.corrections import Correction, Drift
+    from kb_serve.recognise.corrections import Correction, RemovedSymbol
 
 
 @dataclass(frozen=True, slots=True)
-class Match:
+class NameMatch:
     """One thing that the query names. ``sure`` is 1 for an exact spelling and less for a likely reading."""
 
     id: str
@@ -19,7 +19,7 @@ class Match:
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
+class MissingName:
     """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty.
 
     ``assigned`` tells whether a value was to be given to it.
@@ -31,28 +31,28 @@ class Missing:
 
 
 @dataclass(slots=True)
-class Identified:
+class Recognition:
     """What was recognised: ``matches`` best first, and what was wrong with the names that were typed.
 
     ``said`` is what else the caller should know.
     """
 
-    matches: list[Match] = field(default_factory=list)
-    missing: list[Missing] = field(default_factory=list)
+    matches: list[NameMatch] = field(default_factory=list)
+    missing: list[MissingName] = field(default_factory=list)
     corrections: list[Correction] = field(default_factory=list)
-    drifts: list[Drift] = field(default_factory=list)
-    said: list[str] = field(default_factory=list)
+    removed: list[RemovedSymbol] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     def add(self, identifier: str, sure: float, why: str) -> None:
         """Adds a match, or raises the certainty of the same one."""
         for number, match in enumerate(self.matches):
             if match.id == identifier:
                 if sure > match.sure:
-                    self.matches[number] = Match(identifier, sure, why)
+                    self.matches[number] = NameMatch(identifier, sure, why)
                 return
-        self.matches.append(Match(identifier, sure, why))
+        self.matches.append(NameMatch(identifier, sure, why))
 
     @property
-    def best(self) -> Match | None:
+    def best(self) -> NameMatch | None:
         """The surest match."""
         return max(self.matches, key=lambda match: match.sure, default=None)

@@ -1,76 +1,31 @@
-"""What data has to look like, as models are told it: JSON Schema for tools, and a shorter notation for prompts."""
+"""Pydantic models in a short notation of types, for prompts: a third as long as their JSON Schema."""
 
 from __future__ import annotations
 
 import json
 from typing import TYPE_CHECKING, Any, cast
 
-from simworlds.mcp_transport.schemas import Untitled, schema_of
+from simworlds.schemas.json_schema import BOUND_SIGNS, LARGEST_BOUND, SHORT_TEXT, Untitled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from pydantic import BaseModel
 
-_OBVIOUS = 10_000  # bounds beyond it only keep nonsense out
-_SHORT = 12  # characters of a description that is told wherever it stands, as a unit is
-_POLICING = frozenset({"additionalProperties", "discriminator", "maxLength", "minLength", "pattern", "title"})
-_SIGNS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 _NAMES = {"integer": "int", "number": "number", "string": "string", "boolean": "bool", "null": "null"}
-
-
-def lean_schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    """A model's JSON Schema for what is checked anyway: without what only keeps nonsense out, each longer description
-    once.
-    """
-    return cast("dict[str, Any]", _lean(schema_of(model), set()))
-
-
-def _lean(schema: Any, told: set[str]) -> Any:
-    if isinstance(schema, list):
-        return [_lean(one, told) for one in cast("list[Any]", schema)]
-    if not isinstance(schema, dict):
-        return schema
-    given = {
-        key: value
-        for key, value in cast("dict[str, Any]", schema).items()
-        if not (key in _POLICING or _is_obvious(key, value))
-    }
-    meaning = given.get("description")
-    if isinstance(meaning, str):
-        if len(meaning) > _SHORT and meaning in told:
-            del given["description"]
-        told.add(meaning)
-    lean = {
-        key: {name: _lean(below, told) for name, below in value.items()}
-        if key == "properties"
-        else _lean(value, told)
-        for key, value in given.items()
-    }
-    items = lean.get("prefixItems")
-    if items and all(item == items[0] for item in items):  # a vector
-        lean["items"] = lean.pop("prefixItems")[0]
-    return lean
-
-
-def _is_obvious(key: str, value: Any) -> bool:
-    return (key == "default" and value is None) or (key in _SIGNS and abs(value) >= _OBVIOUS)
 
 
 def _name(reference: str) -> str:
     return reference.rpartition("/")[2]
 
 
-# The shorter notation
-
-
-def shape_of(*models: type[BaseModel], told: str = "") -> str:
+def shape_of(*models: type[BaseModel], before: str = "") -> str:
     """Models in the notation of types that programmers know, a third as long as their JSON Schema.
 
-    ``name?: type = default`` is a field that may be left out; what a field or model means stands behind ``//``.
-    A model that several use is told once; what ``told`` says of one already is not repeated.
+    ``name?: type = default`` is a field that may be left out; its meaning follows ``//``.
+    A model that several use is written once; a description that ``before`` contains is not repeated.
     """
-    writer = _Writer(told)
+    writer = _Writer(before)
     for model in models:
         writer.add(model)
     return "\n\n".join(writer.texts)
@@ -79,11 +34,11 @@ def shape_of(*models: type[BaseModel], told: str = "") -> str:
 class _Writer:
     """Writes models one after the other, each and each longer description once."""
 
-    def __init__(self, told: str) -> None:
+    def __init__(self, before: str) -> None:
         self.texts: list[str] = []
-        self._before = told
+        self._before = before
         self._written: set[str] = set()
-        self._told: set[str] = set()
+        self._described: set[str] = set()
 
     def add(self, model: type[BaseModel]) -> None:
         """Writes a model, and behind it those that it uses."""
@@ -91,11 +46,11 @@ class _Writer:
         parts = schema.pop("$defs", {})
         waiting = [(model.__name__, schema)]
         while waiting:
-            name, one = waiting.pop(0)
+            name, part = waiting.pop(0)
             if name not in self._written:
                 self._written.add(name)
-                self.texts.append(self._model(name, one))
-                waiting += [(found, parts[found]) for found in _references(one)]
+                self.texts.append(self._model(name, part))
+                waiting += [(used, parts[used]) for used in _references(part)]
 
     def _model(self, name: str, schema: Mapping[str, Any]) -> str:
         meaning = _one_line(schema.get("description", ""))
@@ -107,11 +62,11 @@ class _Writer:
         return "\n".join([*lines, "}"])
 
     def _meaning(self, schema: Mapping[str, Any]) -> str:
-        told = _one_line(next(_descriptions(schema), ""))
-        if len(told) > _SHORT and told in self._told:
+        text = _one_line(next(_descriptions(schema), ""))
+        if len(text) > SHORT_TEXT and text in self._described:
             return ""
-        self._told.add(told)
-        return _comment(told)
+        self._described.add(text)
+        return _comment(text)
 
 
 def _one_line(text: str) -> str:
@@ -132,13 +87,13 @@ def _descriptions(schema: Mapping[str, Any]) -> Iterator[str]:
 def _references(schema: Any) -> Iterator[str]:
     """The names that a schema refers to, in order."""
     if isinstance(schema, list):
-        for one in cast("list[Any]", schema):
-            yield from _references(one)
+        for item in cast("list[Any]", schema):
+            yield from _references(item)
     elif isinstance(schema, dict):
-        given = cast("dict[str, Any]", schema)
-        if "$ref" in given:
-            yield _name(given["$ref"])
-        for key, below in given.items():
+        named = cast("dict[str, Any]", schema)
+        if "$ref" in named:
+            yield _name(named["$ref"])
+        for key, below in named.items():
             if key != "discriminator":
                 yield from _references(below)
 
@@ -151,7 +106,7 @@ def _type(schema: Mapping[str, Any]) -> str:  # noqa: PLR0911 - one for each kin
     if "enum" in schema:
         return " | ".join(map(json.dumps, schema["enum"]))
     if "anyOf" in schema or "oneOf" in schema:
-        return " | ".join(_type(one) for one in schema.get("anyOf", schema.get("oneOf")))
+        return " | ".join(_type(option) for option in schema.get("anyOf", schema.get("oneOf")))
     if "prefixItems" in schema:
         return f"[{', '.join(map(_type, schema['prefixItems']))}]"
     if schema.get("type") == "array":
@@ -164,10 +119,10 @@ def _type(schema: Mapping[str, Any]) -> str:  # noqa: PLR0911 - one for each kin
 
 
 def _bounds(schema: Mapping[str, Any]) -> str:
-    known = {key: schema[key] for key in _SIGNS if abs(schema.get(key, _OBVIOUS)) < _OBVIOUS}
+    known = {key: schema[key] for key in BOUND_SIGNS if abs(schema.get(key, LARGEST_BOUND)) < LARGEST_BOUND}
     if set(known) == {"minimum", "maximum"}:
         return f" {known['minimum']:g}..{known['maximum']:g}"
-    return "".join(f" {_SIGNS[key]}{value:g}" for key, value in known.items())
+    return "".join(f" {BOUND_SIGNS[key]}{value:g}" for key, value in known.items())
 
 
 def _default(schema: Mapping[str, Any]) -> str:

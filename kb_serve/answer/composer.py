@@ -8,16 +8,16 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
-from kb_serve.answer.budget import Block, clip, paginate, tokens
-from kb_serve.answer.render import Renderer, first_sentence
+from kb_serve.answer.budget import AnswerBlock, clip, paginate, tokens
+from kb_serve.answer.render import MarkdownRenderer, first_sentence
+from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
-from kb_serve.rank.ranking import Ranked, Ranker, Ranking
-from kb_serve.rank.topics import Topics
+from kb_serve.rank.merging import QueryRanker, RankedId, Ranking
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 AnswerKind = Literal["schema", "page", "candidates", "none"]
 LIMIT = 8
@@ -41,7 +41,7 @@ class Hit:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class DocsAnswer:
     """What ``blender_docs`` returns. ``text`` is Markdown within the budget; ``parts`` of it exist in all."""
 
     kind: AnswerKind
@@ -59,20 +59,20 @@ class _Draft:
     kind: AnswerKind
     hits: tuple[Hit, ...]
     notes: tuple[str, ...]
-    blocks: tuple[Block, ...]
+    blocks: tuple[AnswerBlock, ...]
 
 
-class Answerer:
+class AnswerComposer:
     """Answers queries from one base."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
-        self._ranker = Ranker(reader)
-        self._renderer = Renderer(reader)
+        self._ranker = QueryRanker(reader)
+        self._renderer = MarkdownRenderer(reader)
         self._topics = Topics(reader)
         self._draft = lru_cache(maxsize=256)(self._make_draft)
 
-    def answer(self, query: str, limit: int, max_tokens: int, part: int) -> Answer:
+    def answer(self, query: str, limit: int, max_tokens: int, part: int) -> DocsAnswer:
         """Answers a query. Raises BadQuery for an empty one, or a part that does not exist."""
         # Half a character (a lone surrogate) can be part of nothing that a base holds.
         text = " ".join(query.encode(errors="ignore").decode().replace("\0", " ").split())
@@ -98,7 +98,7 @@ class Answerer:
         notes = (*ranking.notes, *self._source_notes(ranking, hits))
         if not hits:
             text = "Nothing in this knowledge base fits the query. Try other words, or a name as Blender writes it."
-            return _Draft("none", (), notes, (Block(text),))
+            return _Draft("none", (), notes, (AnswerBlock(text),))
         if ranking.named:
             blocks = tuple(self._whole(hits[0], ranking.ranked[0])) + self._others(hits[1:])
             return _Draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
@@ -116,7 +116,7 @@ class Answerer:
         if missing and not ranking.named:
             yield f"This base lacks the {' and the '.join(missing)}; `simworlds kb info` says why."
 
-    def _hit(self, row: Ranked) -> Hit:
+    def _hit(self, row: RankedId) -> Hit:
         score = round(row.score, 3)
         page = self._reader.page_entry(row.id)
         if page:
@@ -129,23 +129,23 @@ class Answerer:
 
     # What is said
 
-    def _whole(self, hit: Hit, row: Ranked) -> Iterator[Block]:
+    def _whole(self, hit: Hit, row: RankedId) -> Iterator[AnswerBlock]:
         symbol = self._reader.symbol(hit.id)
         if symbol is not None:
             yield from self._renderer.symbol(symbol)
         else:
             yield from self._renderer.page(hit.id, row.anchor)
 
-    def _excerpt(self, ranking: Ranking, hit: Hit) -> Iterator[Block]:
+    def _excerpt(self, ranking: Ranking, hit: Hit) -> Iterator[AnswerBlock]:
         """The best hit as far as a part of the budget reaches: its description, or the section that fits."""
         first = ranking.ranked[0]
         yield from list(self._whole(hit, first))[:2]
 
-    def _others(self, hits: Sequence[Hit]) -> tuple[Block, ...]:
+    def _others(self, hits: Sequence[Hit]) -> tuple[AnswerBlock, ...]:
         if not hits:
             return ()
         lines = [f"- {self._line(hit)}" for hit in hits]
-        return (Block("**Also**\n" + "\n".join(lines), "further candidates"),)
+        return (AnswerBlock("**Also**\n" + "\n".join(lines), "further candidates"),)
 
     def _line(self, hit: Hit) -> str:
         entry = None if _is_page(hit) else self._reader.entry(hit.id)
@@ -165,7 +165,7 @@ class Answerer:
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:
         overview = self._topics.overview(topic)
         ids = dict.fromkeys((topic, *overview.members, *(row.id for row in ranking.ranked)))
-        hits = tuple(self._hit(Ranked(i, 1.0 - 0.02 * n, "topic")) for n, i in enumerate(list(ids)[:limit]))
+        hits = tuple(self._hit(RankedId(i, 1.0 - 0.02 * n, "topic")) for n, i in enumerate(list(ids)[:limit]))
         return _Draft("page", hits, tuple(self._source_notes(ranking, hits)), overview.blocks)
 
 
@@ -173,7 +173,7 @@ def _is_page(hit: Hit) -> bool:
     return hit.kind in PAGE_SOURCES
 
 
-def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> Answer:
+def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> DocsAnswer:
     """Cuts a draft into parts and adds to each what is missing from it and how to get it."""
     notes = clip("\n".join(f"> {note}" for note in draft.notes), max_tokens // 3)
     room = max_tokens - _FOOTER_TOKENS - (tokens(notes) + 1 if notes else 0)
@@ -186,7 +186,7 @@ def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> Answer:
     pieces = [notes, text] if notes and part == 1 else [text]
     if part < len(pages):
         pieces.append(_footer(query, part, len(pages), left))
-    return Answer(draft.kind, "\n\n".join(pieces), draft.hits, draft.notes, part, len(pages))
+    return DocsAnswer(draft.kind, "\n\n".join(pieces), draft.hits, draft.notes, part, len(pages))
 
 
 def _footer(query: str, part: int, parts: int, left: Sequence[str]) -> str:

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
-from kb_serve.answer.budget import Block
+from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.render import first_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_serve.reader import Entry, PageEntry, Reader
+    from kb_serve.reader import BaseReader, PageEntry, SymbolEntry
 
 ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _MAX_WORDS = 4
@@ -20,17 +20,17 @@ _MOST = 200  # of one list: an overview has parts, but must end
 
 
 @dataclass(frozen=True, slots=True)
-class Overview:
+class TopicOverview:
     """What is said of a topic, and the ids it names in the order of their use."""
 
-    blocks: tuple[Block, ...]
+    blocks: tuple[AnswerBlock, ...]
     members: tuple[str, ...]
 
 
 class Topics:
     """Finds the manual's page for a topic and what Blender's own table ties to it."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
     def find(self, text: str) -> str:
@@ -74,7 +74,7 @@ class Topics:
             slugs += self._subtree(child.slug, depth - 1)
         return slugs
 
-    def overview(self, slug: str) -> Overview:
+    def overview(self, slug: str) -> TopicOverview:
         """The page, those below it, and the classes and operators that belong to it."""
         page = self._reader.page_entry(slug)
         assert page is not None
@@ -90,13 +90,13 @@ class Topics:
         classes.sort(key=lambda entry: self._order(entry, words))
         operators = [entry for entry in entries if entry.kind == "operator"]
         operators.sort(key=lambda entry: key(entry.owner.rpartition(".")[2]) not in names)
-        blocks = [Block(f"## {page.title}\n\n{page.summary}\n\n{page.url}", "summary")]
+        blocks = [AnswerBlock(f"## {page.title}\n\n{page.summary}\n\n{page.url}", "summary")]
         blocks += _listed("Classes", [_told(entry) for entry in classes])
         blocks += _listed("Operators", [_told(entry) for entry in operators])
         blocks += _listed("Pages", list(self._page_lines(slug)))
-        return Overview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
+        return TopicOverview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
 
-    def _order(self, entry: Entry, words: set[str]) -> tuple[bool, bool, int]:
+    def _order(self, entry: SymbolEntry, words: set[str]) -> tuple[bool, bool, int]:
         """Classes that bear the topic's name come first, modifiers before the settings they lead to."""
         return (
             not words <= set(terms(entry.name)),
@@ -111,15 +111,15 @@ class Topics:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
 
 
-def _told(entry: Entry) -> str:
+def _told(entry: SymbolEntry) -> str:
     return f"`{entry.path}` — {first_sentence(entry.line.partition(' — ')[2]) or entry.label}"
 
 
-def _listed(title: str, lines: list[str]) -> list[Block]:
+def _listed(title: str, lines: list[str]) -> list[AnswerBlock]:
     if not lines:
         return []
     shown = "\n".join(
         f"- {line}" if not line.startswith("  ") else f"  - {line.strip()}" for line in lines[:_MOST]
     )
     more = f"\n- … {len(lines) - _MOST} more" if len(lines) > _MOST else ""
-    return [Block(f"**{title}**\n{shown}{more}", title.lower())]
+    return [AnswerBlock(f"**{title}**\n{shown}{more}", title.lower())]

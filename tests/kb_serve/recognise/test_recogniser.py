@@ -17,14 +17,14 @@ from kb_build.schema import FORM_SHORT
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 KINDS = ("module", "class", "property", "function", "operator", "socket", "data", "context", "enum")
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_full_path_is_that_symbol_and_its_whole_answer(
-    kb: KnowledgeBase, reader: Reader, kind: str
+    kb: KnowledgeBase, reader: BaseReader, kind: str
 ) -> None:
     sample = paths(reader, kind)
     assert len(sample) > 100
@@ -35,7 +35,9 @@ def test_a_full_path_is_that_symbol_and_its_whole_answer(
 
 
 @pytest.mark.parametrize("around", ["`{}`", "'{}'", '"{}"', " {} ", "{}?", "{}.", "{}:", "{},", "\n{}\n"])
-def test_what_stands_around_a_name_does_not_matter(kb: KnowledgeBase, reader: Reader, around: str) -> None:
+def test_what_stands_around_a_name_does_not_matter(
+    kb: KnowledgeBase, reader: BaseReader, around: str
+) -> None:
     sample = of_data(reader, "property", 60) + paths(reader, "operator", 60)
     assert wrong(kb, [(around.format(path), path) for path in sample]) == []
 
@@ -43,13 +45,15 @@ def test_what_stands_around_a_name_does_not_matter(kb: KnowledgeBase, reader: Re
 @pytest.mark.parametrize(
     "arguments", ["()", "(a, b=1)", '(type="X", size=(1, 2))', "('INVOKE_DEFAULT')", "(f(x), [1])"]
 )
-def test_a_call_is_the_function_or_operator_called(kb: KnowledgeBase, reader: Reader, arguments: str) -> None:
+def test_a_call_is_the_function_or_operator_called(
+    kb: KnowledgeBase, reader: BaseReader, arguments: str
+) -> None:
     sample = of_data(reader, "function", 100) + paths(reader, "operator", 100)
     sample += paths(reader, "function", 100, "path NOT LIKE 'bpy.%'")
     assert wrong(kb, [(path + arguments, path) for path in sample]) == []
 
 
-def only(reader: Reader, spelled: str) -> bool:
+def only(reader: BaseReader, spelled: str) -> bool:
     """Whether nothing else has these letters: ``Annotation layers`` may be AnnotationLayers too."""
     return len({identifier for form, identifier in reader.by_key(key(spelled)) if form <= FORM_SHORT}) == 1
 
@@ -81,7 +85,7 @@ SPELLINGS = {
 @pytest.mark.parametrize("spelling", SPELLINGS)
 @pytest.mark.parametrize("kind", ["property", "function"])
 def test_a_member_is_found_in_every_usual_spelling(
-    kb: KnowledgeBase, reader: Reader, kind: str, spelling: str
+    kb: KnowledgeBase, reader: BaseReader, kind: str, spelling: str
 ) -> None:
     cases = [(SPELLINGS[spelling](*owner_and_name(path)), path) for path in of_data(reader, kind)]
     clear = [
@@ -102,7 +106,9 @@ def test_a_member_is_found_in_every_usual_spelling(
     ],
     ids=["without prefix", "types. only", "in words", "capitals", "small letters"],
 )
-def test_a_class_is_found_in_every_usual_spelling(kb: KnowledgeBase, reader: Reader, spell: object) -> None:
+def test_a_class_is_found_in_every_usual_spelling(
+    kb: KnowledgeBase, reader: BaseReader, spell: object
+) -> None:
     assert callable(spell)
     modules = {path.rpartition(".")[2] for path in paths(reader, "module", 1_000)}
     cases = [(spell(path.removeprefix(TYPES)), path) for path in classes(reader)]
@@ -113,7 +119,7 @@ def test_a_class_is_found_in_every_usual_spelling(kb: KnowledgeBase, reader: Rea
 
 
 @pytest.mark.parametrize("group", ["ui"])
-def test_a_panel_or_menu_is_found_by_its_name(kb: KnowledgeBase, reader: Reader, group: str) -> None:
+def test_a_panel_or_menu_is_found_by_its_name(kb: KnowledgeBase, reader: BaseReader, group: str) -> None:
     assert wrong(kb, [(path.removeprefix(TYPES), path) for path in classes(reader, group)]) == []
 
 
@@ -131,7 +137,7 @@ OPERATOR_SPELLINGS = {
 
 @pytest.mark.parametrize("spelling", OPERATOR_SPELLINGS)
 def test_an_operator_is_found_by_its_call_and_by_its_class(
-    kb: KnowledgeBase, reader: Reader, spelling: str
+    kb: KnowledgeBase, reader: BaseReader, spelling: str
 ) -> None:
     registered = set(classes(reader, "operator", 1_000))
     cases: list[tuple[str, str]] = []
@@ -147,7 +153,7 @@ def test_an_operator_is_found_by_its_call_and_by_its_class(
 
 
 @pytest.mark.parametrize("form", ["{}", "{}.default_value", "{}.default_value = 0.5", "node.{}"])
-def test_a_socket_is_found_by_class_and_name(kb: KnowledgeBase, reader: Reader, form: str) -> None:
+def test_a_socket_is_found_by_class_and_name(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
     cases: list[tuple[str, str]] = []
     for path in paths(reader, "socket", 150):
         entry = reader.entry(path)
@@ -160,7 +166,9 @@ def test_a_socket_is_found_by_class_and_name(kb: KnowledgeBase, reader: Reader, 
     assert wrong(kb, cases) == []
 
 
-def test_context_and_data_are_abbreviated_as_in_blenders_console(kb: KnowledgeBase, reader: Reader) -> None:
+def test_context_and_data_are_abbreviated_as_in_blenders_console(
+    kb: KnowledgeBase, reader: BaseReader
+) -> None:
     cases: list[tuple[str, str]] = []
     for path in paths(reader, "context", where="owner = 'bpy.context'"):
         name = path.rpartition(".")[2]
@@ -172,7 +180,9 @@ def test_context_and_data_are_abbreviated_as_in_blenders_console(kb: KnowledgeBa
     assert wrong(kb, cases) == []
 
 
-def test_what_a_class_inherits_is_found_at_the_class_that_has_it(kb: KnowledgeBase, reader: Reader) -> None:
+def test_what_a_class_inherits_is_found_at_the_class_that_has_it(
+    kb: KnowledgeBase, reader: BaseReader
+) -> None:
     chance = random.Random(SEED)
     cases: list[tuple[str, str]] = []
     for path in classes(reader, count=400):
@@ -209,7 +219,7 @@ def test_names_that_share_a_key_are_told_apart_by_how_they_are_written(kb: Knowl
 # A name without its owner
 
 
-def unique_names(reader: Reader) -> list[tuple[str, str]]:
+def unique_names(reader: BaseReader) -> list[tuple[str, str]]:
     """(name, path) of members whose name, of several words, nothing else has."""
     counts = Counter(row[0] for row in reader.rows("SELECT name FROM symbols"))
     found = [(path.rpartition(".")[2], path) for path in of_data(reader, "property", 5_000)]
@@ -218,12 +228,12 @@ def unique_names(reader: Reader) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("sentence", ["{}", "what does {} do?", "the `{}` setting", "x.{} = 1"])
 def test_a_name_that_only_one_symbol_has_is_that_symbol(
-    kb: KnowledgeBase, reader: Reader, sentence: str
+    kb: KnowledgeBase, reader: BaseReader, sentence: str
 ) -> None:
     assert wrong(kb, [(sentence.format(name), path) for name, path in unique_names(reader)]) == []
 
 
-def test_a_label_that_only_one_symbol_has_leads_there(kb: KnowledgeBase, reader: Reader) -> None:
+def test_a_label_that_only_one_symbol_has_leads_there(kb: KnowledgeBase, reader: BaseReader) -> None:
     counts = Counter(row[0].lower() for row in reader.rows("SELECT label FROM symbols"))
     cases: list[tuple[str, str]] = []
     for path in of_data(reader, "property", 3_000) + paths(reader, "operator", 2_500):
@@ -245,7 +255,7 @@ def test_a_label_that_only_one_symbol_has_leads_there(kb: KnowledgeBase, reader:
 
 @pytest.mark.parametrize("prefix", [TYPES, ""])
 def test_a_misspelt_member_is_corrected_and_said_to_be(
-    kb: KnowledgeBase, reader: Reader, prefix: str
+    kb: KnowledgeBase, reader: BaseReader, prefix: str
 ) -> None:
     chance = random.Random(SEED)
     checked = 0
@@ -261,7 +271,7 @@ def test_a_misspelt_member_is_corrected_and_said_to_be(
     assert checked > 100
 
 
-def test_a_misspelt_class_is_corrected(kb: KnowledgeBase, reader: Reader) -> None:
+def test_a_misspelt_class_is_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:
     chance = random.Random(SEED)
     cases = [
         (f"{misspelt(owner, chance)}.{name}", path)
@@ -273,7 +283,7 @@ def test_a_misspelt_class_is_corrected(kb: KnowledgeBase, reader: Reader) -> Non
     assert len(wrong(kb, cases)) <= 0.03 * len(cases)
 
 
-def test_a_misspelt_operator_is_corrected(kb: KnowledgeBase, reader: Reader) -> None:
+def test_a_misspelt_operator_is_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:
     chance = random.Random(SEED)
     cases: list[tuple[str, str]] = []
     for path in paths(reader, "operator"):
@@ -284,14 +294,14 @@ def test_a_misspelt_operator_is_corrected(kb: KnowledgeBase, reader: Reader) -> 
     assert len(wrong(kb, cases)) <= 0.01 * len(cases)
 
 
-def test_a_misspelt_lone_name_is_corrected(kb: KnowledgeBase, reader: Reader) -> None:
+def test_a_misspelt_lone_name_is_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:
     chance = random.Random(SEED)
     cases = [(misspelt(name, chance), path) for name, path in unique_names(reader) if len(name) >= 12]
     assert len(cases) > 50
     assert len(wrong(kb, cases)) <= 0.03 * len(cases)
 
 
-def test_a_right_name_is_not_corrected(kb: KnowledgeBase, reader: Reader) -> None:
+def test_a_right_name_is_not_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in (
         of_data(reader, "property", 200) + paths(reader, "operator", 100) + paths(reader, "class", 100)
     ):
@@ -301,7 +311,7 @@ def test_a_right_name_is_not_corrected(kb: KnowledgeBase, reader: Reader) -> Non
 # Enumerations
 
 
-def enum_items(reader: Reader) -> list[tuple[str, str]]:
+def enum_items(reader: BaseReader) -> list[tuple[str, str]]:
     """(item, owner) of items that only one enumeration has."""
     owners: dict[str, set[str]] = defaultdict(set)
     for owner, item in reader.rows("SELECT owner, identifier FROM enum_items ORDER BY owner"):
@@ -320,17 +330,17 @@ def enum_items(reader: Reader) -> list[tuple[str, str]]:
     return random.Random(SEED).sample(found, 250)
 
 
-def _of_ui(reader: Reader, owner: str) -> bool:
+def _of_ui(reader: BaseReader, owner: str) -> bool:
     entry = reader.entry(owner)
     return entry is not None and entry.group in {"ui", "operator"}
 
 
 @pytest.mark.parametrize("form", ["{}", "'{}'", '"{}"', "{}?"])
-def test_an_enum_item_leads_to_what_takes_it(kb: KnowledgeBase, reader: Reader, form: str) -> None:
+def test_an_enum_item_leads_to_what_takes_it(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
     assert wrong(kb, [(form.format(item), owner) for item, owner in enum_items(reader)]) == []
 
 
-def test_an_item_assigned_leads_to_the_property_assigned(kb: KnowledgeBase, reader: Reader) -> None:
+def test_an_item_assigned_leads_to_the_property_assigned(kb: KnowledgeBase, reader: BaseReader) -> None:
     cases: list[tuple[str, str]] = []
     for item, owner in enum_items(reader):
         entry = reader.entry(owner)
@@ -343,7 +353,9 @@ def test_an_item_assigned_leads_to_the_property_assigned(kb: KnowledgeBase, read
 # Error messages
 
 
-def test_an_attribute_error_leads_to_the_attribute_that_was_meant(kb: KnowledgeBase, reader: Reader) -> None:
+def test_an_attribute_error_leads_to_the_attribute_that_was_meant(
+    kb: KnowledgeBase, reader: BaseReader
+) -> None:
     chance = random.Random(SEED)
     cases: list[tuple[str, str]] = []
     for path in of_data(reader, "property"):
@@ -356,7 +368,7 @@ def test_an_attribute_error_leads_to_the_attribute_that_was_meant(kb: KnowledgeB
     assert wrong(kb, cases, within=5) == []
 
 
-def test_an_enum_error_leads_to_the_property_with_those_items(kb: KnowledgeBase, reader: Reader) -> None:
+def test_an_enum_error_leads_to_the_property_with_those_items(kb: KnowledgeBase, reader: BaseReader) -> None:
     checked: list[tuple[str, str]] = []
     for item, owner in enum_items(reader):
         symbol = reader.symbol(owner)
@@ -368,12 +380,12 @@ def test_an_enum_error_leads_to_the_property_with_those_items(kb: KnowledgeBase,
     assert wrong(kb, checked, within=2) == []
 
 
-def test_a_failed_poll_leads_to_the_operator(kb: KnowledgeBase, reader: Reader) -> None:
+def test_a_failed_poll_leads_to_the_operator(kb: KnowledgeBase, reader: BaseReader) -> None:
     message = "RuntimeError: Operator {}.poll() failed, context is incorrect"
     assert wrong(kb, [(message.format(path), path) for path in paths(reader, "operator", 100)]) == []
 
 
-def test_an_unknown_keyword_leads_to_the_operator_called(kb: KnowledgeBase, reader: Reader) -> None:
+def test_an_unknown_keyword_leads_to_the_operator_called(kb: KnowledgeBase, reader: BaseReader) -> None:
     message = 'TypeError: Converting py args to operator properties: : keyword "foo" unrecognized\n{}(foo=1)'
     assert wrong(kb, [(message.format(path), path) for path in paths(reader, "operator", 100)]) == []
 
@@ -381,14 +393,14 @@ def test_an_unknown_keyword_leads_to_the_operator_called(kb: KnowledgeBase, read
 # Other versions
 
 
-def former(reader: Reader, where: str, count: int = 250) -> list[str]:
+def former(reader: BaseReader, where: str, count: int = 250) -> list[str]:
     rows = reader.rows(f"SELECT path FROM removed WHERE {where} ORDER BY path")
     return random.Random(SEED).sample([row[0] for row in rows], count)
 
 
 @pytest.mark.parametrize("prefix", [True, False])
 def test_what_another_version_had_is_said_to_be_gone_since_when(
-    kb: KnowledgeBase, reader: Reader, prefix: bool
+    kb: KnowledgeBase, reader: BaseReader, prefix: bool
 ) -> None:
     for path in former(reader, "path LIKE 'bpy.types.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%(%'"):
         answer = kb.query(path if prefix else path.removeprefix(TYPES))
@@ -398,7 +410,7 @@ def test_what_another_version_had_is_said_to_be_gone_since_when(
         assert span[1] in note, note
 
 
-def test_what_this_version_has_instead_comes_first(kb: KnowledgeBase, reader: Reader) -> None:
+def test_what_this_version_has_instead_comes_first(kb: KnowledgeBase, reader: BaseReader) -> None:
     checked = 0
     for path in former(reader, "path NOT LIKE '%:%' AND path NOT LIKE '%(%'", 400):
         instead = {target for target, _ in reader.replacements(path)}
@@ -408,13 +420,13 @@ def test_what_this_version_has_instead_comes_first(kb: KnowledgeBase, reader: Re
     assert checked > 100
 
 
-def test_a_former_item_or_argument_is_known_too(kb: KnowledgeBase, reader: Reader) -> None:
+def test_a_former_item_or_argument_is_known_too(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in former(reader, "path LIKE '%:%'", 150):
         answer = kb.query(path)
         assert any(f"`{path}` does not exist" in note for note in answer.notes), path
 
 
-def test_an_attribute_error_of_a_former_class_says_so(kb: KnowledgeBase, reader: Reader) -> None:
+def test_an_attribute_error_of_a_former_class_says_so(kb: KnowledgeBase, reader: BaseReader) -> None:
     where = (
         "path LIKE 'bpy.types.%.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%[%' AND path NOT LIKE '%(%'"
     )

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.rank.topics import Topics
+from kb_serve.answer.topic_overview import Topics
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 
 @pytest.fixture(scope="module")
-def topics(reader: Reader) -> Topics:
+def topics(reader: BaseReader) -> Topics:
     return Topics(reader)
 
 
@@ -53,7 +53,7 @@ def test_the_hits_of_an_overview_are_what_it_names(kb: KnowledgeBase) -> None:
     assert any(identifier.startswith("bpy.ops.rigidbody.") for identifier in ids)
 
 
-def test_everything_an_overview_names_exists(topics: Topics, reader: Reader) -> None:
+def test_everything_an_overview_names_exists(topics: Topics, reader: BaseReader) -> None:
     for (slug,) in reader.rows("SELECT slug FROM pages WHERE source = 'manual'"):
         overview = topics.overview(slug)
         assert len(set(overview.members)) == len(overview.members)
@@ -88,7 +88,7 @@ def test_addresses_and_slugs_lead_to_the_page_or_symbol(kb: KnowledgeBase, query
 
 
 def test_every_page_is_found_by_its_slug_its_url_and_among_its_title(
-    kb: KnowledgeBase, reader: Reader
+    kb: KnowledgeBase, reader: BaseReader
 ) -> None:
     pages = reader.rows("SELECT slug, title, url, source FROM pages ORDER BY slug")
     assert len(pages) > 50

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import paths
 
-from kb_serve.rank.ranking import SURE, Ranker
+from kb_serve.rank.merging import SURE, QueryRanker
 
 if TYPE_CHECKING:
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 
 @pytest.fixture(scope="module")
-def ranker(reader: Reader) -> Ranker:
-    return Ranker(reader)
+def ranker(reader: BaseReader) -> QueryRanker:
+    return QueryRanker(reader)
 
 
-def test_an_exact_name_needs_no_search(ranker: Ranker, reader: Reader) -> None:
+def test_an_exact_name_needs_no_search(ranker: QueryRanker, reader: BaseReader) -> None:
     for path in paths(reader, "operator", 30):
         ranking = ranker.rank(path)
         assert ranking.named
@@ -29,7 +29,7 @@ def test_an_exact_name_needs_no_search(ranker: Ranker, reader: Reader) -> None:
 @pytest.mark.parametrize(
     "query", ["make the cloth finer", "bake a simulation to disk", "smooth the mesh surface"]
 )
-def test_prose_names_nothing(ranker: Ranker, query: str) -> None:
+def test_prose_names_nothing(ranker: QueryRanker, query: str) -> None:
     ranking = ranker.rank(query)
     assert not ranking.named
     assert ranking.ranked
@@ -42,7 +42,7 @@ def test_prose_names_nothing(ranker: Ranker, query: str) -> None:
         "ClothSettings.quality and how it slows the simulation",
     ],
 )
-def test_what_is_named_comes_before_what_is_found(ranker: Ranker, query: str) -> None:
+def test_what_is_named_comes_before_what_is_found(ranker: QueryRanker, query: str) -> None:
     ranking = ranker.rank(query)
     whys = [row.why for row in ranking.ranked]
     assert ranking.ranked[0].score >= SURE
@@ -50,7 +50,7 @@ def test_what_is_named_comes_before_what_is_found(ranker: Ranker, query: str) ->
     assert "found" in whys
 
 
-def test_no_id_is_ranked_twice_and_scores_are_shares(ranker: Ranker) -> None:
+def test_no_id_is_ranked_twice_and_scores_are_shares(ranker: QueryRanker) -> None:
     for query in (
         "quality",
         "cloth",
@@ -63,7 +63,7 @@ def test_no_id_is_ranked_twice_and_scores_are_shares(ranker: Ranker) -> None:
         assert all(0 < row.score <= 1 for row in rows)
 
 
-def test_notes_are_said_once_each(ranker: Ranker) -> None:
+def test_notes_are_said_once_each(ranker: QueryRanker) -> None:
     notes = ranker.rank("action.fcurves action.fcurves action.fcurves").notes
     assert len(notes) == len(set(notes)) == 1
     assert "`bpy.types.Action.fcurves` does not exist in Blender" in notes[0]

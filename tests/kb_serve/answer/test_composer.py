@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, classes, of_data, paths
 
-from kb_serve.answer.answer import LEAST_TOKENS, MAX_LIMIT
 from kb_serve.answer.budget import tokens
+from kb_serve.answer.composer import LEAST_TOKENS, MAX_LIMIT
 from kb_serve.errors import BadQuery
 
 if TYPE_CHECKING:
-    from kb_serve.answer.answer import Answer
+    from kb_serve.answer.composer import DocsAnswer
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 QUERIES = (
     "bpy.types.Object", "bpy.types.ID", "bpy.ops.object.modifier_add", "bpy.types", "mathutils.Matrix", "bpy.ops.mesh",
@@ -29,7 +29,7 @@ QUERIES = (
 FOOTER = re.compile(r"\n\n_Part \d+ of \d+\. Left: .*\. Next: blender_docs\(.*\)_$", re.DOTALL)
 
 
-def body(answer: Answer) -> str:
+def body(answer: DocsAnswer) -> str:
     """What a part says, without the notes before it and the footer behind it; white space left out."""
     text = FOOTER.sub("", answer.text) if answer.part < answer.parts else answer.text
     if answer.part == 1 and answer.notes:
@@ -37,7 +37,7 @@ def body(answer: Answer) -> str:
     return "".join(text.split())
 
 
-def whole(kb: KnowledgeBase, query: str, max_tokens: int) -> list[Answer]:
+def whole(kb: KnowledgeBase, query: str, max_tokens: int) -> list[DocsAnswer]:
     first = kb.query(query, max_tokens=max_tokens)
     return [first, *(kb.query(query, max_tokens=max_tokens, part=n) for n in range(2, first.parts + 1))]
 
@@ -56,7 +56,7 @@ def test_no_part_exceeds_the_budget_and_together_they_say_everything(kb: Knowled
         }
 
 
-def test_the_budget_holds_for_any_symbol_and_any_budget(kb: KnowledgeBase, reader: Reader) -> None:
+def test_the_budget_holds_for_any_symbol_and_any_budget(kb: KnowledgeBase, reader: BaseReader) -> None:
     chance = random.Random(SEED)
     sample = paths(reader, "class", 60) + paths(reader, "operator", 60) + of_data(reader, "property", 60)
     sample += paths(reader, "module", 40) + [f"{path}x" for path in of_data(reader, "property", 40)]
@@ -119,7 +119,7 @@ def test_no_more_hits_than_asked_for_and_none_twice(kb: KnowledgeBase, limit: in
         assert len({hit.id for hit in hits}) == len(hits)
 
 
-def test_hits_are_ranked_and_exist(kb: KnowledgeBase, reader: Reader) -> None:
+def test_hits_are_ranked_and_exist(kb: KnowledgeBase, reader: BaseReader) -> None:
     for query in QUERIES:
         answer = kb.query(query, limit=MAX_LIMIT)
         assert (answer.kind == "none") == (answer.hits == ())
@@ -169,6 +169,6 @@ def test_a_long_note_does_not_crowd_out_the_answer(kb: KnowledgeBase) -> None:
     assert "RigidBodyObject" in answer.text
 
 
-def test_classes_of_the_interface_are_answered_too(kb: KnowledgeBase, reader: Reader) -> None:
+def test_classes_of_the_interface_are_answered_too(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in classes(reader, "ui", 30) + classes(reader, "operator", 30):
         assert kb.query(path).hits[0].id == path

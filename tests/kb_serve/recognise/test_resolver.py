@@ -14,33 +14,35 @@ import pytest
 from asking import SEED, TYPES, classes, first_id, wrong
 
 from kb_serve.recognise.chains import find_chains
-from kb_serve.recognise.resolver import Walker, variable_fit
+from kb_serve.recognise.resolver import Resolver, variable_fit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import Entry, Reader
+    from kb_serve.reader import BaseReader, SymbolEntry
 
 
-def lineage(reader: Reader, path: str) -> set[str]:
+def lineage(reader: BaseReader, path: str) -> set[str]:
     return {entry.path for entry in reader.lineage(path)}
 
 
-def below(reader: Reader, base: str) -> Iterator[Entry]:
+def below(reader: BaseReader, base: str) -> Iterator[SymbolEntry]:
     yield from reader.descendants(TYPES + base)
 
 
-def default_name(entry: Entry) -> str:
+def default_name(entry: SymbolEntry) -> str:
     """What Blender calls a new modifier, constraint or node of a class."""
     return entry.label.removesuffix(" Modifier").removesuffix(" Constraint")
 
 
-def properties(reader: Reader, cls: str) -> list[Entry]:
+def properties(reader: BaseReader, cls: str) -> list[SymbolEntry]:
     return [entry for entry in reader.members(cls).values() if entry.kind == "property"]
 
 
-def test_every_way_to_reach_a_class_leads_to_it_or_to_what_it_is(kb: KnowledgeBase, reader: Reader) -> None:
+def test_every_way_to_reach_a_class_leads_to_it_or_to_what_it_is(
+    kb: KnowledgeBase, reader: BaseReader
+) -> None:
     """``reached`` expressions are what answers show: they must be answered themselves."""
     checked, lost = 0, []
     for path in classes(reader, count=2_000):
@@ -76,7 +78,7 @@ def test_every_way_to_reach_a_class_leads_to_it_or_to_what_it_is(kb: KnowledgeBa
     ],
 )
 def test_an_element_is_known_by_the_name_that_blender_gives_it(
-    kb: KnowledgeBase, reader: Reader, family: str, form: str
+    kb: KnowledgeBase, reader: BaseReader, family: str, form: str
 ) -> None:
     names = Counter(default_name(entry) for entry in below(reader, family))
     cases = [
@@ -98,13 +100,13 @@ def test_of_two_with_one_name_the_one_called_so_comes_first(kb: KnowledgeBase) -
 @pytest.mark.parametrize("suffix", ["", ".default_value", ".default_value = 1.0", ".hide"])
 @pytest.mark.parametrize("tree", ["ShaderNodeTree", "GeometryNodeTree"])
 def test_a_socket_of_a_named_node_is_that_socket(
-    kb: KnowledgeBase, reader: Reader, tree: str, suffix: str
+    kb: KnowledgeBase, reader: BaseReader, tree: str, suffix: str
 ) -> None:
     holder = {
         "ShaderNodeTree": "material.node_tree",
         "GeometryNodeTree": 'bpy.context.object.modifiers["GeometryNodes"].node_group',
     }[tree]
-    nodes: list[Entry] = []
+    nodes: list[SymbolEntry] = []
     for entry in below(reader, "NodeInternal"):
         symbol = reader.symbol(entry.path)
         if symbol and tree in symbol.trees:
@@ -142,7 +144,9 @@ ROOTS = {
 
 
 @pytest.mark.parametrize("root", ROOTS)
-def test_members_of_a_well_known_expression_are_found(kb: KnowledgeBase, reader: Reader, root: str) -> None:
+def test_members_of_a_well_known_expression_are_found(
+    kb: KnowledgeBase, reader: BaseReader, root: str
+) -> None:
     members = [
         entry
         for entry in reader.members(TYPES + ROOTS[root]).values()
@@ -155,7 +159,7 @@ def test_members_of_a_well_known_expression_are_found(kb: KnowledgeBase, reader:
 
 
 @pytest.mark.parametrize("form", ['bpy.data.{}["X"].{}', "D.{}[0].{}", "bpy.data.{}[-1].{} = x"])
-def test_data_blocks_are_found_by_name_or_number(kb: KnowledgeBase, reader: Reader, form: str) -> None:
+def test_data_blocks_are_found_by_name_or_number(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
     cases = [
         (form.format(entry.name, member.name), member.path)
         for entry in reader.members("bpy.types.BlendData").values()
@@ -166,7 +170,7 @@ def test_data_blocks_are_found_by_name_or_number(kb: KnowledgeBase, reader: Read
 
 
 def test_a_collection_has_its_own_methods_and_those_of_every_collection(
-    kb: KnowledgeBase, reader: Reader
+    kb: KnowledgeBase, reader: BaseReader
 ) -> None:
     cases = [("bpy.context.object.modifiers.foreach_get", "bpy.types.bpy_prop_collection.foreach_get")]
     for entry in reader.members("bpy.types.BlendData").values():
@@ -242,12 +246,12 @@ def test_a_variable_fits_the_class_whose_name_it_bears(
     assert low <= variable_fit(variable, cls) <= high
 
 
-def test_no_chain_takes_long_or_fails(reader: Reader) -> None:
-    walker, chance = Walker(reader), random.Random(SEED)
+def test_no_chain_takes_long_or_fails(reader: BaseReader) -> None:
+    resolver, chance = Resolver(reader), random.Random(SEED)
     names = [row[0] for row in reader.rows("SELECT name FROM symbols WHERE kind = 'property' ORDER BY path")]
     for _ in range(150):
         text = chance.choice(["bpy.context", "obj", "x", "bpy.data", "bpy.ops", "node"])
         for _ in range(chance.randrange(1, 12)):
             text += chance.choice([".{}", '["{}"]', "[0]", "()", "({})"]).format(chance.choice(names))
-        for walked in walker.walk(find_chains(text)[0]):
-            assert walked.complete or walked.missing or not walked.symbols
+        for resolved in resolver.resolve(find_chains(text)[0]):
+            assert resolved.complete or resolved.missing or not resolved.symbols
