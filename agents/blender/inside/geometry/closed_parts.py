@@ -4,7 +4,7 @@
 import numpy
 from mathutils import Vector
 
-from .contact_regions import labels
+from .topology import connected_labels
 
 TOUCH = 2e-5  # metres; what is no deeper only touches
 _THIN = 0.002  # an inside that is no wider is none: no place in it is deeper than noise
@@ -17,11 +17,11 @@ def thinned(rows, most):
     return rows[:: len(rows) // most + 1] if len(rows) > most else rows
 
 
-class _Body:
+class _ClosedParts:
     """What of a solid has an inside (``core``) and what has none (``sheets``): solids, or None."""
 
     def __init__(self, solid):
-        mask = _in_bodies(solid)
+        mask = _in_closed_parts(solid)
         if mask.all():
             core, sheets = solid, None
         elif not mask.any():
@@ -33,14 +33,14 @@ class _Body:
         self.core, self.sheets = core, sheets
 
 
-def body_of(solid):
-    """See _Body; made once."""
-    if solid.body is None:
-        solid.body = _Body(solid)
-    return solid.body
+def closed_parts_of(solid):
+    """See _ClosedParts; made once."""
+    if solid.closed_parts is None:
+        solid.closed_parts = _ClosedParts(solid)
+    return solid.closed_parts
 
 
-def _in_bodies(solid):
+def _in_closed_parts(solid):
     """Which triangles belong to a piece that is closed and not thin."""
     places, same = solid.welded
     corners = same[solid.triangles]
@@ -50,7 +50,7 @@ def _in_bodies(solid):
     volumes = numpy.einsum("ij,ij->i", a - places.mean(axis=0), across) / 6
     if solid.closed and solid.oriented and 2 * abs(volumes.sum()) >= _THIN * areas.sum():
         return numpy.ones(len(corners), bool)
-    label = labels(len(places), corners[:, :2], corners[:, 1:])
+    label = connected_labels(len(places), corners[:, :2], corners[:, 1:])
     known, pieces = numpy.unique(label[corners[:, 0]], return_inverse=True)
     pieces, count = pieces.reshape(-1), len(known)
     edges, sides = solid.edges
@@ -68,15 +68,15 @@ def _in_bodies(solid):
     return (~is_open[known] & is_thick)[pieces]
 
 
-def is_in(one, other):
+def is_in(solid, other):
     """Whether a piece of one, of which nothing crosses the other, is inside of it."""
-    first, low, high = _pieces_of(one)
+    first, low, high = _pieces_of(solid)
     first = first[((low >= other.low - _SLACK) & (high <= other.high + _SLACK)).all(axis=1)]
-    if not len(first) or body_of(other).core is None:
+    if not len(first) or closed_parts_of(other).core is None:
         return False
-    core = body_of(other).core
+    core = closed_parts_of(other).core
     for triangle in thinned(first, _MOST_PIECES).tolist():
-        for place in (one.points[one.triangles[triangle]].mean(axis=0), middle_behind(one, triangle)):
+        for place in (solid.points[solid.triangles[triangle]].mean(axis=0), middle_behind(solid, triangle)):
             if place is not None and core.nearest(place)[3] > TOUCH and core.holds(place):
                 return True
     return False
@@ -87,7 +87,7 @@ def _pieces_of(solid):
     if solid.pieces is None:
         places, same = solid.welded
         corners = same[solid.triangles]
-        label = labels(len(places), corners[:, :2], corners[:, 1:])[corners[:, 0]]
+        label = connected_labels(len(places), corners[:, :2], corners[:, 1:])[corners[:, 0]]
         order = numpy.argsort(label, kind="stable")
         starts = numpy.flatnonzero(numpy.diff(label[order], prepend=-1))
         low, high = solid.boxes
@@ -101,7 +101,7 @@ def _pieces_of(solid):
 
 def middle_behind(solid, triangle):
     """The middle of what of a closed solid is behind a triangle; None for an open one."""
-    core = body_of(solid).core
+    core = closed_parts_of(solid).core
     if core is None:
         return None
     a, b, c = solid.points[solid.triangles[triangle]]

@@ -36,7 +36,7 @@ def gap(a, b, beyond=math.inf, enough=0.0):
     _corners(b, a, best, swapped=True)
     if not best.is_enough:
         _edges(a, b, best)
-    return best.found
+    return best.pair
 
 
 def apart(a, b):
@@ -48,36 +48,36 @@ def _touch(a, b, best):
     """What is near enough, if the first corners of one show it: most contacts are corners on faces."""
     other_way = a.has_tree or (not b.has_tree and len(a.triangles) < len(b.triangles))
     for swapped in (other_way, not other_way):
-        one, other = (b, a) if swapped else (a, b)
-        least = _to_box(one.points, one.points, other.low, other.high)
+        solid, other = (b, a) if swapped else (a, b)
+        least = _to_box(solid.points, solid.points, other.low, other.high)
         for at in least.argpartition(_FIRST)[:_FIRST] if len(least) > _FIRST else range(len(least)):
-            point = one.points[at].tolist()
+            point = solid.points[at].tolist()
             place, _, _, distance = other.nearest(point, min(best.distance * (1 + 1e-6) + 1e-9, 1e30))
             if place is not None:
                 best.take(distance, Vector(point), place, swapped=swapped)
             if best.is_enough:
-                return best.found
+                return best.pair
     return None
 
 
 class _Best:
     def __init__(self, beyond, enough):
         self.distance, self._enough = beyond, enough
-        self.found = None
+        self.pair = None
 
     @property
     def is_enough(self):
-        return self.found is not None and self.distance <= self._enough
+        return self.pair is not None and self.distance <= self._enough
 
     def take(self, distance, here, there, *, swapped=False):
-        if distance < self.distance or (self.found is None and distance == self.distance):
+        if distance < self.distance or (self.pair is None and distance == self.distance):
             self.distance = distance
-            self.found = (distance, there, here) if swapped else (distance, here, there)
+            self.pair = (distance, there, here) if swapped else (distance, here, there)
 
 
-def _corners(one, other, best, *, swapped):
+def _corners(solid, other, best, *, swapped):
     """Drops the corners of one onto the other, those first that may be nearest."""
-    points = one.points
+    points = solid.points
     if len(points) > _FEW:
         points = points[:: len(points) // _FEW + 1]
     least = _to_box(points, points, other.low, other.high)
@@ -91,16 +91,16 @@ def _corners(one, other, best, *, swapped):
         if place is not None:
             best.take(distance, Vector(point), place, swapped=swapped)
             seeds.append((distance, point))
-    if len(points) < len(one.points):
+    if len(points) < len(solid.points):
         for distance, point in sorted(seeds)[:_SEEDS]:
-            best.take(*_settled(Vector(point), distance, one, other), swapped=swapped)
+            best.take(*_settled(Vector(point), distance, solid, other), swapped=swapped)
 
 
-def _settled(point, distance, one, other):
-    """The nearest pair that the foot of a point on ``one`` ends at, going to and fro: (distance, on one, on other)."""
+def _settled(point, distance, solid, other):
+    """Projects a point to and fro between two solids until it settles: (distance, place on solid, place on other)."""
     here, there = point, other.nearest(point)[0]
     for _ in range(_ROUNDS):
-        here_next = one.nearest(there)[0]
+        here_next = solid.nearest(there)[0]
         there_next = other.nearest(here_next)[0]
         shorter = (there_next - here_next).length
         here, there = here_next, there_next
@@ -118,8 +118,8 @@ def _to_box(lows, highs, low, high):
 def _edges(a, b, best):
     """Looks at the edges that may come nearer to each other between their ends."""
     ours, theirs = (
-        _near(a, b, best, best.found and best.found[1]),
-        _near(b, a, best, best.found and best.found[2]),
+        _near(a, b, best, best.pair and best.pair[1]),
+        _near(b, a, best, best.pair and best.pair[2]),
     )
     if len(ours) * len(theirs) > _MOST_PAIRS:
         ours, theirs = (_nearer(some, other, best.distance) for some, other in ((ours, b), (theirs, a)))
@@ -151,13 +151,13 @@ def _nearer(edges, other, distance):
     if len(edges) > _FEW:
         chosen = numpy.argsort(-halves)[:_FEW]
         edges, middles, halves = edges[chosen], middles[chosen], halves[chosen]
-    found = []
+    ranked = []
     for at, (middle, half) in enumerate(zip(middles.tolist(), halves.tolist(), strict=True)):
         away = other.nearest(middle, distance + half)[3]
         if away is not None:
-            found.append((away - half, at))
-    found.sort()
-    return edges[[at for _, at in found[:most]]]
+            ranked.append((away - half, at))
+    ranked.sort()
+    return edges[[at for _, at in ranked[:most]]]
 
 
 def _edge_pairs(ours, theirs, best):

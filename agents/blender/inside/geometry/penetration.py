@@ -10,14 +10,14 @@ is less. What is turned inside out, or has the camera in it, is hollow like a ro
 import numpy
 from mathutils import Vector
 
-from .closed_parts import TOUCH, body_of, is_in, middle_behind, thinned
-from .contact_regions import labels
-from .sheet_overlap import reach_through
+from .closed_parts import TOUCH, closed_parts_of, is_in, middle_behind, thinned
+from .sheet_penetration import reach_through
 from .solids import meeting
-from .triangle_cuts import Cuts, normals_of, unit
+from .topology import connected_labels
+from .triangle_intersections import IntersectionLines, normals_of, unit
 
 _MOST_PAIRS = 200_000
-_MOST_CUTS = 4_000
+_MOST_LINES = 4_000
 _MOST_PLACES = 1_500
 _MOST_OF_SHEET = 500
 _ALONG = numpy.array((0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98))  # of what of an edge may be inside
@@ -45,12 +45,12 @@ def crossing(a, b, noise=0.0):
     pairs = meeting(a, b, _MOST_PAIRS)
     if not len(pairs) and not is_in(a, b) and not is_in(b, a):
         return None
-    cuts = Cuts(a, b, thinned(pairs, _MOST_CUTS))
-    ours, theirs = body_of(a), body_of(b)
-    depth, place = _Shared(a, b, cuts).depth()
+    lines = IntersectionLines(a, b, thinned(pairs, _MOST_LINES))
+    ours, theirs = closed_parts_of(a), closed_parts_of(b)
+    depth, place = _Shared(a, b, lines).depth()
     if ours.sheets is not None and theirs.sheets is not None and len(pairs):
         reach = reach_through(ours.sheets, theirs.sheets)
-        depth, place = max((depth, place), reach, key=lambda one: one[0])
+        depth, place = max((depth, place), reach, key=lambda reach: reach[0])
     return min(depth, ceiling), Vector(place), ""
 
 
@@ -58,11 +58,11 @@ def _are_one(a, b):
     """Whether two sheets are at the same place: nothing of them crosses."""
     if max(numpy.abs(a.low - b.low).max(), numpy.abs(a.high - b.high).max()) > TOUCH:
         return False
-    if body_of(a).core is not None or body_of(b).core is not None:
+    if closed_parts_of(a).core is not None or closed_parts_of(b).core is not None:
         return False
-    for one, other in ((a, b), (b, a)):
+    for solid, other in ((a, b), (b, a)):
         places = thinned(
-            numpy.concatenate([one.points, one.points[one.triangles].mean(axis=1)]), _MOST_OF_SHEET
+            numpy.concatenate([solid.points, solid.points[solid.triangles].mean(axis=1)]), _MOST_OF_SHEET
         )
         if any(other.nearest(place, TOUCH)[0] is None for place in places.tolist()):
             return False
@@ -83,20 +83,25 @@ def _nudged(solid):
 class _Shared:
     """What two solids share, of which one has an inside at least."""
 
-    def __init__(self, a, b, cuts):
-        self._cores = body_of(a).core, body_of(b).core
-        self._cuts = cuts, cuts.swapped()
+    def __init__(self, a, b, lines):
+        self._cores = closed_parts_of(a).core, closed_parts_of(b).core
+        self._lines = lines, lines.swapped()
         self._deepest = [
-            _deepest(one, core, lines)
-            for one, core, lines in ((a, self._cores[1], self._cuts[0]), (b, self._cores[0], self._cuts[1]))
+            _deepest(solid, core, lines)
+            for solid, core, lines in (
+                (a, self._cores[1], self._lines[0]),
+                (b, self._cores[0], self._lines[1]),
+            )
             if core is not None
         ]
 
     def depth(self):
         """(depth, a place of it): of the surface of one, below that of the other; or of a place within both."""
-        lines = self._cuts[0].middles
-        best = 0.0, lines[0] if len(lines) else self._cuts[0].one.points[0]
-        best = max([best, *((depth, place) for depth, place, _ in self._deepest)], key=lambda one: one[0])
+        lines = self._lines[0].middles
+        best = 0.0, lines[0] if len(lines) else self._lines[0].solid.points[0]
+        best = max(
+            [best, *((depth, place) for depth, place, _ in self._deepest)], key=lambda candidate: candidate[0]
+        )
         ways = self._ways()
         for place in () if None in self._cores else self._middles():
             shortest = numpy.inf
@@ -132,25 +137,25 @@ class _Shared:
 
     def _ways(self):
         """Directions that may lead out."""
-        cuts, back = self._cuts
-        found = [Vector(place) - foot for _, place, foot in self._deepest if foot is not None]
-        sides = [_usual(normals_of(lines.one, lines.ours), _NORMALS) for lines in self._cuts]
-        edges = [_usual(_directions(lines), _EDGES) for lines in (cuts, back)]
-        found += [Vector(normal) for normals in sides for normal in normals]
-        found += [Vector(one).cross(Vector(other)) for one in edges[0] for other in edges[1]]
-        found += _AXES
-        found = [way.normalized() for way in found if way.length > 1e-9]
-        return [*found, *(-way for way in found)]
+        lines, back = self._lines
+        ways = [Vector(place) - foot for _, place, foot in self._deepest if foot is not None]
+        sides = [_usual(normals_of(lines.solid, lines.ours), _NORMALS) for lines in self._lines]
+        edges = [_usual(_directions(lines), _EDGES) for lines in (lines, back)]
+        ways += [Vector(normal) for normals in sides for normal in normals]
+        ways += [Vector(edge).cross(Vector(other)) for edge in edges[0] for other in edges[1]]
+        ways += _AXES
+        ways = [way.normalized() for way in ways if way.length > 1e-9]
+        return [*ways, *(-way for way in ways)]
 
 
-def _deepest(one, core, cuts):
+def _deepest(solid, core, lines):
     """(depth, place, foot) of the place of a surface that is deepest in a body: a corner, on an edge, on a face."""
-    inside = ((one.points > core.low) & (one.points < core.high)).all(axis=1)
+    inside = ((solid.points > core.low) & (solid.points < core.high)).all(axis=1)
     places = numpy.concatenate(
         [
-            thinned(one.points[inside], _MOST_PLACES),
-            thinned(_on_edges(one, cuts), _MOST_PLACES),
-            thinned(_on_faces(one, cuts), _MOST_PLACES),
+            thinned(solid.points[inside], _MOST_PLACES),
+            thinned(_on_edges(solid, lines), _MOST_PLACES),
+            thinned(_on_faces(solid, lines), _MOST_PLACES),
         ]
     )
     room = numpy.minimum(places - core.low, core.high - places).min(axis=1)
@@ -164,9 +169,9 @@ def _deepest(one, core, cuts):
     return best
 
 
-def _directions(cuts):
-    places, _ = cuts.one.welded
-    return unit(places[cuts.edges[:, 1]] - places[cuts.edges[:, 0]])
+def _directions(lines):
+    places, _ = lines.solid.welded
+    return unit(places[lines.edges[:, 1]] - places[lines.edges[:, 0]])
 
 
 def _usual(vectors, most):
@@ -178,15 +183,15 @@ def _usual(vectors, most):
     return level[first[numpy.argsort(-counts, kind="stable")[:most]]]
 
 
-def _on_edges(one, cuts):
+def _on_edges(solid, lines):
     """Places along the stretches of edges between where they go through the other surface."""
-    if not len(cuts.edges):
+    if not len(lines.edges):
         return numpy.empty((0, 3))
-    places, _ = one.welded
-    edges, back = numpy.unique(cuts.edges, axis=0, return_inverse=True)
+    places, _ = solid.welded
+    edges, back = numpy.unique(lines.edges, axis=0, return_inverse=True)
     back = back.reshape(-1)
     numbers = numpy.concatenate([back, numpy.arange(len(edges)), numpy.arange(len(edges))])
-    shares = numpy.concatenate([cuts.shares, numpy.zeros(len(edges)), numpy.ones(len(edges))])
+    shares = numpy.concatenate([lines.shares, numpy.zeros(len(edges)), numpy.ones(len(edges))])
     order = numpy.lexsort([shares, numbers])
     numbers, shares = numbers[order], shares[order]
     stretch = (numbers[1:] == numbers[:-1]) & (shares[1:] - shares[:-1] > 1e-9)
@@ -196,13 +201,13 @@ def _on_edges(one, cuts):
     return (start[:, None] + along[..., None] * (end - start)[:, None]).reshape(-1, 3)
 
 
-def _on_faces(one, cuts):
+def _on_faces(solid, lines):
     """Places on faces, in the middle of where something goes through them and between there and its outline."""
-    if not len(cuts.ours):
+    if not len(lines.ours):
         return numpy.empty((0, 3))
-    other, middles = cuts.other, cuts.middles
-    corners = other.welded[1][other.triangles[cuts.theirs]]
-    label = labels(len(other.welded[0]), corners[:, :2], corners[:, 1:])[corners[:, 0]]
+    other, middles = lines.other, lines.middles
+    corners = other.welded[1][other.triangles[lines.theirs]]
+    label = connected_labels(len(other.welded[0]), corners[:, :2], corners[:, 1:])[corners[:, 0]]
     _, group = numpy.unique(label, return_inverse=True)
     group = group.reshape(-1)
     sizes = numpy.bincount(group)
@@ -210,4 +215,6 @@ def _on_faces(one, cuts):
     outline = thinned(numpy.arange(len(middles)), _OUTLINE)
     middles, towards = middles[outline], centres[group[outline]]
     tried = [centres, *(towards + share * (middles - towards) for share in _TOWARDS)]
-    return numpy.array([one.nearest(place)[0] for place in numpy.concatenate(tried).tolist()]).reshape(-1, 3)
+    return numpy.array([solid.nearest(place)[0] for place in numpy.concatenate(tried).tolist()]).reshape(
+        -1, 3
+    )

@@ -6,13 +6,13 @@ import numpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from .evaluated import Instances, Shape, TooManyInstances, are_numbers, mesh_of
+from .evaluated_meshes import Instances, TooManyInstances, TriangleMesh, are_numbers, mesh_of
 
 MOST_TRIANGLES = 4_000_000
 # Three directions of no importance: a ray along an edge or through a vertex would count twice.
 _RAYS = tuple(
-    Vector(one).normalized()
-    for one in ((0.371, 0.604, 0.705), (-0.713, 0.181, 0.677), (0.253, -0.871, 0.421))
+    Vector(ray).normalized()
+    for ray in ((0.371, 0.604, 0.705), (-0.713, 0.181, 0.677), (0.253, -0.871, 0.421))
 )
 _STEP = 1e-5
 _COARSE = 4e-7  # of a coordinate: what is less is lost in single precision
@@ -40,7 +40,7 @@ class Solid:
         self.triangles = triangles
         self.low, self.high = points.min(axis=0), points.max(axis=0)
         self.eye = None  # where the camera is
-        self.shape = self.body = self.nudged = self.pieces = None  # what others found out about it
+        self.topology = self.closed_parts = self.nudged = self.pieces = None  # what others found out about it
         self._tree = self._closed = self._oriented = self._welded = self._sides = self._boxes = None
 
     @property
@@ -170,9 +170,9 @@ class Solid:
         """A solid of some of its triangles (a mask, or their numbers)."""
         triangles = self.triangles[chosen]
         used, numbers = numpy.unique(triangles, return_inverse=True)
-        found = Solid(self.name, self.points[used], numbers.reshape(-1, 3))
-        found.eye = self.eye
-        return found
+        solid = Solid(self.name, self.points[used], numbers.reshape(-1, 3))
+        solid.eye = self.eye
+        return solid
 
 
 class Solids:
@@ -189,16 +189,16 @@ class Solids:
             self._eye = numpy.array(camera.evaluated_get(self._graph).matrix_world.translation)
 
     def __getitem__(self, name):
-        found = self._made.get(name)
-        if found is None:
+        solid = self._made.get(name)
+        if solid is None:
             try:
-                found = self._solid(name)
+                solid = self._solid(name)
             except Unmeasurable as reason:
-                found = reason
-            self._made[name] = found
-        if isinstance(found, Unmeasurable):
-            raise type(found)(*found.args)
-        return found
+                solid = reason
+            self._made[name] = solid
+        if isinstance(solid, Unmeasurable):
+            raise type(solid)(*solid.args)
+        return solid
 
     def joined(self, names):
         """Several as one."""
@@ -215,19 +215,19 @@ class Solids:
 
     def _solid(self, name):
         if self._things is None:
-            self._things = {thing.name: thing for thing in bpy.context.scene.objects}
-        thing = self._things.get(name)
-        if thing is None:
+            self._things = {obj.name: obj for obj in bpy.context.scene.objects}
+        obj = self._things.get(name)
+        if obj is None:
             raise Unmeasurable(f"there is no object {name!r} in the scene")
-        evaluated = thing.evaluated_get(self._graph)
+        evaluated = obj.evaluated_get(self._graph)
         if not evaluated.is_evaluated:
             raise Unmeasurable(
                 f"{name!r} is not evaluated: it, or its collection, is hidden from the viewport or excluded"
             )
-        shapes = [*self._instanced(thing)]
+        shapes = [*self._instanced(obj)]
         with mesh_of(evaluated) as mesh:
             if mesh is not None and len(mesh.polygons):
-                shapes.append((Shape(mesh), evaluated.matrix_world))
+                shapes.append((TriangleMesh(mesh), evaluated.matrix_world))
             count = sum(len(shape.triangles) for shape, _ in shapes)
             if count > MOST_TRIANGLES:
                 raise Unmeasurable(f"{name!r} has {count} triangles, more than {MOST_TRIANGLES}")
@@ -240,10 +240,10 @@ class Solids:
         solid.eye = self._eye
         return solid
 
-    def _instanced(self, thing):
+    def _instanced(self, obj):
         """[(shape, matrix)] of the instances that an object makes."""
         try:
-            return self._instances.of(thing)
+            return self._instances.of(obj)
         except TooManyInstances as reason:
             raise Unmeasurable(str(reason)) from None
 
@@ -263,14 +263,14 @@ def meeting(a, b, most):
     if len(theirs) <= _CHUNK or len(ours) <= _CHUNK:
         ours, tree = _tree_of(a, ours)
         return _numbered(tree.overlap(other), ours, theirs)
-    found, count = [], 0
+    chunks, count = [], 0
     for start in range(0, len(ours), _CHUNK):
         some = ours[start : start + _CHUNK]
-        found.append(_numbered(a.part(some).tree.overlap(other), some, theirs))
-        count += len(found[-1])
+        chunks.append(_numbered(a.part(some).tree.overlap(other), some, theirs))
+        count += len(chunks[-1])
         if count >= most:
             break
-    return numpy.concatenate(found)
+    return numpy.concatenate(chunks)
 
 
 def _numbered(pairs, ours, theirs):
@@ -295,11 +295,11 @@ def _tree_of(solid, chosen):
     return chosen, solid.part(chosen).tree
 
 
-def _as_one(name, found):
+def _as_one(name, parts):
     """A solid of several (points, triangles)."""
-    shifts = numpy.cumsum([0, *(len(points) for points, _ in found)])
+    shifts = numpy.cumsum([0, *(len(points) for points, _ in parts)])
     return Solid(
         name,
-        numpy.concatenate([points for points, _ in found]),
-        numpy.concatenate([triangles + shift for (_, triangles), shift in zip(found, shifts, strict=False)]),
+        numpy.concatenate([points for points, _ in parts]),
+        numpy.concatenate([triangles + shift for (_, triangles), shift in zip(parts, shifts, strict=False)]),
     )

@@ -7,15 +7,15 @@ import math
 import bpy
 import numpy
 
-from ..geometry.contact_regions import labels
 from ..geometry.distances import apart, gap
 from ..geometry.penetration import crossing
 from ..geometry.solids import NoSurface, NotNumbers, Solids, Unmeasurable
-from .camera_view import view
+from ..geometry.topology import connected_labels
+from .camera_visibility import view
 from .containment import embedding, enclosure
-from .frame_walk import FOLLOWED, Following, telling
+from .frame_loop import FOLLOWED, Followers, telling
 from .openings import opening
-from .position import axes_of, beside, over
+from .relative_position import axes_of, beside, over
 from .support import depth, flush, support
 
 _NOT_REACHED = "it was not reached"
@@ -29,7 +29,7 @@ def measure(arguments, report):
     """
     requests = arguments["requests"]
     answers = [{"unmeasured": _NOT_REACHED} for _ in requests]
-    following, by_frame = Following(requests, answers), {}
+    following, by_frame = Followers(requests, answers), {}
     for place, request in enumerate(requests):
         if request["kind"] not in FOLLOWED:
             by_frame.setdefault(request.get("frame"), []).append(place)
@@ -71,43 +71,43 @@ def _gap(request, solids):
 
 def _shown(solids, names):
     """The solids of some names; of several, those that have a surface at this frame. Raises Unmeasurable."""
-    found, missing = [], None
+    with_surface, missing = [], None
     for name in names:
         try:
-            found.append(solids[name])
+            with_surface.append(solids[name])
         except NoSurface as reason:
             missing = reason
-    if not found:
+    if not with_surface:
         raise missing or Unmeasurable("nothing was named")
-    return found
+    return with_surface
 
 
 def _crossings(request, solids):
-    found, undecided, made = [], [], []
+    pairs, undecided, there = [], [], []
     for name in request["names"]:
         try:
-            made.append(solids[name])
+            there.append(solids[name])
         except NoSurface:
             continue
         except Unmeasurable as reason:
             undecided.append({"a": name, "b": name, "undecided": str(reason)})
     moving = None if request["moving"] is None else set(request["moving"])
     but = {tuple(sorted(pair)) for pair in request["but"]}
-    for a, b in _near(made):
+    for a, b in _near(there):
         if moving is not None and a.name not in moving and b.name not in moving:
             continue
         if tuple(sorted((a.name, b.name))) in but:
             continue
         try:
-            told = crossing(a, b, request["noise"])
+            shared = crossing(a, b, request["noise"])
         except Exception as error:
             undecided.append({"a": a.name, "b": b.name, "undecided": f"{type(error).__name__}: {error}"})
             continue
-        if told is not None:
-            depth, place, reason = told
-            told = {"a": a.name, "b": b.name, "depth": depth, "at": tuple(place), "undecided": reason}
-            found.append(told | {"way": _way_out(a, b)})
-    return {"pairs": found + undecided}
+        if shared is not None:
+            depth, place, reason = shared
+            shared = {"a": a.name, "b": b.name, "depth": depth, "at": tuple(place), "undecided": reason}
+            pairs.append(shared | {"way": _way_out(a, b)})
+    return {"pairs": pairs + undecided}
 
 
 def _way_out(a, b):
@@ -121,11 +121,11 @@ def _way_out(a, b):
 
 def _near(solids, within=0.0):
     """Pairs whose boxes overlap, or come so near."""
-    solids = sorted(solids, key=lambda one: one.low[0])
+    solids = sorted(solids, key=lambda solid: solid.low[0])
     if len(solids) < 2:
         return
-    lows = numpy.array([one.low for one in solids])
-    highs = numpy.array([one.high for one in solids]) + within
+    lows = numpy.array([solid.low for solid in solids])
+    highs = numpy.array([solid.high for solid in solids]) + within
     ends = numpy.searchsorted(lows[:, 0], highs[:, 0], side="right")
     for at, end in enumerate(ends.tolist()):
         others = slice(at + 1, end)
@@ -154,10 +154,10 @@ def _poses(request, _solids):
     graph = bpy.context.evaluated_depsgraph_get()
     matrices = {}
     for name in request["names"]:
-        thing = bpy.context.scene.objects.get(name)
-        if thing is None:
+        obj = bpy.context.scene.objects.get(name)
+        if obj is None:
             raise Unmeasurable(f"there is no object {name!r} in the scene")
-        numbers = [value for row in thing.evaluated_get(graph).matrix_world for value in row]
+        numbers = [value for row in obj.evaluated_get(graph).matrix_world for value in row]
         if not all(map(math.isfinite, numbers)):
             raise Unmeasurable(f"the transform of {name!r} has values that are no numbers")
         matrices[name] = numbers
@@ -165,8 +165,8 @@ def _poses(request, _solids):
 
 
 def _pieces(request, solids):
-    made = _shown(solids, request["names"])
-    above = {one.name: one.name for one in made}
+    there = _shown(solids, request["names"])
+    above = {solid.name: solid.name for solid in there}
 
     def top(name):
         while above[name] != name:
@@ -174,15 +174,15 @@ def _pieces(request, solids):
             name = above[name]
         return name
 
-    for a, b in _near(made, request["most"]):
+    for a, b in _near(there, request["most"]):
         if top(a.name) != top(b.name):
             share = request["share"] * min(a.diagonal, b.diagonal)
             within = min(request["most"], max(request["least"], share))
             if gap(a, b, within, within) is not None or crossing(a, b) is not None:
                 above[top(a.name)] = top(b.name)
     groups = {}
-    for one in made:
-        groups.setdefault(top(one.name), []).append(one.name)
+    for solid in there:
+        groups.setdefault(top(solid.name), []).append(solid.name)
     return {"pieces": sorted(groups.values())}
 
 
@@ -206,7 +206,7 @@ def _surface(request, solids):
         "open_edges": int((counts != 2).sum()),
         "volume": abs(volume) if math.isfinite(volume) else 0.0,
         "area": float(numpy.linalg.norm(normals, axis=1).sum() / 2),
-        "parts": len(numpy.unique(labels(len(solid.welded[0]), *edges.T)[edges[:, 0]])),
+        "parts": len(numpy.unique(connected_labels(len(solid.welded[0]), *edges.T)[edges[:, 0]])),
     }
 
 

@@ -6,8 +6,9 @@ import math
 import numpy
 from mathutils import Vector
 
-from ..geometry.contact_regions import corners_and_edges, shape_of, some
+from ..geometry.contact_points import corners_and_edges
 from ..geometry.solids import Unmeasurable
+from ..geometry.topology import some, topology_of
 
 _SAMPLES = 256
 _PAIRS = 64
@@ -49,8 +50,10 @@ def enclosure(request, solids):
     )
     # Of what lies at a wall, the places a little further in are looked at; a sheet has them on either side.
     sides = (-1,) if content.closed else (-1, 1)
-    told = [cavity.look(places + side * step * normals) for side in sides]
-    inside = max((numpy.logical_or.reduce(reading) for reading in zip(*told, strict=True)), key=numpy.mean)
+    readings = [cavity.look(places + side * step * normals) for side in sides]
+    inside = max(
+        (numpy.logical_or.reduce(reading) for reading in zip(*readings, strict=True)), key=numpy.mean
+    )
     in_wall = numpy.logical_and.reduce([cavity.in_wall(places + side * step * normals) for side in sides])
     answer = {"inside": float(inside.mean()), "wall": float((in_wall & ~inside).mean())}
     if not inside.all():
@@ -63,7 +66,7 @@ class _Cavity:
 
     def __init__(self, whole, parts, noise):
         self._whole, self._noise = whole, noise
-        self._parts = [one for one in parts if one.closed]
+        self._parts = [part for part in parts if part.closed]
         self._bars = None
 
     def in_wall(self, places):
@@ -120,7 +123,7 @@ class _Cavity:
 
 def _samples(solid, count):
     """(places spread evenly over a surface, normals out of it there)."""
-    shape = shape_of(solid)
+    shape = topology_of(solid)
     # Whatever order its triangles and their corners are in, the same surface has the same samples.
     corners = numpy.sort(shape.corners, axis=1)
     order = numpy.lexsort(shape.places[corners].mean(axis=1).T)
@@ -140,7 +143,7 @@ def _samples(solid, count):
 
 def _within_reach(solid, places, slack):
     """Which places are no further out than the solid, seen from anywhere around it."""
-    shape = shape_of(solid)
+    shape = topology_of(solid)
     largest = numpy.argsort(shape.areas)[-_PAIRS:]
     ways = numpy.concatenate(
         [numpy.eye(3), -numpy.eye(3), shape.normals[largest], -shape.normals[largest], _AROUND]
@@ -155,7 +158,7 @@ def embedding(request, solids):
     """How far a part would have to be moved to be out of its host, the shortest way."""
     part, host = solids.joined(request["part"]), solids.joined(request["host"])
     pairs = host.tree.overlap(part.tree)
-    shape = shape_of(host)
+    shape = topology_of(host)
     if host.closed:
         sunk = [place for place in corners_and_edges(part, host).tolist() if host.holds(place)]
         touched = [pair[0] for pair in pairs] or [host.nearest(place)[2] for place in sunk]
@@ -179,10 +182,10 @@ def embedding(request, solids):
 def _most_common(normals):
     kinds, counts = numpy.unique(normals.round(1) + 0.0, axis=0, return_counts=True)
     chosen = kinds[numpy.argsort(-counts)[:_WAYS]]
-    found = [normals.mean(axis=0)] if len(normals) else []
+    means = [normals.mean(axis=0)] if len(normals) else []
     for kind in chosen:
-        found.append(normals[(numpy.abs(normals - kind) <= 0.06).all(axis=1)].mean(axis=0))
-    return [one / numpy.linalg.norm(one) for one in found if numpy.linalg.norm(one) > _STEEP]
+        means.append(normals[(numpy.abs(normals - kind) <= 0.06).all(axis=1)].mean(axis=0))
+    return [mean / numpy.linalg.norm(mean) for mean in means if numpy.linalg.norm(mean) > _STEEP]
 
 
 def _up(normals):

@@ -5,7 +5,7 @@ import math
 
 import numpy
 
-from ..geometry.evaluated import (
+from ..geometry.evaluated_meshes import (
     AS_MESH,
     Instances,
     TooManyInstances,
@@ -27,52 +27,52 @@ class GeometryFacts:
         self._rendered = rendered(scene)
         self._instances = Instances(graph)
 
-    def of(self, thing):
+    def of(self, obj):
         """What the facts say of an object's place and geometry."""
-        found = thing.evaluated_get(self._graph)
-        source = found if found.is_evaluated else thing
-        told = {
-            "evaluated": bool(found.is_evaluated),
-            "rendered": thing in self._rendered,
-            "scale": _numbers(thing.scale),
+        evaluated = obj.evaluated_get(self._graph)
+        source = evaluated if evaluated.is_evaluated else obj
+        facts = {
+            "evaluated": bool(evaluated.is_evaluated),
+            "rendered": obj in self._rendered,
+            "scale": _numbers(obj.scale),
             "matrix": _numbers(value for row in source.matrix_world for value in row),
         }
         try:
-            told.update(self._geometry(thing, source))
+            facts.update(self._geometry(obj, source))
         except TooManyInstances as reason:
-            told.update(surface=True, fault=f"what it makes instances of cannot be looked at: {reason}")
+            facts.update(surface=True, fault=f"what it makes instances of cannot be looked at: {reason}")
         except Exception as error:
-            told.update(surface=True, fault=f"its geometry cannot be read: {type(error).__name__}: {error}")
+            facts.update(surface=True, fault=f"its geometry cannot be read: {type(error).__name__}: {error}")
         if not all(math.isfinite(value) for row in source.matrix_world for value in row):
-            told["fault"] = "its transform has values that are not numbers"
-            told.pop("box", None)
-        return told
+            facts["fault"] = "its transform has values that are not numbers"
+            facts.pop("box", None)
+        return facts
 
-    def _geometry(self, thing, source):
-        matrix, boxes, told = source.matrix_world, [], {"polygons": 0}
-        points, told["polygons"] = _own(source)
+    def _geometry(self, obj, source):
+        matrix, boxes, facts = source.matrix_world, [], {"polygons": 0}
+        points, facts["polygons"] = _own(source)
         if points is not None:
             if not are_numbers(points):
-                return told | {
-                    "surface": told["polygons"] > 0,
+                return facts | {
+                    "surface": facts["polygons"] > 0,
                     "fault": "it has vertices at places that are not numbers",
                 }
             lengths = numpy.linalg.norm(numpy.array(matrix, dtype=float)[:3, :3], axis=0)
-            told["dimensions"] = _numbers((points.max(axis=0) - points.min(axis=0)) * lengths)
+            facts["dimensions"] = _numbers((points.max(axis=0) - points.min(axis=0)) * lengths)
             boxes.append(transformed(points, matrix))
-        for shape, where in self._instances.of(thing):
-            told["polygons"] += shape.polygons
+        for shape, where in self._instances.of(obj):
+            facts["polygons"] += shape.polygons
             boxes.append(transformed(shape.corners, where))
-        told["surface"] = told["polygons"] > 0
+        facts["surface"] = facts["polygons"] > 0
         if boxes:
             low = numpy.min([box.min(axis=0) for box in boxes], axis=0)
             high = numpy.max([box.max(axis=0) for box in boxes], axis=0)
             if are_numbers([low, high]):
-                told["box"] = {"low": low.tolist(), "high": high.tolist()}
-                told.setdefault("dimensions", (high - low).tolist())
+                facts["box"] = {"low": low.tolist(), "high": high.tolist()}
+                facts.setdefault("dimensions", (high - low).tolist())
             else:
-                told["fault"] = "what it makes instances of is at places that are not numbers"
-        return told
+                facts["fault"] = "what it makes instances of is at places that are not numbers"
+        return facts
 
 
 def _own(source):
@@ -81,7 +81,7 @@ def _own(source):
         return None, 0
     with mesh_of(source) as mesh:
         if mesh is not None:
-            return coordinates(mesh), len(mesh.polygons)
+            return coordinates(mesh.vertices), len(mesh.polygons)
     if source.type in AS_MESH:
         return None, 0
     corners = numpy.array(source.bound_box, dtype=float)

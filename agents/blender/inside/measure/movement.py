@@ -23,25 +23,25 @@ _FAR = 1e4
 
 def actor_of(names):
     """The named objects as one actor. Raises Unmeasurable."""
-    things = []
+    objects = []
     for name in names:
-        thing = bpy.context.view_layer.objects.get(name)
-        if thing is None:
+        obj = bpy.context.view_layer.objects.get(name)
+        if obj is None:
             raise Unmeasurable(f"there is no object {name!r} in the view layer")
-        things.append(thing)
-    if not things:
+        objects.append(obj)
+    if not objects:
         raise Unmeasurable("nothing was named")
-    return Actor(", ".join(names), "objects", things, _POINTS)
+    return Actor(", ".join(names), "objects", objects, _POINTS)
 
 
 def check_evaluated(actor, graph):
     """Raises Unmeasurable for what is switched off in the viewport: nothing moves it there."""
-    for thing in actor.objects:
-        if not thing.evaluated_get(graph).is_evaluated:
-            raise Unmeasurable(f"{thing.name!r} is switched off in the viewport, so nothing moves it")
+    for obj in actor.objects:
+        if not obj.evaluated_get(graph).is_evaluated:
+            raise Unmeasurable(f"{obj.name!r} is switched off in the viewport, so nothing moves it")
 
 
-class Path:
+class PathFollower:
     """Where something is at every frame."""
 
     def __init__(self, request):
@@ -54,24 +54,24 @@ class Path:
         self._origins, self._ways = [], []
         self._size = 0.0
 
-    def look(self, frame, graph, cast):
+    def look(self, frame, graph, tracker):
         """Takes in a frame."""
-        del cast
+        del tracker
         check_evaluated(self._actor, graph)
-        moment = self._actor.moment(graph)
-        self._track.add(frame, moment)
-        self._origins.append(moment and self._origin(graph))
-        self._ways.append(_way(self._mark, moment))
-        if moment is not None and not self._size:
-            self._size = max(moment.high - moment.low)
+        state = self._actor.state_at(graph)
+        self._track.add(frame, state)
+        self._origins.append(state and self._origin(graph))
+        self._ways.append(_way(self._mark, state))
+        if state is not None and not self._size:
+            self._size = max(state.high - state.low)
         if frame in self._marks:
-            self._mark = moment
+            self._mark = state
 
     def _origin(self, graph):
-        places = [thing.evaluated_get(graph).matrix_world.translation for thing in self._actor.objects]
+        places = [obj.evaluated_get(graph).matrix_world.translation for obj in self._actor.objects]
         return sum(places, Vector()) / len(places)
 
-    def told(self):
+    def result(self):
         """As data."""
         track = self._track
         speeds = [
@@ -96,7 +96,7 @@ def _rounded(vector):
 
 
 def _pairs(before, after):
-    """The places of the points that two moments have in common; None where points cannot be followed."""
+    """The places of the points that two states have in common; None where points cannot be followed."""
     if before is None or after is None or not (before.is_followed and after.is_followed):
         return None
     if len(before.places) != len(after.places):
@@ -110,7 +110,7 @@ def _way(before, after):
     return None if pairs is None else float(numpy.linalg.norm(pairs[1] - pairs[0], axis=1).mean())
 
 
-class Together:
+class TogetherFollower:
     """How something keeps its place in another thing, by those meshes and points of both that are nearest at first.
 
     What is held to a part of something that bends is held to that part.
@@ -120,15 +120,15 @@ class Together:
         self.start, self.end = request["start"], request["end"]
         self._a, self._b = actor_of(request["a"]), actor_of(request["b"])
         self._first = None
-        self._told = {"shift": 0.0, "shift_frame": self.start, "at": None, "turn": None, "turn_frame": None}
+        self._result = {"shift": 0.0, "shift_frame": self.start, "at": None, "turn": None, "turn_frame": None}
 
-    def look(self, frame, graph, cast):
+    def look(self, frame, graph, tracker):
         """Takes in a frame."""
         for actor in (self._a, self._b):
             check_evaluated(actor, graph)
         if self._first is None:
-            self._a, self._b = _next_to_each_other(self._a, self._b, cast)
-        a, b = self._a.moment(graph), self._b.moment(graph)
+            self._a, self._b = _next_to_each_other(self._a, self._b, tracker)
+        a, b = self._a.state_at(graph), self._b.state_at(graph)
         if a is None or b is None:
             return  # there is nothing of it yet, or no more
         if self._first is None:
@@ -139,31 +139,31 @@ class Together:
         before = _middle(first_a, near_a) - _middle(first_b, near_b)
         carried = before if turn_b is None else turn_b @ before
         shift = (middle_a - (middle_b + carried)).length
-        if shift > self._told["shift"]:
-            self._told.update(shift=shift, shift_frame=frame, at=tuple(middle_a))
+        if shift > self._result["shift"]:
+            self._result.update(shift=shift, shift_frame=frame, at=tuple(middle_a))
         if turn_a is not None and turn_b is not None:
             angle = (turn_b.transposed() @ turn_a).to_quaternion().angle
             turn = min(angle, 2 * math.pi - angle)
-            if self._told["turn"] is None or turn > self._told["turn"]:
-                self._told.update(turn=turn, turn_frame=frame)
+            if self._result["turn"] is None or turn > self._result["turn"]:
+                self._result.update(turn=turn, turn_frame=frame)
 
-    def told(self):
+    def result(self):
         """As data."""
         if self._first is None:
             raise Unmeasurable("there was never anything of both")
-        return self._told
+        return self._result
 
 
-def _next_to_each_other(a, b, cast):
+def _next_to_each_other(a, b, tracker):
     """Two actors, each without those of its meshes that are farther from the other one."""
     count = len(a.objects) * len(b.objects)
     if a.measured != "vertices" or b.measured != "vertices" or not 1 < count <= _MOST_PAIRS:
         return a, b
     gaps = {}
-    for one, other in itertools.product(a.objects, b.objects):
-        surfaces = [cast.surface(thing.name) for thing in (one, other) if thing.type == "MESH"]
+    for ours, theirs in itertools.product(a.objects, b.objects):
+        surfaces = [tracker.surface(obj.name) for obj in (ours, theirs) if obj.type == "MESH"]
         if len(surfaces) == 2 and all(surface.there for surface in surfaces):
-            gaps[one.name, other.name] = between(*surfaces, _FAR)
+            gaps[ours.name, theirs.name] = between(*surfaces, _FAR)
     least = min(gaps.values(), default=_FAR)
     if least >= _FAR:
         return a, b
@@ -171,28 +171,28 @@ def _next_to_each_other(a, b, cast):
     return tuple(actor_of(sorted({pair[side] for pair in pairs})) for side in (0, 1))
 
 
-def _nearest(moment, place):
+def _nearest(state, place):
     """Which of its points are nearest to a place: a tenth, but not fewer than a dozen.
 
     None for particles and fluids.
     """
-    if not moment.is_followed or not moment.alive.all():
+    if not state.is_followed or not state.alive.all():
         return None
-    ways = numpy.linalg.norm(moment.places - numpy.array(place), axis=1)
+    ways = numpy.linalg.norm(state.places - numpy.array(place), axis=1)
     count = min(len(ways), max(_FEWEST, int(_NEAREST * len(ways))))
     chosen = numpy.zeros(len(ways), bool)
     chosen[numpy.argsort(ways, kind="stable")[:count]] = True
-    if rotated(moment.places[chosen], moment.places[chosen]) is None:  # they lie on a line
+    if rotated(state.places[chosen], state.places[chosen]) is None:  # they lie on a line
         chosen[:] = True
     return chosen
 
 
-def _middle(moment, chosen):
-    return moment.centre if chosen is None else Vector(moment.places[chosen].mean(axis=0))
+def _middle(state, chosen):
+    return state.centre if chosen is None else Vector(state.places[chosen].mean(axis=0))
 
 
 def _turned(first, now, chosen):
-    """(where the chosen points of something are in the middle, how they are turned since the first moment).
+    """(where the chosen points of something are in the middle, how they are turned since the first state).
 
     Particles and fluids have no rotation.
     """

@@ -6,7 +6,7 @@ import math
 import numpy
 from mathutils import Vector
 
-from ..geometry.contact_regions import shape_of
+from ..geometry.topology import topology_of
 
 _DIRECTIONS = 96
 _COARSE = 6
@@ -26,7 +26,7 @@ def opening(request, solids):
     """
     filler, host = solids.joined(request["filler"]), solids.joined(request["host"])
     sections = [_Section(filler, host, way) for way in _ways(filler, host)]
-    section = min(sections, key=lambda one: _doubt(one.rim(_COARSE)))
+    section = min(sections, key=lambda section: _doubt(section.rim(_COARSE)))
     rim, way = section.rim(), section.way
     if not rim:
         return {"unbounded": 360.0, "at": ((filler.low + filler.high) / 2).tolist()}
@@ -34,10 +34,13 @@ def opening(request, solids):
     before, after = [turns[-1] - _DIRECTIONS, *turns[:-1]], [*turns[1:], turns[0] + _DIRECTIONS]
     widest = max(b - a for a, b in zip(turns, after, strict=True))
     gaps = [
-        (_gap(*rim[turn], [rim[one % _DIRECTIONS][0] for one in (last, following)], way), rim[turn][0])
+        (
+            _gap(*rim[turn], [rim[neighbour % _DIRECTIONS][0] for neighbour in (last, following)], way),
+            rim[turn][0],
+        )
         for last, turn, following in zip(before, turns, after, strict=True)
     ]
-    gap, at = max(gaps, key=lambda one: one[0])
+    gap, at = max(gaps, key=lambda entry: entry[0])
     return {"unbounded": 360.0 * (widest - 1) / _DIRECTIONS, "gap": gap, "at": tuple(at)}
 
 
@@ -60,10 +63,10 @@ def _gap(place, foot, beside, way):
 
 def _ways(filler, host):
     """Directions in which an opening may lead through the host: those in which most of the faces nearby look."""
-    found = [numpy.eye(3)[axis] for axis in range(3)]
+    candidates = [numpy.eye(3)[axis] for axis in range(3)]
     around = filler.diagonal / 2
     for solid in (filler, host):
-        shape = shape_of(solid)
+        shape = topology_of(solid)
         corners = shape.places[shape.corners]
         near = (
             (corners.min(axis=1) <= filler.high + around) & (corners.max(axis=1) >= filler.low - around)
@@ -74,11 +77,11 @@ def _ways(filler, host):
         weighed = level * shape.areas[near][:, None]
         sums = numpy.stack([numpy.bincount(back.reshape(-1), axis, len(kinds)) for axis in weighed.T], axis=1)
         lengths = numpy.linalg.norm(sums, axis=1)
-        found += [
+        candidates += [
             sums[place] / lengths[place] for place in numpy.argsort(-lengths)[:_WAYS] if lengths[place] > 0
         ]
     ways = []
-    for way in found:
+    for way in candidates:
         if all(abs(way @ other) < 0.999999 for other in ways):
             ways.append(way)
     return ways
@@ -109,7 +112,7 @@ class _Section:
             self._host.holds(self._place(0.0, (1.0, 0.0), height)) for height in heights
         ):
             return {}
-        found = {}
+        rim = {}
         for turn in range(0, _DIRECTIONS, every):
             angle = 2 * math.pi * turn / _DIRECTIONS
             heading = math.cos(angle), math.sin(angle)
@@ -118,8 +121,8 @@ class _Section:
                 places = [place]
             if places:
                 feet = [(place, self._filler.nearest(place)[0]) for place in places]
-                found[turn] = min(feet, key=lambda one: (one[1] - one[0]).length)
-        return found
+                rim[turn] = min(feet, key=lambda pair: (pair[1] - pair[0]).length)
+        return rim
 
     def _place(self, distance, heading, height):
         u, v = self._middle + distance * numpy.array(heading)

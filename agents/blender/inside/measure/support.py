@@ -7,9 +7,10 @@ import numpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from ..geometry.contact_regions import normals_of, shape_of, some, touches
+from ..geometry.contact_points import contact_points, normals_of
 from ..geometry.penetration import crossing
 from ..geometry.solids import Unmeasurable
+from ..geometry.topology import some, topology_of
 
 _UP = 0.1  # a surface that is turned up less than that (the cosine) bears nothing
 _FLOOR = 0.9  # one that is turned up more is a floor
@@ -22,38 +23,38 @@ _AROUND = numpy.array([(math.cos(turn * math.pi / 32), math.sin(turn * math.pi /
 def depth(request, solids):
     """How deep two groups of objects are in each other, taken mesh by mesh."""
     ours, theirs = ([solids[name] for name in request[side]] for side in "ab")
-    lows, highs = (numpy.array([getattr(one, side) for one in theirs]) for side in ("low", "high"))
+    lows, highs = (numpy.array([getattr(solid, side) for solid in theirs]) for side in ("low", "high"))
     deepest = {"depth": 0.0, "at": None}
-    for one in ours:
-        for place in numpy.nonzero(((lows <= one.high) & (highs >= one.low)).all(axis=1))[0]:
-            told = crossing(one, theirs[place])
-            if told is None:
+    for solid in ours:
+        for place in numpy.nonzero(((lows <= solid.high) & (highs >= solid.low)).all(axis=1))[0]:
+            shared = crossing(solid, theirs[place])
+            if shared is None:
                 continue
-            found, where, reason = told
-            if found is None:
-                raise Unmeasurable(f"{one.name!r} and {theirs[place].name!r} cross, but {reason}")
-            if found > deepest["depth"]:
-                deepest = {"depth": found, "at": tuple(where)}
+            deep, where, reason = shared
+            if deep is None:
+                raise Unmeasurable(f"{solid.name!r} and {theirs[place].name!r} cross, but {reason}")
+            if deep > deepest["depth"]:
+                deepest = {"depth": deep, "at": tuple(where)}
     return deepest
 
 
 def support(request, solids):
     """What bears a child from below, and where its centre of mass is."""
     child, parents = solids.joined(request["child"]), solids.joined(request["parents"])
-    found = touches(child, parents, request["within"])
-    told = {"centre": centre_of_mass([solids[name] for name in request["child"]]), "bearing": []}
-    opposed = numpy.full(len(found), 2.0)
-    for own, other in normals_of(child, parents, found) if len(found) else ():
+    contacts = contact_points(child, parents, request["within"])
+    result = {"centre": centre_of_mass([solids[name] for name in request["child"]]), "bearing": []}
+    opposed = numpy.full(len(contacts), 2.0)
+    for own, other in normals_of(child, parents, contacts) if len(contacts) else ():
         from_below = (other[:, 2] > _UP) & (own[:, 2] < 0)
         cosine = numpy.einsum("ij,ij->i", own, other)
         opposed = numpy.where(from_below, numpy.minimum(opposed, cosine), opposed)
     if (opposed <= 1).any():
-        told["opposed"] = float(opposed.min())
-        told["at"] = found.places[int(opposed.argmin())].tolist()
-        told["bearing"] = _outline(found.places[opposed <= request["opposed"]])
+        result["opposed"] = float(opposed.min())
+        result["at"] = contacts.places[int(opposed.argmin())].tolist()
+        result["bearing"] = _outline(contacts.places[opposed <= request["opposed"]])
     else:
-        told.update(_clearance(child, parents, request["within"]))
-    return told
+        result.update(_clearance(child, parents, request["within"]))
+    return result
 
 
 def _outline(places):
@@ -66,16 +67,16 @@ def _outline(places):
 def _clearance(child, parents, within):
     """How far something is above what is below it; nothing where there is nothing."""
     best = None
-    for one, other, way in ((child, parents, -1), (parents, child, 1)):
-        places = one.points
-        if len(one.triangles) < _LOOKED_DOWN:
-            places = numpy.concatenate([places, places[one.triangles].mean(axis=1)])
+    for upper, lower, way in ((child, parents, -1), (parents, child, 1)):
+        places = upper.points
+        if len(upper.triangles) < _LOOKED_DOWN:
+            places = numpy.concatenate([places, places[upper.triangles].mean(axis=1)])
         # What is right above an edge of it is beside it.
-        inside = (places[:, :2] > other.low[:2] + _EDGE) & (places[:, :2] < other.high[:2] - _EDGE)
+        inside = (places[:, :2] > lower.low[:2] + _EDGE) & (places[:, :2] < lower.high[:2] - _EDGE)
         places = places[inside.all(axis=1)]
         for place in places[some(len(places), _LOOKED_DOWN)].tolist():
             start = Vector((place[0], place[1], place[2] - way * within))
-            hit, _, _, distance = other.tree.ray_cast(start, Vector((0, 0, way)))
+            hit, _, _, distance = lower.tree.ray_cast(start, Vector((0, 0, way)))
             if hit is not None and (best is None or distance < best[0]):
                 best = distance, place
     return {} if best is None else {"clearance": max(0.0, best[0] - within), "at": best[1]}
@@ -85,12 +86,12 @@ def centre_of_mass(solids):
     """Of the closed pieces of some solids if they have any, as if they were full; else of their surfaces."""
     whole, moments = 0.0, numpy.zeros(3)
     for solid in solids:
-        _, volumes, parts = shape_of(solid).volumes()
+        _, volumes, parts = topology_of(solid).volumes()
         whole += float(numpy.abs(volumes).sum())
         moments += (numpy.sign(volumes) * parts).sum(axis=1)
     if whole <= 0:
         for solid in solids:
-            shape = shape_of(solid)
+            shape = topology_of(solid)
             whole += float(shape.areas.sum())
             moments += (shape.areas[:, None] * shape.places[shape.corners].mean(axis=1)).sum(axis=0)
     if whole <= 0:
@@ -102,35 +103,35 @@ def flush(request, solids):
     """How a face of the child that touches the parent is turned to it, and how far it stands out over its face."""
     child, parent = solids.joined(request["child"]), solids.joined(request["parent"])
     within = request["within"]
-    found = touches(child, parent, within)
+    contacts = contact_points(child, parent, within)
     ranked = []
-    for own, other in normals_of(child, parent, found) if len(found) else ():
+    for own, other in normals_of(child, parent, contacts) if len(contacts) else ():
         cosine = numpy.einsum("ij,ij->i", own, other)
         floor = other[:, 2] > _FLOOR
         if request["sideways"]:
             cosine, floor = numpy.where(floor, 2.0, cosine), numpy.zeros(len(floor), bool)
-        order = numpy.lexsort((cosine.round(5), floor))[: len(found)]
+        order = numpy.lexsort((cosine.round(5), floor))[: len(contacts)]
         ranked += [
             (bool(floor[at]), float(cosine[at]), int(at), other[at]) for at in order[:200] if cosine[at] <= 1
         ]
     if not ranked:
         return {"touching": []}
-    ranked.sort(key=lambda one: one[:2])
+    ranked.sort(key=lambda entry: entry[:2])
     best_floor, best = ranked[0][:2]
     faces = {}
     for floor, cosine, at, normal in ranked:
         if floor == best_floor and cosine <= best + 1e-4 and len(faces) < _SEVERAL:
-            plane = (*normal.round(2), round(float(normal @ found.places[at]) / max(within, 1e-6)))
+            plane = (*normal.round(2), round(float(normal @ contacts.places[at]) / max(within, 1e-6)))
             faces.setdefault(plane, (at, normal))
     over, at = min(
-        (_stands_out((child, found.own[at]), (parent, found.other[at]), normal, within), at)
+        (_stands_out((child, contacts.own[at]), (parent, contacts.other[at]), normal, within), at)
         for at, normal in faces.values()
     )
     return {
         "angle": math.degrees(math.acos(max(-1.0, min(1.0, -best)))),
         "stands_out": over,
-        "at": found.places[at].tolist(),
-        "touching": _outline(found.places),
+        "at": contacts.places[at].tolist(),
+        "touching": _outline(contacts.places),
     }
 
 
@@ -138,7 +139,7 @@ def _stands_out(child, parent, normal, within):
     """How far the face of one (solid, triangle) reaches beyond that of another one, seen along a normal."""
     (ours, theirs), (own, face) = zip(
         *(
-            (shape_of(solid), shape_of(solid).face(triangle, normal, within))
+            (topology_of(solid), topology_of(solid).face(triangle, normal, within))
             for solid, triangle in (child, parent)
         ),
         strict=True,

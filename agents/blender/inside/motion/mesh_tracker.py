@@ -4,26 +4,26 @@
 import bpy
 import numpy
 
+from ..geometry.evaluated_meshes import coordinates, transformed
 from ..geometry.solids import MOST_TRIANGLES, Solid, Unmeasurable
-from .actors import coordinates, placed
-from .contacts import Surface
+from .contacts import TrackedSurface
 
 _SAMPLES = 300  # of the vertices, and of the faces
 _SAME = 1e-5  # how much the scale may change, in parts, and still count as the same
 _EVENLY = (0.7548776662466927, 0.5698402909980532)  # steps that fill a square evenly
 
 
-class Body:
+class TrackedBody:
     """An object's evaluated mesh without its place and rotation: ``solid`` is the same at all frames of a rigid thing.
 
     ``samples`` (n × 3) are places all over it, the same ones as long as it has as many vertices. ``low`` and ``high``
     are the corners of its box along the world's axes.
     """
 
-    def __init__(self, thing):
-        self.name = thing.name
-        self._thing = thing
-        self._is_rigid = not thing.modifiers and getattr(thing.data, "shape_keys", None) is None
+    def __init__(self, obj):
+        self.name = obj.name
+        self._obj = obj
+        self._is_rigid = not obj.modifiers and getattr(obj.data, "shape_keys", None) is None
         self._shape = self._solid = self._samples = self._inwards = None
         self.frame = self.before = None
 
@@ -31,7 +31,7 @@ class Body:
         """Looks at where it is."""
         if frame == self.frame:
             return
-        self._evaluated = self._thing.evaluated_get(graph)
+        self._evaluated = self._obj.evaluated_get(graph)
         matrix = self._evaluated.matrix_world
         turn = matrix.to_quaternion().to_matrix()
         shape = turn.transposed() @ matrix.to_3x3()
@@ -46,7 +46,7 @@ class Body:
             )
         ):
             self._shape, self._solid, self._samples, self._inwards = shape, None, None, None
-        corners = placed(numpy.array(self._evaluated.bound_box), matrix)
+        corners = transformed(numpy.array(self._evaluated.bound_box), matrix)
         self.low, self.high = corners.min(axis=0), corners.max(axis=0)
 
     @property
@@ -60,7 +60,7 @@ class Body:
                 raise Unmeasurable(f"{self.name!r} has {count} triangles")
             triangles = numpy.empty(3 * count, numpy.int32)
             mesh.loop_triangles.foreach_get("vertices", triangles)
-            points = placed(coordinates(mesh.vertices), self._shape.to_4x4())
+            points = transformed(coordinates(mesh.vertices), self._shape.to_4x4())
             if not numpy.isfinite(points).all():
                 raise Unmeasurable(f"{self.name!r} has places that are not numbers")
             self._solid = Solid(self.name, points, triangles.reshape(-1, 3))
@@ -109,7 +109,7 @@ def spread(solid, count):
     return corners[chosen, 0] + u[:, None] * sides[0][chosen] + v[:, None] * sides[1][chosen]
 
 
-class Cast:
+class MeshTracker:
     """The surfaces and bodies of a scene at the frame that it stands at, made when they are asked for."""
 
     def __init__(self):
@@ -127,23 +127,23 @@ class Cast:
     def surface(self, name):
         """What distances are measured on. Raises Unmeasurable."""
         if name not in self._surfaces:
-            self._surfaces[name] = Surface(mesh_object(name))
+            self._surfaces[name] = TrackedSurface(mesh_object(name))
             self._surfaces[name].at(self._graph)
         return self._surfaces[name]
 
     def body(self, name):
         """What depths are measured in. Raises Unmeasurable."""
         if name not in self._bodies:
-            self._bodies[name] = Body(mesh_object(name))
+            self._bodies[name] = TrackedBody(mesh_object(name))
             self._bodies[name].at(self._frame, self._graph)
         return self._bodies[name]
 
 
 def mesh_object(name):
     """The object of that name. Raises Unmeasurable where there is none, or none with a mesh."""
-    thing = bpy.context.view_layer.objects.get(name)
-    if thing is None:
+    obj = bpy.context.view_layer.objects.get(name)
+    if obj is None:
         raise Unmeasurable(f"there is no object {name!r} in the view layer")
-    if thing.type != "MESH":
+    if obj.type != "MESH":
         raise Unmeasurable(f"{name!r} is no mesh")
-    return thing
+    return obj

@@ -8,12 +8,13 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..physics.caches import of_objects
-from ..preview.frame_pictures import Films, Job
+from ..preview.frame_pictures import FramePictures, PictureJob
 from .actors import resolve
 from .contacts import Contacts
 from .keyed_frames import keyed_frames
 from .reliability_notes import notes_on
-from .trajectories import Playing, Track
+from .timeline import FrameStepper
+from .trajectories import Track
 from .viewpoints import close_by, wants_close_views, whole_path
 
 _FEWEST, _MOST = 6, 12  # pictures of an actor
@@ -37,24 +38,24 @@ def motion_sheet(arguments, report):
     ends = {frame for phase in phases for frame in (phase["start"], phase["end"])}
     measured = sorted({*range(first, last + 1, stride), *sampled, *ends})
     caches = [_caches(actor, scene) for actor in actors]  # as they are before they are stepped
-    playing = Playing(scene, first)
+    stepper = FrameStepper(scene, first)
     tracks = [Track(actor, scene.render.fps / scene.render.fps_base) for actor in actors]
     contacts = Contacts(scene, actors)
-    films = Films(scene)
+    pictures = FramePictures(scene)
     strips = _Strips(tracks, sampled, arguments)
-    steps = playing.count(measured)
+    steps = stepper.count(measured)
     if steps > _LONGEST:
-        waiting = f" Not baked: {', '.join(playing.stepped_for[:3])}." if playing.stepped_for else ""
+        waiting = f" Not baked: {', '.join(stepper.stepped_for[:3])}." if stepper.stepped_for else ""
         raise Refused(f"{steps} frames would have to be visited; {_LONGEST} at most.{waiting}")
-    meter = _Meter(report, steps + playing.count(sampled))
-    with playing:
-        for frame, graph in playing.through(measured, meter.step):
+    meter = _Meter(report, steps + stepper.count(sampled))
+    with stepper:
+        for frame, graph in stepper.through(measured, meter.step):
             for track in tracks:
-                track.add(frame, track.actor.moment(graph))
+                track.add(frame, track.actor.state_at(graph))
             contacts.look(frame, graph, tracks)
         strips.plan()
-        for frame, graph in playing.through(sampled if strips.any else [], meter.step):
-            strips.draw(frame, graph, films, meter)
+        for frame, graph in stepper.through(sampled if strips.any else [], meter.step):
+            strips.draw(frame, graph, pictures, meter)
     return {
         "start": first,
         "end": last,
@@ -62,15 +63,15 @@ def motion_sheet(arguments, report):
         "stride": stride,
         "sampled": sampled,
         "phases": phases,
-        "stepped_from": playing.stepped_from,
-        "stepped_for": playing.stepped_for,
-        "notes": films.notes,
+        "stepped_from": stepper.stepped_from,
+        "stepped_for": stepper.stepped_for,
+        "notes": pictures.notes,
         "actors": [
             {
-                **_told(track, (first, last)),
-                "phases": [_phase(track, number, phase, contacts) for phase in phases],
+                **_actor_entry(track, (first, last)),
+                "phases": [_phase_entry(track, number, phase, contacts) for phase in phases],
                 "caches": [state for _, state in caches[number]],
-                "notes": notes_on(track, caches[number], films.missing, scene),
+                "notes": notes_on(track, caches[number], pictures.missing, scene),
                 "columns": strips.columns,
                 "views": strips.views[number],
             }
@@ -165,7 +166,7 @@ class _Strips:
                 self._add(number, "close", {frame: close_by(track, view, frame) for frame in self._sampled})
 
     def _add(self, number, kind, views):
-        pictures = [{"frame": frame, "view": view and view.told()} for frame, view in views.items()]
+        pictures = [{"frame": frame, "view": view and view.as_dict()} for frame, view in views.items()]
         self.views[number].append({"kind": kind, "pictures": pictures})
         for frame, view in views.items():
             if view is not None:
@@ -173,26 +174,26 @@ class _Strips:
                 self._jobs[frame].append((number, view, path))
                 self.any = True
 
-    def draw(self, frame, graph, films, meter):
+    def draw(self, frame, graph, pictures, meter):
         """Takes the pictures of a frame, at which the scene stands."""
-        moments = [track.actor.moment(graph) for track in self._tracks]
-        for track, moment in zip(self._tracks, moments, strict=True):
-            track.check(frame, moment)
+        states = [track.actor.state_at(graph) for track in self._tracks]
+        for track, state in zip(self._tracks, states, strict=True):
+            track.check(frame, state)
         jobs = []
         for number, view, path in self._jobs[frame]:
-            names = {thing.name for thing in self._tracks[number].actor.objects}
-            moment = moments[number]
-            jobs.append(Job(names, moment.some(_RAYS) if moment is not None else [], view, path))
-        for number, _ in enumerate(films.shoot(jobs), 1):
+            names = {obj.name for obj in self._tracks[number].actor.objects}
+            state = states[number]
+            jobs.append(PictureJob(names, state.some(_RAYS) if state is not None else [], view, path))
+        for number, _ in enumerate(pictures.render(jobs), 1):
             meter.part(number / len(jobs), f"drawing frame {frame}")
 
 
 # What is told
 
 
-def _told(track, span):
+def _actor_entry(track, span):
     actor = track.actor
-    names = [thing.name for thing in actor.objects]
+    names = [obj.name for obj in actor.objects]
     return {
         "name": actor.name,
         "kind": actor.kind,
@@ -209,19 +210,19 @@ def _told(track, span):
     }
 
 
-def _phase(track, number, phase, contacts):
-    told = {"phase": phase["name"], "start": phase["start"], "end": phase["end"]}
-    told.update(track.over(phase["start"], phase["end"]))
-    told["contacts"] = contacts.over(number, track, phase["start"], phase["end"])
-    return told
+def _phase_entry(track, number, phase, contacts):
+    entry = {"phase": phase["name"], "start": phase["start"], "end": phase["end"]}
+    entry.update(track.over(phase["start"], phase["end"]))
+    entry["contacts"] = contacts.over(number, track, phase["start"], phase["end"])
+    return entry
 
 
 def _caches(actor, scene):
     """(cache, its state as data) for all that the actor takes part in."""
-    found = []
-    for cache in of_objects(scene, [thing.name for thing in actor.objects]):
+    entries = []
+    for cache in of_objects(scene, [obj.name for obj in actor.objects]):
         state = "unbaked" if not cache.baked else "baked, outdated" if cache.outdated else "baked"
         start, end = cache.range
-        told = {"label": cache.label, "state": state, "start": start, "end": end, "on": cache.simulated}
-        found.append((cache, told))
-    return found
+        entry = {"label": cache.label, "state": state, "start": start, "end": end, "on": cache.simulated}
+        entries.append((cache, entry))
+    return entries

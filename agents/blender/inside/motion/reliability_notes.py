@@ -63,5 +63,5 @@ def _is_still(track):
 
 
 def _missing_of(actor, missing):
-    found = [(thing.name, missing[thing.name]) for thing in actor.objects if thing.name in missing]
-    return found[:_LISTED]
+    reasons = [(obj.name, missing[obj.name]) for obj in actor.objects if obj.name in missing]
+    return reasons[:_LISTED]

@@ -7,11 +7,9 @@ the time since then.
 
 import math
 
-import bpy
 import numpy
 from mathutils import Vector
 
-from ..physics.caches import unbaked
 from .actors import round_to
 
 DEFORMED = 2e-3  # of its size that points of an actor must move against each other to be told of
@@ -35,48 +33,48 @@ class Track:
         self.strays = {}
         self.last = self._first = None
 
-    def add(self, frame, moment):
+    def add(self, frame, state):
         """Takes in where the actor is at a frame, the next one in time."""
         last = self.last
         seconds = (frame - self.frames[-1]) / self.fps if self.frames else 0.0
         speed = point_speed = rotation = None
-        if moment is not None and last is not None:
-            speed = (moment.centre - last.centre).length / seconds
-            if moment.is_followed and len(moment.places) == len(last.places):
-                both = moment.alive & last.alive
-                before, after = last.places[both], moment.places[both]
+        if state is not None and last is not None:
+            speed = (state.centre - last.centre).length / seconds
+            if state.is_followed and len(state.places) == len(last.places):
+                both = state.alive & last.alive
+                before, after = last.places[both], state.places[both]
                 if len(before):
                     point_speed = float(numpy.linalg.norm(after - before, axis=1).mean()) / seconds
                 if self.actor.measured != "particles":
                     rotation = rotated(before, after)
-                    self.deforms = self.deforms or self._is_deformed(moment)
+                    self.deforms = self.deforms or self._is_deformed(state)
         self.frames.append(frame)
-        self.centres.append(moment and moment.centre)
-        self.lows.append(moment and moment.low)
-        self.highs.append(moment and moment.high)
+        self.centres.append(state and state.centre)
+        self.lows.append(state and state.low)
+        self.highs.append(state and state.high)
         self.speeds.append(speed)
         self.point_speeds.append(point_speed)
         self.rotations.append(rotation)
-        self.last, self._first = moment, self._first or moment
+        self.last, self._first = state, self._first or state
 
-    def check(self, frame, moment):
+    def check(self, frame, state):
         """Takes in where the actor is when a frame is seen once more: ``strays`` tells of where that is elsewhere."""
         at = self.frames.index(frame)
         centre = self.centres[at]
-        if (centre is None) != (moment is None):
+        if (centre is None) != (state is None):
             self.strays[frame] = None
         elif centre is not None:
-            off = (moment.centre - centre).length
-            if off > REPEATS * max((moment.high - moment.low).length, 1e-3):
+            off = (state.centre - centre).length
+            if off > REPEATS * max((state.high - state.low).length, 1e-3):
                 self.strays[frame] = off
 
-    def _is_deformed(self, moment):
-        first, half = self._first.places, len(moment.places) // 2
-        if len(first) != len(moment.places) or not half:
+    def _is_deformed(self, state):
+        first, half = self._first.places, len(state.places) // 2
+        if len(first) != len(state.places) or not half:
             return False
         before, after = (
             numpy.linalg.norm(places[:half] - places[half : 2 * half], axis=1)
-            for places in (first, moment.places)
+            for places in (first, state.places)
         )
         size = (self._first.high - self._first.low).length
         return bool((abs(after - before) > DEFORMED * size).any())
@@ -94,7 +92,7 @@ class Track:
         return "vertices" if self.deforms else "centre"
 
     @property
-    def told_speeds(self):
+    def main_speeds(self):
         """The speeds of ``speed_name``; where points cannot be followed, those of the centre."""
         if self.speed_name == "centre":
             return self.speeds
@@ -115,8 +113,8 @@ class Track:
         if len(around) < 3 or None in around:
             return 0.0
         before, after = (
-            (around[one + 1] - around[one]) / (self.frames[at + one] - self.frames[at + one - 1])
-            for one in (0, 1)
+            (around[step + 1] - around[step]) / (self.frames[at + step] - self.frames[at + step - 1])
+            for step in (0, 1)
         )
         return (after - before).length * self.fps
 
@@ -134,10 +132,10 @@ class Track:
         first, last = there[0], there[-1]
         way = self.centres[last] - self.centres[first]
         steps = [at for at in there if at > first]
-        speeds = [(self.told_speeds[at], self.frames[at]) for at in steps if self.told_speeds[at] is not None]
+        speeds = [(self.main_speeds[at], self.frames[at]) for at in steps if self.main_speeds[at] is not None]
         peak, peak_frame = max(speeds, default=(None, None), key=lambda pair: pair[0])
         turns = [self.turns[at] for at in steps if self.turns[at] is not None]
-        told = {
+        result = {
             "present": True,
             "displacement": round_to(way.length),
             "displacement_vector": [round_to(part) for part in way],
@@ -151,8 +149,8 @@ class Track:
             "end_position": [round_to(part) for part in self.centres[last]],
         }
         if first != inside[0] or last != inside[-1]:
-            told["there"] = [self.frames[first], self.frames[last]]
-        return told
+            result["there"] = [self.frames[first], self.frames[last]]
+        return result
 
     def _way(self, at):
         before, after = self.centres[at - 1], self.centres[at]
@@ -182,64 +180,3 @@ def rotated(before, after):
     half, axis = float(vectors[0, -1]), Vector(vectors[1:, -1])
     angle = 2 * math.atan2(axis.length, abs(half))
     return axis.normalized() * math.copysign(angle, half)
-
-
-class Playing:
-    """Goes through frames of a scene in order, and at the end of ``with`` back to where it stood.
-
-    Nothing that is simulated is jumped: where a cache of the scene is not baked, every frame is visited from its
-    start on, which is then ``stepped_from``; ``stepped_for`` names such caches.
-    """
-
-    def __init__(self, scene, first):
-        self._scene = scene
-        waiting = [(cache["label"], cache["start"]) for cache in unbaked(scene)]
-        for thing in scene.objects:
-            for modifier in thing.modifiers:
-                if (
-                    modifier.type == "NODES"
-                    and modifier.show_viewport
-                    and _simulates(modifier.node_group, set())
-                ):
-                    waiting.append((f"simulation nodes of {thing.name!r}", scene.frame_start))
-        self.stepped_for = [label for label, _ in waiting]
-        self.stepped_from = min([first, *(start for _, start in waiting)]) if waiting else None
-
-    def __enter__(self):
-        self._frame, self._subframe = self._scene.frame_current, self._scene.frame_subframe
-        return self
-
-    def __exit__(self, *error):
-        self._scene.frame_set(self._frame, subframe=self._subframe)
-
-    def count(self, frames):
-        """How many frames are visited for the sake of these."""
-        return len(self._steps(frames))
-
-    def _steps(self, frames):
-        if self.stepped_from is None or not frames:
-            return frames
-        return range(self.stepped_from, frames[-1] + 1)
-
-    def through(self, frames, visiting):
-        """(frame, evaluated dependency graph) of each of the ``frames``, which are sorted.
-
-        Calls ``visiting(frame)`` before each that is visited.
-        """
-        wanted = set(frames)
-        for frame in self._steps(frames):
-            visiting(frame)
-            self._scene.frame_set(frame)
-            if frame in wanted:
-                yield frame, bpy.context.evaluated_depsgraph_get()
-
-
-def _simulates(tree, seen):
-    """Whether a node tree, or one that it calls, has a simulation zone."""
-    if tree is None or tree in seen:
-        return False
-    seen.add(tree)
-    return any(
-        node.bl_idname == "GeometryNodeSimulationOutput" or _simulates(getattr(node, "node_tree", None), seen)
-        for node in tree.nodes
-    )

@@ -5,7 +5,7 @@ import math
 
 from mathutils import Matrix, Vector
 
-from ..preview.framing import Box, turned_to
+from ..preview.framing import BoundingBox, turned_to
 
 # (azimuth, elevation) in degrees, best liked first; azimuth 0 looks along +Y, 90 along -X.
 _ANGLES = ((30, 24), (-30, 24), (60, 24), (-60, 24), (0, 24), (90, 24), (30, 45), (-30, 45), (0, 65))
@@ -17,7 +17,7 @@ _CLOSE_HEIGHT = 0.72
 _SMALL = 0.2  # an actor that takes less of the picture's width is shown close as well
 
 
-class View:
+class OrthographicView:
     """An orthographic camera: ``centre`` of the picture, ``width`` in metres, ``size`` in pixels; it sees all behind
     ``depth``, metres from the centre towards the viewer, and nothing before it."""
 
@@ -33,9 +33,9 @@ class View:
     def box(self):
         """A box around what it frames."""
         half = Vector((1, 1, 1)) * (self.width * max(1.0, self.size[1] / self.size[0]) / 2)
-        return Box(self.centre - half, self.centre + half)
+        return BoundingBox(self.centre - half, self.centre + half)
 
-    def told(self):
+    def as_dict(self):
         """The view as data for drawing on its pictures."""
         return {
             "axes": [list(axis) for axis in self.axes],
@@ -58,7 +58,7 @@ def whole_path(track, tile):
     upward = upward * _AROUND
     height = min(max(upward / across, _FLATTEST), _TALLEST)
     width = max(across, upward / height)
-    return View(angle, centre, width, (tile, round(tile * height)), depth + 0.02 * width)
+    return OrthographicView(angle, centre, width, (tile, round(tile * height)), depth + 0.02 * width)
 
 
 def wants_close_views(track, view):
@@ -78,7 +78,9 @@ def close_by(track, view, frame):
     centre, _, _, depth = _fit(view.angle, [(track.lows[at], track.highs[at])])
     tile = view.size[0]
     width = largest * _CLOSE_AROUND
-    return View(view.angle, centre, width, (tile, round(tile * _CLOSE_HEIGHT)), depth + 0.02 * width)
+    return OrthographicView(
+        view.angle, centre, width, (tile, round(tile * _CLOSE_HEIGHT)), depth + 0.02 * width
+    )
 
 
 def _size(low, high):
@@ -98,14 +100,14 @@ def _axes(angle):
 def _best_angle(places):
     """The angle from which the most of a path is seen across the line of sight."""
     mean = sum(places, Vector()) / len(places)
-    best, shown = _ANGLES[0], -1.0
+    best, best_spread = _ANGLES[0], -1.0
     for angle in _ANGLES:
         towards = _axes(angle)[2]
-        seen = math.sqrt(
+        spread = math.sqrt(
             sum((place - mean).length_squared - (place - mean).dot(towards) ** 2 for place in places)
         )
-        if seen > shown * _WORTH + 1e-6:
-            best, shown = angle, seen
+        if spread > best_spread * _WORTH + 1e-6:
+            best, best_spread = angle, spread
     return best
 
 

@@ -7,14 +7,15 @@ import os
 import bpy
 from mathutils import Matrix, Vector
 
-from ..render.graphics import best_engine
-from .framing import VIEWS, Box, boxes_of, turned_to
-from .material_colours import CLAY, Surface
-from .previews import SCENE, Shooting, shot_of, tell_missing
+from ..blend.protocol_tags import OBJECT, ROLE
+from ..render.engines import best_engine
+from .fixed_views import SCENE, PreviewRenderer, copy_of, note_missing
+from .framing import VIEWS, BoundingBox, boxes_of, turned_to
+from .material_colours import CLAY, PreviewMaterial
 from .shader_values import between
-from .studio_scene import Stage
+from .studio_scene import StudioScene
 
-_OTHERS = Surface(CLAY, 0.32, 0.8)
+_OTHERS = PreviewMaterial(CLAY, 0.32, 0.8)
 _PARTNER, _CLEAR = (0.16, 0.3, 0.55), 0.55  # in a close-up: of the second of two; all is seen through
 _LARGE = 3.0  # times the smallest thing that a finding is about: what is larger is only tinged
 _SECOND, _TINGE = 0.6, 0.35  # how much of the colour the second of two things has, and what is large
@@ -38,29 +39,33 @@ def picture(arguments, report):
     left in ``folder``, the views' ``size`` pixels a side, those from close by ``close`` pixels.
     """
     scene, notes = bpy.context.scene, []
-    engine, fault = best_engine()
-    if fault:
-        notes.append(f"Drawn by Cycles, more coarsely: Workbench cannot draw on this machine ({fault}).")
-    with Stage(engine) as stage:
-        shot = shot_of(stage, SCENE, scene.name, None, notes)
+    engine, engine_fault = best_engine()
+    if engine_fault:
+        notes.append(
+            f"Drawn by Cycles, more coarsely: Workbench cannot draw on this machine ({engine_fault})."
+        )
+    with StudioScene(engine) as stage:
+        shot = copy_of(stage, SCENE, scene.name, None, notes)
         boxes = boxes_of(shot.pieces)
-        faults = [_Fault(one, scene, boxes) for one in arguments["findings"]]
-        marked = [one for one in faults if one.marked]
+        faults = [_Fault(finding, scene, boxes) for finding in arguments["findings"]]
+        marked = [fault for fault in faults if fault.marked]
         plain = {piece: piece.data for piece in shot.pieces}
         if faults:
             _paint(stage, shot.pieces, _tints(faults))
-        shoot = Shooting(stage, shot, arguments["folder"], arguments["size"])
-        around = list(boxes) if arguments.get("whole") else [name for one in faults for name in one.small]
-        shoot.set_up(True, False, notes, around=around)
-        places = [one.place for one in marked if one.place is not None]
-        with shoot.cleaned_up():
-            views = list(shoot.sides(report, len(VIEWS), places))
+        renderer = PreviewRenderer(stage, shot, arguments["folder"], arguments["size"])
+        around = list(boxes) if arguments.get("whole") else [name for fault in faults for name in fault.small]
+        renderer.set_up(True, False, notes, around=around)
+        places = [fault.place for fault in marked if fault.place is not None]
+        with renderer.cleaned_up():
+            views = list(renderer.sides(report, len(VIEWS), places))
             for view in views:
                 seen = iter(view.get("marks", ()))
-                view["marks"] = [None if one.place is None else next(seen) for one in marked]
-            close = _CloseUps(stage, plain, shoot.away, arguments["folder"], arguments["close"])
-            closed = [close.shoot(at, one) for at, one in enumerate(marked) if one.is_small][:_CLOSE_UPS]
-        tell_missing(shot, notes)
+                view["marks"] = [None if fault.place is None else next(seen) for fault in marked]
+            close = _CloseUps(stage, plain, renderer.away, arguments["folder"], arguments["close"])
+            closed = [close.render(at, fault) for at, fault in enumerate(marked) if fault.is_small][
+                :_CLOSE_UPS
+            ]
+        note_missing(shot, notes)
         return {
             "title": scene.name,
             "frame": scene.frame_current,
@@ -74,10 +79,10 @@ class _Fault:
     """A finding: ``names`` of the drawn objects that it is about, ``first`` those that its first name stands for,
     ``small`` those that stand for nothing much larger than the smallest, ``place`` in the world or None."""
 
-    def __init__(self, told, scene, boxes):
-        self.colour, self.size, self.marked = tuple(told["colour"]), told["size"], told["marked"]
-        groups = [found for name in told["objects"] if (found := _drawn(scene, name, boxes))]
-        around = [Box.around(boxes[name] for name in group) for group in groups]
+    def __init__(self, finding, scene, boxes):
+        self.colour, self.size, self.marked = tuple(finding["colour"]), finding["size"], finding["marked"]
+        groups = [names for name in finding["objects"] if (names := _drawn(scene, name, boxes))]
+        around = [BoundingBox.around(boxes[name] for name in group) for group in groups]
         least = min((box.diagonal for box in around), default=0.0)
         self.names = list(dict.fromkeys(name for group in groups for name in group))
         self.first = groups[0] if groups else []
@@ -88,8 +93,8 @@ class _Fault:
             if box.diagonal <= _LARGE * least
         ]
         self.boxes = around[:2]
-        is_now = told["frame"] in (None, scene.frame_current)
-        self.place = Vector(told["at"]) if told["at"] is not None and is_now else None
+        is_now = finding["frame"] in (None, scene.frame_current)
+        self.place = Vector(finding["at"]) if finding["at"] is not None and is_now else None
         self.is_small = self.place is not None and self.size is not None and bool(self.names)
         if self.place is None and around and is_now:
             self.place = around[0].centre
@@ -98,14 +103,14 @@ class _Fault:
 def _drawn(scene, name, boxes):
     """The drawn objects that the name of an object, root, collection or part (``Object/Part``) stands for."""
     owner, _, part = name.partition("/")
-    thing = scene.objects.get(part or name)
-    if thing is not None and thing.name in boxes:
-        return [thing.name]
-    collections = {one.name: one for one in scene.collection.children_recursive}
-    inside = [collections[owner]] if owner in collections else thing.users_collection if thing else ()
-    tagged = [one for one in inside if one.get("protocol_role") == "object"]
-    found = dict.fromkeys(one.name for all_of in tagged for one in all_of.all_objects)
-    return [one for one in found if one in boxes]
+    obj = scene.objects.get(part or name)
+    if obj is not None and obj.name in boxes:
+        return [obj.name]
+    collections = {collection.name: collection for collection in scene.collection.children_recursive}
+    inside = [collections[owner]] if owner in collections else obj.users_collection if obj else ()
+    tagged = [collection for collection in inside if collection.get(ROLE) == OBJECT]
+    names = dict.fromkeys(member.name for collection in tagged for member in collection.all_objects)
+    return [member for member in names if member in boxes]
 
 
 def _tints(faults):
@@ -113,33 +118,33 @@ def _tints(faults):
     less of it, and what is but the ground of it is only tinged."""
     tints = {}
     for names, share, alpha in (("first", 1.0, 1.0), ("small", _SECOND, 1.0), ("names", _TINGE, 0.5)):
-        for one in faults:
-            for name in getattr(one, names):
-                if names != "first" or name in one.small:
-                    tints.setdefault(name, Surface(between(CLAY, one.colour, share), alpha, 0.6))
+        for fault in faults:
+            for name in getattr(fault, names):
+                if names != "first" or name in fault.small:
+                    tints.setdefault(name, PreviewMaterial(between(CLAY, fault.colour, share), alpha, 0.6))
     return tints
 
 
 def _paint(stage, pieces, tints):
     """Colours what is at fault, and makes everything else faint. Copies that share a mesh get one each."""
-    made = {}
+    painted = {}
     for piece in pieces:
         surface = tints.get(piece.owner, _OTHERS)
         key = (piece.data.as_pointer(), surface.rgb, surface.alpha)
-        if key not in made:
-            made[key] = _painted(stage, piece.data, surface)
-        piece.data = made[key]
+        if key not in painted:
+            painted[key] = _painted(stage, piece.data, surface)
+        piece.data = painted[key]
 
 
 def _painted(stage, data, surface):
     """A copy of a data-block, all of one look."""
-    made = stage.owned(data.copy())
-    material, slots = stage.material(surface), made.materials
+    painted = stage.owned(data.copy())
+    material, slots = stage.material(surface), painted.materials
     for at in range(len(slots)):
         slots[at] = material
     if not len(slots):
         slots.append(material)
-    return made
+    return painted
 
 
 class _CloseUps:
@@ -148,13 +153,13 @@ class _CloseUps:
     def __init__(self, stage, plain, away, folder, size):
         self._stage, self._plain, self._away = stage, plain, away
         self._folder, self._size = folder, size
-        for thing in stage.scene.objects:
-            thing.hide_render = True
+        for obj in stage.scene.objects:
+            obj.hide_render = True
         self._camera = stage.camera()
         self._camera.data.type = "ORTHO"
         self._camera.data.clip_end = 2 * away
 
-    def shoot(self, number, fault):
+    def render(self, number, fault):
         """The picture of a fault, seen across the way in which its two things lie beside each other."""
         name, towards, up = _RIGHT if _axis(fault.boxes) == 1 else _FRONT
         rotation = turned_to(towards, up)
@@ -171,22 +176,24 @@ class _CloseUps:
         for piece, data in self._plain.items():
             if piece.owner in fault.names:
                 colour = fault.colour if piece.owner in fault.first else _PARTNER
-                surface = Surface(colour, _CLEAR)
+                surface = PreviewMaterial(colour, _CLEAR)
                 added.append(self._stage.add(_painted(self._stage, data, surface), piece.matrix))
         file = _FILE.format(number)
         try:
-            self._stage.shoot(self._camera, (self._size,) * 2, os.path.join(self._folder, file), slant=0.0)
+            self._stage.render(self._camera, (self._size,) * 2, os.path.join(self._folder, file), slant=0.0)
         except BaseException:
             with contextlib.suppress(OSError):
                 os.remove(os.path.join(self._folder, file))
             raise
-        for thing in added:
-            thing.hide_render = True
+        for obj in added:
+            obj.hide_render = True
         return {"mark": number, "name": name, "file": file, "metres_per_pixel": across / self._size}
 
 
 def _axis(boxes):
     """The axis of the world along which two boxes lie farthest apart, or deepest in each other least."""
-    one, two = boxes[0], boxes[-1]
-    apart = [max(two.low[axis] - one.high[axis], one.low[axis] - two.high[axis]) for axis in range(3)]
+    first, second = boxes[0], boxes[-1]
+    apart = [
+        max(second.low[axis] - first.high[axis], first.low[axis] - second.high[axis]) for axis in range(3)
+    ]
     return apart.index(max(apart))

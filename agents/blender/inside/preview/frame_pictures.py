@@ -4,25 +4,25 @@
 import bpy
 from mathutils import Matrix
 
-from ..render.graphics import best_engine
-from .framing import Box
-from .material_colours import Surface
-from .scene_copy import Likeness
-from .studio_scene import REACH, Stage
+from ..render.engines import best_engine
+from .framing import BoundingBox
+from .material_colours import PreviewMaterial
+from .scene_copy import SceneCopy
+from .studio_scene import REACH, StudioScene
 
 _PALE = 0.62  # how white the surroundings are made
 _SLACK = 0.5  # of a view's width: what is so far before the actor is shown, unless it hides it
 _PASSED = 8  # own surfaces that a look at a point goes through
 
 
-class Job:
+class PictureJob:
     """A picture to be taken: ``objects`` (names) stand out in it; ``points`` are some of theirs."""
 
     def __init__(self, objects, points, view, path):
         self.objects, self.points, self.view, self.path = objects, points, view, path
 
 
-class Films:
+class FramePictures:
     """Takes the pictures that are wanted at a frame. ``notes`` collects what a viewer has to know of them."""
 
     def __init__(self, scene):
@@ -35,26 +35,26 @@ class Films:
                 f"Drawn by Cycles, more coarsely: Workbench cannot draw on this machine ({fault})."
             )
 
-    def shoot(self, jobs):
+    def render(self, jobs):
         """Renders the jobs at the current frame; yields after each."""
         graph = bpy.context.evaluated_depsgraph_get()
-        with Stage(self._engine) as stage:
-            likeness = Likeness(stage, graph, None)
+        with StudioScene(self._engine) as stage:
+            scene_copy = SceneCopy(stage, graph, None)
             for names, why in (
-                (likeness.hidden, "hidden in the viewport"),
-                (likeness.unrendered, "hidden from renders"),
-                (likeness.broken, "its geometry or transform is not finite"),
+                (scene_copy.hidden, "hidden in the viewport"),
+                (scene_copy.unrendered, "hidden from renders"),
+                (scene_copy.broken, "its geometry or transform is not finite"),
             ):
                 self.missing.update(dict.fromkeys(names, why))
-            seen = Box.around(job.view.box for job in jobs)
+            seen = BoundingBox.around(job.view.box for job in jobs)
             stage.aim(seen.centre, seen.diagonal)
-            placed = [(piece.owner, stage.add(piece.data, piece.matrix)) for piece in likeness.pieces]
+            placed = [(piece.owner, stage.add(piece.data, piece.matrix)) for piece in scene_copy.pieces]
             camera = stage.camera()
             camera.data.type, camera.data.sensor_fit = "ORTHO", "HORIZONTAL"
             for job in jobs:
                 _set_off(stage, placed, job.objects)
                 _point(stage, camera, job.view, self._from_where(graph, job))
-                stage.shoot(camera, job.view.size, job.path)
+                stage.render(camera, job.view.size, job.path)
                 yield
 
     def _from_where(self, graph, job):
@@ -73,8 +73,8 @@ class Films:
             left = before - (point - view.centre).dot(towards)
             if left <= 0:
                 return False
-            hit, place, _, _, thing, _ = self._scene.ray_cast(graph, point + step, towards, distance=left)
-            if not hit or thing.name not in job.objects:
+            hit, place, _, _, obj, _ = self._scene.ray_cast(graph, point + step, towards, distance=left)
+            if not hit or obj.name not in job.objects:
                 return hit
             point = place
         return False
@@ -82,17 +82,17 @@ class Films:
 
 def _set_off(stage, placed, names):
     """Leaves the named objects their colours, and gives all others pale ones."""
-    for owner, thing in placed:
-        for slot in thing.material_slots:
+    for owner, obj in placed:
+        for slot in obj.material_slots:
             slot.link = "DATA"
             if owner in names or slot.material is None:
                 continue
             colour = slot.material.diffuse_color
             grey = sum(colour[:3]) / 3
             rgb = tuple(_PALE + (1 - _PALE) * (part + grey) / 2 for part in colour[:3])
-            made = stage.material(Surface(rgb, colour[3]))
+            pale = stage.material(PreviewMaterial(rgb, colour[3]))
             slot.link = "OBJECT"
-            slot.material = made
+            slot.material = pale
 
 
 def _point(stage, camera, view, before):

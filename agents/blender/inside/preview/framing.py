@@ -18,7 +18,7 @@ _GROUND_TIMES, _SKY_TIMES, _FAR_TIMES = 1.7, 8.0, 6.0  # against what is framed
 _FLAT = 0.05
 
 
-class Box:
+class BoundingBox:
     """A box along the world's axes."""
 
     def __init__(self, low, high):
@@ -50,7 +50,7 @@ class Box:
 
     def grown(self, by):
         """The box, larger by so much on every side."""
-        return Box(self.low - Vector((by,) * 3), self.high + Vector((by,) * 3))
+        return BoundingBox(self.low - Vector((by,) * 3), self.high + Vector((by,) * 3))
 
     def meets(self, other):
         """Whether they have a point in common."""
@@ -76,7 +76,7 @@ def boxes_of(pieces):
     grouped = {}
     for piece in pieces:
         grouped.setdefault(piece.owner, []).append(piece)
-    return {owner: Box.around(found) for owner, found in grouped.items()}
+    return {owner: BoundingBox.around(group) for owner, group in grouped.items()}
 
 
 def focus(boxes, templates=()):
@@ -88,7 +88,7 @@ def focus(boxes, templates=()):
     outside = _stand_aside(boxes, templates)
     outside = sorted({*outside, *_far_away({name: boxes[name] for name in boxes if name not in outside})})
     beyond, core = [], None
-    for name in sorted(boxes.keys() - set(outside), key=lambda one: boxes[one].diagonal):
+    for name in sorted(boxes.keys() - set(outside), key=lambda name: boxes[name].diagonal):
         box = boxes[name]
         if core is not None and core.diagonal > 0:
             times = box.diagonal / core.diagonal
@@ -98,7 +98,7 @@ def focus(boxes, templates=()):
             ):
                 beyond.append(name)
                 continue
-        core = box if core is None else Box.around((core, box))
+        core = box if core is None else BoundingBox.around((core, box))
     return sorted(boxes.keys() - {*outside, *beyond}), sorted(beyond), outside
 
 
@@ -107,7 +107,7 @@ def _stand_aside(boxes, templates):
     rest = [box for name, box in boxes.items() if name not in templates]
     if not rest:
         return []
-    middle = Box.around(rest)
+    middle = BoundingBox.around(rest)
     near = middle.grown(middle.diagonal)
     return [name for name in boxes if name in templates and not near.meets(boxes[name])]
 
@@ -119,8 +119,8 @@ def _far_away(boxes):
     middle = Vector(statistics.median(box.centre[axis] for box in boxes.values()) for axis in range(3))
     away = {name: box.distance(middle) for name, box in boxes.items()}
     reach = statistics.median(away[name] + boxes[name].diagonal for name in boxes)
-    found = sorted(name for name in boxes if away[name] > _FAR_TIMES * reach)
-    return found if len(found) <= max(1, len(boxes) // 10) else []
+    far = sorted(name for name in boxes if away[name] > _FAR_TIMES * reach)
+    return far if len(far) <= max(1, len(boxes) // 10) else []
 
 
 def turned_to(towards, up):

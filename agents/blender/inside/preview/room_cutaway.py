@@ -26,7 +26,7 @@ _SOME = 0.1  # of the inside: then a part is around it
 _AT_ONCE = 20_000  # faces whose distances to the inside are reckoned together
 
 
-class Opening:
+class RoomCutaway:
     """Opens ``room`` (None: nothing to do) for one view after the other; ``fault`` is why it cannot be, or ""."""
 
     def __init__(self, stage, room):
@@ -34,7 +34,7 @@ class Opening:
         self.fault = "this Blender's Python has no numpy" if room and numpy is None else ""
         room = None if self.fault else room
         self._inside = numpy.array(room.inside) if room else None
-        self._walls = [_Wall(thing, self._inside) for thing in room.shell] if room else []
+        self._walls = [_Wall(obj, self._inside) for obj in room.shell] if room else []
 
     @contextlib.contextmanager
     def towards(self, rotation):
@@ -43,18 +43,18 @@ class Opening:
         try:
             front = _Front(self._inside, rotation) if self._walls else None
             for wall in self._walls:
-                thing, faces = wall.thing, wall.faces_before(front)
+                obj, faces = wall.obj, wall.faces_before(front)
                 if len(faces):
-                    changed.append((thing, thing.data))
-                if len(faces) == len(thing.data.polygons):
-                    thing.hide_render = True
+                    changed.append((obj, obj.data))
+                if len(faces) == len(obj.data.polygons):
+                    obj.hide_render = True
                 elif len(faces):
-                    thing.data = self._stage.owned(_without(thing.data, faces))
-            yield [thing for thing, _ in changed]
+                    obj.data = self._stage.owned(_without(obj.data, faces))
+            yield [obj for obj, _ in changed]
         finally:
-            for thing, data in changed:
-                thing.hide_render = False
-                thing.data = data
+            for obj, data in changed:
+                obj.hide_render = False
+                obj.data = data
 
 
 class _Front:
@@ -81,7 +81,11 @@ class _Front:
         if cell in self._nearest:
             return self._nearest[cell]
         known = [(x + i, y + j) for i in _NEAR for j in _NEAR if (x + i, y + j) in self._nearest]
-        return self._nearest[min(known, key=lambda one: math.dist(one, cell))] if known else math.inf
+        return (
+            self._nearest[min(known, key=lambda known_cell: math.dist(known_cell, cell))]
+            if known
+            else math.inf
+        )
 
     def hides(self, wall):
         """Of each face of a wall, whether it lies in front of the inside and has it on its far side."""
@@ -94,12 +98,12 @@ class _Front:
 
 
 class _Wall:
-    """A thing of the shell, ``thing``; of its faces, in the stage's world: ``centres``, ``normals``, and whether these
+    """A thing of the shell, ``obj``; of its faces, in the stage's world: ``centres``, ``normals``, and whether these
     point to the inside, ``is_turned_in``."""
 
-    def __init__(self, thing, inside):
-        self.thing = thing
-        mesh, matrix = thing.data, numpy.array(thing.matrix_world)
+    def __init__(self, obj, inside):
+        self.obj = obj
+        mesh, matrix = obj.data, numpy.array(obj.matrix_world)
         linear = matrix[:3, :3]
         self.centres = _read(mesh.polygons, "center", 3) @ linear.T + matrix[:3, 3]
         # A normal of length 1 becomes one of the world, as long as areas grow.
@@ -175,10 +179,10 @@ def _parts(mesh):
 
 def _without(mesh, faces):
     """A copy of a mesh that lacks some faces."""
-    made, work = mesh.copy(), bmesh.new()
-    work.from_mesh(made)
+    copy, work = mesh.copy(), bmesh.new()
+    work.from_mesh(copy)
     work.faces.ensure_lookup_table()
     bmesh.ops.delete(work, geom=[work.faces[number] for number in faces.tolist()], context="FACES")
-    work.to_mesh(made)
+    work.to_mesh(copy)
     work.free()
-    return made
+    return copy

@@ -16,7 +16,7 @@ _SMALL = 1024  # pixels a side of a picture that is read as a whole;
 _THUMB = 8  # a larger one is shrunk to so many
 
 
-class Reader:
+class ShaderReader:
     """Reads one tree. ``averages`` of pictures, by name, are kept for the next one.
 
     ``attribute``: the name of the colour attribute that was met last, None if there was none.
@@ -79,11 +79,11 @@ class Reader:
             return node.inputs[0], groups
         if node.mute:
             return next(
-                (one.from_socket for one in node.internal_links if one.to_socket == out), None
+                (entry.from_socket for entry in node.internal_links if entry.to_socket == out), None
             ), groups
         if node.bl_idname == "ShaderNodeGroup" and node.node_tree is not None:
-            ends = [one for one in node.node_tree.nodes if one.bl_idname == "NodeGroupOutput"]
-            ends.sort(key=lambda one: not one.is_active_output)
+            ends = [entry for entry in node.node_tree.nodes if entry.bl_idname == "NodeGroupOutput"]
+            ends.sort(key=lambda entry: not entry.is_active_output)
             return (_same(ends[0].inputs, out) if ends else None), (*groups, node)
         if node.bl_idname == "NodeGroupInput" and groups:
             return _same(groups[-1].inputs, out), groups[:-1]
@@ -101,7 +101,7 @@ class Reader:
             ends = [node.inputs.get(name) for name in ("Color1", "Color2")]
             return between(*map(self.colour, ends), 0.5) if all(ends) and out.name == "Color" else GREY
         # What is not known is taken to let its colour through.
-        through = next((one for one in node.inputs if one.type == "RGBA" and one.enabled), None)
+        through = next((entry for entry in node.inputs if entry.type == "RGBA" and entry.enabled), None)
         return self.colour(through) if through is not None else None
 
     def _average(self, image):
@@ -120,13 +120,13 @@ def bounded(value):
     return min(1.0, max(0.0, value)) if math.isfinite(value) else 0.0
 
 
-def between(one, two, share):
+def between(first, second, share):
     """From one colour (0) to another (1)."""
-    return tuple(a + (b - a) * share for a, b in zip(one, two))  # noqa: B905 - Python 3.9 has no strict
+    return tuple(a + (b - a) * share for a, b in zip(first, second))  # noqa: B905 - Python 3.9 has no strict
 
 
 def _same(sockets, socket):
-    return next((one for one in sockets if one.identifier == socket.identifier), None)
+    return next((other for other in sockets if other.identifier == socket.identifier), None)
 
 
 def _rgb(value):
@@ -179,12 +179,12 @@ def _attribute(reader, node):
 
 
 def _mix(reader, node):
-    factor, one, two = [entry for entry in node.inputs if entry.enabled][:3]
+    factor, first, second = [entry for entry in node.inputs if entry.enabled][:3]
     blend = node.blend_type if getattr(node, "data_type", "RGBA") == "RGBA" else "MIX"
-    return _blended(blend, bounded(reader.number(factor)), reader.colour(one), reader.colour(two))
+    return _blended(blend, bounded(reader.number(factor)), reader.colour(first), reader.colour(second))
 
 
-def _blended(blend, share, one, two):
+def _blended(blend, share, first, second):
     mixes = {
         "MULTIPLY": lambda a, b: a * b,
         "ADD": lambda a, b: a + b,
@@ -197,7 +197,7 @@ def _blended(blend, share, one, two):
         "DIVIDE": lambda a, b: a / b if b else a,
     }
     mix = mixes.get(blend)
-    return between(one, tuple(map(mix, one, two)) if mix else two, share)
+    return between(first, tuple(map(mix, first, second)) if mix else second, share)
 
 
 def _ramp(reader, node):
@@ -257,9 +257,9 @@ def _blackbody(reader, node):
 
 
 def _math(reader, node):
-    one, two = (reader.number(entry) for entry in node.inputs[:2])
-    known = {"ADD": one + two, "SUBTRACT": one - two, "MULTIPLY": one * two}
-    known.update(MAXIMUM=max(one, two), MINIMUM=min(one, two))
+    first, second = (reader.number(entry) for entry in node.inputs[:2])
+    known = {"ADD": first + second, "SUBTRACT": first - second, "MULTIPLY": first * second}
+    known.update(MAXIMUM=max(first, second), MINIMUM=min(first, second))
     return (known.get(node.operation, 0.5),) * 3
 
 

@@ -9,7 +9,7 @@ from mathutils import Matrix, Vector
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..render.graphics import CYCLES, WORKBENCH
+from ..render.engines import CYCLES, WORKBENCH
 
 REACH = (
     10.0  # what is looked at is scaled to this diameter: clipping and shading are then alike for all sizes
@@ -20,13 +20,13 @@ _SOFTER = (
 )
 
 
-class Stage:
+class StudioScene:
     """The scene. Use it in ``with``: whatever happens, what was made for it is removed at the end."""
 
     def __init__(self, engine):
         self.engine = engine
         self.finer = _SOFTER if engine == WORKBENCH else 1
-        self._made = []
+        self._owned = []
         self._materials = {}
         self._here = Matrix()
 
@@ -43,8 +43,8 @@ class Stage:
 
     def __exit__(self, *_error):
         # Objects before what they use, so that no user count is left above zero.
-        bpy.data.batch_remove(self._made[::-1])
-        self._made.clear()
+        bpy.data.batch_remove(self._owned[::-1])
+        self._owned.clear()
         result = bpy.data.images.get("Render Result")
         if result is not None and not self._had_result:
             bpy.data.images.remove(result)
@@ -53,7 +53,7 @@ class Stage:
 
     def owned(self, block):
         """Takes a data-block in, to be removed with the stage."""
-        self._made.append(block)
+        self._owned.append(block)
         return block
 
     # What stands on it
@@ -73,10 +73,10 @@ class Stage:
 
     def add(self, data, matrix):
         """An object on the stage, of a data-block that belongs to it, where ``matrix`` has it in the open scene."""
-        thing = self.owned(bpy.data.objects.new(_NAME, data))
-        thing.matrix_world = self._here @ matrix
-        self.scene.collection.objects.link(thing)
-        return thing
+        obj = self.owned(bpy.data.objects.new(_NAME, data))
+        obj.matrix_world = self._here @ matrix
+        self.scene.collection.objects.link(obj)
+        return obj
 
     def material(self, surface):
         """A material that looks like a surface; the same for the same."""
@@ -84,13 +84,13 @@ class Stage:
         rgba = (*surface.rgb, surface.alpha)
         key = (*(round(part, 4) for part in rgba), round(surface.roughness, 2), texture)
         if key not in self._materials:
-            made = self.owned(bpy.data.materials.new(_NAME))
-            made.diffuse_color = rgba
-            made.roughness = surface.roughness
-            picture = _lay_on(made, surface) if surface.image else None
+            material = self.owned(bpy.data.materials.new(_NAME))
+            material.diffuse_color = rgba
+            material.roughness = surface.roughness
+            picture = _lay_on(material, surface) if surface.image else None
             if self.engine == CYCLES:
-                _shine(made, surface, picture)
-            self._materials[key] = made
+                _shine(material, surface, picture)
+            self._materials[key] = material
         return self._materials[key]
 
     def update(self):
@@ -101,7 +101,7 @@ class Stage:
 
     # Pictures
 
-    def shoot(self, camera, size, path, *, slant=1.0):
+    def render(self, camera, size, path, *, slant=1.0):
         """Renders what ``camera`` (an object of the stage) sees, ``size`` pixels. Raises Refused.
 
         ``slant``: how far the light comes from aside, 0 for no shadows at all.
@@ -127,11 +127,11 @@ class Stage:
     def camera(self, data=None, matrix=None):
         """A camera on the stage; of its own unless ``data`` is given, which then belongs to the stage."""
         data = data or bpy.data.cameras.new(_NAME)
-        thing = self.owned(bpy.data.objects.new(_NAME, self.owned(data)))
-        self.scene.collection.objects.link(thing)
+        obj = self.owned(bpy.data.objects.new(_NAME, self.owned(data)))
+        self.scene.collection.objects.link(obj)
         if matrix is not None:
-            thing.matrix_world = (self._here @ matrix).normalized()
-        return thing
+            obj.matrix_world = (self._here @ matrix).normalized()
+        return obj
 
     def _set_up(self):
         scene = self.scene
@@ -228,10 +228,10 @@ def _shine(material, surface, picture):
 
 def _muted_handlers():
     """Takes the file's own handlers off, so that a picture runs none of them; returns what to put back."""
-    found = []
+    muted = []
     for name in dir(bpy.app.handlers):
         handlers = getattr(bpy.app.handlers, name)
         if isinstance(handlers, list) and handlers:
-            found.append((handlers, list(handlers)))
+            muted.append((handlers, list(handlers)))
             handlers.clear()
-    return found
+    return muted

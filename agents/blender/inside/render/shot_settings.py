@@ -8,7 +8,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from .graphics import CYCLES, WORKBENCH, best_engine
+from .engines import CYCLES, WORKBENCH, best_engine
 
 _ENGINES = {
     "cycles": (CYCLES,),
@@ -23,11 +23,11 @@ _GPUS = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
 _NAMED = 20
 
 
-def shot_of(scene, asked, notes):
+def shot_of(scene, wanted, notes):
     """engine, device, samples (None: the engine has none), denoise (None: likewise), width, height, camera."""
-    engine, quick = _engine(scene, asked["engine"], notes)
+    engine, quick = _engine(scene, wanted["engine"], notes)
     device = _device(engine)
-    samples, own = asked["samples"], _samples_of(scene, engine)
+    samples, own = wanted["samples"], _samples_of(scene, engine)
     if own is None:
         if samples is not None:
             notes.append(f"{engine} has no samples to set.")
@@ -41,12 +41,12 @@ def shot_of(scene, asked, notes):
             samples = _MOST_ON_CPU
     denoise = None
     if engine == CYCLES:
-        denoise = asked["denoise"] if asked["denoise"] is not None else quick or scene.cycles.use_denoising
-    elif asked["denoise"]:
+        denoise = wanted["denoise"] if wanted["denoise"] is not None else quick or scene.cycles.use_denoising
+    elif wanted["denoise"]:
         notes.append(f"{engine} has no denoiser; only Cycles has.")
     if engine == WORKBENCH and scene.display.shading.color_type == "MATERIAL":
         notes.append("Workbench shows materials' viewport colours (diffuse_color), not what their nodes say.")
-    width, height = _size(scene, asked, notes)
+    width, height = _size(scene, wanted, notes)
     return {
         "engine": engine,
         "device": device,
@@ -54,18 +54,20 @@ def shot_of(scene, asked, notes):
         "denoise": denoise,
         "width": width,
         "height": height,
-        "camera": _camera(scene, asked["camera"], notes),
-        "bound": asked["camera"] is None,  # cameras that are bound to timeline markers take their turns
+        "camera": _camera(scene, wanted["camera"], notes),
+        "bound": wanted["camera"] is None,  # cameras that are bound to timeline markers take their turns
     }
 
 
-def _engine(scene, asked, notes):
+def _engine(scene, wanted, notes):
     """(identifier, whether it stands in for another one)."""
     listed = {item.identifier for item in scene.render.bl_rna.properties["engine"].enum_items}
-    if asked is not None:
-        engine = next((one for one in _ENGINES[asked] if one in listed), _ENGINES[asked][0])
+    if wanted is not None:
+        engine = next(
+            (identifier for identifier in _ENGINES[wanted] if identifier in listed), _ENGINES[wanted][0]
+        )
         if engine in _DRAWN and (fault := best_engine()[1]):
-            raise Refused(f"{asked} cannot draw here: {fault}. Say engine='cycles'.")
+            raise Refused(f"{wanted} cannot draw here: {fault}. Say engine='cycles'.")
         if engine in _ENGINES["eevee"] and not _has_gpu():
             notes.append("EEVEE runs without a GPU here: its first frame takes long.")
         return engine, False
@@ -98,10 +100,10 @@ def _device(engine):
     settings = addon.preferences
     for kind in _GPUS:
         try:
-            found = settings.get_devices_for_type(kind)
+            listed = settings.get_devices_for_type(kind)
         except (ValueError, TypeError, AttributeError):
             continue
-        devices = [device for device in found if device.type == kind]
+        devices = [device for device in listed if device.type == kind]
         if devices:
             settings.compute_device_type = kind
             for device in settings.devices:
@@ -120,19 +122,19 @@ def _samples_of(scene, engine):
     return None
 
 
-def _size(scene, asked, notes):
+def _size(scene, wanted, notes):
     render = scene.render
     full = (render.resolution_x, render.resolution_y)
-    width, height = asked["width"], asked["height"]
+    width, height = wanted["width"], wanted["height"]
     if width and not height:
         height = width * full[1] / full[0]
     elif height and not width:
         width = height * full[0] / full[1]
     elif not width:
-        share = (asked["percentage"] or render.resolution_percentage) / 100
+        share = (wanted["percentage"] or render.resolution_percentage) / 100
         width, height = full[0] * share, full[1] * share
     size = [max(4, round(side)) for side in (width, height)]
-    if asked["even"]:
+    if wanted["even"]:
         even = [side - side % 2 for side in size]
         if even != size:
             notes.append(f"{even[0]}×{even[1]} instead of {size[0]}×{size[1]}: video needs even sizes.")
@@ -141,12 +143,12 @@ def _size(scene, asked, notes):
 
 
 def _camera(scene, name, notes):
-    cameras = sorted(thing.name for thing in scene.objects if thing.type == "CAMERA")
-    listed = ", ".join(repr(one) for one in cameras[:_NAMED]) + (" …" if len(cameras) > _NAMED else "")
+    cameras = sorted(obj.name for obj in scene.objects if obj.type == "CAMERA")
+    listed = ", ".join(repr(camera) for camera in cameras[:_NAMED]) + (" …" if len(cameras) > _NAMED else "")
     if name is not None:
-        thing = scene.objects.get(name)
-        if thing is None or thing.type != "CAMERA":
-            what = f"{name!r} is no camera" if thing else f"The scene has no camera {name!r}"
+        obj = scene.objects.get(name)
+        if obj is None or obj.type != "CAMERA":
+            what = f"{name!r} is no camera" if obj else f"The scene has no camera {name!r}"
             raise Refused(f"{what}. Its cameras: {listed or 'none'}.")
         return name
     if scene.camera is not None:

@@ -9,7 +9,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from .frame_render import drop_result
+from .camera_frames import drop_result
 from .shot_settings import literal
 
 _SCENE = ".film"
@@ -25,17 +25,17 @@ def assemble(arguments, report):
     started = time.perf_counter()
     had_result = "Render Result" in bpy.data.images
     scene = bpy.data.scenes.new(_SCENE)
-    told = _Told(scene.name, len(arguments["pictures"]), report)
+    progress = _Progress(scene.name, len(arguments["pictures"]), report)
     try:
         _cut(scene, arguments)
         _set_up(scene, arguments)
-        bpy.app.handlers.render_post.append(told)
+        bpy.app.handlers.render_post.append(progress)
         bpy.ops.render.render(animation=True, scene=scene.name)
     except RuntimeError as error:
         raise Refused(f"The video could not be made: {str(error).strip()[:600]}") from None
     finally:
-        if told in bpy.app.handlers.render_post:
-            bpy.app.handlers.render_post.remove(told)
+        if progress in bpy.app.handlers.render_post:
+            bpy.app.handlers.render_post.remove(progress)
         bpy.data.scenes.remove(scene)
         drop_result(had_result)
     sys.stdout.flush()
@@ -88,7 +88,7 @@ def _read_back(path):
         bpy.data.movieclips.remove(clip)
 
 
-class _Told:
+class _Progress:
     """Counts the frames that were written."""
 
     def __init__(self, scene, total, report):

@@ -5,8 +5,9 @@ import bpy
 import numpy
 from mathutils import Vector
 
+from ..blend.fluids import domain_of
+from ..blend.visibility import rendered_objects
 from ..geometry.solids import Unmeasurable
-from ..motion.actors import domain_of
 from ..motion.mesh_tracker import spread
 from .movement import actor_of
 
@@ -31,13 +32,13 @@ def view(request, solids):
     projection = _projection(scene, camera, graph)
     flat = _projected(projection, samples)
     inside = (numpy.abs(flat[:, :3]) <= flat[:, 3:]).all(axis=1) & (flat[:, 3] > 0)
-    told = {"inside": float(inside.mean()), "cover": _cover(_projected(projection, outline))}
-    told["at"] = samples.mean(axis=0).tolist()
+    result = {"inside": float(inside.mean()), "cover": _cover(_projected(projection, outline))}
+    result["at"] = samples.mean(axis=0).tolist()
     if inside.any():
-        told.update(
+        result.update(
             _hidden(scene, graph, camera.evaluated_get(graph), samples[inside], (request["names"], solids))
         )
-    return told
+    return result
 
 
 def _places(names, solids, graph):
@@ -46,9 +47,9 @@ def _places(names, solids, graph):
     for name in names:
         actor = actor_of((name,))
         if actor.measured in {"particles", "fluid"}:
-            moment = actor.moment(graph)
-            found = [] if moment is None else [tuple(place) for place in moment.some(_SAMPLES)]
-            samples.append(numpy.array(found).reshape(-1, 3))
+            state = actor.state_at(graph)
+            points = [] if state is None else [tuple(place) for place in state.some(_SAMPLES)]
+            samples.append(numpy.array(points).reshape(-1, 3))
             outline.append(samples[-1])
         if actor.measured == "vertices" or (actor.measured == "particles" and _is_shown(actor.objects[0])):
             surfaces.append(name)
@@ -157,7 +158,7 @@ class _Rays:
         self._scene, self._graph = scene, graph
         self._names = set(subject[0])
         self._own = [solid for name in subject[0] if (solid := _solid(subject[1], name)) is not None]
-        self._rendered = _rendered(bpy.context.view_layer.layer_collection, set())
+        self._rendered = {obj.name for obj in rendered_objects(bpy.context.view_layer.layer_collection)}
         self._clear = {}
 
     def stopped_by(self, start, place):
@@ -168,33 +169,31 @@ class _Rays:
             left = (place - start).length - step
             if left <= 0:
                 break
-            hit, at, _, _, thing, _ = self._scene.ray_cast(
-                self._graph, start, way.normalized(), distance=left
-            )
+            hit, at, _, _, obj, _ = self._scene.ray_cast(self._graph, start, way.normalized(), distance=left)
             if not hit:
                 break
-            if self._stops(thing, at, step):
-                return thing.name
+            if self._stops(obj, at, step):
+                return obj.name
             start = at + way.normalized() * step
         return ""
 
-    def _stops(self, thing, at, step):
-        thing = thing.original
-        if thing.name in self._names or self._is_clear(thing):
+    def _stops(self, obj, at, step):
+        obj = obj.original
+        if obj.name in self._names or self._is_clear(obj):
             return False
         # An instance goes by the name of what it is one of: it may be a part of the subject.
         return not any(solid.tree.find_nearest(at, 2 * step)[0] is not None for solid in self._own)
 
-    def _is_clear(self, thing):
-        if thing.name not in self._clear:
-            slots = [slot.material for slot in thing.material_slots]
-            self._clear[thing.name] = (
-                (thing.name in bpy.context.view_layer.objects and thing.name not in self._rendered)
-                or not getattr(thing, "visible_camera", True)
-                or _is_gas(thing)
+    def _is_clear(self, obj):
+        if obj.name not in self._clear:
+            slots = [slot.material for slot in obj.material_slots]
+            self._clear[obj.name] = (
+                (obj.name in bpy.context.view_layer.objects and obj.name not in self._rendered)
+                or not getattr(obj, "visible_camera", True)
+                or _is_gas(obj)
                 or (bool(slots) and all(map(_is_see_through, slots)))
             )
-        return self._clear[thing.name]
+        return self._clear[obj.name]
 
 
 def _solid(solids, name):
@@ -204,18 +203,9 @@ def _solid(solids, name):
         return None
 
 
-def _is_gas(thing):
-    domain = domain_of(thing)
+def _is_gas(obj):
+    domain = domain_of(obj)
     return domain is not None and domain.domain_type == "GAS"
-
-
-def _rendered(branch, found):
-    """Names of the objects of a layer collection that are rendered."""
-    if not branch.exclude and not branch.collection.hide_render:
-        found.update(thing.name for thing in branch.collection.objects if not thing.hide_render)
-        for below in branch.children:
-            _rendered(below, found)
-    return found
 
 
 def _is_see_through(material):
@@ -234,19 +224,19 @@ def _is_see_through(material):
 
 def _shaders(socket, seen):
     """The nodes of surfaces that lead to a socket."""
-    found = []
+    nodes = []
     for link in socket.links:
         node = link.from_node
         if node.name in seen:
             continue
         seen.add(node.name)
         if node.type.startswith(("BSDF", "EMISSION")):
-            found.append(node)
+            nodes.append(node)
         else:
             for below in node.inputs:
                 if below.type == "SHADER":
-                    found += _shaders(below, seen)
-    return found
+                    nodes += _shaders(below, seen)
+    return nodes
 
 
 def _lets_through(node):
@@ -255,11 +245,11 @@ def _lets_through(node):
     if node.type != "BSDF_PRINCIPLED":
         return False
     values = {
-        one.name: one.default_value
-        for one in node.inputs
-        if one.name in {"Transmission Weight", "Transmission", "Alpha"}
+        socket.name: socket.default_value
+        for socket in node.inputs
+        if socket.name in {"Transmission Weight", "Transmission", "Alpha"}
     }
-    linked = {one.name for one in node.inputs if one.is_linked}
+    linked = {socket.name for socket in node.inputs if socket.is_linked}
     alpha = 1.0 if "Alpha" in linked else values.pop("Alpha", 1.0)
     values.pop("Alpha", None)
     return alpha < _CLEAR or any(value >= _CLEAR for value in values.values())

@@ -12,6 +12,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..blend.simulation_zones import objects_with_zones
 from ..physics import caches
 from ..state.fingerprint import fingerprint
 from .shot_settings import settings_for, shot_of
@@ -114,29 +115,15 @@ def drop_result(had):
 
 def _zones(scene):
     """Objects with simulation zones in their geometry nodes. Whether these are baked, no property tells."""
-    found = []
-    for thing in scene.objects:
-        for modifier in thing.modifiers:
-            if modifier.type == "NODES" and modifier.show_viewport and _has_zone(modifier.node_group, set()):
-                found.append(
-                    {
-                        "kind": "simulation_zone",
-                        "object": thing.name,
-                        "label": f"simulation zone of {thing.name!r} (if it is not baked)",
-                        "start": scene.frame_start,
-                    }
-                )
-    return found
-
-
-def _has_zone(tree, seen):
-    if tree is None or tree in seen:
-        return False
-    seen.add(tree)
-    return any(
-        node.bl_idname == "GeometryNodeSimulationOutput" or _has_zone(getattr(node, "node_tree", None), seen)
-        for node in tree.nodes
-    )
+    return [
+        {
+            "kind": "simulation_zone",
+            "object": obj.name,
+            "label": f"simulation zone of {obj.name!r} (if it is not baked)",
+            "start": scene.frame_start,
+        }
+        for obj in objects_with_zones(scene)
+    ]
 
 
 class _Settings:
@@ -165,7 +152,7 @@ class _Watched:
     def __init__(self, report):
         self._report = report
         self._lock = threading.Lock()
-        self._told = time.monotonic()
+        self._reported = time.monotonic()
         self._share = 0.0
 
     def __enter__(self):
@@ -176,14 +163,14 @@ class _Watched:
             bpy.app.handlers.render_stats.remove(self._note)
 
     def _note(self, stats, *_rest):
-        if not isinstance(stats, str) or not (found := _SAMPLE.search(stats)):
+        if not isinstance(stats, str) or not (sample := _SAMPLE.search(stats)):
             return
         with self._lock:
-            share = int(found[1]) / max(1, int(found[2]))
-            if share <= self._share or time.monotonic() < self._told + 0.5:
+            share = int(sample[1]) / max(1, int(sample[2]))
+            if share <= self._share or time.monotonic() < self._reported + 0.5:
                 return
-            self._share, self._told = share, time.monotonic()
+            self._share, self._reported = share, time.monotonic()
             left = _REMAINING.search(stats)
             self._report(
-                share, 1.0, f"sample {found[1]} of {found[2]}" + (f", {left[1]} left" if left else "")
+                share, 1.0, f"sample {sample[1]} of {sample[2]}" + (f", {left[1]} left" if left else "")
             )

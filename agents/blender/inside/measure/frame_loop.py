@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Goes through the frames of a batch of measurements, each once, and has what follows something look at them.
 
-A follower is made from a request. ``look(frame, graph, cast)`` is called at every frame from its ``start`` to its
-``end``, in order, and ``told()`` at last; all of it may raise Unmeasurable.
+A follower is made from a request. ``look(frame, graph, tracker)`` is called at every frame from its ``start`` to its
+``end``, in order, and ``result()`` at last; all of it may raise Unmeasurable.
 """
 
 import contextlib
@@ -11,21 +11,21 @@ import itertools
 import bpy
 
 from ..geometry.solids import Unmeasurable
-from ..motion.mesh_tracker import Cast
-from ..motion.trajectories import Playing
+from ..motion.mesh_tracker import MeshTracker
+from ..motion.timeline import FrameStepper
 from ..physics.caches import renew
-from .movement import Path, Together
-from .touches import Passage, Touches
+from .collisions import PassageFollower, TouchFollower
+from .movement import PathFollower, TogetherFollower
 
 MOST_FRAMES = 5000
 MOST_LOOKS = 100_000  # frames of all followers
 
 # Kind of request → what follows something.
 FOLLOWED = {
-    "path": Path,
-    "together": Together,
-    "touches": Touches,
-    "passage": Passage,
+    "path": PathFollower,
+    "together": TogetherFollower,
+    "touches": TouchFollower,
+    "passage": PassageFollower,
 }
 
 
@@ -40,7 +40,7 @@ def telling(answers, place):
         answers[place] = {"unmeasured": f"{type(error).__name__}: {error}"}
 
 
-class Following:
+class Followers:
     """The followers of a batch: ``places`` of their requests among the ``answers``."""
 
     def __init__(self, requests, answers):
@@ -56,33 +56,33 @@ class Following:
 
         Where a simulation is not baked, frames are stepped through from its start. Raises Unmeasurable for too many.
         """
-        spans = [range(one.start, one.end + 1) for one in self._followers.values()]
+        spans = [range(follower.start, follower.end + 1) for follower in self._followers.values()]
         frames = sorted({*frames, *itertools.chain(*spans)})
         if not frames:
             return
-        playing = Playing(bpy.context.scene, frames[0])
-        count = playing.count(frames)
+        stepper = FrameStepper(bpy.context.scene, frames[0])
+        count = stepper.count(frames)
         if count > MOST_FRAMES or sum(map(len, spans)) > MOST_LOOKS:
             self._followers.clear()
             raise Unmeasurable(
-                f"{count} frames would have to be visited{'; bake first' * bool(playing.stepped_for)}"
+                f"{count} frames would have to be visited{'; bake first' * bool(stepper.stepped_for)}"
             )
-        if playing.stepped_for:
+        if stepper.stepped_for:
             renew(bpy.context.scene)  # what a jump to some frame left behind would be taken for a result
-        done, cast = itertools.count(), Cast()
-        with playing:
-            for frame, graph in playing.through(frames, lambda at: report(next(done), count, f"frame {at}")):
+        done, tracker = itertools.count(), MeshTracker()
+        with stepper:
+            for frame, graph in stepper.through(frames, lambda at: report(next(done), count, f"frame {at}")):
                 yield frame
-                cast.enter(frame, graph)
-                for place, one in list(self._followers.items()):
-                    if one.start <= frame <= one.end:
+                tracker.enter(frame, graph)
+                for place, follower in list(self._followers.items()):
+                    if follower.start <= frame <= follower.end:
                         self._followers.pop(place)
                         with telling(self._answers, place):
-                            one.look(frame, graph, cast)
-                            self._followers[place] = one
+                            follower.look(frame, graph, tracker)
+                            self._followers[place] = follower
 
     def tell(self):
         """Puts down what was found."""
-        for place, one in self._followers.items():
+        for place, follower in self._followers.items():
             with telling(self._answers, place):
-                self._answers[place] = {"value": one.told()}
+                self._answers[place] = {"value": follower.result()}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opening and writing .blend files, from the supervisor's side: checkpoints, saves, the run's own file."""
+"""Opens and writes .blend files for the supervisor: checkpoints, saves, the run's own file."""
 
 import contextlib
 import os
@@ -15,13 +15,13 @@ _ON_SAVING = ("save_pre", "save_post", "save_post_fail")
 
 
 def ping(arguments, report):
-    """Blender's version; nothing is touched."""
+    """Returns Blender's version; changes nothing."""
     del arguments, report
     return {"version": bpy.app.version_string, "background": bpy.app.background}
 
 
 def open_file(arguments, report):
-    """Opens ``path`` (none: an empty scene), and makes it the run's own file in ``folder``, if it is not already.
+    """Opens ``path`` (None: an empty scene), and makes it the run's own file in ``folder`` if it is not yet.
 
     Scripts in the file do not run.
     """
@@ -42,15 +42,15 @@ def read_file(path):
     try:
         bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
     except RuntimeError as error:
-        raise Refused(f"{os.path.basename(path)} cannot be opened: {reason(error)}") from None
+        raise Refused(f"{os.path.basename(path)} could not be opened: {reason(error)}") from None
 
 
 def make_own(folder):
-    """Makes the open file the run's own: relative paths and caches on disk begin in ``folder`` from here on."""
+    """Saves the open file as the run's own in ``folder``, which relative paths and caches on disk then start from."""
     try:
         bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, SCENE_FILE), check_existing=False)
     except RuntimeError as error:
-        raise Refused(f"{folder} cannot be written to: {reason(error)}") from None
+        raise Refused(f"The folder {folder} could not be written: {reason(error)}") from None
     bpy.context.preferences.filepaths.save_version = 0
 
 
@@ -65,19 +65,19 @@ def write_file(arguments, report):
     elsewhere = os.path.dirname(bpy.data.filepath or path) not in {arguments["folder"], os.path.dirname(path)}
     started = time.perf_counter()
     try:
-        with _unheard(), _no_preview():
+        with _no_handlers(), _no_preview():
             bpy.ops.wm.save_as_mainfile(
                 filepath=path, copy=True, check_existing=False, relative_remap=elsewhere
             )
     except RuntimeError as error:
-        raise Refused(f"{path} cannot be written: {reason(error)}") from None
+        raise Refused(f"{path} could not be written: {reason(error)}") from None
     sys.stdout.flush()
     return {"seconds": time.perf_counter() - started, "bytes": os.path.getsize(path)}
 
 
 @contextlib.contextmanager
-def _unheard():
-    """Runs none of the file's own handlers: a checkpoint is no event of the scene's, and they may never return."""
+def _no_handlers():
+    """Runs none of the file's own save handlers: a checkpoint is not a save by the user, and they may never return."""
     lists = [getattr(bpy.app.handlers, name, []) for name in _ON_SAVING]
     kept = [list(handlers) for handlers in lists]
     for handlers in lists:
@@ -91,7 +91,7 @@ def _unheard():
 
 @contextlib.contextmanager
 def _no_preview():
-    """Draws no small picture of the scene: nobody browses checkpoints, and drawing it costs as much as writing."""
+    """Writes no thumbnail: nobody browses checkpoints, and drawing it takes as long as writing."""
     settings = bpy.context.preferences.filepaths
     before = settings.file_preview_type
     settings.file_preview_type = "NONE"
@@ -102,5 +102,5 @@ def _no_preview():
 
 
 def reason(error):
-    """What Blender says of an operator's failure, without its word for it."""
+    """Blender's message for an operator that failed, without the leading ``Error:``."""
     return str(error).strip().removeprefix("Error: ")

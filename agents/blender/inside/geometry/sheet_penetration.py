@@ -5,9 +5,9 @@ import numpy
 from mathutils import Vector
 
 from .closed_parts import thinned
-from .contact_regions import labels
 from .solids import meeting
-from .triangle_cuts import Cuts, cross, normals_of, unit
+from .topology import connected_labels
+from .triangle_intersections import IntersectionLines, cross, normals_of, unit
 
 _MOST_PAIRS = 200_000
 _MOST_LINES = 1_500
@@ -18,31 +18,31 @@ _UPRIGHT = 0.9  # least share of a way from a sheet that is along its normal, if
 def reach_through(a, b):
     """(depth, place): how far one sheet reaches through another where they cross, by whichever way is shorter."""
     pairs = meeting(a, b, _MOST_PAIRS)
-    cuts = Cuts(a, b, thinned(pairs, _MOST_LINES))
-    if not len(cuts.ours):
+    lines = IntersectionLines(a, b, thinned(pairs, _MOST_LINES))
+    if not len(lines.ours):
         return 0.0, a.points[0]
-    ways = [_Side(cuts, pairs[:, 0]).reach(), _Side(cuts.swapped(), pairs[:, 1]).reach()]
+    ways = [_Side(lines, pairs[:, 0]).reach(), _Side(lines.swapped(), pairs[:, 1]).reach()]
     return min(ways, key=lambda way: way[0])
 
 
 class _Side:
     """A sheet that is cut by another one: how far it reaches to either side of where they cross."""
 
-    def __init__(self, cuts, crossed):
-        self._cuts, self._sheet = cuts, cuts.other
-        one = cuts.one
-        self._places, same = one.welded
-        self._corners = same[one.triangles]
-        whole = numpy.ones(len(one.triangles), bool)
+    def __init__(self, lines, crossed):
+        self._lines, self._sheet = lines, lines.other
+        solid = lines.solid
+        self._places, same = solid.welded
+        self._corners = same[solid.triangles]
+        whole = numpy.ones(len(solid.triangles), bool)
         whole[crossed] = False
         left = self._corners[whole]
-        self._part = labels(len(self._places), left[:, :2], left[:, 1:])
+        self._part = connected_labels(len(self._places), left[:, :2], left[:, 1:])
         self._reaches, self._both = {}, {}
 
     def reach(self):
         """(how far, a place there): of all places where they cross, that where it is most."""
         ends, parts = self._ends()
-        best = 0.0, self._cuts.middles[0]
+        best = 0.0, self._lines.middles[0]
         for places, (ahead, behind) in zip(ends.tolist(), parts.tolist(), strict=True):
             lengths = [self._sheet.nearest(place)[3] or 0.0 for place in places]
             if ahead != behind:
@@ -59,16 +59,16 @@ class _Side:
 
     def _ends(self):
         """Across each line, as far as its triangle goes: (places n × 2 × 3, the parts n × 2 that go on from there)."""
-        cuts, places = self._cuts, self._places
-        corners = places[self._corners[cuts.ours]]
-        normals = normals_of(cuts.one, cuts.ours)
-        others = normals_of(cuts.other, cuts.theirs)
-        along = unit(cuts.ends[:, 1] - cuts.ends[:, 0])
+        lines, places = self._lines, self._places
+        corners = places[self._corners[lines.ours]]
+        normals = normals_of(lines.solid, lines.ours)
+        others = normals_of(lines.other, lines.theirs)
+        along = unit(lines.ends[:, 1] - lines.ends[:, 0])
         short = ~along.any(axis=1)
         along[short] = unit(cross(normals, others))[short]
         way = cross(normals, along)
         way *= numpy.where((way * others).sum(axis=1) < 0, -1, 1)[:, None]
-        middles = cuts.middles
+        middles = lines.middles
         sides = corners[:, (1, 2, 0)] - corners
         outwards = cross(sides, normals[:, None])
         room = numpy.maximum(0.0, numpy.einsum("ijk,ijk->ij", corners - middles[:, None], outwards))
@@ -81,7 +81,7 @@ class _Side:
         ends = middles[:, None] + lengths[..., None] * way[:, None]
         heights = numpy.einsum("ijk,ik->ij", corners - middles[:, None], others)
         rows = numpy.arange(len(heights))
-        parts = self._part[self._corners[cuts.ours]]
+        parts = self._part[self._corners[lines.ours]]
         top, bottom = heights.argmax(axis=1), heights.argmin(axis=1)
         joined = numpy.stack(
             [

@@ -24,28 +24,28 @@ def over(request, solids):
     drawn = numpy.column_stack([middle[:2] + _INSET * (corners[:, :2] - middle[:2]), corners[:, 2]]).tolist()
     tops = [_top(b, place) for place in cells or drawn]
     share = sum(top is not None for top in tops) / len(tops)
-    told = {"share": share, "sunk": None, "at": None}
+    result = {"share": share, "sunk": None, "at": None}
     deepest = [*zip(cells or drawn, tops, strict=True)]
     if cells:
         deepest += [(place, _top(b, place)) for place in drawn]
     for place, top in deepest:
-        if top is not None and (told["sunk"] is None or top - place[2] > told["sunk"]):
-            told.update(sunk=top - place[2], at=tuple(place))
-    return told
+        if top is not None and (result["sunk"] is None or top - place[2] > result["sunk"]):
+            result.update(sunk=top - place[2], at=tuple(place))
+    return result
 
 
 def _undersides(solid):
     """The lowest place of a solid in each cell of its outline, where it has one."""
     size = solid.high - solid.low
     below = solid.low[2] - 1 - size[2]
-    found = []
+    points = []
     for column in range(_CELLS):
         for row in range(_CELLS):
             x, y = (solid.low + (numpy.array((column, row, 0)) + 0.5) / _CELLS * size)[:2]
             hit = solid.tree.ray_cast(Vector((x, y, below)), _UP)[0]
             if hit is not None:
-                found.append(tuple(hit))
-    return found
+                points.append(tuple(hit))
+    return points
 
 
 def _top(solid, place):
@@ -94,10 +94,10 @@ def _within(ways, side, cone):
 
 def axes_of(name, *, level=False):
     """The unit axes of an object at the current frame, as rows; with its X brought level, and Z up."""
-    thing = bpy.context.scene.objects.get(name)
-    if thing is None:
+    obj = bpy.context.scene.objects.get(name)
+    if obj is None:
         raise Unmeasurable(f"there is no object {name!r} in the scene")
-    matrix = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
+    matrix = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
     axes = numpy.array(matrix, dtype=float)[:3, :3].T
     if level:
         across = numpy.array((axes[0][0], axes[0][1], 0.0))

@@ -13,7 +13,7 @@ _STILL = 1e-9
 _UPRIGHT = 0.9  # least share of a way from a surface that is along its normal
 
 
-class Touches:
+class TouchFollower:
     """When things touch: the frames at which they are near enough, and those on the way to which they met."""
 
     def __init__(self, request):
@@ -23,13 +23,13 @@ class Touches:
         self._places, self._boxes = {}, {}
         self._looked_at = set()
 
-    def look(self, frame, graph, cast):
+    def look(self, frame, graph, tracker):
         """Takes in a frame."""
         del graph
         if self._request["once"] and self._frames:
             return
         for name in self._request["a"]:
-            own = cast.body(name)
+            own = tracker.body(name)
             places = own.placed(own.samples)
             last = self._places.get(name)
             self._places[name] = places
@@ -39,13 +39,13 @@ class Touches:
             else:
                 last = None
             for other in self._request["b"]:
-                self._pair(frame, cast, (own, places, last, speed), other)
+                self._pair(frame, tracker, (own, places, last, speed), other)
 
-    def _pair(self, frame, cast, mine, name):
+    def _pair(self, frame, tracker, mine, name):
         own, places, last, speed = mine
         if frame in self._frames or name in self._request["a"]:
             return
-        mine, other = cast.surface(own.name), cast.surface(name)
+        mine, other = tracker.surface(own.name), tracker.surface(name)
         if not (mine.there and other.there):
             return
         self._looked_at.add(name)
@@ -56,10 +56,10 @@ class Touches:
             return
         if between(mine, other, reach) <= reach:
             self._frames.add(frame)
-        elif last is not None and _will_meet(own, cast.body(name), places, last, reach):
+        elif last is not None and _will_meet(own, tracker.body(name), places, last, reach):
             self._frames.add(frame + 1)
 
-    def told(self):
+    def result(self):
         """As data."""
         if not self._looked_at:
             raise Unmeasurable("there are no polygons that could touch, or too many")
@@ -87,16 +87,16 @@ def _crossed(body, starts, ends, *, reach=0.0, least=_STILL):
     low, high = body.solid.low - reach, body.solid.high + reach
     near = ((numpy.minimum(starts, ends) <= high) & (numpy.maximum(starts, ends) >= low)).all(axis=1)
     near &= numpy.linalg.norm(ends - starts, axis=1) > least
-    found = []
+    hits = []
     for number in numpy.nonzero(near)[0].tolist():
         start, way = Vector(starts[number]), Vector(ends[number] - starts[number])
         place = body.solid.tree.ray_cast(start, way.normalized(), way.length + reach)[0]
         if place is not None:
-            found.append((number, place))
-    return found
+            hits.append((number, place))
+    return hits
 
 
-class Passage:
+class PassageFollower:
     """How deep things get into colliders, or through them within a frame."""
 
     def __init__(self, request):
@@ -104,16 +104,16 @@ class Passage:
         self._request = request
         self._seen = {}
         self._passed = {}
-        self._told = {"depth": 0.0, "through": False, "frame": None, "at": None}
+        self._result = {"depth": 0.0, "through": False, "frame": None, "at": None}
 
-    def look(self, frame, graph, cast):
+    def look(self, frame, graph, tracker):
         """Takes in a frame."""
         del graph
         for name in self._request["a"]:
-            own = cast.body(name)
+            own = tracker.body(name)
             places = own.placed(own.samples)
             for other in self._request["b"]:
-                self._pair(frame, own, places, cast.body(other))
+                self._pair(frame, own, places, tracker.body(other))
 
     def _pair(self, frame, own, places, other):
         beyond = self._request["beyond"]
@@ -126,11 +126,11 @@ class Passage:
             return
         if _is_clear(other.solid, before, now, beyond):
             return
-        found = [_depth(other, now, beyond)]
+        depths = [_depth(other, now, beyond)]
         if own.solid.closed and other.solid.closed:
             inside = _depth(own, own.seen(other.placed(other.samples)), beyond)
-            found.append(inside and (inside[0], other.seen(own.placed(numpy.array([inside[1]])))[0]))
-        deepest = max((one for one in found if one is not None), default=None, key=lambda one: one[0])
+            depths.append(inside and (inside[0], other.seen(own.placed(numpy.array([inside[1]])))[0]))
+        deepest = max((deep for deep in depths if deep is not None), default=None, key=lambda deep: deep[0])
         if deepest is not None:
             self._note(frame, other, deepest, through=False)
         self._sweep(frame, pair, other, (before, now))
@@ -145,7 +145,7 @@ class Passage:
                 passed.add(number)
                 behind.append(((Vector(now[number]) - place).length, now[number]))
         if behind and len(passed) >= _PASSED * len(now):
-            self._note(frame, other, max(behind, key=lambda one: one[0]), through=True)
+            self._note(frame, other, max(behind, key=lambda hit: hit[0]), through=True)
             passed.clear()
 
     def _is_through(self, solid, start, end, place):
@@ -163,13 +163,13 @@ class Passage:
 
     def _note(self, frame, other, deepest, *, through):
         depth, place = deepest
-        if depth > self._told["depth"]:
+        if depth > self._result["depth"]:
             at = other.placed(numpy.array([place]))[0].tolist()
-            self._told.update(depth=depth, through=through, frame=frame, at=at)
+            self._result.update(depth=depth, through=through, frame=frame, at=at)
 
-    def told(self):
+    def result(self):
         """As data."""
-        return self._told
+        return self._result
 
 
 def _reaches(solid, lows, highs, beyond):
@@ -210,13 +210,13 @@ def _depth(body, places, beyond):
     if not solid.closed:
         return _through(solid, places, beyond)
     inside = ((places >= solid.low + beyond) & (places <= solid.high - beyond)).all(axis=1)
-    found = []
+    depths = []
     for place in places[inside].tolist():
         foot, normal, _, away = solid.nearest(place)
         if foot is not None and away > beyond and (Vector(place) - foot).dot(normal) * body.inwards > 0:
-            found.append((away, place))
-    found.sort(key=lambda one: one[0], reverse=True)
-    return next((one for one in found[:_TESTED] if solid.holds(one[1])), None)
+            depths.append((away, place))
+    depths.sort(key=lambda deep: deep[0], reverse=True)
+    return next((deep for deep in depths[:_TESTED] if solid.holds(deep[1])), None)
 
 
 def _through(sheet, places, beyond):

@@ -6,6 +6,8 @@ import itertools
 
 import numpy
 
+from ..blend.visibility import rendered_objects
+
 AS_MESH = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 MOST_INSTANCES = 50_000
 _FARTHEST = 1e9  # what overflows becomes the largest number that there is
@@ -15,15 +17,15 @@ class TooManyInstances(Exception):  # noqa: N818 - reads as the state it names
     """The scene has more instances than are looked at."""
 
 
-class Shape:
+class TriangleMesh:
     """A mesh in its own space: ``points`` (n × 3) and ``triangles`` (m × 3, numbers of points)."""
 
     def __init__(self, mesh):
-        self.points = coordinates(mesh)
+        self.points = coordinates(mesh.vertices)
         mesh.calc_loop_triangles()
-        found = numpy.empty(3 * len(mesh.loop_triangles), numpy.int32)
-        mesh.loop_triangles.foreach_get("vertices", found)
-        self.triangles = found.reshape(-1, 3)
+        numbers = numpy.empty(3 * len(mesh.loop_triangles), numpy.int32)
+        mesh.loop_triangles.foreach_get("vertices", numbers)
+        self.triangles = numbers.reshape(-1, 3)
         self.polygons = len(mesh.polygons)
 
     @property
@@ -40,11 +42,11 @@ class Shape:
         return points, self.triangles[:, ::-1] if mirrored else self.triangles
 
 
-def coordinates(mesh):
-    """The places of a mesh's vertices (n × 3)."""
-    found = numpy.empty(3 * len(mesh.vertices), numpy.float32)
-    mesh.vertices.foreach_get("co", found)
-    return found.reshape(-1, 3).astype(float)
+def coordinates(elements, name="co"):
+    """A vector property of all elements of a collection, as by default the places of vertices (n × 3)."""
+    flat = numpy.empty(3 * len(elements), numpy.float32)
+    elements.foreach_get(name, flat)
+    return flat.reshape(-1, 3).astype(float)
 
 
 def are_numbers(points):
@@ -80,38 +82,43 @@ def instances_of(graph):
 
     Raises TooManyInstances.
     """
-    found, shapes, count, twice = {}, {}, 0, []
+    by_place, shapes, count, twice = {}, {}, 0, []
     if not any(map(may_instance, graph.objects)):
-        return found
-    for one in graph.object_instances:
-        if not one.is_instance or one.object is None or one.parent is None or one.particle_system is not None:
+        return by_place
+    for instance in graph.object_instances:
+        if (
+            not instance.is_instance
+            or instance.object is None
+            or instance.parent is None
+            or instance.particle_system is not None
+        ):
             continue
-        thing, maker = one.object, one.parent.original
-        if thing.type not in AS_MESH or thing.data is None:
+        obj, maker = instance.object, instance.parent.original
+        if obj.type not in AS_MESH or obj.data is None:
             continue
         count += 1
         if count > MOST_INSTANCES:
             raise TooManyInstances(f"the scene has more than {MOST_INSTANCES} instances")
-        matrix = one.matrix_world.copy()
-        if thing.original == maker and maker.type != "MESH" and matrix == one.parent.matrix_world:
+        matrix = instance.matrix_world.copy()
+        if obj.original == maker and maker.type != "MESH" and matrix == instance.parent.matrix_world:
             continue  # what a text or curve looks like, not what it makes
-        key = thing.data.as_pointer()
+        key = obj.data.as_pointer()
         if key not in shapes:
-            with mesh_of(thing) as mesh:
-                shapes[key] = Shape(mesh) if mesh is not None and len(mesh.polygons) else None
+            with mesh_of(obj) as mesh:
+                shapes[key] = TriangleMesh(mesh) if mesh is not None and len(mesh.polygons) else None
         if shapes[key] is None:
             continue
         # A text or curve comes as what it is, and once more as the mesh that it looks like.
-        place = maker.name_full, thing.original.name_full, tuple(value for row in matrix for value in row)
-        if thing.type != "MESH":
+        place = maker.name_full, obj.original.name_full, tuple(value for row in matrix for value in row)
+        if obj.type != "MESH":
             twice.append((place, shapes[key], matrix))
             continue
-        found.setdefault(place, []).append((shapes[key], matrix))
+        by_place.setdefault(place, []).append((shapes[key], matrix))
     for place, shape, matrix in twice:
-        found.setdefault(place, [(shape, matrix)])
+        by_place.setdefault(place, [(shape, matrix)])
     by_maker = {}
-    for place, made in found.items():
-        by_maker.setdefault(place[0], []).extend(made)
+    for place, entries in by_place.items():
+        by_maker.setdefault(place[0], []).extend(entries)
     return by_maker
 
 
@@ -122,9 +129,9 @@ class Instances:
         self._graph = graph
         self._found = None
 
-    def of(self, thing):
+    def of(self, obj):
         """[(shape, matrix)] of the instances that an object makes. Raises TooManyInstances."""
-        if not may_instance(thing):
+        if not may_instance(obj):
             return ()
         if self._found is None:
             try:
@@ -133,31 +140,20 @@ class Instances:
                 self._found = reason
         if isinstance(self._found, TooManyInstances):
             raise TooManyInstances(*self._found.args)
-        return self._found.get(thing.name_full, ())
+        return self._found.get(obj.name_full, ())
 
 
-def may_instance(thing):
+def may_instance(obj):
     """Whether an object may make instances."""
-    return thing.instance_type != "NONE" or any(modifier.type == "NODES" for modifier in thing.modifiers)
+    return obj.instance_type != "NONE" or any(modifier.type == "NODES" for modifier in obj.modifiers)
 
 
 def rendered(scene):
     """The objects that renders show: of layers that are rendered, in no collection that hides them, not hidden."""
-    shown = set()
-    for layer in scene.view_layers:
-        if layer.use:
-            _look_through(layer.layer_collection, shown)
-    return {thing for thing in shown if not thing.hide_render and not _is_only_copied(thing)}
+    layers = [layer.layer_collection for layer in scene.view_layers if layer.use]
+    return {obj for layer in layers for obj in rendered_objects(layer) if not _is_only_copied(obj)}
 
 
-def _look_through(layer, shown):
-    if layer.exclude or layer.collection.hide_render:
-        return
-    shown.update(layer.collection.objects)
-    for below in layer.children:
-        _look_through(below, shown)
-
-
-def _is_only_copied(thing):
+def _is_only_copied(obj):
     """Whether it is shown only where its parent makes instances of it."""
-    return thing.parent is not None and thing.parent.instance_type in {"VERTS", "FACES"}
+    return obj.parent is not None and obj.parent.instance_type in {"VERTS", "FACES"}

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of one mesh, one object, one system or the whole scene, from fixed sides; the scene stays as it is."""
+"""Previews of one mesh, one object, one system or the whole scene, from fixed sides. Does not change the scene."""
 
 import contextlib
-import difflib
 import math
 import os
 
@@ -11,15 +10,17 @@ from mathutils import Matrix
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..blend.names import listed, nearest, quoted
+from ..blend.protocol_tags import OBJECT, ROLE, SYSTEM, object_collections
 from ..physics.caches import unbaked
-from ..render.graphics import best_engine
-from .framing import CLOSE, LOOSE, VIEWS, WIDE, Box, boxes_of, fitted, focus, turned_to
-from .room_cutaway import Opening
-from .rooms import find_room, large_pieces
-from .scene_copy import DRAWABLE, Likeness
-from .studio_scene import REACH, Stage
+from ..render.engines import best_engine
+from .framing import CLOSE, LOOSE, VIEWS, WIDE, BoundingBox, boxes_of, fitted, focus, turned_to
+from .room_cutaway import RoomCutaway
+from .room_detection import find_room, large_pieces
+from .scene_copy import DRAWABLE, SceneCopy
+from .studio_scene import REACH, StudioScene
 
-MESH, OBJECT, SYSTEM, SCENE = "mesh", "object", "system", "scene"
+MESH, SCENE = "mesh", "scene"  # kinds of subjects, besides OBJECT and SYSTEM
 _NAMED = 6  # in a note; the rest is counted
 _OUTLINE = 6000  # points that are looked at to frame
 _LABELS = 14
@@ -33,40 +34,40 @@ _CAMERA_WIDER = 2  # times a panel that the camera's picture may be wide
 
 
 def preview(arguments, report):
-    """Takes pictures of ``kind`` (mesh, object, system, scene) ``name`` at ``frame`` (None: the current one).
+    """Renders pictures of ``kind`` (mesh, object, system, scene) ``name`` at ``frame`` (None: the current one).
 
-    ``everything``: also grounds and skies are framed. The pictures are left in ``folder``, to be shrunk to the size
-    that is told of each. Returns what there is to say about them, with files' names.
+    ``everything``: frame grounds and skies as well. The pictures are left in ``folder``, larger than their ``size``, to
+    which the caller shrinks them. Returns what the preview's text needs, with the names of the files.
     """
     scene, kind, notes = bpy.context.scene, arguments["kind"], []
     title, objects = _subject(scene, kind, arguments.get("name"), notes)
     engine, fault = best_engine()
     if fault:
         notes.append(f"Drawn by Cycles, more coarsely: Workbench cannot draw on this machine ({fault}).")
-    with _at(scene, arguments.get("frame"), notes), Stage(engine) as stage:
-        shot = shot_of(stage, kind, title, objects, notes)
-        shoot = Shooting(stage, shot, arguments["folder"], arguments["size"])
-        shoot.set_up(kind in {SYSTEM, SCENE}, arguments["everything"], notes)
+    with _at(scene, arguments.get("frame"), notes), StudioScene(engine) as stage:
+        shot = copy_of(stage, kind, title, objects, notes)
+        renderer = PreviewRenderer(stage, shot, arguments["folder"], arguments["size"])
+        renderer.set_up(kind in {SYSTEM, SCENE}, arguments["everything"], notes)
         camera = scene.camera if kind == SCENE else None
-        with shoot.cleaned_up():
-            views = list(shoot.sides(report, len(VIEWS) + (camera is not None)))
+        with renderer.cleaned_up():
+            views = list(renderer.sides(report, len(VIEWS) + (camera is not None)))
             if camera is not None:
                 report(len(views), len(views) + 1, "camera")
-                views += shoot.through(camera, scene.render, notes)
-        tell_missing(shot, notes)
+                views += renderer.through(camera, scene.render, notes)
+        note_missing(shot, notes)
         return {
             "title": title,
             "frame": scene.frame_current,
             "objects": len({piece.owner for piece in shot.pieces}),
-            "low": list(shoot.whole.low),
-            "high": list(shoot.whole.high),
+            "low": list(renderer.whole.low),
+            "high": list(renderer.whole.high),
             "views": views,
             "notes": notes,
             "engine": engine,
         }
 
 
-# What is to be seen
+# The subject
 
 
 def _subject(scene, kind, name, notes):
@@ -77,137 +78,126 @@ def _subject(scene, kind, name, notes):
         if name not in scene.objects:
             raise Refused(_unknown(name, MESH, scene.objects.keys(), scene))
         return name, [scene.objects[name]]
-    collections = {one.name: one for one in scene.collection.children_recursive}
-    tagged = [one for one, found in collections.items() if found.get("protocol_role") == kind]
+    collections = {child.name: child for child in scene.collection.children_recursive}
+    tagged = [other for other, collection in collections.items() if collection.get(ROLE) == kind]
     if name not in collections:
         raise Refused(_unknown(name, kind, tagged or list(collections), scene))
-    found = collections[name]
-    if found.get("protocol_role") != kind:
-        role = found.get("protocol_role")
-        said = f"is tagged protocol_role={role!r}" if role else "has no protocol_role"
-        notes.append(f"The collection {name!r} {said}; it was taken for a{'n' * (kind == OBJECT)} {kind}.")
-    objects = list(found.all_objects)
+    collection = collections[name]
+    role = collection.get(ROLE)
+    if role != kind:
+        state = f"is tagged {ROLE}={role!r}" if role else f"has no {ROLE}"
+        notes.append(f"The collection {name!r} {state}; it is shown as a{'n' * (kind == OBJECT)} {kind}.")
+    objects = list(collection.all_objects)
     if not objects:
         raise Refused(f"The collection {name!r} is empty.")
     return name, objects
 
 
 def _unknown(name, kind, known, scene):
-    """What to say of a name that is not there."""
-    lower = {one.lower(): one for one in reversed(known)}
-    near = [lower[one] for one in difflib.get_close_matches(name.lower(), lower, 4, 0.5)]
-    near += [one for one in known if name and name.lower() in one.lower() and one not in near][:3]
+    """The message for a name that does not exist."""
     what = {MESH: "object", OBJECT: "object collection", SYSTEM: "system collection"}.get(kind, kind)
-    said = f"There is no {what} {name!r} in the scene {scene.name!r}."
-    if near:
-        return f"{said} Near: {', '.join(map(repr, near))}."
-    if known:
-        return f"{said} There are: {_listed(known)}."
-    return f"{said} There is none at all."
+    message = f"There is no {what} {name!r} in the scene {scene.name!r}."
+    if near := nearest(name, known, 4):
+        return f"{message} Nearest: {', '.join(map(repr, near))}."
+    return f"{message} There are: {_listed(known)}." if known else f"{message} There is none at all."
 
 
 def _listed(names):
-    names = list(names)
-    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    return ", ".join(map(repr, names[:_NAMED])) + more
+    return quoted(names, _NAMED)
 
 
 @contextlib.contextmanager
 def _at(scene, frame, notes):
-    """Brings the scene to a frame, and back; stays where it is if a simulation would be lost by a jump."""
+    """Takes the scene to a frame and back; leaves it where it is if the jump would spoil a simulation."""
     here, part = scene.frame_current, scene.frame_subframe
     if frame is None or frame == here:
         bpy.context.view_layer.update()
         yield
         return
-    if waiting := unbaked(scene):
-        labels = _listed_plainly(one["label"] for one in waiting)
+    if waiting := [cache["label"] for cache in unbaked(scene)]:
+        verb = "is" if len(waiting) == 1 else "are"
         notes.append(
-            f"Shown at frame {here}, not {frame}: {labels} not baked, and frames of unbaked simulations must not be "
-            "jumped. Bake, or step there, first."
+            f"Shown at frame {here}, not {frame}: {listed(waiting, _NAMED)} {verb} not baked, and frames of unbaked "
+            "simulations must not be skipped. Bake first, or step to the frame."
         )
         yield
         return
-    # What was moved and not keyed is put back where its keys have it by the change of frame.
-    moved = [(thing, thing.matrix_basis.copy()) for thing in scene.objects if thing.animation_data]
+    # Changing the frame puts animated objects back onto their keys, which undoes moves that are not keyed.
+    moved = [(obj, obj.matrix_basis.copy()) for obj in scene.objects if obj.animation_data]
     scene.frame_set(frame)
     try:
         yield
     finally:
         scene.frame_set(here, subframe=part)
-        for thing, basis in moved:
-            if thing.matrix_basis != basis:
-                thing.matrix_basis = basis
+        for obj, basis in moved:
+            if obj.matrix_basis != basis:
+                obj.matrix_basis = basis
 
 
-def _listed_plainly(labels):
-    labels = list(labels)
-    more = f" and {len(labels) - _NAMED} more" if len(labels) > _NAMED else ""
-    return ", ".join(labels[:_NAMED]) + more + (" is" if len(labels) == 1 else " are")
-
-
-def shot_of(stage, kind, title, objects, notes):
-    """The snapshot of the subject; if it is hidden as a whole, of what would be seen of it. Raises Refused."""
+def copy_of(stage, kind, title, objects, notes):
+    """A copy of the subject; if all of it is hidden, a copy all the same, with a note. Raises Refused."""
     graph = bpy.context.evaluated_depsgraph_get()
-    shot = Likeness(stage, graph, objects, unrendered=kind == MESH)
+    shot = SceneCopy(stage, graph, objects, unrendered=kind == MESH)
     if kind == MESH and not shot.pieces and shot.hidden:
         shot.take_unevaluated(objects[0])
         if shot.pieces:
-            notes.append(f"{title!r} is hidden in the viewport: it is shown as it is without its modifiers.")
+            notes.append(f"{title!r} is hidden in the viewport: it is shown without its modifiers.")
             shot.hidden = []
     elif not shot.pieces and shot.unrendered:
-        shot = Likeness(stage, graph, objects, unrendered=True)
-        notes.append("All of this is hidden from renders.")
+        shot = SceneCopy(stage, graph, objects, unrendered=True)
+        notes.append("All of it is hidden from renders.")
     if shot.pieces:
         return shot
-    raise Refused(_nothing(shot, f"The scene {title!r}" if kind == SCENE else repr(title), objects))
+    raise Refused(
+        _why_nothing_visible(shot, f"The scene {title!r}" if kind == SCENE else repr(title), objects)
+    )
 
 
-def _nothing(shot, what, objects):
-    """Why there is nothing to be seen."""
+def _why_nothing_visible(shot, what, objects):
+    """Why there is nothing to draw."""
     if shot.broken:
         name, why = next(iter(shot.broken.items()))
         return f"{what} cannot be drawn: {name!r}: {why}."
     if shot.hidden:
-        return f"{what} has nothing to be seen; hidden in the viewport: {_listed(shot.hidden)}."
+        return f"{what} has nothing to draw. Hidden in the viewport: {_listed(shot.hidden)}."
     if shot.empty:
-        return f"{what} has nothing to be seen; without any face or thread: {_listed(shot.empty)}."
+        return f"{what} has nothing to draw. Without faces or strands: {_listed(shot.empty)}."
     objects = list(bpy.context.scene.objects if objects is None else objects)
-    drawable = [thing.name for thing in objects if thing.type in DRAWABLE]
+    drawable = [obj.name for obj in objects if obj.type in DRAWABLE]
     if drawable:
-        return f"{what} has nothing to be seen; not in the view layer: {_listed(drawable)}."
-    kinds = sorted({thing.type for thing in objects})
+        return f"{what} has nothing to draw. Not in the view layer: {_listed(drawable)}."
+    kinds = sorted({obj.type for obj in objects})
     return f"{what} has no geometry: {'it holds only ' + ', '.join(kinds) if kinds else 'it is empty'}."
 
 
-def tell_missing(shot, notes):
-    """Adds to ``notes`` what the snapshot lacks."""
+def note_missing(shot, notes):
+    """Adds to ``notes`` what the copy lacks."""
     for name, why in list(shot.broken.items())[:_NAMED]:
         notes.append(f"Not shown: {name!r}: {why}.")
     for names, why in (
         (shot.hidden, "hidden in the viewport"),
         (shot.unrendered, "hidden from renders"),
-        (shot.empty, "without any face or thread"),
+        (shot.empty, "without faces or strands"),
     ):
         if names:
             notes.append(f"Not shown, {why}: {_listed(names)}.")
     if shot.left_out:
-        notes.append(f"Of many instances {shot.left_out} are not shown.")
+        notes.append(f"There are too many instances: {shot.left_out} are not shown.")
 
 
 # Pictures
 
 
-class Shooting:
-    """Takes the pictures of a snapshot. ``whole``: the box that is framed, in metres of the world; ``away``: how far
-    from it cameras stand, in units of the stage."""
+class PreviewRenderer:
+    """Renders the pictures of a scene copy. ``whole``: the box that is framed, in metres of the world; ``away``: how
+    far cameras stand from it, in units of the studio scene."""
 
     def __init__(self, stage, shot, folder, size):
         self._stage, self._shot, self._folder, self._size = stage, shot, folder, size
         self._files = 0
 
     def set_up(self, is_layout, everything, notes, around=()):
-        """Frames, and puts everything on the stage; a layout leaves out what is out of all proportion.
+        """Chooses the framing and fills the studio scene; a layout does not frame what is far too large or far away.
 
         ``around``: names of objects to be framed, if any of them can be seen, instead of all; no room is opened then.
         """
@@ -216,32 +206,30 @@ class Shooting:
         framed, beyond, outside = sorted(wanted), [], []
         if is_layout and not everything:
             framed, beyond, outside = focus(wanted, self._shot.templates)
-        self.whole = Box.around(boxes[name] for name in framed)
+        self.whole = BoundingBox.around(boxes[name] for name in framed)
         self._margin = WIDE if len(wanted) < len(boxes) else LOOSE if beyond else CLOSE
         across = self.whole.diagonal
         if not _EXTREMES[0] <= across <= _EXTREMES[1]:
-            raise Refused(
-                f"It is {across:.3g} m across, which is too {'small' if across < 1 else 'large'} to be drawn."
-            )
+            raise Refused(f"It is {across:.3g} m across, too {'small' if across < 1 else 'large'} to draw.")
         if beyond:
-            notes.append(f"Reaching beyond the pictures: {_listed(beyond)}.")
+            notes.append(f"Larger than the pictures: {_listed(beyond)}.")
         for name in outside[:_NAMED]:
             place = ", ".join(f"{round(part / across, 4) * across:.4g}" for part in boxes[name].centre)
-            notes.append(f"Outside of the pictures, far away: {name!r} at ({place}) m.")
-        shown = [piece for piece in self._shot.pieces if piece.owner in set(framed)]
-        most = max(8, _OUTLINE // len(shown))
-        self._outline = [place for piece in shown for place in piece.outline(most)]
+            notes.append(f"Outside the pictures, far away: {name!r} at ({place}) m.")
+        framed_pieces = [piece for piece in self._shot.pieces if piece.owner in set(framed)]
+        most = max(8, _OUTLINE // len(framed_pieces))
+        self._outline = [place for piece in framed_pieces for place in piece.outline(most)]
         self._labels = _labels(bpy.context.scene, boxes, self.whole) if is_layout else {}
         stage = self._stage
         stage.aim(self.whole.centre, across)
         pieces = self._shot.pieces
         large = large_pieces(stage, pieces) if is_layout and not around else []
         placed = [(piece, stage.add(piece.data, piece.matrix)) for piece in large]
-        self._owners = {thing: piece.owner for piece, thing in placed}
+        self._owners = {obj: piece.owner for piece, obj in placed}
         self._room = find_room(stage, placed, boxes.values())
-        self._opening = Opening(stage, self._room)
+        self._opening = RoomCutaway(stage, self._room)
         if self._opening.fault:
-            notes.append(f"Rooms are shown closed: {self._opening.fault}.")
+            notes.append(f"Rooms are shown with all their walls: {self._opening.fault}.")
         for piece in pieces:
             if piece not in large:
                 stage.add(piece.data, piece.matrix)
@@ -252,13 +240,13 @@ class Shooting:
         self._camera = stage.camera()
         self._camera.data.type = "ORTHO"
         # What is framed is in the middle of the stage; what is around it may reach farther than that.
-        reach = Box.around(boxes.values()).diagonal * stage.scale if around else 0.0
+        reach = BoundingBox.around(boxes.values()).diagonal * stage.scale if around else 0.0
         self.away = min(2 * REACH + reach, _FARTHEST)
         self._camera.data.clip_end = 2 * self.away
 
     @contextlib.contextmanager
     def cleaned_up(self):
-        """Removes the pictures that were taken if another one fails."""
+        """Removes the pictures rendered so far if a later one fails."""
         try:
             yield
         except BaseException:
@@ -279,17 +267,17 @@ class Shooting:
             self._camera.matrix_world = matrix
             self._camera.data.ortho_scale = across * self._stage.scale
             with self._opening.towards(rotation) as cut:
-                file = self._shoot(self._camera, (self._size, self._size), self._slant(towards, cut))
+                file = self._render(self._camera, (self._size, self._size), self._slant(towards, cut))
             yield {
                 "name": name,
                 "file": file,
                 "size": [self._size, self._size],
                 "metres_per_pixel": across / self._size,
                 "axes": _axes(rotation),
-                "cut_away": sorted({self._owners[thing] for thing in cut}),
-                "labels": self._seen(rotation, middle, across) if name == "top" else [],
+                "cut_away": sorted({self._owners[obj] for obj in cut}),
+                "labels": self._label_pixels(rotation, middle, across) if name == "top" else [],
                 **(
-                    {"marks": [self._place_of(one, rotation, middle, across) for one in marks]}
+                    {"marks": [self._pixel_of(mark, rotation, middle, across) for mark in marks]}
                     if marks
                     else {}
                 ),
@@ -297,7 +285,7 @@ class Shooting:
             }
 
     def through(self, camera, render, notes):
-        """The picture that a camera of the scene takes; none, and a note, if that cannot be had."""
+        """The picture through a camera of the scene; none, and a note, if it cannot be rendered."""
         seen = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
         matrix = seen.matrix_world.copy()
         if (
@@ -306,11 +294,11 @@ class Shooting:
             or not all(math.isfinite(part) for row in matrix for part in row)
         ):
             notes.append(
-                f"The scene's camera {camera.name!r} is no plain camera, so that its view is not shown."
+                f"The scene's camera {camera.name!r} is neither perspective nor orthographic, so its view is not shown."
             )
             return
         data = seen.data.copy()
-        thing = self._stage.camera(data, matrix)
+        obj = self._stage.camera(data, matrix)
         data.animation_data_clear()
         data.dof.use_dof = False
         scale = self._stage.scale
@@ -320,7 +308,7 @@ class Shooting:
         width = min(self._size * _CAMERA_WIDER, round(self._size * aspect))
         size = (max(16, width), max(16, min(self._size, round(width / aspect))))
         # Within a closed room all would lie in the shadow of its walls.
-        file = self._shoot(thing, size, slant=0.0 if self._room or self._faces > _SHADOWED else 1.0)
+        file = self._render(obj, size, slant=0.0 if self._room or self._faces > _SHADOWED else 1.0)
         lens = f"{data.lens:.3g} mm" if data.type == "PERSP" else "orthographic"
         yield {
             "name": f"camera {camera.name!r}",
@@ -334,13 +322,13 @@ class Shooting:
             "lens": lens,
         }
 
-    def _seen(self, rotation, middle, across):
+    def _label_pixels(self, rotation, middle, across):
         """[name, x, y] of what is labelled, in pixels from the upper left."""
         return [
-            [name, *self._place_of(place, rotation, middle, across)] for name, place in self._labels.items()
+            [name, *self._pixel_of(place, rotation, middle, across)] for name, place in self._labels.items()
         ]
 
-    def _place_of(self, place, rotation, middle, across):
+    def _pixel_of(self, place, rotation, middle, across):
         """Pixels from the upper left of a place in the world."""
         right, up, _ = rotation.transposed() @ (place - middle)
         return [(0.5 + right / across) * self._size, (0.5 - up / across) * self._size]
@@ -351,10 +339,10 @@ class Shooting:
             return 0.0
         return _IN_ROOM if cut else 1.0
 
-    def _shoot(self, camera, size, slant):
+    def _render(self, camera, size, slant):
         file = _FILE.format(self._files)
         self._files += 1
-        self._stage.shoot(camera, size, os.path.join(self._folder, file), slant=slant)
+        self._stage.render(camera, size, os.path.join(self._folder, file), slant=slant)
         return file
 
 
@@ -362,11 +350,10 @@ def _labels(scene, boxes, whole):
     """The centres of the largest objects of the protocol (lacking those, of Blender's), those that fill the picture
     left out."""
     groups = {}
-    for collection in scene.collection.children_recursive:
-        if collection.get("protocol_role") == OBJECT:
-            found = [boxes[thing.name] for thing in collection.all_objects if thing.name in boxes]
-            if found:
-                groups[collection.name] = Box.around(found)
+    for collection in object_collections(scene):
+        members = [boxes[obj.name] for obj in collection.all_objects if obj.name in boxes]
+        if members:
+            groups[collection.name] = BoundingBox.around(members)
     groups = groups or boxes
     small = {
         name: box for name, box in groups.items() if whole.meets(box) and box.diagonal < 0.6 * whole.diagonal

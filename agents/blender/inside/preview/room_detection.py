@@ -87,8 +87,8 @@ class _Rays:
 
     def __init__(self, stage, placed):
         self._scene, self._graph = stage.scene, stage.update()
-        self._things = {thing.name: thing for _, thing in placed}
-        self._sizes = {thing.name: _size(stage, piece) for piece, thing in placed}
+        self._objects = {obj.name: obj for _, obj in placed}
+        self._sizes = {obj.name: _size(stage, piece) for piece, obj in placed}
 
     def is_inside(self, place, *, fronts_only=False):
         """Whether large things are nearly all around, of smaller ones if there is a roof above them."""
@@ -118,12 +118,12 @@ class _Rays:
                     last[name] = last.get(name, 0) + (
                         name == hits[-1][0] or distance > hits[-1][1] - _ON_WALL
                     )
-        return [self._things[name] for name in met if last[name] >= 0.5 * met[name]]
+        return [self._objects[name] for name in met if last[name] >= 0.5 * met[name]]
 
     def roof(self, place):
         """The outermost thing straight above, if it is large."""
         hits = self._hits(place, _UP[0])
-        return self._things[hits[-1][0]] if hits and self._sizes[hits[-1][0]] > _FURNITURE else None
+        return self._objects[hits[-1][0]] if hits and self._sizes[hits[-1][0]] > _FURNITURE else None
 
     def _is_roofed(self, place):
         return (
@@ -132,17 +132,17 @@ class _Rays:
 
     def _hits(self, origin, direction):
         """(name, distance, whether the front of a face was met) along a ray, nearest first."""
-        start, distance, found = origin, 0.0, []
+        start, distance, hits = origin, 0.0, []
         for _ in range(_MOST_HITS):
-            hit, place, normal, _, thing, _ = self._scene.ray_cast(
+            hit, place, normal, _, obj, _ = self._scene.ray_cast(
                 self._graph, start, direction, distance=4 * REACH
             )
             if not hit:
                 break
             distance += (place - start).length + _STEP
-            found.append((thing.name, distance, normal.dot(direction) < 0))
+            hits.append((obj.name, distance, normal.dot(direction) < 0))
             start = place + direction * _STEP
-        return found
+        return hits
 
 
 def _is_castable(piece):

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where two solids touch, and how their surfaces are turned to each other there. Metres, in the world."""
+
+import math
+
+import numpy
+
+from .topology import some, topology_of
+
+_MOST_TRIANGLES = 20_000  # of a solid that are looked at for where it touches
+_MOST_ALONG = 3_000  # places along their edges
+_MOST_TOUCHES = 600
+_MOST_CROSSINGS = 250_000  # pairs of edges
+_STEPS = 7
+_OUTWARDS = numpy.array(
+    [
+        (math.cos(turn * math.pi / 16), math.sin(turn * math.pi / 16), rise)
+        for turn in range(32)
+        for rise in (-1, 0, 1)
+    ]
+)
+
+
+class ContactPoints:
+    """Places where two solids are near each other: ``places`` on the first, ``apart``, and a triangle of each.
+
+    A place on an edge is there once for every triangle at it.
+    """
+
+    def __init__(self, places, apart, own, other):
+        self.places, self.apart, self.own, self.other = places, apart, own, other
+
+    def __len__(self):
+        return len(self.places)
+
+
+def contact_points(a, b, within):
+    """Where the surfaces of ``a`` and ``b`` are at most ``within`` apart."""
+    parts = [_dropped(a, b, within), _dropped(b, a, within, swapped=True), _crossed(a, b, within)]
+    return ContactPoints(*(numpy.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+
+def _thinned(places):
+    """Numbers of some places: all of a few; of many the outermost, and as many as will do in between."""
+    if len(places) <= _MOST_TOUCHES:
+        return range(len(places))
+    outermost = numpy.unique((places @ _OUTWARDS.T).argmax(axis=0))
+    return sorted({*outermost.tolist(), *some(len(places), _MOST_TOUCHES).tolist()})
+
+
+def _near(solid, other, within):
+    """Numbers of the triangles of a solid whose boxes come near another one's."""
+    corners = solid.points[solid.triangles]
+    low, high = other.low - within, other.high + within
+    near = numpy.nonzero(((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1))[0]
+    return near[some(len(near), _MOST_TRIANGLES)]
+
+
+def _dropped(solid, other, within, *, swapped=False):
+    """Contact points of corners of ``solid``, and of places along its edges, with ``other``."""
+    shape = topology_of(solid)
+    near = _near(solid, other, within)
+    places, place_of, triangle_of = _places(shape, near)
+    low, high = other.low - within, other.high + within
+    inside = numpy.nonzero(((places >= low) & (places <= high)).all(axis=1))[0]
+    slack = max(1e-5, 2e-6 * float(numpy.abs(other.points).max()))
+    find, around = other.tree.find_nearest, other.tree.find_nearest_range
+    feet = []
+    for at, place in zip(inside.tolist(), places[inside].tolist(), strict=True):
+        foot, _, _, apart = find(place, within)
+        if foot is not None:
+            feet.append((at, apart, foot))
+    if not feet:
+        return _none()
+    feet = [feet[at] for at in _thinned(numpy.array([foot for _, _, foot in feet]))]
+    # A foot on an edge belongs to all triangles there, whichever of them was found first.
+    hits = numpy.array(
+        [(at, apart, index, *foot) for at, apart, foot in feet for _, _, index, _ in around(foot, slack)]
+    )
+    hits = hits[_distinct(hits[:, 0].astype(int), topology_of(other).normals[hits[:, 2].astype(int)])]
+    ats, others = hits[:, 0].astype(int), hits[:, 2].astype(int)
+    of_touches = numpy.isin(place_of, ats)
+    place_of, triangle_of = place_of[of_touches], triangle_of[of_touches]
+    chosen = _distinct(place_of, shape.normals[triangle_of])
+    place_of, triangle_of = place_of[chosen], triangle_of[chosen]
+    order = numpy.argsort(place_of, kind="stable")
+    starts = numpy.searchsorted(place_of[order], numpy.arange(len(places) + 1))
+    counts = starts[ats + 1] - starts[ats]
+    rows = numpy.repeat(numpy.arange(len(ats)), counts)
+    step = numpy.arange(len(rows)) - numpy.repeat(numpy.cumsum(counts) - counts, counts)
+    own = triangle_of[order[starts[ats][rows] + step]]
+    if swapped:
+        return hits[rows, 3:6], hits[rows, 1], others[rows], own
+    return places[ats][rows], hits[rows, 1], own, others[rows]
+
+
+def _distinct(places, normals):
+    """Numbers of rows such that each place has every normal, roughly, once: hundreds of triangles may meet at it."""
+    steps = numpy.round((normals + 1) * 20).astype(numpy.int64)
+    keys = ((places * 64 + steps[:, 0]) * 64 + steps[:, 1]) * 64 + steps[:, 2]
+    return numpy.unique(keys, return_index=True)[1]
+
+
+def corners_and_edges(solid, other):
+    """Corners of a solid, and places along its edges, that are in another one's box."""
+    places = _places(topology_of(solid), _near(solid, other, 0.0))[0]
+    return places[((places >= other.low) & (places <= other.high)).all(axis=1)]
+
+
+def _places(shape, near):
+    """(places, and in two rows: a place's number, a triangle that it is on) of some triangles of a shape."""
+    corners = shape.corners[near]
+    known, back = numpy.unique(corners, return_inverse=True)
+    places, place_of, triangle_of = [shape.places[known]], [back.reshape(-1)], [numpy.repeat(near, 3)]
+    edges, back = _edges_of(corners)
+    steps = min(_STEPS, _MOST_ALONG // max(len(edges), 1))
+    if steps:
+        first, last = shape.places[edges[:, 0]], shape.places[edges[:, 1]]
+        shares = (numpy.arange(steps) + 1) / (steps + 1)
+        along = first[:, None] + shares[None, :, None] * (last - first)[:, None]
+        places.append(along.reshape(-1, 3))
+        numbers = len(known) + back[:, None] * steps + numpy.arange(steps)
+        place_of.append(numbers.reshape(-1))
+        triangle_of.append(numpy.repeat(numpy.tile(near, 3), steps))
+    return numpy.concatenate(places), numpy.concatenate(place_of), numpy.concatenate(triangle_of)
+
+
+def _edges_of(corners):
+    """(edges, for each triangle's first, second and third side in turn the number of its edge)."""
+    ends = numpy.concatenate([corners[:, (0, 1)], corners[:, (1, 2)], corners[:, (2, 0)]]).astype(numpy.int64)
+    count = int(ends.max(initial=0)) + 1
+    keys, back = numpy.unique(ends.min(axis=1) * count + ends.max(axis=1), return_inverse=True)
+    return numpy.stack([keys // count, keys % count], axis=1), back.reshape(-1)
+
+
+def _crossed(a, b, within):
+    """Contact points between edges that cross each other in passing."""
+    sides = []
+    for solid, other in ((a, b), (b, a)):
+        shape, near = topology_of(solid), _near(solid, other, within)
+        edges, back = _edges_of(shape.corners[near])
+        first, last = shape.places[edges[:, 0]], shape.places[edges[:, 1]]
+        low, high = other.low - within, other.high + within
+        chosen = ((numpy.minimum(first, last) <= high) & (numpy.maximum(first, last) >= low)).all(axis=1)[
+            back
+        ]
+        sides.append((first[back][chosen], (last - first)[back][chosen], numpy.tile(near, 3)[chosen]))
+    (p, d, own), (q, e, others) = sides
+    if not len(p) or not len(q) or len(p) * len(q) > _MOST_CROSSINGS:
+        return _none()
+    between = p[:, None] - q[None]
+    dd, ee, de = (d * d).sum(1)[:, None], (e * e).sum(1)[None], d @ e.T
+    dr, er = numpy.einsum("ik,ijk->ij", d, between), numpy.einsum("jk,ijk->ij", e, between)
+    square = dd * ee - de * de
+    with numpy.errstate(all="ignore"):
+        s, t = (de * er - dr * ee) / square, (dd * er - de * dr) / square
+        cross = (square > 1e-9 * dd * ee) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
+    i, j = numpy.nonzero(cross)
+    here, there = p[i] + s[i, j][:, None] * d[i], q[j] + t[i, j][:, None] * e[j]
+    apart = numpy.linalg.norm(here - there, axis=1)
+    close = apart <= within
+    return here[close], apart[close], own[i][close], others[j][close]
+
+
+def _none():
+    return numpy.zeros((0, 3)), numpy.zeros(0), numpy.zeros(0, int), numpy.zeros(0, int)
+
+
+def normals_of(a, b, contacts):
+    """[(normals of a, normals of b)] at touches, leading outwards: for flat faces, and as the surfaces are curved.
+
+    An open surface has no outside: its normal is taken against the other one's; between two, the lower is below.
+    """
+    sides = []
+    for solid, triangles in ((a, contacts.own), (b, contacts.other)):
+        shape = topology_of(solid)
+        sign = shape.outward[triangles][:, None]
+        sides.append((sign, (shape.normals[triangles], shape.smooth(triangles, contacts.places))))
+    (sign_a, of_a), (sign_b, of_b) = sides
+    pairs = []
+    for normal in of_a:
+        for other in of_b:
+            n, m = normal * numpy.where(sign_a == 0, 1, sign_a), other * numpy.where(sign_b == 0, 1, sign_b)
+            m = numpy.where((sign_a == 0) & (sign_b == 0) & (m[:, 2:] < 0), -m, m)
+            against = (n * m).sum(axis=1, keepdims=True) > 0
+            flip_n = against & (sign_a == 0)
+            flip_m = against & (sign_b == 0) & (sign_a != 0)
+            pairs.append((numpy.where(flip_n, -n, n), numpy.where(flip_m, -m, m)))
+    return pairs
