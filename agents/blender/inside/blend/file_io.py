@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Opens and writes .blend files for the supervisor: checkpoints, saves, the run's own file."""
 
-import contextlib
 import os
 import sys
 import time
@@ -9,6 +8,8 @@ import time
 import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
+
+from .temporary import temporary_settings, without_handlers
 
 SCENE_FILE = "scene.blend"
 _ON_SAVING = ("save_pre", "save_post", "save_post_fail")
@@ -64,8 +65,10 @@ def write_file(arguments, report):
     # Relative paths are already as the run's own file wants them, unless code has made another file its own.
     elsewhere = os.path.dirname(bpy.data.filepath or path) not in {arguments["folder"], os.path.dirname(path)}
     started = time.perf_counter()
+    # No thumbnail, which takes as long as writing, and no handlers, which may never return: a checkpoint is not a save.
+    no_thumbnail = [(bpy.context.preferences.filepaths, "file_preview_type", "NONE")]
     try:
-        with _no_handlers(), _no_preview():
+        with without_handlers(_ON_SAVING), temporary_settings(no_thumbnail):
             bpy.ops.wm.save_as_mainfile(
                 filepath=path, copy=True, check_existing=False, relative_remap=elsewhere
             )
@@ -73,32 +76,6 @@ def write_file(arguments, report):
         raise Refused(f"{path} could not be written: {reason(error)}") from None
     sys.stdout.flush()
     return {"seconds": time.perf_counter() - started, "bytes": os.path.getsize(path)}
-
-
-@contextlib.contextmanager
-def _no_handlers():
-    """Runs none of the file's own save handlers: a checkpoint is not a save by the user, and they may never return."""
-    lists = [getattr(bpy.app.handlers, name, []) for name in _ON_SAVING]
-    kept = [list(handlers) for handlers in lists]
-    for handlers in lists:
-        handlers.clear()
-    try:
-        yield
-    finally:
-        for handlers, before in zip(lists, kept):  # noqa: B905 - not in Python 3.9
-            handlers[:] = before
-
-
-@contextlib.contextmanager
-def _no_preview():
-    """Writes no thumbnail: nobody browses checkpoints, and drawing it takes as long as writing."""
-    settings = bpy.context.preferences.filepaths
-    before = settings.file_preview_type
-    settings.file_preview_type = "NONE"
-    try:
-        yield
-    finally:
-        settings.file_preview_type = before
 
 
 def reason(error):

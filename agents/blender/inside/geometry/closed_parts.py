@@ -1,24 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a solid has an inside, and what has none."""
+"""The closed parts of a solid, which have an inside, and its sheets, which have none."""
 
 import numpy
 from mathutils import Vector
 
-from .topology import connected_labels
+from .topology import piece_labels
 
-TOUCH = 2e-5  # metres; what is no deeper only touches
-_THIN = 0.002  # an inside that is no wider is none: no place in it is deeper than noise
+TOUCH = 2e-5  # metres; what is no deeper counts as touching
+_THIN = 0.002  # metres; a part that is no thicker counts as a sheet
 _MOST_PIECES = 2_000
-_SLACK = 3e-4  # metres; what is tested may stand a hair's breadth beside where it is
+_SLACK = 3e-4  # metres; a tested solid may have been moved a little (see _nudged)
 
 
 def thinned(rows, most):
-    """Some rows, evenly chosen, of more."""
+    """At most about ``most`` rows, evenly chosen."""
     return rows[:: len(rows) // most + 1] if len(rows) > most else rows
 
 
 class _ClosedParts:
-    """What of a solid has an inside (``core``) and what has none (``sheets``): solids, or None."""
+    """The parts of a solid that have an inside (``core``) and those that have none (``sheets``): solids, or None."""
 
     def __init__(self, solid):
         mask = _in_closed_parts(solid)
@@ -34,23 +34,22 @@ class _ClosedParts:
 
 
 def closed_parts_of(solid):
-    """See _ClosedParts; made once."""
+    """The _ClosedParts of a solid; cached."""
     if solid.closed_parts is None:
         solid.closed_parts = _ClosedParts(solid)
     return solid.closed_parts
 
 
 def _in_closed_parts(solid):
-    """Which triangles belong to a piece that is closed and not thin."""
-    places, same = solid.welded
-    corners = same[solid.triangles]
+    """A mask of the triangles of pieces that are closed and not thin."""
+    places, corners = solid.welded[0], solid.corners
     a, b, c = (places[corners[:, corner]] for corner in range(3))
     across = numpy.cross(b - a, c - a)
     areas = numpy.linalg.norm(across, axis=1) / 2
     volumes = numpy.einsum("ij,ij->i", a - places.mean(axis=0), across) / 6
     if solid.closed and solid.oriented and 2 * abs(volumes.sum()) >= _THIN * areas.sum():
         return numpy.ones(len(corners), bool)
-    label = connected_labels(len(places), corners[:, :2], corners[:, 1:])
+    label = piece_labels(len(places), corners)
     known, pieces = numpy.unique(label[corners[:, 0]], return_inverse=True)
     pieces, count = pieces.reshape(-1), len(known)
     edges, sides = solid.edges
@@ -58,7 +57,7 @@ def _in_closed_parts(solid):
     is_open[label[edges[sides % 2 == 1][:, 0]]] = True
     if solid.oriented:
         held = numpy.abs(numpy.bincount(pieces, volumes, count))
-    else:  # its triangles do not tell in from out: as much as fits
+    else:  # without consistent normals: the volume of its box
         low, high = numpy.full((count, 3), numpy.inf), numpy.full((count, 3), -numpy.inf)
         for corner in (a, b, c):
             numpy.minimum.at(low, pieces, corner)
@@ -69,7 +68,7 @@ def _in_closed_parts(solid):
 
 
 def is_in(solid, other):
-    """Whether a piece of one, of which nothing crosses the other, is inside of it."""
+    """Whether a piece of ``solid``, whose surfaces do not cross, is inside the other."""
     first, low, high = _pieces_of(solid)
     first = first[((low >= other.low - _SLACK) & (high <= other.high + _SLACK)).all(axis=1)]
     if not len(first) or closed_parts_of(other).core is None:
@@ -83,11 +82,9 @@ def is_in(solid, other):
 
 
 def _pieces_of(solid):
-    """(a triangle of each piece that hangs together, the low and high corners of the boxes around them); made once."""
+    """(a triangle of each connected piece, low corners of the pieces' boxes, high corners); cached."""
     if solid.pieces is None:
-        places, same = solid.welded
-        corners = same[solid.triangles]
-        label = connected_labels(len(places), corners[:, :2], corners[:, 1:])[corners[:, 0]]
+        label = piece_labels(len(solid.welded[0]), solid.corners)[solid.corners[:, 0]]
         order = numpy.argsort(label, kind="stable")
         starts = numpy.flatnonzero(numpy.diff(label[order], prepend=-1))
         low, high = solid.boxes
@@ -100,7 +97,7 @@ def _pieces_of(solid):
 
 
 def middle_behind(solid, triangle):
-    """The middle of what of a closed solid is behind a triangle; None for an open one."""
+    """The middle of the material of a closed solid behind a triangle; None for an open one."""
     core = closed_parts_of(solid).core
     if core is None:
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where two solids touch, and how their surfaces are turned to each other there. Metres, in the world."""
+"""Where two solids touch, and their normals there. Metres, in the world."""
 
 import math
 
@@ -7,8 +7,8 @@ import numpy
 
 from .topology import some, topology_of
 
-_MOST_TRIANGLES = 20_000  # of a solid that are looked at for where it touches
-_MOST_ALONG = 3_000  # places along their edges
+_MOST_TRIANGLES = 20_000  # of a solid that are searched for contacts
+_MOST_ALONG = 3_000  # points along their edges
 _MOST_TOUCHES = 600
 _MOST_CROSSINGS = 250_000  # pairs of edges
 _STEPS = 7
@@ -22,26 +22,26 @@ _OUTWARDS = numpy.array(
 
 
 class ContactPoints:
-    """Places where two solids are near each other: ``places`` on the first, ``apart``, and a triangle of each.
+    """Points where two solids are near each other: ``places`` on the first, a triangle of each, ``own`` and ``other``.
 
-    A place on an edge is there once for every triangle at it.
+    A point on an edge is listed once for every triangle at it.
     """
 
-    def __init__(self, places, apart, own, other):
-        self.places, self.apart, self.own, self.other = places, apart, own, other
+    def __init__(self, places, own, other):
+        self.places, self.own, self.other = places, own, other
 
     def __len__(self):
         return len(self.places)
 
 
 def contact_points(a, b, within):
-    """Where the surfaces of ``a`` and ``b`` are at most ``within`` apart."""
+    """The points where the surfaces of ``a`` and ``b`` are at most ``within`` apart."""
     parts = [_dropped(a, b, within), _dropped(b, a, within, swapped=True), _crossed(a, b, within)]
     return ContactPoints(*(numpy.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
 def _thinned(places):
-    """Numbers of some places: all of a few; of many the outermost, and as many as will do in between."""
+    """Numbers of some places: all if they are few, else the outermost and some in between."""
     if len(places) <= _MOST_TOUCHES:
         return range(len(places))
     outermost = numpy.unique((places @ _OUTWARDS.T).argmax(axis=0))
@@ -67,18 +67,16 @@ def _dropped(solid, other, within, *, swapped=False):
     find, around = other.tree.find_nearest, other.tree.find_nearest_range
     feet = []
     for at, place in zip(inside.tolist(), places[inside].tolist(), strict=True):
-        foot, _, _, apart = find(place, within)
+        foot = find(place, within)[0]
         if foot is not None:
-            feet.append((at, apart, foot))
+            feet.append((at, foot))
     if not feet:
         return _none()
-    feet = [feet[at] for at in _thinned(numpy.array([foot for _, _, foot in feet]))]
-    # A foot on an edge belongs to all triangles there, whichever of them was found first.
-    hits = numpy.array(
-        [(at, apart, index, *foot) for at, apart, foot in feet for _, _, index, _ in around(foot, slack)]
-    )
-    hits = hits[_distinct(hits[:, 0].astype(int), topology_of(other).normals[hits[:, 2].astype(int)])]
-    ats, others = hits[:, 0].astype(int), hits[:, 2].astype(int)
+    feet = [feet[at] for at in _thinned(numpy.array([foot for _, foot in feet]))]
+    # A nearest point on an edge belongs to all triangles there, not only to the one that was returned.
+    hits = numpy.array([(at, index, *foot) for at, foot in feet for _, _, index, _ in around(foot, slack)])
+    hits = hits[_distinct(hits[:, 0].astype(int), topology_of(other).normals[hits[:, 1].astype(int)])]
+    ats, others = hits[:, 0].astype(int), hits[:, 1].astype(int)
     of_touches = numpy.isin(place_of, ats)
     place_of, triangle_of = place_of[of_touches], triangle_of[of_touches]
     chosen = _distinct(place_of, shape.normals[triangle_of])
@@ -90,12 +88,12 @@ def _dropped(solid, other, within, *, swapped=False):
     step = numpy.arange(len(rows)) - numpy.repeat(numpy.cumsum(counts) - counts, counts)
     own = triangle_of[order[starts[ats][rows] + step]]
     if swapped:
-        return hits[rows, 3:6], hits[rows, 1], others[rows], own
-    return places[ats][rows], hits[rows, 1], own, others[rows]
+        return hits[rows, 2:5], others[rows], own
+    return places[ats][rows], own, others[rows]
 
 
 def _distinct(places, normals):
-    """Numbers of rows such that each place has every normal, roughly, once: hundreds of triangles may meet at it."""
+    """Numbers of rows that keep each (place, rounded normal) once: hundreds of triangles may meet at a place."""
     steps = numpy.round((normals + 1) * 20).astype(numpy.int64)
     keys = ((places * 64 + steps[:, 0]) * 64 + steps[:, 1]) * 64 + steps[:, 2]
     return numpy.unique(keys, return_index=True)[1]
@@ -134,7 +132,7 @@ def _edges_of(corners):
 
 
 def _crossed(a, b, within):
-    """Contact points between edges that cross each other in passing."""
+    """Contact points between edges that pass close to each other."""
     sides = []
     for solid, other in ((a, b), (b, a)):
         shape, near = topology_of(solid), _near(solid, other, within)
@@ -157,19 +155,18 @@ def _crossed(a, b, within):
         cross = (square > 1e-9 * dd * ee) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
     i, j = numpy.nonzero(cross)
     here, there = p[i] + s[i, j][:, None] * d[i], q[j] + t[i, j][:, None] * e[j]
-    apart = numpy.linalg.norm(here - there, axis=1)
-    close = apart <= within
-    return here[close], apart[close], own[i][close], others[j][close]
+    close = numpy.linalg.norm(here - there, axis=1) <= within
+    return here[close], own[i][close], others[j][close]
 
 
 def _none():
-    return numpy.zeros((0, 3)), numpy.zeros(0), numpy.zeros(0, int), numpy.zeros(0, int)
+    return numpy.zeros((0, 3)), numpy.zeros(0, int), numpy.zeros(0, int)
 
 
 def normals_of(a, b, contacts):
-    """[(normals of a, normals of b)] at touches, leading outwards: for flat faces, and as the surfaces are curved.
+    """[(normals of a, normals of b)] at contacts, outwards: of flat faces, and smoothed as for curved surfaces.
 
-    An open surface has no outside: its normal is taken against the other one's; between two, the lower is below.
+    An open surface has no outside: its normal is taken opposite to the other one's; of two, one is taken upwards.
     """
     sides = []
     for solid, triangles in ((a, contacts.own), (b, contacts.other)):

@@ -1,33 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far the surfaces of solids are apart. Metres."""
+"""Distances between the surfaces of solids. Metres."""
 
 import math
 
 import numpy
 from mathutils import Vector
 
-from .solids import meeting
+from .solids import crossing_pairs
 
-_FEW = 20_000  # corners that are all looked at; of more, so many
+_FEW = 20_000  # corners that are all tried; of more, this many
 _SOME = 500  # triangles around a place
 _SEEDS = 24
 _ROUNDS = 60
-_FIRST = 32  # corners that are dropped before anything dearer is tried
-_MOST_PAIRS = 4_000_000  # of edges that may be nearest between their ends
+_FIRST = 32  # corners that are tried before anything slower
+_MOST_PAIRS = 4_000_000  # of edges
 _CHUNK = 500_000
 
 
 def gap(a, b, beyond=math.inf, enough=0.0):
     """(distance, place on a, place on b); (0, place, place) where they cross; None if they are ``beyond`` apart.
 
-    What is nearest is a corner and a face, or two edges. The search ends with the first distance of at most ``enough``.
+    The nearest pair is a corner and a face, or two edges. The search ends at the first distance up to ``enough``.
     """
     best = _Best(beyond, enough)
     if apart(a, b) > beyond:
         return None
     if enough and (touch := _touch(a, b, best)):
         return touch
-    crossed = meeting(a, b, 1)
+    crossed = crossing_pairs(a, b, 1)
     if len(crossed):
         place = Vector(a.points[a.triangles[crossed[0, 0]]].mean(axis=0))
         place = b.nearest(a.nearest(b.nearest(place)[0])[0])[0]
@@ -40,12 +40,12 @@ def gap(a, b, beyond=math.inf, enough=0.0):
 
 
 def apart(a, b):
-    """How far the boxes of two solids are apart."""
+    """The distance between the boxes of two solids."""
     return float(numpy.linalg.norm(numpy.maximum(0.0, numpy.maximum(a.low - b.high, b.low - a.high))))
 
 
 def _touch(a, b, best):
-    """What is near enough, if the first corners of one show it: most contacts are corners on faces."""
+    """A pair that is near enough, if one of a few corners has one: most contacts are corners on faces."""
     other_way = a.has_tree or (not b.has_tree and len(a.triangles) < len(b.triangles))
     for swapped in (other_way, not other_way):
         solid, other = (b, a) if swapped else (a, b)
@@ -76,7 +76,7 @@ class _Best:
 
 
 def _corners(solid, other, best, *, swapped):
-    """Drops the corners of one onto the other, those first that may be nearest."""
+    """Projects the corners of one onto the other, starting with those that may be nearest."""
     points = solid.points
     if len(points) > _FEW:
         points = points[:: len(points) // _FEW + 1]
@@ -111,12 +111,12 @@ def _settled(point, distance, solid, other):
 
 
 def _to_box(lows, highs, low, high):
-    """How far boxes (n × 3) are at least from another one."""
+    """The distances of boxes (n × 3) from another one."""
     return numpy.linalg.norm(numpy.maximum(0.0, numpy.maximum(low - highs, lows - high)), axis=1)
 
 
 def _edges(a, b, best):
-    """Looks at the edges that may come nearer to each other between their ends."""
+    """Tries the edges that may be nearer to each other than corners and faces are."""
     ours, theirs = (
         _near(a, b, best, best.pair and best.pair[1]),
         _near(b, a, best, best.pair and best.pair[2]),
@@ -133,7 +133,7 @@ def _edges(a, b, best):
 
 
 def _near(solid, other, best, place):
-    """The edges (n × 2 × 3) of the triangles that may be that near to another solid; of very many those at a place."""
+    """The edges (n × 2 × 3) of triangles that may be near enough to another solid; of very many, those near a place."""
     low, high = solid.boxes
     chosen = numpy.nonzero(_to_box(low, high, other.low, other.high) <= best.distance)[0]
     if len(chosen) > _FEW and place is not None:
@@ -145,7 +145,7 @@ def _near(solid, other, best, place):
 
 
 def _nearer(edges, other, distance):
-    """Those of too many edges that may come within a distance of a solid, those first that come nearest."""
+    """Of too many edges, those that may be within a distance of a solid, the nearest first."""
     most = math.isqrt(_MOST_PAIRS)
     middles, halves = edges.mean(axis=1), numpy.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) / 2
     if len(edges) > _FEW:
@@ -161,7 +161,7 @@ def _nearer(edges, other, distance):
 
 
 def _edge_pairs(ours, theirs, best):
-    """The least distance between two sets of edges where it is between their ends."""
+    """Tries the pairs of two sets of edges that are nearest to each other between their ends."""
     p, q = ours[:, 0], theirs[:, 0]
     d, e = ours[:, 1] - p, theirs[:, 1] - q
     dd, ee, de = (d * d).sum(1)[:, None], (e * e).sum(1)[None], d @ e.T

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Evaluated geometry as Blender has it: the meshes of objects, and of the instances that they make. Changes nothing."""
+"""Evaluated meshes of objects and of the instances that they make. Changes nothing."""
 
 import contextlib
 import itertools
@@ -10,11 +10,11 @@ from ..blend.visibility import rendered_objects
 
 AS_MESH = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 MOST_INSTANCES = 50_000
-_FARTHEST = 1e9  # what overflows becomes the largest number that there is
+_FARTHEST = 1e9  # metres; overflows in Blender become the largest float
 
 
 class TooManyInstances(Exception):  # noqa: N818 - reads as the state it names
-    """The scene has more instances than are looked at."""
+    """The scene has too many instances to read."""
 
 
 class TriangleMesh:
@@ -30,13 +30,13 @@ class TriangleMesh:
 
     @property
     def corners(self):
-        """Those of the box around it (8 × 3)."""
+        """The corners of its bounding box (8 × 3)."""
         return numpy.array(
             list(itertools.product(*zip(self.points.min(axis=0), self.points.max(axis=0), strict=True)))
         )
 
     def placed(self, matrix):
-        """(points, triangles) where ``matrix`` puts them. A mirror turns no triangle inside out."""
+        """(points, triangles) transformed by ``matrix``; normals stay outwards if it mirrors."""
         points = transformed(self.points, matrix)
         mirrored = numpy.linalg.det(numpy.array(matrix, dtype=float)[:3, :3]) < 0
         return points, self.triangles[:, ::-1] if mirrored else self.triangles
@@ -49,13 +49,13 @@ def coordinates(elements, name="co"):
     return flat.reshape(-1, 3).astype(float)
 
 
-def are_numbers(points):
-    """Whether places are numbers that can be reckoned with."""
+def are_finite(points):
+    """Whether coordinates are finite and not absurdly large."""
     return bool((numpy.abs(points) < _FARTHEST).all())
 
 
 def transformed(points, matrix):
-    """Points (n × 3) that a 4 × 4 matrix has moved."""
+    """Points (n × 3) transformed by a 4 × 4 matrix."""
     turn = numpy.array(matrix, dtype=float)
     with numpy.errstate(all="ignore"):
         return points @ turn[:3, :3].T + turn[:3, 3]
@@ -63,7 +63,7 @@ def transformed(points, matrix):
 
 @contextlib.contextmanager
 def mesh_of(evaluated):
-    """The mesh that an evaluated object looks like, also while it is being edited; None for one without vertices."""
+    """The mesh of an evaluated object, also in edit mode; None for one without vertices."""
     if evaluated.type not in AS_MESH:
         yield None
         return
@@ -78,11 +78,11 @@ def mesh_of(evaluated):
 
 
 def instances_of(graph):
-    """{full name of what makes them: [(shape, matrix), …]} of all instances that have faces, but of particles.
+    """{full name of what makes them: [(shape, matrix), …]} of all instances with faces, except of particles.
 
     Raises TooManyInstances.
     """
-    by_place, shapes, count, twice = {}, {}, 0, []
+    by_place, shapes, count, meshes_of_others = {}, {}, 0, []
     if not any(map(may_instance, graph.objects)):
         return by_place
     for instance in graph.object_instances:
@@ -101,20 +101,20 @@ def instances_of(graph):
             raise TooManyInstances(f"the scene has more than {MOST_INSTANCES} instances")
         matrix = instance.matrix_world.copy()
         if obj.original == maker and maker.type != "MESH" and matrix == instance.parent.matrix_world:
-            continue  # what a text or curve looks like, not what it makes
+            continue  # the mesh of a text or curve itself, not an instance
         key = obj.data.as_pointer()
         if key not in shapes:
             with mesh_of(obj) as mesh:
                 shapes[key] = TriangleMesh(mesh) if mesh is not None and len(mesh.polygons) else None
         if shapes[key] is None:
             continue
-        # A text or curve comes as what it is, and once more as the mesh that it looks like.
+        # A text or curve comes twice: as itself, and as its mesh.
         place = maker.name_full, obj.original.name_full, tuple(value for row in matrix for value in row)
         if obj.type != "MESH":
-            twice.append((place, shapes[key], matrix))
+            meshes_of_others.append((place, shapes[key], matrix))
             continue
         by_place.setdefault(place, []).append((shapes[key], matrix))
-    for place, shape, matrix in twice:
+    for place, shape, matrix in meshes_of_others:
         by_place.setdefault(place, [(shape, matrix)])
     by_maker = {}
     for place, entries in by_place.items():
@@ -123,7 +123,7 @@ def instances_of(graph):
 
 
 class Instances:
-    """What the objects of one dependency graph make instances of, found out when it is first asked for."""
+    """The instances that the objects of a dependency graph make, read when first needed."""
 
     def __init__(self, graph):
         self._graph = graph
@@ -149,11 +149,11 @@ def may_instance(obj):
 
 
 def rendered(scene):
-    """The objects that renders show: of layers that are rendered, in no collection that hides them, not hidden."""
+    """The objects that renders of a scene show."""
     layers = [layer.layer_collection for layer in scene.view_layers if layer.use]
     return {obj for layer in layers for obj in rendered_objects(layer) if not _is_only_copied(obj)}
 
 
 def _is_only_copied(obj):
-    """Whether it is shown only where its parent makes instances of it."""
+    """Whether only its parent's instances of it are shown."""
     return obj.parent is not None and obj.parent.instance_type in {"VERTS", "FACES"}

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How deep solids are in each other. Metres.
+"""How deep solids penetrate each other. Metres.
 
-The depth is that of the deepest place of the one's surface below the surface of the other; or, where the two have their
-surfaces in common, how thick what they share is. A mesh that is open, or so thin that there is no depth to its
-inside, is a sheet: two sheets are as deep in each other as the one reaches through the other, on that side where this
-is less. What is turned inside out, or has the camera in it, is hollow like a room or a sky: a sheet, too.
+The depth is that of the deepest point of one surface below the other; if the two share surfaces, the thickness of what
+they share. A mesh that is open, or too thin to have an inside, is a sheet: the depth between two sheets is how far one
+reaches through the other, on the shallower side. A mesh that is inside out, or has the camera in it, is hollow like a
+room or a sky, and counts as a sheet.
 """
 
 import numpy
@@ -12,16 +12,18 @@ from mathutils import Vector
 
 from .closed_parts import TOUCH, closed_parts_of, is_in, middle_behind, thinned
 from .sheet_penetration import reach_through
-from .solids import meeting
-from .topology import connected_labels
+from .solids import crossing_pairs
+from .topology import piece_labels
 from .triangle_intersections import IntersectionLines, normals_of, unit
 
 _MOST_PAIRS = 200_000
 _MOST_LINES = 4_000
 _MOST_PLACES = 1_500
 _MOST_OF_SHEET = 500
-_ALONG = numpy.array((0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98))  # of what of an edge may be inside
-_TOWARDS = (0.4, 0.7)  # from the middle of what is cut out of a face to its outline
+_ALONG = numpy.array(
+    (0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98)
+)  # shares along the part of an edge that may be inside
+_TOWARDS = (0.4, 0.7)  # shares of the way from the middle of a cut in a face to its outline
 _OUTLINE = 400
 _STEP = 1e-5
 _MIDDLES = 10
@@ -32,17 +34,17 @@ _NUDGE, _MOST_NUDGE, _COARSE = 1e-5, 2e-4, 2e-6
 
 
 def crossing(a, b, noise=0.0):
-    """(depth, place, reason that it is undecided) of two solids that are in each other; None if they at most touch.
+    """(depth, place, reason if it is undecided) of two solids; None if they at most touch.
 
-    None, too, if they cannot be deeper in each other than ``noise``: their boxes are not.
+    Also None if their boxes show that they cannot be deeper in each other than ``noise``.
     """
-    if _are_one(a, b):
-        return None, Vector(a.points[0]), "their surfaces are the same: one may be there twice"
+    if _coincide(a, b):
+        return None, Vector(a.points[0]), "their surfaces are the same: one may be a duplicate"
     ceiling = float(numpy.minimum(a.high - b.low, b.high - a.low).min())
     if ceiling <= max(TOUCH, noise):
         return None
     a, b = (_nudged(a), b) if len(a.triangles) <= len(b.triangles) else (a, _nudged(b))
-    pairs = meeting(a, b, _MOST_PAIRS)
+    pairs = crossing_pairs(a, b, _MOST_PAIRS)
     if not len(pairs) and not is_in(a, b) and not is_in(b, a):
         return None
     lines = IntersectionLines(a, b, thinned(pairs, _MOST_LINES))
@@ -54,8 +56,8 @@ def crossing(a, b, noise=0.0):
     return min(depth, ceiling), Vector(place), ""
 
 
-def _are_one(a, b):
-    """Whether two sheets are at the same place: nothing of them crosses."""
+def _coincide(a, b):
+    """Whether two sheets coincide, so that nothing of them crosses."""
     if max(numpy.abs(a.low - b.low).max(), numpy.abs(a.high - b.high).max()) > TOUCH:
         return False
     if closed_parts_of(a).core is not None or closed_parts_of(b).core is not None:
@@ -70,18 +72,18 @@ def _are_one(a, b):
 
 
 def _nudged(solid):
-    """It, a hair's breadth beside where it is: corners and edges that lie exactly on the other's cross nothing."""
+    """A copy moved by a tiny step: corners and edges exactly on the other solid would cross nothing."""
     if solid.nudged is None:
         step = min(max(_NUDGE, _COARSE * float(numpy.abs(solid.points).max())), _MOST_NUDGE)
         solid.nudged = solid.moved(step * numpy.array((0.7, -0.5, 0.9)))
     return solid.nudged
 
 
-# Bodies
+# Solids with an inside
 
 
 class _Shared:
-    """What two solids share, of which one has an inside at least."""
+    """The volume that two solids share, of which at least one has an inside."""
 
     def __init__(self, a, b, lines):
         self._cores = closed_parts_of(a).core, closed_parts_of(b).core
@@ -96,7 +98,7 @@ class _Shared:
         ]
 
     def depth(self):
-        """(depth, a place of it): of the surface of one, below that of the other; or of a place within both."""
+        """(depth, place): of a point of one surface below the other, or of a point inside both."""
         lines = self._lines[0].middles
         best = 0.0, lines[0] if len(lines) else self._lines[0].solid.points[0]
         best = max(
@@ -114,7 +116,7 @@ class _Shared:
         return best
 
     def _way_out(self, number, place, way):
-        """How far it is out of a body from a place in it, or on it."""
+        """The distance out of a solid from a place in it or on it."""
         core = self._cores[number]
         if core is None:
             return 0.0
@@ -126,7 +128,7 @@ class _Shared:
         return length + _STEP if inside else 0.0
 
     def _middles(self):
-        """Places in the middle of one body that are in the other one, too."""
+        """Points in the middle of one solid that are in the other one as well."""
         for ours, theirs in (self._cores, self._cores[::-1]):
             low, high = ours.boxes
             near = numpy.nonzero(((low <= theirs.high) & (high >= theirs.low)).all(axis=1))[0]
@@ -136,11 +138,11 @@ class _Shared:
                     yield place
 
     def _ways(self):
-        """Directions that may lead out."""
+        """Directions in which the way out may be shortest."""
         lines, back = self._lines
         ways = [Vector(place) - foot for _, place, foot in self._deepest if foot is not None]
-        sides = [_usual(normals_of(lines.solid, lines.ours), _NORMALS) for lines in self._lines]
-        edges = [_usual(_directions(lines), _EDGES) for lines in (lines, back)]
+        sides = [_most_frequent(normals_of(lines.solid, lines.ours), _NORMALS) for lines in self._lines]
+        edges = [_most_frequent(_directions(lines), _EDGES) for lines in (lines, back)]
         ways += [Vector(normal) for normals in sides for normal in normals]
         ways += [Vector(edge).cross(Vector(other)) for edge in edges[0] for other in edges[1]]
         ways += _AXES
@@ -149,7 +151,7 @@ class _Shared:
 
 
 def _deepest(solid, core, lines):
-    """(depth, place, foot) of the place of a surface that is deepest in a body: a corner, on an edge, on a face."""
+    """(depth, place, nearest point of the core) of the point of a surface that is deepest in the core of the other."""
     inside = ((solid.points > core.low) & (solid.points < core.high)).all(axis=1)
     places = numpy.concatenate(
         [
@@ -174,8 +176,8 @@ def _directions(lines):
     return unit(places[lines.edges[:, 1]] - places[lines.edges[:, 0]])
 
 
-def _usual(vectors, most):
-    """The directions that most of some unit vectors have, regardless of their sign."""
+def _most_frequent(vectors, most):
+    """The most frequent directions of some unit vectors, regardless of sign."""
     if not len(vectors):
         return []
     level = numpy.where((vectors @ (0.577, 0.211, 0.789) < 0)[:, None], -vectors, vectors)
@@ -184,7 +186,7 @@ def _usual(vectors, most):
 
 
 def _on_edges(solid, lines):
-    """Places along the stretches of edges between where they go through the other surface."""
+    """Points along edges, between where these go through the other surface."""
     if not len(lines.edges):
         return numpy.empty((0, 3))
     places, _ = solid.welded
@@ -202,12 +204,12 @@ def _on_edges(solid, lines):
 
 
 def _on_faces(solid, lines):
-    """Places on faces, in the middle of where something goes through them and between there and its outline."""
+    """Points on faces: the middle of what goes through them, and between there and its outline."""
     if not len(lines.ours):
         return numpy.empty((0, 3))
     other, middles = lines.other, lines.middles
-    corners = other.welded[1][other.triangles[lines.theirs]]
-    label = connected_labels(len(other.welded[0]), corners[:, :2], corners[:, 1:])[corners[:, 0]]
+    corners = other.corners[lines.theirs]
+    label = piece_labels(len(other.welded[0]), corners)[corners[:, 0]]
     _, group = numpy.unique(label, return_inverse=True)
     group = group.reshape(-1)
     sizes = numpy.bincount(group)

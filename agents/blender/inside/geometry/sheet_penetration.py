@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far sheets reach through each other. Metres."""
+"""How deep sheets, which have no inside, penetrate each other. Metres."""
 
 import numpy
 from mathutils import Vector
 
 from .closed_parts import thinned
-from .solids import meeting
-from .topology import connected_labels
+from .solids import crossing_pairs
+from .topology import piece_labels
 from .triangle_intersections import IntersectionLines, cross, normals_of, unit
 
 _MOST_PAIRS = 200_000
 _MOST_LINES = 1_500
 _MOST_OF_PART = 500
-_UPRIGHT = 0.9  # least share of a way from a sheet that is along its normal, if its foot is not at its rim
+_UPRIGHT = 0.9  # least cosine to the normal at the nearest point of a sheet, unless that is on its rim
 
 
 def reach_through(a, b):
-    """(depth, place): how far one sheet reaches through another where they cross, by whichever way is shorter."""
-    pairs = meeting(a, b, _MOST_PAIRS)
+    """(depth, place): how far one sheet reaches through another where they cross, on the shallower side."""
+    pairs = crossing_pairs(a, b, _MOST_PAIRS)
     lines = IntersectionLines(a, b, thinned(pairs, _MOST_LINES))
     if not len(lines.ours):
         return 0.0, a.points[0]
@@ -26,21 +26,19 @@ def reach_through(a, b):
 
 
 class _Side:
-    """A sheet that is cut by another one: how far it reaches to either side of where they cross."""
+    """A sheet that another one cuts: how far it reaches to either side of the cut."""
 
     def __init__(self, lines, crossed):
         self._lines, self._sheet = lines, lines.other
         solid = lines.solid
-        self._places, same = solid.welded
-        self._corners = same[solid.triangles]
+        self._places, self._corners = solid.welded[0], solid.corners
         whole = numpy.ones(len(solid.triangles), bool)
         whole[crossed] = False
-        left = self._corners[whole]
-        self._part = connected_labels(len(self._places), left[:, :2], left[:, 1:])
+        self._part = piece_labels(len(self._places), self._corners[whole])
         self._reaches, self._both = {}, {}
 
     def reach(self):
-        """(how far, a place there): of all places where they cross, that where it is most."""
+        """(depth, place) where it is deepest."""
         ends, parts = self._ends()
         best = 0.0, self._lines.middles[0]
         for places, (ahead, behind) in zip(ends.tolist(), parts.tolist(), strict=True):
@@ -58,7 +56,7 @@ class _Side:
         return best
 
     def _ends(self):
-        """Across each line, as far as its triangle goes: (places n × 2 × 3, the parts n × 2 that go on from there)."""
+        """Across each cut to the triangle's border: (places n × 2 × 3, connected parts n × 2 behind them)."""
         lines, places = self._lines, self._places
         corners = places[self._corners[lines.ours]]
         normals = normals_of(lines.solid, lines.ours)
@@ -96,7 +94,7 @@ class _Side:
         return thinned(self._places[self._part == part], _MOST_OF_PART).tolist()
 
     def _reach_of(self, part):
-        """How far a part is from the other sheet at most."""
+        """The largest distance of a part from the other sheet."""
         if part < 0:
             return 0.0
         if part not in self._reaches:
@@ -104,7 +102,7 @@ class _Side:
         return self._reaches[part]
 
     def _reach_around(self, part):
-        """Of a part that goes around the other sheet's rim: how far it is on both sides of that, beside its rim."""
+        """Of a part that goes around the other sheet's rim: how far it reaches on both of its sides."""
         if part not in self._both:
             sides = [0.0, 0.0]
             for place in self._places_of(part):

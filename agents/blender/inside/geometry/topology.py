@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The surface of a solid as connected triangles: neighbours, connected pieces, normals, volumes."""
 
+import functools
+
 import numpy
 
 _SMOOTH = 0.5  # faces at an edge are of one curved surface up to an angle with this cosine
@@ -8,36 +10,32 @@ _TINY = 1e-15
 
 
 class SurfaceTopology:
-    """What the triangles of a solid are to each other. Equal points count as one.
+    """The triangles of a solid with their neighbours. Equal points count as one.
 
     ``corners`` are the places of each triangle's corners in ``places``, ``normals`` unit vectors (zero where a
-    triangle has no area). ``outward``: 1 where such a normal leads out of the closed piece that the triangle belongs
-    to, -1 where it leads into it, 0 where the piece is open and has no inside.
+    triangle has no area). ``outward``: 1 where such a normal points out of the closed piece that the triangle
+    belongs to, -1 where it points into it, 0 where the piece is open and has no inside.
     """
 
     def __init__(self, solid):
-        self.solid = solid
-        self.places, same = solid.welded
-        self.corners = same[solid.triangles]
+        self.places, _ = solid.welded
+        self.corners = solid.corners
         a, b, c = (self.places[self.corners[:, corner]] for corner in range(3))
         across = numpy.cross(b - a, c - a)
         doubled = numpy.linalg.norm(across, axis=1)
         self.areas = doubled / 2
         self.normals = across / numpy.maximum(doubled, _TINY)[:, None]
-        self._incident = self._angles = self._pairs = self._outward = None
 
-    @property
+    @functools.cached_property
     def outward(self):
         """See the class."""
-        if self._outward is None:
-            pieces, volumes, _ = self.volumes()
-            self._outward = numpy.sign(volumes)[pieces]
-        return self._outward
+        pieces, volumes, _ = self.volumes()
+        return numpy.sign(volumes)[pieces]
 
     def volumes(self):
         """(the piece of each triangle; by piece: signed volume, its first moments); 0 for a piece that is open."""
         count = len(self.places)
-        piece_of = connected_labels(count, self.corners[:, :2], self.corners[:, 1:])
+        piece_of = piece_labels(count, self.corners)
         pieces = piece_of[self.corners[:, 0]]
         keys, counts = numpy.unique(self._sides()[0], return_counts=True)
         is_open = numpy.zeros(count, bool)
@@ -61,22 +59,21 @@ class SurfaceTopology:
         triangles = numpy.tile(numpy.arange(len(self.corners)), 3)
         return (pairs[:, 0].astype(numpy.int64) * len(self.places) + pairs[:, 1])[real], triangles[real]
 
+    @functools.cached_property
     def neighbours(self):
         """Pairs of triangles with an edge in common: two rows of their numbers."""
-        if self._pairs is None:
-            keys, triangles = self._sides()
-            order = numpy.argsort(keys, kind="stable")
-            alike = keys[order][1:] == keys[order][:-1]
-            self._pairs = triangles[order][:-1][alike], triangles[order][1:][alike]
-        return self._pairs
+        keys, triangles = self._sides()
+        order = numpy.argsort(keys, kind="stable")
+        alike = keys[order][1:] == keys[order][:-1]
+        return triangles[order][:-1][alike], triangles[order][1:][alike]
 
     def face(self, triangle, normal, within):
         """Mask of the triangles of the face that a triangle belongs to, as seen along ``normal``.
 
-        Those that it runs on to without a sharp edge, and those in one plane with it, up to ``within`` beside it.
+        Those connected to it without a sharp edge, and those in its plane, with a tolerance of ``within``.
         """
         ahead = self.normals @ self.normals[triangle]
-        a, b = self.neighbours()
+        a, b = self.neighbours
         smooth = numpy.einsum("ij,ij->i", self.normals[a], self.normals[b]) > 0.866
         patch = connected_labels(len(self.corners), a[smooth], b[smooth])
         flat = numpy.abs(
@@ -87,13 +84,7 @@ class SurfaceTopology:
         return ((patch == patch[triangle]) | level) & (numpy.abs(self.normals @ normal) > 0.3)
 
     def smooth(self, triangles, places):
-        """Normals of the curved surface at places on triangles, where their edges are no sharp ones."""
-        if self._incident is None:
-            flat = self.corners.reshape(-1)
-            order = numpy.argsort(flat, kind="stable")
-            starts = numpy.searchsorted(flat[order], numpy.arange(len(self.places) + 1))
-            self._incident = order, starts
-            self._angles = self._corner_angles().reshape(-1)
+        """Smoothed normals at places on triangles; sharp edges stay sharp."""
         order, starts = self._incident
         vertices = self.corners[triangles].reshape(-1)
         counts = starts[vertices + 1] - starts[vertices]
@@ -101,20 +92,28 @@ class SurfaceTopology:
         within = numpy.arange(len(rows)) - numpy.repeat(numpy.cumsum(counts) - counts, counts)
         slots = order[starts[vertices][rows] + within]
         others = self.normals[slots // 3]
-        weights = self._angles[slots] * (
+        weights = self._corner_angles[slots] * (
             numpy.einsum("ij,ij->i", others, self.normals[triangles][rows // 3]) > _SMOOTH
         )
         sums = [numpy.bincount(rows, weights * axis, len(vertices)) for axis in others.T]
-        normals = _unit(numpy.stack(sums, axis=1)).reshape(-1, 3, 3)
-        return _unit(numpy.einsum("ij,ijk->ik", self._shares(triangles, places), normals))
+        normals = unit(numpy.stack(sums, axis=1)).reshape(-1, 3, 3)
+        return unit(numpy.einsum("ij,ijk->ik", self._shares(triangles, places), normals))
 
+    @functools.cached_property
+    def _incident(self):
+        """(slots of ``corners`` ordered by place, for each place where its slots start)."""
+        flat = self.corners.reshape(-1)
+        order = numpy.argsort(flat, kind="stable")
+        return order, numpy.searchsorted(flat[order], numpy.arange(len(self.places) + 1))
+
+    @functools.cached_property
     def _corner_angles(self):
         angles = []
         for corner in range(3):
             here = self.places[self.corners[:, corner]]
-            edge, other = (_unit(self.places[self.corners[:, (corner + step) % 3]] - here) for step in (1, 2))
+            edge, other = (unit(self.places[self.corners[:, (corner + step) % 3]] - here) for step in (1, 2))
             angles.append(numpy.arccos(numpy.clip(numpy.einsum("ij,ij->i", edge, other), -1, 1)))
-        return numpy.stack(angles, axis=1)
+        return numpy.stack(angles, axis=1).reshape(-1)
 
     def _shares(self, triangles, places):
         """Barycentric coordinates of places on triangles."""
@@ -127,14 +126,14 @@ class SurfaceTopology:
 
 
 def topology_of(solid):
-    """The shape of a solid, made once."""
+    """The topology of a solid; cached."""
     if solid.topology is None:
         solid.topology = SurfaceTopology(solid)
     return solid.topology
 
 
 def connected_labels(count, a, b):
-    """Numbers 0 … ``count`` - 1 with those that pairs (a, b) join labelled alike: by the least of them."""
+    """Labels for numbers 0 … ``count`` - 1: those that pairs (a, b) connect have the same, the least of them."""
     a, b = numpy.asarray(a).reshape(-1), numpy.asarray(b).reshape(-1)
     label = numpy.arange(count)
     while True:
@@ -149,12 +148,18 @@ def connected_labels(count, a, b):
             return label
 
 
-def _unit(vectors):
+def unit(vectors):
+    """Vectors (n × 3) of length 1; zero vectors stay zero."""
     return vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=1), _TINY)[:, None]
 
 
+def piece_labels(count, corners):
+    """Labels for ``count`` places: those that triangles (n × 3, numbers of places) connect have the same."""
+    return connected_labels(count, corners[:, :2], corners[:, 1:])
+
+
 def some(count, most):
-    """Numbers below ``count``: all, or ``most`` of them. Evenly spread, but in no step that rows of a mesh may have."""
+    """Numbers below ``count``: all, or about ``most``, spread evenly but not at a regular step, as meshes have rows."""
     if count <= most:
         return numpy.arange(count)
     return numpy.unique((numpy.arange(most) * 0.6180339887498949 % 1 * count).astype(int))

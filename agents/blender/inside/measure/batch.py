@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers batches of measurements, frame by frame (see agents.protocol.measures.measure)."""
+"""Takes batches of measurements, frame by frame (see agents.protocol.measures.measure)."""
 
 import itertools
 import math
@@ -13,36 +13,36 @@ from ..geometry.solids import NoSurface, NotNumbers, Solids, Unmeasurable
 from ..geometry.topology import connected_labels
 from .camera_visibility import view
 from .containment import embedding, enclosure
-from .frame_loop import FOLLOWED, Followers, telling
+from .frame_loop import FOLLOWED, Followers, unmeasured_as_answer
 from .openings import opening
 from .relative_position import axes_of, beside, over
 from .support import depth, flush, support
 
-_NOT_REACHED = "it was not reached"
+_NOT_REACHED = "the measurement stopped before its frame"
 
 
 def measure(arguments, report):
     """[{"value": …} or {"unmeasured": why}] for ``requests``, in their order.
 
-    Frames are visited in order, each once for all that is measured there; where a simulation is not baked, they are
-    stepped through from its start. The scene is left at the frame that it stood at.
+    Frames are visited in order, each once for all its requests; if a simulation is not baked, every frame from its
+    start is visited. The scene ends at the frame where it was.
     """
     requests = arguments["requests"]
     answers = [{"unmeasured": _NOT_REACHED} for _ in requests]
-    following, by_frame = Followers(requests, answers), {}
+    followers, by_frame = Followers(requests, answers), {}
     for place, request in enumerate(requests):
         if request["kind"] not in FOLLOWED:
             by_frame.setdefault(request.get("frame"), []).append(place)
-    # The frame that the scene stands at is visited too: what was moved since need not be what is keyed there.
+    # What is measured at the current frame, before changing it: objects may have been moved off their keys.
     _answer(requests, by_frame.pop(None, []), answers)
     try:
-        for frame in following.through(by_frame, report):
+        for frame in followers.through(by_frame, report):
             _answer(requests, by_frame.get(frame, []), answers)
     except Unmeasurable as reason:
         for answer in answers:
             if answer.get("unmeasured") == _NOT_REACHED:
                 answer["unmeasured"] = str(reason)
-    following.tell()
+    followers.finish()
     return answers
 
 
@@ -52,14 +52,14 @@ def _answer(requests, places, answers):
     solids = Solids()
     for place in places:
         request = requests[place]
-        with telling(answers, place):
+        with unmeasured_as_answer(answers, place):
             if request["kind"] not in MEASURED:
-                raise Unmeasurable(f"nobody measures {request['kind']!r} here")
+                raise Unmeasurable(f"there is no measurement {request['kind']!r}")
             answers[place] = {"value": MEASURED[request["kind"]](request, solids)}
 
 
 def _gap(request, solids):
-    ours, theirs = ([*_shown(solids, request[side])] for side in "ab")
+    ours, theirs = ([*_solids_with_surface(solids, request[side])] for side in "ab")
     best = None
     for a, b in sorted(itertools.product(ours, theirs), key=lambda pair: apart(*pair)):
         best = gap(a, b, best[0] if best else math.inf, request["enough"]) or best
@@ -69,7 +69,7 @@ def _gap(request, solids):
     return {"distance": distance, "here": tuple(here), "there": tuple(there)}
 
 
-def _shown(solids, names):
+def _solids_with_surface(solids, names):
     """The solids of some names; of several, those that have a surface at this frame. Raises Unmeasurable."""
     with_surface, missing = [], None
     for name in names:
@@ -78,7 +78,7 @@ def _shown(solids, names):
         except NoSurface as reason:
             missing = reason
     if not with_surface:
-        raise missing or Unmeasurable("nothing was named")
+        raise missing or Unmeasurable("no object was named")
     return with_surface
 
 
@@ -111,7 +111,7 @@ def _crossings(request, solids):
 
 
 def _way_out(a, b):
-    """The shortest move of a solid along an axis after which its box is beside another one's."""
+    """The shortest move of ``a`` along an axis that takes its box out of that of ``b``."""
     down, up = a.high - b.low, b.high - a.low
     axis = int(numpy.minimum(down, up).argmin())
     way = [0.0, 0.0, 0.0]
@@ -120,7 +120,7 @@ def _way_out(a, b):
 
 
 def _near(solids, within=0.0):
-    """Pairs whose boxes overlap, or come so near."""
+    """Pairs of solids whose boxes overlap, or are at most ``within`` apart."""
     solids = sorted(solids, key=lambda solid: solid.low[0])
     if len(solids) < 2:
         return
@@ -159,13 +159,13 @@ def _poses(request, _solids):
             raise Unmeasurable(f"there is no object {name!r} in the scene")
         numbers = [value for row in obj.evaluated_get(graph).matrix_world for value in row]
         if not all(map(math.isfinite, numbers)):
-            raise Unmeasurable(f"the transform of {name!r} has values that are no numbers")
+            raise Unmeasurable(f"the transform of {name!r} has values that are not finite")
         matrices[name] = numbers
     return {"matrices": matrices}
 
 
 def _pieces(request, solids):
-    there = _shown(solids, request["names"])
+    there = _solids_with_surface(solids, request["names"])
     above = {solid.name: solid.name for solid in there}
 
     def top(name):
@@ -190,11 +190,8 @@ def _surface(request, solids):
     try:
         solid = solids[request["name"]]
     except NotNumbers:
-        return dict.fromkeys(("vertices", "polygons", "open_edges", "parts"), 0) | {
-            "finite": False,
-            "volume": 0,
-            "area": 0,
-        }
+        counts = ("vertices", "polygons", "open_edges", "parts", "volume", "area")
+        return dict.fromkeys(counts, 0) | {"finite": False}
     corners = solid.points[solid.triangles]
     normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     edges, counts = solid.edges
@@ -210,7 +207,7 @@ def _surface(request, solids):
     }
 
 
-# Kind of request → what measures it at the current frame.
+# Kind of request → function that measures it at the current frame.
 MEASURED = {
     "gap": _gap,
     "crossings": _crossings,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures what the scene's camera sees of something (see agents.protocol.measures.motion)."""
+"""Measures what the scene's camera sees of an object (see agents.protocol.measures.motion)."""
 
 import bpy
 import numpy
@@ -12,14 +12,14 @@ from ..motion.mesh_tracker import spread
 from .movement import actor_of
 
 _SAMPLES = 1000
-_MOST = 20_000  # places that an outline is drawn around
-_THROUGH = 64  # things that a ray may go through before it counts as stopped
-_CLEAR = 0.5  # from which transmission, or below which alpha, one can look through a surface
+_MOST_OUTLINE = 20_000  # places that an outline is drawn around
+_MOST_PASSED = 64  # transparent surfaces that a ray passes at most
+_CLEAR = 0.5  # a surface is see-through from this transmission up, or below this alpha
 _SEEN_THROUGH = {"BSDF_GLASS", "BSDF_TRANSPARENT", "BSDF_REFRACTION"}
 
 
 def view(request, solids):
-    """How much of something is in the picture, how large, and hidden by what."""
+    """The share of objects inside the picture, how much of the picture they cover, and what hides them."""
     scene, graph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
     camera = scene.camera
     if camera is None:
@@ -42,7 +42,7 @@ def view(request, solids):
 
 
 def _places(names, solids, graph):
-    """(samples of its surfaces, particles and fluids; the places that its outline goes around); None for nothing."""
+    """(points on surfaces, particles and fluids; points for the outline); (None, None) if nothing exists."""
     samples, outline, surfaces = [], [], []
     for name in names:
         actor = actor_of((name,))
@@ -60,7 +60,7 @@ def _places(names, solids, graph):
         if not len(samples[-1]):
             raise Unmeasurable("its faces have no area")
     samples, outline = numpy.concatenate(samples), numpy.concatenate(outline)
-    return (samples, outline[:: -(-len(outline) // _MOST)]) if len(samples) else (None, None)
+    return (samples, outline[:: -(-len(outline) // _MOST_OUTLINE)]) if len(samples) else (None, None)
 
 
 def _is_shown(emitter):
@@ -81,15 +81,15 @@ def _projection(scene, camera, graph):
 
 
 def _projected(projection, places):
-    """Places in the picture, homogeneous (n × 4): it reaches from −w to w."""
+    """Points in homogeneous picture coordinates (n × 4): the picture reaches from −w to w."""
     return places @ projection[:, :3].T + projection[:, 3]
 
 
-# How large
+# Size in the picture
 
 
 def _cover(flat):
-    """The share of the picture that the outline of some projected places fills."""
+    """The share of the picture inside the convex outline of projected points."""
     ahead = flat[flat[:, 3] > 1e-6]
     if len(ahead) < 3:
         return 0.0
@@ -119,7 +119,7 @@ def _left(a, b, c):
 
 
 def _clipped(outline):
-    """What of a convex outline is in the picture."""
+    """The part of a convex outline that is inside the picture."""
     for axis, side in ((0, -1), (0, 1), (1, -1), (1, 1)):
         kept = []
         for a, b in zip(outline, [*outline[1:], *outline[:1]], strict=True):
@@ -133,11 +133,11 @@ def _clipped(outline):
     return outline
 
 
-# What hides it
+# Occlusion
 
 
 def _hidden(scene, graph, camera, samples, subject):
-    """The share of samples that something else is in front of, and the names of that, most of all first."""
+    """The share of samples that other objects hide, and the names of up to three of these, the worst first."""
     matrix = camera.matrix_world.normalized()
     eye, towards = matrix.translation, -matrix.col[2].to_3d()
     count, by = 0, {}
@@ -152,7 +152,7 @@ def _hidden(scene, graph, camera, samples, subject):
 
 
 class _Rays:
-    """Looks along rays for what stops them: what is rendered, opaque, and not the subject itself."""
+    """Rays from the camera, which stop at what is rendered, opaque, and not the subject itself."""
 
     def __init__(self, scene, graph, subject):
         self._scene, self._graph = scene, graph
@@ -162,10 +162,10 @@ class _Rays:
         self._clear = {}
 
     def stopped_by(self, start, place):
-        """The name of the first thing between two places that hides the second; "" for nothing."""
+        """The name of the first object between two points that hides the second; "" for none."""
         way = place - start
         step = max(way.length * 1e-5, 1e-5)
-        for _ in range(_THROUGH):
+        for _ in range(_MOST_PASSED):
             left = (place - start).length - step
             if left <= 0:
                 break
@@ -181,7 +181,7 @@ class _Rays:
         obj = obj.original
         if obj.name in self._names or self._is_clear(obj):
             return False
-        # An instance goes by the name of what it is one of: it may be a part of the subject.
+        # An instance has the name of its original, so it may be a part of the subject.
         return not any(solid.tree.find_nearest(at, 2 * step)[0] is not None for solid in self._own)
 
     def _is_clear(self, obj):
@@ -209,7 +209,7 @@ def _is_gas(obj):
 
 
 def _is_see_through(material):
-    """Whether one can look through a material: glass, or hardly any alpha, or but a volume."""
+    """Whether a material is see-through: glass, low alpha, or only a volume."""
     tree = material.node_tree if material is not None and getattr(material, "use_nodes", True) else None
     if tree is None:
         return False
@@ -223,7 +223,7 @@ def _is_see_through(material):
 
 
 def _shaders(socket, seen):
-    """The nodes of surfaces that lead to a socket."""
+    """The shader nodes that lead to a socket."""
     nodes = []
     for link in socket.links:
         node = link.from_node

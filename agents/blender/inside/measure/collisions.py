@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Follows what moving things touch, and what they go through (see agents.protocol.measures.motion). Metres."""
+"""Follows what moving objects touch and pass through (see agents.protocol.measures.motion). Metres."""
 
 import numpy
 from mathutils import Vector
@@ -7,14 +7,14 @@ from mathutils import Vector
 from ..geometry.solids import Unmeasurable
 from ..motion.contacts import between
 
-_PASSED = 0.25  # share of a thing's samples that must have been on both sides for it to have gone through
-_TESTED = 16  # of the places that seem to be deepest inside, which are looked at closely
+_PASSED = 0.25  # share of an object's samples that must change sides for it to count as having passed through
+_TESTED = 16  # of the points that seem deepest inside, how many are tested exactly
 _STILL = 1e-9
-_UPRIGHT = 0.9  # least share of a way from a surface that is along its normal
+_UPRIGHT = 0.9  # least cosine between the way from a surface and its normal
 
 
 class TouchFollower:
-    """When things touch: the frames at which they are near enough, and those on the way to which they met."""
+    """The frames at which objects touch, or will have touched on the way from the frame before."""
 
     def __init__(self, request):
         self.start, self.end = request["start"], request["end"]
@@ -24,7 +24,7 @@ class TouchFollower:
         self._looked_at = set()
 
     def look(self, frame, graph, tracker):
-        """Takes in a frame."""
+        """Measures a frame."""
         del graph
         if self._request["once"] and self._frames:
             return
@@ -60,14 +60,14 @@ class TouchFollower:
             self._frames.add(frame + 1)
 
     def result(self):
-        """As data."""
+        """The result as data."""
         if not self._looked_at:
-            raise Unmeasurable("there are no polygons that could touch, or too many")
+            raise Unmeasurable("there are no polygons that could touch, or too many of them")
         return {"frames": sorted(frame for frame in self._frames if frame <= self.end)}
 
 
 def _will_meet(own, other, places, last, reach):
-    """Whether two things meet within a frame if both go on as they did in the last one."""
+    """Whether two objects meet within the next frame if both go on moving as in the last one."""
     ways = (
         (other, other.seen(last, before=True), other.seen(places)),
         (
@@ -80,9 +80,9 @@ def _will_meet(own, other, places, last, reach):
 
 
 def _crossed(body, starts, ends, *, reach=0.0, least=_STILL):
-    """Which ways from starts to ends in a body's own space meet its surface, and where: [(number, place), …].
+    """Which lines from starts to ends in a body's own space meet its surface, and where: [(number, place), …].
 
-    They go on for ``reach``; those that are shorter than ``least`` are passed over.
+    Each is extended by ``reach``; those shorter than ``least`` are ignored.
     """
     low, high = body.solid.low - reach, body.solid.high + reach
     near = ((numpy.minimum(starts, ends) <= high) & (numpy.maximum(starts, ends) >= low)).all(axis=1)
@@ -97,7 +97,7 @@ def _crossed(body, starts, ends, *, reach=0.0, least=_STILL):
 
 
 class PassageFollower:
-    """How deep things get into colliders, or through them within a frame."""
+    """How deep objects get into colliders, or whether they pass through within a frame."""
 
     def __init__(self, request):
         self.start, self.end = request["start"], request["end"]
@@ -107,7 +107,7 @@ class PassageFollower:
         self._result = {"depth": 0.0, "through": False, "frame": None, "at": None}
 
     def look(self, frame, graph, tracker):
-        """Takes in a frame."""
+        """Measures a frame."""
         del graph
         for name in self._request["a"]:
             own = tracker.body(name)
@@ -136,7 +136,7 @@ class PassageFollower:
         self._sweep(frame, pair, other, (before, now))
 
     def _sweep(self, frame, pair, other, ways):
-        """Counts the samples that went from one side to the other since the frame before."""
+        """Counts the samples that changed sides since the frame before."""
         before, now = ways
         passed = self._passed.setdefault(pair, set())
         behind = []
@@ -149,7 +149,7 @@ class PassageFollower:
             passed.clear()
 
     def _is_through(self, solid, start, end, place):
-        """Whether a way that meets a solid at a place ends behind it, and does not just cut one of its corners."""
+        """Whether a line that meets a solid ends behind it, rather than only cutting a corner."""
         beyond = self._request["beyond"]
         if solid.nearest(end)[3] <= beyond:
             return False
@@ -168,14 +168,14 @@ class PassageFollower:
             self._result.update(depth=depth, through=through, frame=frame, at=at)
 
     def result(self):
-        """As data."""
+        """The result as data."""
         return self._result
 
 
 def _reaches(solid, lows, highs, beyond):
-    """Whether what is between lows and highs may be so deep in a solid: deeper than that in its box.
+    """Whether points between lows and highs may be ``beyond`` deep in a solid, judging by its box.
 
-    Of a flat one, so far on both sides.
+    Of a flat one: that far on both sides.
     """
     low, high = lows.min(axis=0), highs.max(axis=0)
     flat = (solid.high - solid.low) <= 2 * beyond
@@ -185,9 +185,9 @@ def _reaches(solid, lows, highs, beyond):
 
 
 def _is_clear(solid, before, now, beyond):
-    """Whether a thing's middle keeps so far from a solid that nothing of the thing, nor its way, gets deeper into it.
+    """Whether an object stays so far from a solid that no point of it, nor its path, can be ``beyond`` deep in it.
 
-    A ball that rolls needs no closer look.
+    For a rolling ball, say, this saves the exact test.
     """
     middles = before.mean(axis=0), now.mean(axis=0)
     reach = max(
@@ -204,7 +204,7 @@ def _is_clear(solid, before, now, beyond):
 def _depth(body, places, beyond):
     """The deepest of some places (own space) in a body, if deeper than ``beyond``: (depth, place), or None.
 
-    An open one has no inside: it is how far the places reach on that side of it where this is less.
+    For an open one, which has no inside, the depth is how far the places reach on its shallower side.
     """
     solid = body.solid
     if not solid.closed:

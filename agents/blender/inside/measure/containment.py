@@ -8,13 +8,13 @@ from mathutils import Vector
 
 from ..geometry.contact_points import corners_and_edges
 from ..geometry.solids import Unmeasurable
-from ..geometry.topology import some, topology_of
+from ..geometry.topology import some, topology_of, unit
 
 _SAMPLES = 256
 _PAIRS = 64
-_SURFACE = 1500  # places of a cage's bars
-_SEEN_THROUGH = 0.6  # a wall is perforated if less of what it is in front of is hidden by it
-_SUNK = 5000  # places from which it is looked for the way out
+_BAR_SAMPLES = 1500  # points on a cage's bars
+_SEEN_THROUGH = 0.6  # a wall counts as perforated if it hides a smaller share than this
+_SUNK = 5000  # points from which the way out is measured
 _WAYS = 12
 _STEEP = 0.3
 _STEP = 1e-5
@@ -35,12 +35,12 @@ _RAYS_AROUND = [Vector(way) for way in _AROUND]
 
 
 def enclosure(request, solids):
-    """Shares of the samples of a content that are in a container's cavity, and in its walls.
+    """The shares of a content's samples that are in a container's cavity, and in its walls.
 
-    A place is in the cavity if at least half of all directions lead to the container. Below the plane of a flat rim
-    that is so everywhere, above it nowhere: an open container is thereby closed at its rim. Where a closed container
-    holds a place in its material, its winding number tells; a container that is closed all around and has no hollow
-    (a tank that is one box) holds its content in that.
+    A point is in the cavity if at least half of all directions from it hit the container. That is so everywhere below
+    the plane of a flat rim and nowhere above it, which closes an open container at its rim. Whether a point is in the
+    material of a closed container follows from its winding number; a closed container without a hollow (a tank that is
+    a plain box) holds its content in its volume.
     """
     content, container = solids.joined(request["content"]), solids.joined(request["container"])
     places, normals = _samples(content, _SAMPLES)
@@ -48,7 +48,7 @@ def enclosure(request, solids):
     cavity = _Cavity(
         container, [solids[name] for name in request["container"]], max(_STEP, request["noise"] - step)
     )
-    # Of what lies at a wall, the places a little further in are looked at; a sheet has them on either side.
+    # Samples are moved inwards a little, so that contact with a wall does not count; for a sheet, to either side.
     sides = (-1,) if content.closed else (-1, 1)
     readings = [cavity.look(places + side * step * normals) for side in sides]
     inside = max(
@@ -62,7 +62,7 @@ def enclosure(request, solids):
 
 
 class _Cavity:
-    """What a container leaves free: in its hollow, within its bars, or, where it has neither, in its volume."""
+    """The space in a container: its hollow, within its bars, or, if it has neither, its volume."""
 
     def __init__(self, whole, parts, noise):
         self._whole, self._noise = whole, noise
@@ -70,11 +70,11 @@ class _Cavity:
         self._bars = None
 
     def in_wall(self, places):
-        """Which places are in its material, deeper than noise."""
+        """Which points are in its material, deeper than noise."""
         return self._depths(places) > self._noise
 
     def look(self, places):
-        """Which places are in it, if it is a volume; if it is a vessel; if it is a cage."""
+        """Which points are in it, taken as a volume, as a vessel, and as a cage."""
         depths = self._depths(places)
         free = _within_reach(self._whole, places, self._noise) & (depths <= self._noise)
         vessel = free.copy()
@@ -95,7 +95,7 @@ class _Cavity:
         return depth
 
     def _is_enclosed(self, place):
-        """Whether at least half of all directions lead to it."""
+        """Whether at least half of all directions hit the container."""
         hit = miss = 0
         cast, start = self._whole.tree.ray_cast, Vector(place)
         for way in _RAYS_AROUND:
@@ -108,23 +108,23 @@ class _Cavity:
         return hit >= _PAIRS
 
     def _is_perforated(self, place):
-        """Whether one sees out between parts of it that are all around: a basket, a cage."""
+        """Whether it surrounds a point with gaps to see through: a basket, a cage."""
         start = Vector(place)
         hit = sum(self._whole.tree.ray_cast(start, way)[0] is not None for way in _RAYS_AROUND)
         return hit < _SEEN_THROUGH * self._seen(place)
 
     def _seen(self, place):
-        """In how many of the directions around a place there is something of its surface nearby."""
+        """In how many directions around a point there is a part of its surface."""
         if self._bars is None:
-            self._bars = _samples(self._whole, _SURFACE)[0].astype(numpy.float32)
+            self._bars = _samples(self._whole, _BAR_SAMPLES)[0].astype(numpy.float32)
         away = self._bars - place.astype(numpy.float32)
-        return len(numpy.unique((_unit(away) @ _COARSE.T).argmax(axis=1)))
+        return len(numpy.unique((unit(away) @ _COARSE.T).argmax(axis=1)))
 
 
 def _samples(solid, count):
-    """(places spread evenly over a surface, normals out of it there)."""
+    """(points spread evenly over a surface, outward normals there)."""
     shape = topology_of(solid)
-    # Whatever order its triangles and their corners are in, the same surface has the same samples.
+    # The same surface has the same samples, whatever the order of its triangles and corners.
     corners = numpy.sort(shape.corners, axis=1)
     order = numpy.lexsort(shape.places[corners].mean(axis=1).T)
     whole = numpy.cumsum(shape.areas[order])
@@ -142,7 +142,7 @@ def _samples(solid, count):
 
 
 def _within_reach(solid, places, slack):
-    """Which places are no further out than the solid, seen from anywhere around it."""
+    """Which points are inside the convex hull of a solid, roughly."""
     shape = topology_of(solid)
     largest = numpy.argsort(shape.areas)[-_PAIRS:]
     ways = numpy.concatenate(
@@ -155,7 +155,7 @@ def _within_reach(solid, places, slack):
 
 
 def embedding(request, solids):
-    """How far a part would have to be moved to be out of its host, the shortest way."""
+    """How far a part must move to be out of its host, in the best direction."""
     part, host = solids.joined(request["part"]), solids.joined(request["host"])
     pairs = host.tree.overlap(part.tree)
     shape = topology_of(host)
@@ -189,15 +189,11 @@ def _most_common(normals):
 
 
 def _up(normals):
-    """Out of a sheet: upwards, if it lies; to either side, if it stands."""
+    """Directions out of a sheet: up if it is level, to either side if it is upright."""
     level = numpy.where(normals[:, 2:] < 0, -normals, normals)
     way = level.mean(axis=0)
     way = way / max(float(numpy.linalg.norm(way)), 1e-9)
     return [way] if way[2] > _STEEP else [way, -way]
-
-
-def _unit(vectors):
-    return vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=1), 1e-12)[:, None]
 
 
 def _way_out(host, place, way):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Goes through the frames of a batch of measurements, each once, and has what follows something look at them.
+"""Visits the frames of a batch of measurements, each once, for the followers: measurements over many frames.
 
 A follower is made from a request. ``look(frame, graph, tracker)`` is called at every frame from its ``start`` to its
-``end``, in order, and ``result()`` at last; all of it may raise Unmeasurable.
+``end``, in order, then ``result()``; each may raise Unmeasurable.
 """
 
 import contextlib
@@ -18,9 +18,9 @@ from .collisions import PassageFollower, TouchFollower
 from .movement import PathFollower, TogetherFollower
 
 MOST_FRAMES = 5000
-MOST_LOOKS = 100_000  # frames of all followers
+MOST_LOOKS = 100_000  # calls of ``look`` for all followers
 
-# Kind of request → what follows something.
+# Kind of request → its follower.
 FOLLOWED = {
     "path": PathFollower,
     "together": TogetherFollower,
@@ -30,8 +30,8 @@ FOLLOWED = {
 
 
 @contextlib.contextmanager
-def telling(answers, place):
-    """Has what cannot be measured told as the answer."""
+def unmeasured_as_answer(answers, place):
+    """Makes the reason the answer if something cannot be measured."""
     try:
         yield
     except Unmeasurable as reason:
@@ -41,20 +41,20 @@ def telling(answers, place):
 
 
 class Followers:
-    """The followers of a batch: ``places`` of their requests among the ``answers``."""
+    """The followers of a batch, by the ``places`` of their requests among the ``answers``."""
 
     def __init__(self, requests, answers):
         self._answers = answers
         self._followers = {}
         for place, request in enumerate(requests):
             if request["kind"] in FOLLOWED:
-                with telling(answers, place):
+                with unmeasured_as_answer(answers, place):
                     self._followers[place] = FOLLOWED[request["kind"]](request)
 
     def through(self, frames, report):
-        """Takes the scene to each of the frames, and of those that are followed, and back. Yields each.
+        """Takes the scene to each of ``frames`` and of the followers' frames, yields each, and goes back at the end.
 
-        Where a simulation is not baked, frames are stepped through from its start. Raises Unmeasurable for too many.
+        If a simulation is not baked, every frame from its start is visited. Raises Unmeasurable for too many.
         """
         spans = [range(follower.start, follower.end + 1) for follower in self._followers.values()]
         frames = sorted({*frames, *itertools.chain(*spans)})
@@ -68,7 +68,7 @@ class Followers:
                 f"{count} frames would have to be visited{'; bake first' * bool(stepper.stepped_for)}"
             )
         if stepper.stepped_for:
-            renew(bpy.context.scene)  # what a jump to some frame left behind would be taken for a result
+            renew(bpy.context.scene)  # else Blender would use the state after a jump as a result
         done, tracker = itertools.count(), MeshTracker()
         with stepper:
             for frame, graph in stepper.through(frames, lambda at: report(next(done), count, f"frame {at}")):
@@ -77,12 +77,12 @@ class Followers:
                 for place, follower in list(self._followers.items()):
                     if follower.start <= frame <= follower.end:
                         self._followers.pop(place)
-                        with telling(self._answers, place):
+                        with unmeasured_as_answer(self._answers, place):
                             follower.look(frame, graph, tracker)
                             self._followers[place] = follower
 
-    def tell(self):
-        """Puts down what was found."""
+    def finish(self):
+        """Stores the results as answers."""
         for place, follower in self._followers.items():
-            with telling(self._answers, place):
+            with unmeasured_as_answer(self._answers, place):
                 self._answers[place] = {"value": follower.result()}

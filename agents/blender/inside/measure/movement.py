@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Follows how things move (see agents.protocol.measures.motion, and following). Metres, radians."""
+"""Follows how objects move (see agents.protocol.measures.motion, and following). Metres, radians."""
 
 import itertools
 import math
@@ -13,11 +13,11 @@ from ..motion.actors import Actor
 from ..motion.contacts import between
 from ..motion.trajectories import Track, rotated
 
-_POINTS = 1000  # of a thing that are followed
-_NEAREST = 0.1  # share of its points by which a thing is held to another one
+_POINTS = 1000  # of an actor that are followed
+_NEAREST = 0.1  # share of an actor's points, those nearest to the other one, that are compared
 _FEWEST = 12
-_MOST_PAIRS = 400  # of meshes whose distance is measured
-_BESIDE = 0.005  # by how much others may be farther than the nearest ones
+_MOST_PAIRS = 400  # of meshes whose distances are measured
+_BESIDE = 0.005  # meshes that are farther than the nearest by no more than this count as well
 _FAR = 1e4
 
 
@@ -30,19 +30,19 @@ def actor_of(names):
             raise Unmeasurable(f"there is no object {name!r} in the view layer")
         objects.append(obj)
     if not objects:
-        raise Unmeasurable("nothing was named")
+        raise Unmeasurable("no object was named")
     return Actor(", ".join(names), "objects", objects, _POINTS)
 
 
 def check_evaluated(actor, graph):
-    """Raises Unmeasurable for what is switched off in the viewport: nothing moves it there."""
+    """Raises Unmeasurable for an object that is disabled in the viewport: nothing moves it there."""
     for obj in actor.objects:
         if not obj.evaluated_get(graph).is_evaluated:
-            raise Unmeasurable(f"{obj.name!r} is switched off in the viewport, so nothing moves it")
+            raise Unmeasurable(f"{obj.name!r} is disabled in the viewport, so nothing moves it")
 
 
 class PathFollower:
-    """Where something is at every frame."""
+    """Follows where an actor is at every frame."""
 
     def __init__(self, request):
         self.start, self.end = request["start"], request["end"]
@@ -55,7 +55,7 @@ class PathFollower:
         self._size = 0.0
 
     def look(self, frame, graph, tracker):
-        """Takes in a frame."""
+        """Measures a frame."""
         del tracker
         check_evaluated(self._actor, graph)
         state = self._actor.state_at(graph)
@@ -72,7 +72,7 @@ class PathFollower:
         return sum(places, Vector()) / len(places)
 
     def result(self):
-        """As data."""
+        """The result as data."""
         track = self._track
         speeds = [
             own if own is not None else other
@@ -96,7 +96,7 @@ def _rounded(vector):
 
 
 def _pairs(before, after):
-    """The places of the points that two states have in common; None where points cannot be followed."""
+    """The places of the points that exist in both states; None if points cannot be followed."""
     if before is None or after is None or not (before.is_followed and after.is_followed):
         return None
     if len(before.places) != len(after.places):
@@ -111,9 +111,9 @@ def _way(before, after):
 
 
 class TogetherFollower:
-    """How something keeps its place in another thing, by those meshes and points of both that are nearest at first.
+    """Follows how an actor shifts and turns against another one, by the meshes and points that are nearest at first.
 
-    What is held to a part of something that bends is held to that part.
+    So what is attached to a part of something that bends is compared with that part.
     """
 
     def __init__(self, request):
@@ -123,14 +123,14 @@ class TogetherFollower:
         self._result = {"shift": 0.0, "shift_frame": self.start, "at": None, "turn": None, "turn_frame": None}
 
     def look(self, frame, graph, tracker):
-        """Takes in a frame."""
+        """Measures a frame."""
         for actor in (self._a, self._b):
             check_evaluated(actor, graph)
         if self._first is None:
             self._a, self._b = _next_to_each_other(self._a, self._b, tracker)
         a, b = self._a.state_at(graph), self._b.state_at(graph)
         if a is None or b is None:
-            return  # there is nothing of it yet, or no more
+            return  # one does not exist yet, or no more
         if self._first is None:
             self._first = a, b, _nearest(a, b.centre), _nearest(b, a.centre)
         first_a, first_b, near_a, near_b = self._first
@@ -148,9 +148,9 @@ class TogetherFollower:
                 self._result.update(turn=turn, turn_frame=frame)
 
     def result(self):
-        """As data."""
+        """The result as data."""
         if self._first is None:
-            raise Unmeasurable("there was never anything of both")
+            raise Unmeasurable("at no frame do both exist")
         return self._result
 
 
@@ -172,7 +172,7 @@ def _next_to_each_other(a, b, tracker):
 
 
 def _nearest(state, place):
-    """Which of its points are nearest to a place: a tenth, but not fewer than a dozen.
+    """A mask of the points nearest to a place: a tenth, but at least a dozen.
 
     None for particles and fluids.
     """
@@ -192,7 +192,7 @@ def _middle(state, chosen):
 
 
 def _turned(first, now, chosen):
-    """(where the chosen points of something are in the middle, how they are turned since the first state).
+    """(the mean of the chosen points, their rotation since the first state).
 
     Particles and fluids have no rotation.
     """
@@ -202,5 +202,5 @@ def _turned(first, now, chosen):
         raise Unmeasurable("its points are not the same ones from frame to frame")
     rotation = rotated(first.places[chosen], now.places[chosen])
     if rotation is None:
-        raise Unmeasurable("its points lie on a line, so that its rotation cannot be told")
+        raise Unmeasurable("its points are on a line, so it has no measurable rotation")
     return _middle(now, chosen), Matrix.Rotation(rotation.length, 3, rotation)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures how a filler sits in an opening (see agents.protocol.measures.contact)."""
+"""Measures how well a filler fits its opening (see agents.protocol.measures.contact)."""
 
 import math
 
@@ -10,8 +10,8 @@ from ..geometry.topology import topology_of
 
 _DIRECTIONS = 96
 _COARSE = 6
-_PLANES = 7  # across the filler, in which it is looked for the rim
-_BESIDE = 0.01  # metres before and behind the filler in which a host that is a sheet may be
+_PLANES = 7  # across the filler, in which the rim is searched for
+_BESIDE = 0.01  # metres before and behind the filler in which the host may be if it is a sheet
 _STEPS = 48
 _HALVINGS = 16
 _WAYS = 8
@@ -20,9 +20,9 @@ _WAYS = 8
 def opening(request, solids):
     """See OpeningMeasure.
 
-    Through the middle of the filler, planes are laid across the way that leads through the opening. In each, rays lead
-    from the middle to the rim; where a host is a sheet, whose rim no ray can meet, it is felt for where it begins to
-    cover what is behind it. Of all planes, the one with the narrowest rim counts, direction by direction.
+    The filler is cut by planes across the axis of the opening. In each, rays go from the middle to the rim; of a host
+    that is a sheet, whose rim no ray can hit, the rim is where it begins to cover what is behind it. In each direction,
+    the plane with the narrowest gap counts.
     """
     filler, host = solids.joined(request["filler"]), solids.joined(request["host"])
     sections = [_Section(filler, host, way) for way in _ways(filler, host)]
@@ -45,12 +45,12 @@ def opening(request, solids):
 
 
 def _doubt(rim):
-    """For comparing: an opening has a rim all around, and is least wide when it is looked at straight through it."""
+    """A sort key: the axis straight through the opening has a rim all around, and the narrowest gap."""
     return -len(rim), max(((foot - place).length for place, foot in rim.values()), default=0.0)
 
 
 def _gap(place, foot, beside, way):
-    """How wide the gap at a place of the rim is, across it: in a corner not along the diagonal."""
+    """The width of the gap at a place of the rim, measured across it; in a corner, not along the diagonal."""
     away, least = foot - place, (foot - place).length
     for other in beside:
         along = (other - place) - (other - place).dot(way) * way
@@ -62,7 +62,7 @@ def _gap(place, foot, beside, way):
 
 
 def _ways(filler, host):
-    """Directions in which an opening may lead through the host: those in which most of the faces nearby look."""
+    """Directions that an opening may have: the most frequent normals of nearby faces."""
     candidates = [numpy.eye(3)[axis] for axis in range(3)]
     around = filler.diagonal / 2
     for solid in (filler, host):
@@ -88,7 +88,7 @@ def _ways(filler, host):
 
 
 class _Section:
-    """A filler and a host, looked at along the way that leads through the opening."""
+    """A filler and a host, seen along the axis of the opening."""
 
     def __init__(self, filler, host, way):
         self._filler, self._host, self.way = filler, host, Vector(way)

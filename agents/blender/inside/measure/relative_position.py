@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures where things are to each other (see agents.protocol.measures.position)."""
+"""Measures where objects are relative to each other (see agents.protocol.measures.position)."""
 
 import math
 
@@ -9,14 +9,14 @@ from mathutils import Vector
 
 from ..geometry.solids import Unmeasurable
 
-_CELLS = 40  # along each side of an outline, in the middle of which it is looked up and down
+_CELLS = 40  # along each side of a plan view, from whose centres rays go up and down
 _CORNERS = 2000
-_INSET = 0.98  # corners are drawn in by so much: at a wall they would be on either side of it
+_INSET = 0.98  # corners are moved inwards: at a wall they could be on either side of it
 _UP = Vector((0, 0, 1))
 
 
 def over(request, solids):
-    """How far something is over something else, and above it, at places that both share in plan view."""
+    """How much of ``a`` is over ``b`` in plan view, and how deep it is sunk into it there."""
     a, b = solids.joined(request["a"]), solids.joined(request["b"])
     cells = _undersides(a)
     corners = a.points[:: len(a.points) // _CORNERS + 1]
@@ -35,7 +35,7 @@ def over(request, solids):
 
 
 def _undersides(solid):
-    """The lowest place of a solid in each cell of its outline, where it has one."""
+    """The lowest point of a solid in each cell of its plan view that it covers."""
     size = solid.high - solid.low
     below = solid.low[2] - 1 - size[2]
     points = []
@@ -49,7 +49,7 @@ def _undersides(solid):
 
 
 def _top(solid, place):
-    """The height of a solid over or under a place; None where it is not there."""
+    """The highest point of a solid over or under a place; None if it is not there."""
     x, y = place[:2]
     if not (solid.low[0] <= x <= solid.high[0] and solid.low[1] <= y <= solid.high[1]):
         return None
@@ -58,7 +58,7 @@ def _top(solid, place):
 
 
 def beside(request, solids):
-    """In which direction something lies from something else, and how wide the gap between them is."""
+    """How far ``a`` is off a direction from ``b`` (degrees), and how wide the gap between them is."""
     axes = axes_of(request["of"], level=request["level"]) if request["of"] else numpy.eye(3)
     side = axes[request["axis"]] * request["way"]
     a, b = solids.joined(request["a"]).points, solids.joined(request["b"]).points
@@ -68,7 +68,7 @@ def beside(request, solids):
     middle_a, middle_b = (low_a + high_a) / 2, (low_b + high_b) / 2
     along = (middle_a - middle_b)[request["axis"]] * request["way"]
     off = numpy.maximum(0.0, numpy.maximum(middle_a - high_b, low_b - middle_a))
-    off[request["axis"]] = off[2] = 0.0  # what is left of something is so at any height
+    off[request["axis"]] = off[2] = 0.0  # left of something means left at any height
     ways = [side, *numpy.eye(3), (middle_a - middle_b) @ axes]
     for name in request["turned"]:
         ways += [*axes_of(name)]
@@ -83,7 +83,7 @@ def beside(request, solids):
 
 
 def _within(ways, side, cone):
-    """Those of some directions, or of their opposites, that are so near to a side, as unit vectors."""
+    """The directions, or their opposites, within an angle of ``side``, as unit vectors."""
     for way in ways:
         length = numpy.linalg.norm(way)
         if length > 0:
@@ -104,6 +104,6 @@ def axes_of(name, *, level=False):
         axes = numpy.array([across, numpy.cross((0, 0, 1), across), (0, 0, 1)])
     lengths = numpy.linalg.norm(axes, axis=1)
     if not (numpy.isfinite(axes).all() and (lengths > 1e-6).all()):
-        what = "left and right: its X axis stands upright" if level else "axes: it is scaled to nothing"
+        what = "left and right: its X axis is vertical" if level else "axes: its scale is zero"
         raise Unmeasurable(f"{name!r} has no {what}")
     return axes / lengths[:, None]

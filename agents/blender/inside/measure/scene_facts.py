@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The facts that rules judge by: what is in the scene at its current frame. Changes nothing."""
+"""The facts about the scene at its current frame, by which the protocol's rules judge. Changes nothing."""
 
 import math
 
@@ -13,18 +13,16 @@ from ..physics.caches import find_caches
 
 _TRANSFORMS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 _CHANNELS = {*_TRANSFORMS, *(f"delta_{channel}" for channel in _TRANSFORMS)}
-# What may be animated without moving anything; the last are custom properties.
-_LOOKS = ("hide_", "show_", "visible_", "color", "pass_index", "rigid_body.", "[")
+# Properties whose animation moves nothing; the last are custom properties.
+_WITHOUT_MOTION = ("hide_", "show_", "visible_", "color", "pass_index", "rigid_body.", "[")
 
 
 def snapshot(arguments, report):
-    """Everything that agents.protocol.facts describes. Raises Refused for what Blender cannot evaluate."""
+    """The facts, as agents.protocol.facts describes them. Raises Refused if Blender cannot evaluate the scene."""
     del arguments, report
     if circle := _circle_of(bpy.data.collections):
         names = " → ".join(map(repr, circle))
-        raise Refused(
-            f"Collections make instances of each other in a circle, {names}: break it before it is evaluated."
-        )
+        raise Refused(f"Collections instance each other in a circle, {names}: remove one of these instances.")
     try:
         from .geometry_facts import GeometryFacts
     except ImportError as error:
@@ -52,7 +50,7 @@ def snapshot(arguments, report):
 
 
 def _circle_of(collections):
-    """Names of collections that make instances of each other in a circle; Blender crashes when it evaluates those."""
+    """Names of collections that instance each other in a circle, which would crash Blender; None if there are none."""
     makes = {
         collection: {
             obj.instance_collection for obj in collection.all_objects if obj.instance_type == "COLLECTION"
@@ -91,7 +89,7 @@ def _text(value):
 
 
 def _collections(scene):
-    """All below the scene's own, each once, with the collections that hold it."""
+    """All collections below the scene's own, each once, with its parents."""
     parents = {}
     waiting = [(scene.collection, "")]
     seen = set()
@@ -118,7 +116,7 @@ def _collections(scene):
 
 
 def _holders(scene):
-    """Object → names of the collections that it is in. Asking each for its users_collection would take long."""
+    """Object → names of the collections that it is in. Reading each users_collection would be slow."""
     holders = {}
     for collection in (scene.collection, *bpy.data.collections):
         for obj in collection.objects:
@@ -196,7 +194,7 @@ def _rigid_body(obj):
     body = obj.rigid_body
     if body is None:
         return None
-    # A body that is let go in the course of the timeline is the solver's then.
+    # A body that is released during the timeline is moved by the solver from then on.
     switched = any(curve.data_path == "rigid_body.kinematic" and _varies(curve) for curve in curves_of(obj))
     return {
         "active": body.type == "ACTIVE",
@@ -218,10 +216,10 @@ def _varies(curve):
 
 
 def _keys(obj):
-    """Channel → the most keys that one of its curves has; of curves that may move it."""
+    """Channel → the largest number of keys in one of its curves; of curves that may move the object."""
     counts = {}
     for curve in _changing_curves(obj):
-        if not curve.data_path.startswith(_LOOKS):
+        if not curve.data_path.startswith(_WITHOUT_MOTION):
             channel = curve.data_path if curve.data_path in _CHANNELS else "other"
             count = max(len(curve.keyframe_points), len(curve.sampled_points))
             counts[channel] = max(counts.get(channel, 1), count)
@@ -229,7 +227,7 @@ def _keys(obj):
 
 
 def _driven(obj):
-    """Channels of its own place, rotation and size that drivers set."""
+    """Transform channels that drivers set."""
     drivers = obj.animation_data.drivers if obj.animation_data else ()
     return {driver.data_path for driver in drivers if driver.data_path in _CHANNELS}
 
@@ -258,13 +256,13 @@ def _cache(cache):
 
 
 def _world_light(world):
-    """How strongly the world shines: the brightest background of its nodes, or its plain colour."""
+    """How strongly the world emits light: its brightest background node, or its plain colour."""
     tree = world.node_tree if getattr(world, "use_nodes", True) else None
     return max(_vector(world.color)) if tree is None else _brightest(tree, set())
 
 
 def _brightest(tree, seen):
-    """The strength of the brightest node that shines, in a tree and those that it calls."""
+    """The strength of the brightest emitting node in a tree and its groups."""
     if tree is None or tree in seen:
         return 0.0
     seen.add(tree)

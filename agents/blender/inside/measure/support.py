@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures what rests on, leans on, or is in something else (see agents.protocol.measures.contact)."""
+"""Measures how objects rest on, lean on or penetrate others (see agents.protocol.measures.contact)."""
 
 import math
 
@@ -12,16 +12,16 @@ from ..geometry.penetration import crossing
 from ..geometry.solids import Unmeasurable
 from ..geometry.topology import some, topology_of
 
-_UP = 0.1  # a surface that is turned up less than that (the cosine) bears nothing
-_FLOOR = 0.9  # one that is turned up more is a floor
-_LOOKED_DOWN = 2000  # places from which it is looked down, or up
+_UP = 0.1  # cosine; a surface that faces up less than this supports nothing
+_FLOOR = 0.9  # cosine; a surface that faces up more than this is a floor
+_LOOKED_DOWN = 2000  # points from which rays go down, or up
 _SEVERAL = 6
 _EDGE = 1e-5
 _AROUND = numpy.array([(math.cos(turn * math.pi / 32), math.sin(turn * math.pi / 32)) for turn in range(64)])
 
 
 def depth(request, solids):
-    """How deep two groups of objects are in each other, taken mesh by mesh."""
+    """How deep two groups of objects penetrate each other, mesh by mesh."""
     ours, theirs = ([solids[name] for name in request[side]] for side in "ab")
     lows, highs = (numpy.array([getattr(solid, side) for solid in theirs]) for side in ("low", "high"))
     deepest = {"depth": 0.0, "at": None}
@@ -39,7 +39,7 @@ def depth(request, solids):
 
 
 def support(request, solids):
-    """What bears a child from below, and where its centre of mass is."""
+    """The contacts that support a child from below, and its centre of mass."""
     child, parents = solids.joined(request["child"]), solids.joined(request["parents"])
     contacts = contact_points(child, parents, request["within"])
     result = {"centre": centre_of_mass([solids[name] for name in request["child"]]), "bearing": []}
@@ -58,20 +58,20 @@ def support(request, solids):
 
 
 def _outline(places):
-    """Those of some places that are outermost, seen from above."""
+    """The outermost of some points, seen from above."""
     if not len(places):
         return []
     return places[numpy.unique((places[:, :2] @ _AROUND.T).argmax(axis=0))].tolist()
 
 
 def _clearance(child, parents, within):
-    """How far something is above what is below it; nothing where there is nothing."""
+    """How far a child is above its parents, and where; {} if they are not below it."""
     best = None
     for upper, lower, way in ((child, parents, -1), (parents, child, 1)):
         places = upper.points
         if len(upper.triangles) < _LOOKED_DOWN:
             places = numpy.concatenate([places, places[upper.triangles].mean(axis=1)])
-        # What is right above an edge of it is beside it.
+        # A point exactly above an edge counts as beside it.
         inside = (places[:, :2] > lower.low[:2] + _EDGE) & (places[:, :2] < lower.high[:2] - _EDGE)
         places = places[inside.all(axis=1)]
         for place in places[some(len(places), _LOOKED_DOWN)].tolist():
@@ -83,7 +83,7 @@ def _clearance(child, parents, within):
 
 
 def centre_of_mass(solids):
-    """Of the closed pieces of some solids if they have any, as if they were full; else of their surfaces."""
+    """The centre of mass of the closed pieces of some solids, taken as full; without any, of their surfaces."""
     whole, moments = 0.0, numpy.zeros(3)
     for solid in solids:
         _, volumes, parts = topology_of(solid).volumes()
@@ -95,12 +95,12 @@ def centre_of_mass(solids):
             whole += float(shape.areas.sum())
             moments += (shape.areas[:, None] * shape.places[shape.corners].mean(axis=1)).sum(axis=0)
     if whole <= 0:
-        raise Unmeasurable(f"{solids[0].name!r} has faces without an area: no centre of mass")
+        raise Unmeasurable(f"{solids[0].name!r} has faces without an area, so no centre of mass")
     return (moments / whole).tolist()
 
 
 def flush(request, solids):
-    """How a face of the child that touches the parent is turned to it, and how far it stands out over its face."""
+    """The angle between touching faces of child and parent, and how far the child's face overhangs."""
     child, parent = solids.joined(request["child"]), solids.joined(request["parent"])
     within = request["within"]
     contacts = contact_points(child, parent, within)
@@ -124,7 +124,7 @@ def flush(request, solids):
             plane = (*normal.round(2), round(float(normal @ contacts.places[at]) / max(within, 1e-6)))
             faces.setdefault(plane, (at, normal))
     over, at = min(
-        (_stands_out((child, contacts.own[at]), (parent, contacts.other[at]), normal, within), at)
+        (_overhang((child, contacts.own[at]), (parent, contacts.other[at]), normal, within), at)
         for at, normal in faces.values()
     )
     return {
@@ -135,8 +135,8 @@ def flush(request, solids):
     }
 
 
-def _stands_out(child, parent, normal, within):
-    """How far the face of one (solid, triangle) reaches beyond that of another one, seen along a normal."""
+def _overhang(child, parent, normal, within):
+    """How far the face of one (solid, triangle) extends beyond that of another, seen along a normal."""
     (ours, theirs), (own, face) = zip(
         *(
             (topology_of(solid), topology_of(solid).face(triangle, normal, within))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The things whose motion is asked for, by name, and where their evaluated geometry is at a frame."""
+"""Actors: objects and collections whose motion is followed, and where their geometry is at a frame."""
 
 import bpy
 import numpy
@@ -14,13 +14,13 @@ from ..geometry.evaluated_meshes import coordinates, transformed
 
 _EVALUATES_TO_MESH = {"CURVE", "SURFACE", "META", "FONT"}
 _EMITTING = {"EMITTER", "FLIP"}
-_THIN = 0.01  # density up to which a cell of a gas counts as empty
+_THIN = 0.01  # density up to which a cell of gas counts as empty
 
 
 class Actor:
-    """A thing that moves as one: ``name``, the ``objects`` that it is made of, and what of them is ``measured``.
+    """What moves as one: ``name``, its ``objects``, and what of them is ``measured``.
 
-    ``most``: about so many of its points are looked at, evenly among them; by default all.
+    ``most``: about how many of its points are followed, evenly chosen; None for all.
     """
 
     def __init__(self, name, kind, objects, most=None):
@@ -36,9 +36,9 @@ class Actor:
             self.measured = "origin"
 
     def state_at(self, graph):
-        """Where it is, in an evaluated dependency graph.
+        """Its state in an evaluated dependency graph.
 
-        None where there is nothing of it (no particle born yet), or where it is at places that are no numbers.
+        None if it does not exist at that frame (no particle born yet), or has coordinates that are not finite.
         """
         evaluated = [obj.evaluated_get(graph) for obj in self.objects]
         if self.measured == "particles":
@@ -71,8 +71,8 @@ class Actor:
 class ActorState:
     """An actor at one frame.
 
-    ``places`` (n × 3, metres) are those of its points, the same ones in every state that has as many; ``alive`` tells
-    which of them exist. Weighed points, as of a fluid, are not the same from frame to frame. ``centre`` is the mean,
+    ``places`` (n × 3, metres) are those of its points, the same ones in every state with as many; ``alive`` is a mask
+    of those that exist. Weighted points, as of a fluid, are not the same from frame to frame. ``centre`` is the mean,
     ``low`` and ``high`` are the corners of the box along the world's axes.
     """
 
@@ -87,7 +87,7 @@ class ActorState:
             self.low, self.high = Vector(there.min(axis=0)), Vector(there.max(axis=0))
 
     def some(self, count):
-        """About so many of its points, evenly among them."""
+        """About ``count`` of its points, evenly chosen."""
         there = self.places[self.alive]
         return [Vector(place) for place in there[:: max(1, len(there) // count)].tolist()]
 
@@ -111,21 +111,21 @@ def resolve(names, scene):
             raise Refused(f"The collection {name!r} is empty.")
         there = [obj for obj in objects if obj.name in layer.objects]
         if not there:
-            raise Refused(f"{name!r} is not in the view layer {layer.name!r}, so nothing moves it.")
+            raise Refused(f"{name!r} is not in the view layer {layer.name!r}, so it does not move.")
         actors.append(Actor(name, kind, _with_geometry(there)))
     return actors
 
 
 def _unknown(name, known):
     near = nearest(name, known, 5)
-    hint = f" Near: {', '.join(map(repr, near))}." if near else ""
+    hint = f" Nearest: {', '.join(map(repr, near))}." if near else ""
     if not near and known:
         hint = f" There are: {', '.join(map(repr, known[:12]))}{' …' if len(known) > 12 else ''}."
     return f"{name!r} is neither an object nor a collection of this scene.{hint}"
 
 
 def _with_geometry(objects):
-    """The objects that can be measured by what is seen of them; of an empty alone, what hangs on it."""
+    """The objects with visible geometry; of an Empty alone, its children's; else the root or first object."""
     visible = [obj for obj in objects if _has_surface(obj) or _particles(obj)]
     if not visible:
         layer = bpy.context.view_layer
@@ -142,7 +142,7 @@ def _has_surface(obj):
 
 
 def _particles(obj):
-    """The particle systems by which an object moves."""
+    """Numbers of the particle systems that stand for an object's motion."""
     domain = domain_of(obj)
     if domain is not None and domain.use_mesh:
         return []
@@ -150,12 +150,12 @@ def _particles(obj):
 
 
 def round_to(number, step=1e-4):
-    """A number as it is told; None stays None."""
+    """A number rounded for reports; None stays None."""
     return None if number is None else round(round(number / step) * step, 6)
 
 
 def thinned(elements, most):
-    """At most so many of some elements (None: all), evenly among them, and the same ones of as many."""
+    """At most ``most`` elements (None: all), evenly chosen; the same ones each time for the same number."""
     return elements if most is None else elements[:: -(-len(elements) // most) or 1]
 
 
@@ -196,7 +196,7 @@ def _fluid(evaluated):
 
 
 def is_empty_domain(evaluated):
-    """Whether the mesh of an evaluated object is but the box of a fluid domain."""
+    """Whether the mesh of an evaluated object is only the box of a fluid domain, without liquid."""
     return domain_of(evaluated) is not None and len(evaluated.data.vertices) == len(
         evaluated.original.data.vertices
     )
@@ -219,7 +219,7 @@ def _gas(evaluated, domain):
 
 
 def _instances(objects, graph):
-    """The corners of what objects make instances of that have no geometry of their own."""
+    """The corners of the boxes of all instances that some objects make."""
     names = {obj.name for obj in objects}
     boxes = [
         transformed(numpy.array(instance.object.bound_box), instance.matrix_world)
@@ -230,7 +230,7 @@ def _instances(objects, graph):
 
 
 def _origin(evaluated):
-    """An object without geometry: the ends of its bones, or else places on its axes, which tell how it is turned."""
+    """Points of an object without geometry: the ends of its bones, or points on its axes, which show its rotation."""
     if evaluated.pose is not None:
         ends = [end for bone in evaluated.pose.bones for end in (bone.head, bone.tail)]
         return transformed(numpy.array(ends).reshape(-1, 3), evaluated.matrix_world)

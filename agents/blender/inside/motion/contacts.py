@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What actors touch while they move: gaps between evaluated surfaces, frame by frame, and what follows from them."""
+"""What actors touch while they move, from the gaps between evaluated surfaces at each frame."""
 
 import itertools
 import math
@@ -14,16 +14,16 @@ from ..blend.protocol_tags import object_collections
 from ..geometry.evaluated_meshes import coordinates, transformed
 from .actors import is_empty_domain, round_to
 
-LARGEST = 100_000  # polygons of a surface that is looked at
-_POINTS = 200  # of a surface from which the way to another one is sought
+MOST_POLYGONS = 100_000  # of a surface that is measured
+_POINTS = 200  # of a surface, from which distances to another one are measured
 _SEEDS, _ROUNDS, _NEIGHBOURS = 4, 24, 40
-_FREE_FALLS = 3.0  # a speed that changes by more than so many times what gravity does in a frame: a blow
-_BLOW = 0.5  # m/s; a change by less is none
-_TIMES = 50  # that a contact begins anew, which are told
+_FREE_FALLS = 3.0  # a change of speed of this many times what gravity does in a frame is a blow
+_BLOW = 0.5  # m/s; a smaller change is not a blow
+_TIMES = 50  # periods of one contact that are listed
 
 
 class TrackedSurface:
-    """An object's evaluated mesh. Its tree is kept as long as the mesh stays what it is."""
+    """An object's evaluated mesh over many frames. Its BVH tree is kept as long as the mesh does not change."""
 
     def __init__(self, obj):
         self.obj = obj
@@ -34,7 +34,7 @@ class TrackedSurface:
         self._places = self._tree = self._local = None
 
     def at(self, graph):
-        """Looks at where it is in an evaluated dependency graph; at its vertices only when they are asked for."""
+        """Updates it from an evaluated dependency graph; its vertices only when they are needed."""
         evaluated = self.obj.evaluated_get(graph)
         self._now = evaluated, graph
         if self._is_rigid and self.matrix == evaluated.matrix_world:
@@ -42,7 +42,7 @@ class TrackedSurface:
         mesh = evaluated.data
         self.matrix = evaluated.matrix_world.copy()
         self.there = (
-            0 < len(mesh.polygons) <= LARGEST
+            0 < len(mesh.polygons) <= MOST_POLYGONS
             and not is_empty_domain(evaluated)
             and all(math.isfinite(part) for row in self.matrix for part in row)
         )
@@ -69,7 +69,7 @@ class TrackedSurface:
             self._step = 2 * math.dist(box[0], box[6]) / math.sqrt(len(self._local))
 
     def points(self):
-        """(places all over it, in the world; how far from one of them another place of it may be)."""
+        """(points all over it, in the world; how far any point of it is at most from one of them)."""
         self._refresh()
         return [self.matrix @ point for point in self._local], self._step * max(
             map(abs, self.matrix.to_scale())
@@ -83,14 +83,14 @@ class TrackedSurface:
         return getattr(self._tree, search)(self.matrix.inverted_safe() @ point, within / max(scale, 1e-9))
 
     def nearest(self, point, within):
-        """The place of it next to a point of the world, if that is near enough."""
+        """Its nearest place to a point of the world; None if that is farther than ``within``."""
         if not self.is_near(point, point, within):
             return None
         place = self._find("find_nearest", point, within)[0]
         return None if place is None else self.matrix @ place
 
     def corners_near(self, point, within):
-        """The vertices of its polygons that come so near to a point, in the world."""
+        """The vertices of its polygons within a distance of a point, in the world."""
         mesh = self._now[0].data
         polygons = self._find("find_nearest_range", point, within)[:_NEIGHBOURS]
         numbers = {at for _, _, polygon, _ in polygons for at in mesh.polygons[polygon].vertices}
@@ -98,7 +98,7 @@ class TrackedSurface:
 
 
 def _spread(mesh, places):
-    """Places all over a surface: its vertices, and if these are few, points on its triangles."""
+    """Points all over a surface: its vertices and, if these are few, points on its triangles."""
     yield from map(Vector, places[:: math.ceil(len(places) / _POINTS)].tolist())
     if len(places) >= _POINTS:
         return
@@ -115,7 +115,7 @@ def _spread(mesh, places):
 
 
 def _slack(obj):
-    """How far from a surface its collisions begin, in metres."""
+    """The distance from a surface at which its collisions begin, in metres."""
     slack = 0.0
     body = obj.rigid_body
     if body is not None and (body.use_margin or body.collision_shape == "MESH"):
@@ -129,7 +129,7 @@ def _slack(obj):
 
 
 class Contacts:
-    """Watches the gaps between actors and everything else that has a surface."""
+    """Measures the gaps between actors and everything else that has a surface."""
 
     def __init__(self, scene, actors):
         self._blow = max(
@@ -165,7 +165,7 @@ class Contacts:
         return self._surfaces.setdefault(obj.name, TrackedSurface(obj))
 
     def look(self, frame, graph, tracks):
-        """Measures the gaps at a frame, which the ``tracks`` have taken in already."""
+        """Measures the gaps at a frame that the ``tracks`` have measured already."""
         for surface in self._surfaces.values():
             surface.at(graph)
         for track, own, others, gaps in zip(tracks, self._own, self._others, self._gaps, strict=True):
@@ -193,8 +193,8 @@ class Contacts:
         """What actor ``number`` touches from frame ``start`` to ``end``.
 
         A list of ``with`` (a name), ``frames`` ([first, last] of each time) and ``gap`` (metres, at the first frame).
-        It touches what is nearer than the tolerance (2 mm to 1 cm by size, and what collisions keep apart), or what
-        is nearest when its motion changes as by a blow: then it hit between this frame and the next.
+        It touches what is nearer than the tolerance (2 mm to 1 cm by size, plus collision margins), or what is nearest
+        when its velocity changes as by a blow: then it was hit between this frame and the next.
         """
         contacts = []
         for name, frames in self._gaps[number].items():
@@ -216,7 +216,7 @@ class Contacts:
 
 
 def _times(touching, measured):
-    """[first, last] of each run of frames without a break, among those that were measured."""
+    """[first, last] of each unbroken run of frames, among those that were measured."""
     times, following = [], dict(itertools.pairwise(measured))
     for frame in touching:
         if times and following[times[-1][1]] == frame:
@@ -238,8 +238,8 @@ def _gap(own, other, state, reach):
 
 
 def between(a, b, reach):
-    """The distance of two surfaces, if it is within ``reach``: from the nearest points of a few, the way is felt along
-    both surfaces to where they are nearest."""
+    """The distance of two surfaces if it is within ``reach``, else infinite: the nearest of some points are projected
+    to and fro between the surfaces until they settle."""
     seeds = []
     for surface, other in ((a, b), (b, a)):
         points, step = surface.points()
@@ -248,10 +248,10 @@ def between(a, b, reach):
             if place is not None:
                 seeds.append(((place - point).length, place, surface, other))
     seeds.sort(key=lambda seed: seed[0])
-    return min((_felt(*seed) for seed in seeds[:_SEEDS]), default=math.inf)
+    return min((_settled_gap(*seed) for seed in seeds[:_SEEDS]), default=math.inf)
 
 
-def _felt(gap, place, surface, other):
+def _settled_gap(gap, place, surface, other):
     """The distance ``gap``, from ``place`` on ``other`` to ``surface``, shortened by going to and fro between them: to
     the nearest place, or to that of a vertex nearby."""
     for _ in range(_ROUNDS):
@@ -270,12 +270,12 @@ def _felt(gap, place, surface, other):
 
 
 def _name_to_report(obj, owner, same):
-    """The object collection that a thing is of, or itself if that is the actor's too, or there is none."""
+    """The object collection that an object is in; its own name if there is none, or it is the actor's."""
     return obj.name if owner is None or owner in same else owner
 
 
 def _is_touchable(obj):
-    """Whether something can be seen, or takes part in collisions, that has a mesh."""
+    """Whether an object has a mesh that is visible or takes part in collisions."""
     if obj.type != "MESH" or not obj.visible_get():
         return False
     collides = obj.rigid_body is not None or any(modifier.type == "COLLISION" for modifier in obj.modifiers)

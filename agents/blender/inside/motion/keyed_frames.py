@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where objects are keyed: the frames of the keyframes that move them, or the geometry that they have."""
+"""The keyframes of objects: the frames of keys that move them or their geometry."""
 
 from ..blend.fcurves import curves_of
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The meshes of a scene while its frames go by, kept as long as they stay what they are. Metres."""
+"""The meshes of a scene over many frames, kept as long as they do not change. Metres."""
 
 import bpy
 import numpy
 
-from ..geometry.evaluated_meshes import coordinates, transformed
+from ..geometry.evaluated_meshes import TriangleMesh, transformed
 from ..geometry.solids import MOST_TRIANGLES, Solid, Unmeasurable
 from .contacts import TrackedSurface
 
@@ -14,9 +14,9 @@ _EVENLY = (0.7548776662466927, 0.5698402909980532)  # steps that fill a square e
 
 
 class TrackedBody:
-    """An object's evaluated mesh without its place and rotation: ``solid`` is the same at all frames of a rigid thing.
+    """An object's evaluated mesh without location and rotation: ``solid`` is the same at all frames if it is rigid.
 
-    ``samples`` (n × 3) are places all over it, the same ones as long as it has as many vertices. ``low`` and ``high``
+    ``samples`` (n × 3) are points all over it, the same ones as long as it has as many vertices. ``low`` and ``high``
     are the corners of its box along the world's axes.
     """
 
@@ -28,7 +28,7 @@ class TrackedBody:
         self.frame = self.before = None
 
     def at(self, frame, graph):
-        """Looks at where it is."""
+        """Updates it to a frame."""
         if frame == self.frame:
             return
         self._evaluated = self._obj.evaluated_get(graph)
@@ -53,22 +53,18 @@ class TrackedBody:
     def solid(self):
         """Its triangles in its own space. Raises Unmeasurable."""
         if self._solid is None:
-            mesh = self._evaluated.data
-            mesh.calc_loop_triangles()
-            count = len(mesh.loop_triangles)
-            if not 0 < count <= MOST_TRIANGLES:
-                raise Unmeasurable(f"{self.name!r} has {count} triangles")
-            triangles = numpy.empty(3 * count, numpy.int32)
-            mesh.loop_triangles.foreach_get("vertices", triangles)
-            points = transformed(coordinates(mesh.vertices), self._shape.to_4x4())
+            mesh = TriangleMesh(self._evaluated.data)
+            if not 0 < len(mesh.triangles) <= MOST_TRIANGLES:
+                raise Unmeasurable(f"{self.name!r} has {len(mesh.triangles)} triangles")
+            points = transformed(mesh.points, self._shape.to_4x4())
             if not numpy.isfinite(points).all():
-                raise Unmeasurable(f"{self.name!r} has places that are not numbers")
-            self._solid = Solid(self.name, points, triangles.reshape(-1, 3))
+                raise Unmeasurable(f"{self.name!r} has coordinates that are not finite")
+            self._solid = Solid(self.name, points, mesh.triangles)
         return self._solid
 
     @property
     def inwards(self):
-        """-1 where normals lead out of a closed mesh, 1 where they lead into it."""
+        """-1 if normals point out of a closed mesh, 1 if they point into it."""
         if self._inwards is None:
             a, b, c = (self.solid.points[self.solid.triangles[:, corner]] for corner in range(3))
             self._inwards = -1 if numpy.einsum("ij,ij->", a, numpy.cross(b, c)) >= 0 else 1
@@ -76,7 +72,7 @@ class TrackedBody:
 
     @property
     def samples(self):
-        """Places all over it in its own space."""
+        """Points all over it in its own space."""
         if self._samples is None:
             points = self.solid.points
             self._samples = points[:: -(-len(points) // _SAMPLES)]
@@ -85,18 +81,18 @@ class TrackedBody:
         return self._samples
 
     def placed(self, places, *, before=False):
-        """Places of its own space in the world, as it is or as it was a frame ago."""
+        """Transforms points from its own space to the world, as of this frame or of the one before."""
         turn, place = self.before if before else self._pose
         return places @ turn.T + place
 
     def seen(self, places, *, before=False):
-        """Places of the world in its own space, as it is or as it was a frame ago."""
+        """Transforms points from the world to its own space, as of this frame or of the one before."""
         turn, place = self.before if before else self._pose
         return (places - place) @ turn
 
 
 def spread(solid, count):
-    """About so many places all over the triangles of a solid, as many as each is large; always the same ones."""
+    """About ``count`` points spread over the triangles of a solid by area; always the same ones."""
     corners = solid.points[solid.triangles]
     sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     reach = numpy.cumsum(numpy.linalg.norm(numpy.cross(*sides), axis=1))
@@ -110,14 +106,14 @@ def spread(solid, count):
 
 
 class MeshTracker:
-    """The surfaces and bodies of a scene at the frame that it stands at, made when they are asked for."""
+    """The surfaces and bodies of a scene at the current frame, made when needed."""
 
     def __init__(self):
         self._surfaces, self._bodies = {}, {}
         self._frame = self._graph = None
 
     def enter(self, frame, graph):
-        """The scene stands at another frame."""
+        """Updates everything to a frame."""
         self._frame, self._graph = frame, graph
         for surface in self._surfaces.values():
             surface.at(graph)
@@ -125,14 +121,14 @@ class MeshTracker:
             body.at(frame, graph)
 
     def surface(self, name):
-        """What distances are measured on. Raises Unmeasurable."""
+        """The surface on which distances are measured. Raises Unmeasurable."""
         if name not in self._surfaces:
             self._surfaces[name] = TrackedSurface(mesh_object(name))
             self._surfaces[name].at(self._graph)
         return self._surfaces[name]
 
     def body(self, name):
-        """What depths are measured in. Raises Unmeasurable."""
+        """The body in which depths are measured. Raises Unmeasurable."""
         if name not in self._bodies:
             self._bodies[name] = TrackedBody(mesh_object(name))
             self._bodies[name].at(self._frame, self._graph)
@@ -140,10 +136,10 @@ class MeshTracker:
 
 
 def mesh_object(name):
-    """The object of that name. Raises Unmeasurable where there is none, or none with a mesh."""
+    """The object of that name. Raises Unmeasurable if there is none, or it is not a mesh."""
     obj = bpy.context.view_layer.objects.get(name)
     if obj is None:
         raise Unmeasurable(f"there is no object {name!r} in the view layer")
     if obj.type != "MESH":
-        raise Unmeasurable(f"{name!r} is no mesh")
+        raise Unmeasurable(f"{name!r} is not a mesh")
     return obj

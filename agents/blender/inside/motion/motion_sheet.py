@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a motion sheet is made of: the motion of actors in numbers, pictures of it, and how far it can be trusted."""
+"""The content of a motion sheet: actors' motion in numbers and pictures, and notes on how reliable it is."""
 
 import os
 
@@ -18,15 +18,15 @@ from .trajectories import Track
 from .viewpoints import close_by, wants_close_views, whole_path
 
 _FEWEST, _MOST = 6, 12  # pictures of an actor
-_USUAL = 7  # where no phases are given
+_USUAL = 7  # pictures without phases
 _IN_A_ROW, _WIDEST = 8, 300  # pictures, and pixels of one
-_MEASURED = 600  # frames of a longer range are measured at a stride
+_MEASURED = 600  # frames; longer ranges are measured at a stride
 _LONGEST = 20_000
-_RAYS = 16  # from an actor to the viewer, that tell whether it is hidden
+_RAYS = 16  # from an actor to the viewer, to see whether it is hidden
 
 
 def motion_sheet(arguments, report):
-    """Follows ``actors`` over ``phases``, draws them at ``frames``; pictures go to ``folder``, ``width`` wide in a row.
+    """Follows ``actors`` over ``phases``, and draws them at ``frames`` in ``folder``, in rows of ``width`` pixels.
 
     Returns the range, the sampled frames, and for each actor its caches, keyframes, curves, numbers and pictures.
     """
@@ -37,7 +37,7 @@ def motion_sheet(arguments, report):
     stride = -(-(last - first + 1) // _MEASURED)
     ends = {frame for phase in phases for frame in (phase["start"], phase["end"])}
     measured = sorted({*range(first, last + 1, stride), *sampled, *ends})
-    caches = [_caches(actor, scene) for actor in actors]  # as they are before they are stepped
+    caches = [_caches(actor, scene) for actor in actors]  # their state before frames are stepped
     stepper = FrameStepper(scene, first)
     tracks = [Track(actor, scene.render.fps / scene.render.fps_base) for actor in actors]
     contacts = Contacts(scene, actors)
@@ -45,8 +45,8 @@ def motion_sheet(arguments, report):
     strips = _Strips(tracks, sampled, arguments)
     steps = stepper.count(measured)
     if steps > _LONGEST:
-        waiting = f" Not baked: {', '.join(stepper.stepped_for[:3])}." if stepper.stepped_for else ""
-        raise Refused(f"{steps} frames would have to be visited; {_LONGEST} at most.{waiting}")
+        hint = f" Bake first: {', '.join(stepper.stepped_for[:3])}." if stepper.stepped_for else ""
+        raise Refused(f"{steps} frames would have to be visited; {_LONGEST} at most.{hint}")
     meter = _Meter(report, steps + stepper.count(sampled))
     with stepper:
         for frame, graph in stepper.through(measured, meter.step):
@@ -81,22 +81,22 @@ def motion_sheet(arguments, report):
 
 
 class _Meter:
-    """Tells how far things are, of ``total`` frames that are visited."""
+    """Reports progress over ``total`` frames."""
 
     def __init__(self, report, total):
         self._report, self._total, self._done = report, total, 0
 
     def step(self, frame):
-        """A frame is visited."""
+        """Reports that a frame is visited."""
         self._done += 1
         self._report(self._done - 1, self._total, f"frame {frame}")
 
     def part(self, share, text):
-        """So much of what is to be done at this frame is done."""
+        """Reports the ``share`` of the work at this frame that is done."""
         self._report(self._done - 1 + share, self._total, text)
 
 
-# What is asked for
+# The plan
 
 
 def _plan(arguments, scene):
@@ -117,13 +117,13 @@ def _plan(arguments, scene):
 
 
 def _sampled(phases):
-    """Frames that show the phases: where they begin and end, and evenly between."""
+    """Frames that show the phases: their starts and ends, and some evenly between."""
     if len(phases) == 1:
         return _evenly(phases[0]["start"], phases[0]["end"], _USUAL)
     frames = set()
     for phase in phases:
         frames.update(_evenly(phase["start"], phase["end"], 3 if 2 * len(phases) + 1 >= _FEWEST else 4))
-    # Where one phase ends and the next begins in neighbouring frames, one picture shows both.
+    # If a phase starts in the frame after the end of the one before, one picture shows both.
     frames -= {
         phase["start"] for phase in phases if phase["start"] - 1 in frames and phase["start"] != phase["end"]
     }
@@ -144,7 +144,7 @@ def _evenly(first, last, count):
 
 
 class _Strips:
-    """The pictures of all actors: the whole path of each and, of what is small in it, itself close by."""
+    """The pictures of all actors: the whole path of each and, if the actor is small in it, close views."""
 
     def __init__(self, tracks, sampled, arguments):
         self._tracks, self._sampled, self._folder = tracks, sampled, arguments["folder"]
@@ -156,7 +156,7 @@ class _Strips:
         self._jobs = {frame: [] for frame in sampled}
 
     def plan(self):
-        """Chooses the views, from tracks that are complete."""
+        """Chooses the views, once the tracks are complete."""
         for number, track in enumerate(self._tracks):
             view = whole_path(track, self._tile)
             if view is None:
@@ -175,7 +175,7 @@ class _Strips:
                 self.any = True
 
     def draw(self, frame, graph, pictures, meter):
-        """Takes the pictures of a frame, at which the scene stands."""
+        """Renders the pictures of the current frame."""
         states = [track.actor.state_at(graph) for track in self._tracks]
         for track, state in zip(self._tracks, states, strict=True):
             track.check(frame, state)
@@ -188,7 +188,7 @@ class _Strips:
             meter.part(number / len(jobs), f"drawing frame {frame}")
 
 
-# What is told
+# Entries
 
 
 def _actor_entry(track, span):
@@ -206,7 +206,7 @@ def _actor_entry(track, span):
         "frames": track.frames,
         "centres": [centre and [round(part, 5) for part in centre] for centre in track.centres],
         "displacements": track.displacements(),
-        "speeds": track.told_speeds,
+        "speeds": track.main_speeds,
     }
 
 
@@ -218,7 +218,7 @@ def _phase_entry(track, number, phase, contacts):
 
 
 def _caches(actor, scene):
-    """(cache, its state as data) for all that the actor takes part in."""
+    """(cache, its state as data) of all caches that the actor takes part in."""
     entries = []
     for cache in of_objects(scene, [obj.name for obj in actor.objects]):
         state = "unbaked" if not cache.baked else "baked, outdated" if cache.outdated else "baked"

@@ -12,16 +12,18 @@ _MOST_FRAMES = 5000
 
 
 def stand_at(arguments, report):
-    """Takes the scene to ``frame`` (None: it stays): by one jump, or step by step where a simulation is not baked.
+    """Takes the scene to ``frame`` (None: it stays): in one jump, or step by step if a simulation is not baked.
 
-    Returns the ``scene``'s name and the ``frame`` that it stands at. Raises Refused where the way is too long.
+    Returns the ``scene``'s name and its current ``frame``. Raises Refused if that needs too many frames.
     """
     scene, frame = bpy.context.scene, arguments["frame"]
     if frame is not None and frame != scene.frame_current:
         starts = [cache["start"] for cache in unbaked(scene) if cache["start"] < frame]
         first = min(starts, default=frame)
         if frame - first > _MOST_FRAMES:
-            raise Refused(f"To frame {frame} {frame - first} frames would have to be simulated: bake first.")
+            raise Refused(
+                f"Going to frame {frame} would simulate {frame - first} frames, more than {_MOST_FRAMES}: bake first."
+            )
         if starts:
             renew(scene)
         for at in range(first, frame + 1):
@@ -31,10 +33,10 @@ def stand_at(arguments, report):
 
 
 class FrameStepper:
-    """Goes through frames of a scene in order, and at the end of ``with`` back to where it stood.
+    """Visits frames of a scene in order, and goes back to the frame before at the end of ``with``.
 
-    Nothing that is simulated is jumped: where a cache of the scene is not baked, every frame is visited from its
-    start on, which is then ``stepped_from``; ``stepped_for`` names such caches.
+    No simulated frame is skipped: if a cache of the scene is not baked, every frame from its start, ``stepped_from``,
+    is visited; ``stepped_for`` names such caches.
     """
 
     def __init__(self, scene, first):
@@ -54,7 +56,7 @@ class FrameStepper:
         self._scene.frame_set(self._frame, subframe=self._subframe)
 
     def count(self, frames):
-        """How many frames are visited for the sake of these."""
+        """How many frames must be visited to measure ``frames``."""
         return len(self._steps(frames))
 
     def _steps(self, frames):
@@ -63,9 +65,9 @@ class FrameStepper:
         return range(self.stepped_from, frames[-1] + 1)
 
     def through(self, frames, visiting):
-        """(frame, evaluated dependency graph) of each of the ``frames``, which are sorted.
+        """Yields (frame, evaluated dependency graph) for each of the sorted ``frames``.
 
-        Calls ``visiting(frame)`` before each that is visited.
+        Calls ``visiting(frame)`` before each frame that it visits.
         """
         wanted = set(frames)
         for frame in self._steps(frames):

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How actors move: their evaluated geometry frame by frame, and what that comes to over a stretch of frames.
+"""How actors move: measured frame by frame, and summed up over ranges of frames.
 
-Speeds are those between two measured frames: the one at frame f is the way since the frame measured before it, over
-the time since then.
+A speed is between two measured frames: at frame f, the distance since the frame measured before, over the time between.
 """
 
 import math
@@ -12,17 +11,17 @@ from mathutils import Vector
 
 from .actors import round_to
 
-DEFORMED = 2e-3  # of its size that points of an actor must move against each other to be told of
-REPEATS = 0.01  # of its size that an actor may be off when a frame is seen once more
-LINE = 1e-6  # how much worse, in parts, another rotation must fit for the best one to be told
+DEFORMED = 2e-3  # share of its size that an actor's points must move against each other for it to deform
+REPEATS = 0.01  # share of its size that an actor may be off when a frame is visited again
+LINE = 1e-6  # how much worse, relatively, any other rotation must fit for the best one to count
 
 
 class Track:
     """The measured motion of one actor: lists with an entry for each of ``frames``.
 
-    ``centres`` (None where there is nothing of it), ``lows`` and ``highs`` are places in metres; ``speeds`` (of the
+    ``centres`` (None where it does not exist), ``lows`` and ``highs`` are places in metres; ``speeds`` (of the
     centre) and ``point_speeds`` (mean over the points followed) are in m/s, ``rotations`` are axes as long as the angle
-    in radians; each since the frame before, None where unknown. ``deforms``: its points move against each other.
+    in radians; each since the frame before, None if unknown. ``deforms``: its points move against each other.
     """
 
     def __init__(self, actor, fps):
@@ -34,7 +33,7 @@ class Track:
         self.last = self._first = None
 
     def add(self, frame, state):
-        """Takes in where the actor is at a frame, the next one in time."""
+        """Adds the actor's state at the next frame."""
         last = self.last
         seconds = (frame - self.frames[-1]) / self.fps if self.frames else 0.0
         speed = point_speed = rotation = None
@@ -58,7 +57,7 @@ class Track:
         self.last, self._first = state, self._first or state
 
     def check(self, frame, state):
-        """Takes in where the actor is when a frame is seen once more: ``strays`` tells of where that is elsewhere."""
+        """Compares the actor's state when a frame is visited again; ``strays`` gets the distance if it is elsewhere."""
         at = self.frames.index(frame)
         centre = self.centres[at]
         if (centre is None) != (state is None):
@@ -86,14 +85,14 @@ class Track:
 
     @property
     def speed_name(self):
-        """Which speed tells most of it: that of its ``centre``, or the mean of its ``vertices`` or ``particles``."""
+        """Which speed describes it best: that of its ``centre``, or the mean of its ``vertices`` or ``particles``."""
         if self.actor.measured == "particles":
             return "particles"
         return "vertices" if self.deforms else "centre"
 
     @property
     def main_speeds(self):
-        """The speeds of ``speed_name``; where points cannot be followed, those of the centre."""
+        """The speeds that ``speed_name`` names; where points cannot be followed, those of the centre."""
         if self.speed_name == "centre":
             return self.speeds
         return [
@@ -103,11 +102,11 @@ class Track:
 
     @property
     def moved(self):
-        """How far the centre went since the frame measured before the last one, in metres."""
-        return self._way(len(self.frames) - 1) if len(self.frames) > 1 else 0.0
+        """How far the centre moved up to the last measured frame, from the one before, in metres."""
+        return self._distance(len(self.frames) - 1) if len(self.frames) > 1 else 0.0
 
     def changes_by(self, frame):
-        """How much the centre's velocity after a frame differs from that before it, in m/s; 0 where unknown."""
+        """How much the centre's velocity after a frame differs from that before it, in m/s; 0 if unknown."""
         at = self.frames.index(frame)
         around = self.centres[at - 1 : at + 2] if at else []
         if len(around) < 3 or None in around:
@@ -119,12 +118,12 @@ class Track:
         return (after - before).length * self.fps
 
     def displacements(self):
-        """How far the centre is from where it was first, in metres, at each frame."""
+        """The distance of the centre from its first place, in metres, at each frame."""
         first = next((centre for centre in self.centres if centre is not None), None)
         return [None if centre is None else (centre - first).length for centre in self.centres]
 
     def over(self, start, end):
-        """What the motion comes to from frame ``start`` to ``end``, as data (metres, m/s, degrees)."""
+        """A summary of the motion from frame ``start`` to ``end``, as data (metres, m/s, degrees)."""
         inside = [at for at, frame in enumerate(self.frames) if start <= frame <= end]
         there = [at for at in inside if self.centres[at] is not None]
         if not there:
@@ -139,7 +138,7 @@ class Track:
             "present": True,
             "displacement": round_to(way.length),
             "displacement_vector": [round_to(part) for part in way],
-            "path_length": round_to(sum(self._way(at) for at in steps)),
+            "path_length": round_to(sum(self._distance(at) for at in steps)),
             "peak_speed": round_to(peak),
             "peak_frame": peak_frame,
             "final_speed": round_to(speeds[-1][0]) if speeds else None,
@@ -152,15 +151,15 @@ class Track:
             result["there"] = [self.frames[first], self.frames[last]]
         return result
 
-    def _way(self, at):
+    def _distance(self, at):
         before, after = self.centres[at - 1], self.centres[at]
         return (after - before).length if before is not None and after is not None else 0.0
 
 
 def rotated(before, after):
-    """The rotation that best carries places (n × 3) to other ones: its axis, as long as the angle in radians.
+    """The rotation that best maps places (n × 3) to other ones: its axis, as long as the angle in radians.
 
-    None where the places do not tell.
+    None if the places do not determine it.
 
     Horn's solution: that rotation, as a quaternion, is the largest eigenvector of a matrix of the products' sums.
     """
@@ -176,7 +175,7 @@ def rotated(before, after):
         ]
     )
     if values[-1] - values[-2] <= LINE * max(values[-1], 1e-18):
-        return None  # another rotation does as well: the points lie on a line
+        return None  # another rotation fits as well: the points are on a line
     half, axis = float(vectors[0, -1]), Vector(vectors[1:, -1])
     angle = 2 * math.atan2(axis.length, abs(half))
     return axis.normalized() * math.copysign(angle, half)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From where a motion is seen: one fixed view of an actor's whole path, and close ones that follow it."""
+"""Viewpoints for a motion: one fixed view of an actor's whole path, and close ones that follow it."""
 
 import math
 
@@ -7,19 +7,19 @@ from mathutils import Matrix, Vector
 
 from ..preview.framing import BoundingBox, turned_to
 
-# (azimuth, elevation) in degrees, best liked first; azimuth 0 looks along +Y, 90 along -X.
+# (azimuth, elevation) in degrees, preferred first; azimuth 0 looks along +Y, 90 along -X.
 _ANGLES = ((30, 24), (-30, 24), (60, 24), (-60, 24), (0, 24), (90, 24), (30, 45), (-30, 45), (0, 65))
-_WORTH = 1.06  # how much more of the motion a less liked angle must show
-_AROUND = 1.22  # what is seen, in sizes of what must be seen
+_WORTH = 1.06  # how much more of the motion a less preferred angle must show
+_AROUND = 1.22  # size of the view, in sizes of what must be visible
 _CLOSE_AROUND = 1.5
 _FLATTEST, _TALLEST = 0.62, 1.25  # height of a picture, in widths
 _CLOSE_HEIGHT = 0.72
-_SMALL = 0.2  # an actor that takes less of the picture's width is shown close as well
+_SMALL = 0.2  # an actor that takes less of the picture's width gets close views as well
 
 
 class OrthographicView:
-    """An orthographic camera: ``centre`` of the picture, ``width`` in metres, ``size`` in pixels; it sees all behind
-    ``depth``, metres from the centre towards the viewer, and nothing before it."""
+    """An orthographic camera: ``centre`` of the picture, ``width`` in metres, ``size`` in pixels; it sees everything
+    behind ``depth``, metres from the centre towards the viewer, and nothing in front of that."""
 
     def __init__(self, angle, centre, width, size, depth):
         self.angle, self.centre, self.width, self.size, self.depth = angle, centre, width, size, depth
@@ -47,7 +47,7 @@ class OrthographicView:
 
 
 def whole_path(track, tile):
-    """The view of everything that a track covers, in pictures ``tile`` pixels wide. None if there is nothing of it."""
+    """The view of everything that a track covers, in pictures ``tile`` pixels wide; None if it never exists."""
     boxes = [(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
     if not boxes:
         return None
@@ -62,13 +62,13 @@ def whole_path(track, tile):
 
 
 def wants_close_views(track, view):
-    """Whether the actor is too small in that view to be made out."""
+    """Whether the actor is too small to be seen well in that view."""
     sizes = [_size(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
     return track.actor.measured == "vertices" and 1e-4 * view.width < max(sizes) < _SMALL * view.width
 
 
 def close_by(track, view, frame):
-    """A view of the actor alone at a frame, of the same scale at every frame. None if it is not there."""
+    """A view of the actor alone at a frame, at the same scale for every frame; None if it does not exist there."""
     at = track.frames.index(frame)
     if track.lows[at] is None:
         return None
@@ -98,7 +98,7 @@ def _axes(angle):
 
 
 def _best_angle(places):
-    """The angle from which the most of a path is seen across the line of sight."""
+    """The angle from which the most of a path is visible."""
     mean = sum(places, Vector()) / len(places)
     best, best_spread = _ANGLES[0], -1.0
     for angle in _ANGLES:
@@ -112,7 +112,7 @@ def _best_angle(places):
 
 
 def _fit(angle, boxes):
-    """(centre, width, height, half the depth) of what holds all of the boxes, seen from an angle."""
+    """(centre, width, height, half the depth) of the view that holds all boxes, from an angle."""
     turn = Matrix(_axes(angle))
     corners = [
         turn @ Vector((x, y, z))

@@ -13,6 +13,7 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.file_io import SCENE_FILE, make_own, reason
 from ..blend.names import nearest
+from ..blend.temporary import temporary_settings
 from . import caches, simulated_movement, stillness_causes
 
 CACHE_FOLDER = "cache"  # below the workspace, for fluids
@@ -44,7 +45,7 @@ def bake(arguments, report):
             job.prepare(frames)
         with _Frames(scene, frames):
             _run(scene, jobs, every, progress)
-        with _DomainsOff(_unchosen_fluids(every, jobs)):
+        with _domains_off(_unchosen_fluids(every, jobs)):
             _check_result(scene, jobs, progress)
     finally:
         scene.frame_set(frame_before)
@@ -214,19 +215,9 @@ def _free(domain):
         setattr(domain, f"cache_frame_pause_{part}", 0)  # where a bake would go on
 
 
-class _DomainsOff:
-    """Switches domains off for a while: one of type REPLAY simulates at every change of frame."""
-
-    def __init__(self, fluids):
-        self._shown = [cache.modifier for cache in fluids if cache.modifier.show_viewport]
-
-    def __enter__(self):
-        for modifier in self._shown:
-            modifier.show_viewport = False
-
-    def __exit__(self, *error):
-        for modifier in self._shown:
-            modifier.show_viewport = True
+def _domains_off(fluids):
+    """A context in which domains are switched off: one of type REPLAY simulates at every change of frame."""
+    return temporary_settings([(cache.modifier, "show_viewport", False) for cache in fluids])
 
 
 def _unchosen_fluids(every, jobs):
@@ -248,7 +239,7 @@ def _run(scene, jobs, every, progress):
     progress.expect([*([job] for job in early), *groups, *([job] for job in late)])
     for job in early:
         _bake([job], progress)
-    with _DomainsOff([cache for cache in every if cache.domain is not None and cache.owner not in carriers]):
+    with _domains_off([cache for cache in every if cache.domain is not None and cache.owner not in carriers]):
         for group in groups:
             _bake(group, progress)
     for job in late:

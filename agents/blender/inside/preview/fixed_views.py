@@ -13,12 +13,11 @@ from simworlds.sandbox.inside.refusal import Refused
 from ..blend.names import listed, nearest, quoted
 from ..blend.protocol_tags import OBJECT, ROLE, SYSTEM, object_collections
 from ..physics.caches import unbaked
-from ..render.engines import best_engine
 from .framing import CLOSE, LOOSE, VIEWS, WIDE, BoundingBox, boxes_of, fitted, focus, turned_to
 from .room_cutaway import RoomCutaway
 from .room_detection import find_room, large_pieces
 from .scene_copy import DRAWABLE, SceneCopy
-from .studio_scene import REACH, StudioScene
+from .studio_scene import REACH, StudioScene, drawing_engine
 
 MESH, SCENE = "mesh", "scene"  # kinds of subjects, besides OBJECT and SYSTEM
 _NAMED = 6  # in a note; the rest is counted
@@ -41,12 +40,10 @@ def preview(arguments, report):
     """
     scene, kind, notes = bpy.context.scene, arguments["kind"], []
     title, objects = _subject(scene, kind, arguments.get("name"), notes)
-    engine, fault = best_engine()
-    if fault:
-        notes.append(f"Drawn by Cycles, more coarsely: Workbench cannot draw on this machine ({fault}).")
-    with _at(scene, arguments.get("frame"), notes), StudioScene(engine) as stage:
-        shot = copy_of(stage, kind, title, objects, notes)
-        renderer = PreviewRenderer(stage, shot, arguments["folder"], arguments["size"])
+    engine = drawing_engine(notes)
+    with _at(scene, arguments.get("frame"), notes), StudioScene(engine) as studio:
+        subject = copy_of(studio, kind, title, objects, notes)
+        renderer = PreviewRenderer(studio, subject, arguments["folder"], arguments["size"])
         renderer.set_up(kind in {SYSTEM, SCENE}, arguments["everything"], notes)
         camera = scene.camera if kind == SCENE else None
         with renderer.cleaned_up():
@@ -54,11 +51,11 @@ def preview(arguments, report):
             if camera is not None:
                 report(len(views), len(views) + 1, "camera")
                 views += renderer.through(camera, scene.render, notes)
-        note_missing(shot, notes)
+        note_missing(subject, notes)
         return {
             "title": title,
             "frame": scene.frame_current,
-            "objects": len({piece.owner for piece in shot.pieces}),
+            "objects": len({piece.owner for piece in subject.pieces}),
             "low": list(renderer.whole.low),
             "high": list(renderer.whole.high),
             "views": views,
@@ -134,34 +131,34 @@ def _at(scene, frame, notes):
                 obj.matrix_basis = basis
 
 
-def copy_of(stage, kind, title, objects, notes):
+def copy_of(studio, kind, title, objects, notes):
     """A copy of the subject; if all of it is hidden, a copy all the same, with a note. Raises Refused."""
     graph = bpy.context.evaluated_depsgraph_get()
-    shot = SceneCopy(stage, graph, objects, unrendered=kind == MESH)
-    if kind == MESH and not shot.pieces and shot.hidden:
-        shot.take_unevaluated(objects[0])
-        if shot.pieces:
+    subject = SceneCopy(studio, graph, objects, unrendered=kind == MESH)
+    if kind == MESH and not subject.pieces and subject.hidden:
+        subject.take_unevaluated(objects[0])
+        if subject.pieces:
             notes.append(f"{title!r} is hidden in the viewport: it is shown without its modifiers.")
-            shot.hidden = []
-    elif not shot.pieces and shot.unrendered:
-        shot = SceneCopy(stage, graph, objects, unrendered=True)
+            subject.hidden = []
+    elif not subject.pieces and subject.unrendered:
+        subject = SceneCopy(studio, graph, objects, unrendered=True)
         notes.append("All of it is hidden from renders.")
-    if shot.pieces:
-        return shot
+    if subject.pieces:
+        return subject
     raise Refused(
-        _why_nothing_visible(shot, f"The scene {title!r}" if kind == SCENE else repr(title), objects)
+        _why_nothing_visible(subject, f"The scene {title!r}" if kind == SCENE else repr(title), objects)
     )
 
 
-def _why_nothing_visible(shot, what, objects):
+def _why_nothing_visible(subject, what, objects):
     """Why there is nothing to draw."""
-    if shot.broken:
-        name, why = next(iter(shot.broken.items()))
+    if subject.broken:
+        name, why = next(iter(subject.broken.items()))
         return f"{what} cannot be drawn: {name!r}: {why}."
-    if shot.hidden:
-        return f"{what} has nothing to draw. Hidden in the viewport: {_listed(shot.hidden)}."
-    if shot.empty:
-        return f"{what} has nothing to draw. Without faces or strands: {_listed(shot.empty)}."
+    if subject.hidden:
+        return f"{what} has nothing to draw. Hidden in the viewport: {_listed(subject.hidden)}."
+    if subject.empty:
+        return f"{what} has nothing to draw. Without faces or strands: {_listed(subject.empty)}."
     objects = list(bpy.context.scene.objects if objects is None else objects)
     drawable = [obj.name for obj in objects if obj.type in DRAWABLE]
     if drawable:
@@ -170,19 +167,19 @@ def _why_nothing_visible(shot, what, objects):
     return f"{what} has no geometry: {'it holds only ' + ', '.join(kinds) if kinds else 'it is empty'}."
 
 
-def note_missing(shot, notes):
+def note_missing(subject, notes):
     """Adds to ``notes`` what the copy lacks."""
-    for name, why in list(shot.broken.items())[:_NAMED]:
+    for name, why in list(subject.broken.items())[:_NAMED]:
         notes.append(f"Not shown: {name!r}: {why}.")
     for names, why in (
-        (shot.hidden, "hidden in the viewport"),
-        (shot.unrendered, "hidden from renders"),
-        (shot.empty, "without faces or strands"),
+        (subject.hidden, "hidden in the viewport"),
+        (subject.unrendered, "hidden from renders"),
+        (subject.empty, "without faces or strands"),
     ):
         if names:
             notes.append(f"Not shown, {why}: {_listed(names)}.")
-    if shot.left_out:
-        notes.append(f"There are too many instances: {shot.left_out} are not shown.")
+    if subject.left_out:
+        notes.append(f"There are too many instances: {subject.left_out} are not shown.")
 
 
 # Pictures
@@ -192,8 +189,8 @@ class PreviewRenderer:
     """Renders the pictures of a scene copy. ``whole``: the box that is framed, in metres of the world; ``away``: how
     far cameras stand from it, in units of the studio scene."""
 
-    def __init__(self, stage, shot, folder, size):
-        self._stage, self._shot, self._folder, self._size = stage, shot, folder, size
+    def __init__(self, studio, subject, folder, size):
+        self._studio, self._subject, self._folder, self._size = studio, subject, folder, size
         self._files = 0
 
     def set_up(self, is_layout, everything, notes, around=()):
@@ -201,11 +198,11 @@ class PreviewRenderer:
 
         ``around``: names of objects to be framed, if any of them can be seen, instead of all; no room is opened then.
         """
-        boxes = boxes_of(self._shot.pieces)
+        boxes = boxes_of(self._subject.pieces)
         wanted = {name: boxes[name] for name in around if name in boxes} or boxes
         framed, beyond, outside = sorted(wanted), [], []
         if is_layout and not everything:
-            framed, beyond, outside = focus(wanted, self._shot.templates)
+            framed, beyond, outside = focus(wanted, self._subject.templates)
         self.whole = BoundingBox.around(boxes[name] for name in framed)
         self._margin = WIDE if len(wanted) < len(boxes) else LOOSE if beyond else CLOSE
         across = self.whole.diagonal
@@ -216,31 +213,31 @@ class PreviewRenderer:
         for name in outside[:_NAMED]:
             place = ", ".join(f"{round(part / across, 4) * across:.4g}" for part in boxes[name].centre)
             notes.append(f"Outside the pictures, far away: {name!r} at ({place}) m.")
-        framed_pieces = [piece for piece in self._shot.pieces if piece.owner in set(framed)]
+        framed_pieces = [piece for piece in self._subject.pieces if piece.owner in set(framed)]
         most = max(8, _OUTLINE // len(framed_pieces))
         self._outline = [place for piece in framed_pieces for place in piece.outline(most)]
         self._labels = _labels(bpy.context.scene, boxes, self.whole) if is_layout else {}
-        stage = self._stage
-        stage.aim(self.whole.centre, across)
-        pieces = self._shot.pieces
-        large = large_pieces(stage, pieces) if is_layout and not around else []
-        placed = [(piece, stage.add(piece.data, piece.matrix)) for piece in large]
+        studio = self._studio
+        studio.aim(self.whole.centre, across)
+        pieces = self._subject.pieces
+        large = large_pieces(studio, pieces) if is_layout and not around else []
+        placed = [(piece, studio.add(piece.data, piece.matrix)) for piece in large]
         self._owners = {obj: piece.owner for piece, obj in placed}
-        self._room = find_room(stage, placed, boxes.values())
-        self._opening = RoomCutaway(stage, self._room)
+        self._room = find_room(studio, placed, boxes.values())
+        self._opening = RoomCutaway(studio, self._room)
         if self._opening.fault:
             notes.append(f"Rooms are shown with all their walls: {self._opening.fault}.")
         for piece in pieces:
             if piece not in large:
-                stage.add(piece.data, piece.matrix)
+                studio.add(piece.data, piece.matrix)
         self._faces = sum(
             len(getattr(piece.data, "polygons", ())) * (1 if piece.is_solid else _SCATTERED)
             for piece in pieces
         )
-        self._camera = stage.camera()
+        self._camera = studio.camera()
         self._camera.data.type = "ORTHO"
-        # What is framed is in the middle of the stage; what is around it may reach farther than that.
-        reach = BoundingBox.around(boxes.values()).diagonal * stage.scale if around else 0.0
+        # What is framed is in the middle of the studio; what is around it may reach farther than that.
+        reach = BoundingBox.around(boxes.values()).diagonal * studio.scale if around else 0.0
         self.away = min(2 * REACH + reach, _FARTHEST)
         self._camera.data.clip_end = 2 * self.away
 
@@ -261,11 +258,11 @@ class PreviewRenderer:
             report(number, total, name)
             rotation = turned_to(towards, up)
             middle, across = fitted(self._outline, rotation, self._margin)
-            place = self._stage.placed(Matrix.Translation(middle)).translation
+            place = self._studio.placed(Matrix.Translation(middle)).translation
             matrix = rotation.to_4x4()
             matrix.translation = place + rotation.col[2] * self.away
             self._camera.matrix_world = matrix
-            self._camera.data.ortho_scale = across * self._stage.scale
+            self._camera.data.ortho_scale = across * self._studio.scale
             with self._opening.towards(rotation) as cut:
                 file = self._render(self._camera, (self._size, self._size), self._slant(towards, cut))
             yield {
@@ -298,10 +295,10 @@ class PreviewRenderer:
             )
             return
         data = seen.data.copy()
-        obj = self._stage.camera(data, matrix)
+        obj = self._studio.camera(data, matrix)
         data.animation_data_clear()
         data.dof.use_dof = False
-        scale = self._stage.scale
+        scale = self._studio.scale
         data.clip_start, data.clip_end = data.clip_start * scale, data.clip_end * scale
         data.ortho_scale *= scale
         aspect = (render.resolution_x * render.pixel_aspect_x) / (render.resolution_y * render.pixel_aspect_y)
@@ -342,7 +339,7 @@ class PreviewRenderer:
     def _render(self, camera, size, slant):
         file = _FILE.format(self._files)
         self._files += 1
-        self._stage.render(camera, size, os.path.join(self._folder, file), slant=slant)
+        self._studio.render(camera, size, os.path.join(self._folder, file), slant=slant)
         return file
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a material looks like, in one colour or with one picture: read off its nodes, for engines that run none."""
+"""Materials simplified to one colour or one image, read from their nodes, for engines that do not run nodes."""
 
 import math
 
@@ -7,15 +7,15 @@ from mathutils import Matrix
 
 from .shader_values import ShaderReader, between, bounded, link_into
 
-CLAY = (0.62, 0.61, 0.59)  # of what has no material
-_CLEAR = 0.3  # alpha of what is seen through, so that it can still be seen
+CLAY = (0.62, 0.61, 0.59)  # colour of objects without a material
+_CLEAR = 0.3  # alpha of transparent materials, which are to stay visible
 _INVISIBLE = 0.05
 
 
 class PreviewMaterial:
-    """``rgb`` (scene-linear), ``alpha``, ``roughness``; ``image``, laid on by the UV map of the name ``uv_map`` (""
-    for the active one) through ``mapping`` (a matrix or None); ``attribute``: the name of the colour attribute that
-    ``rgb`` is to come from ("" for the active one), None if from none."""
+    """``rgb`` (scene-linear), ``alpha``, ``roughness``; ``image`` with the name of its ``uv_map`` ("" for the
+    active one) and a ``mapping`` (a matrix or None); ``attribute``: the name of the colour attribute that ``rgb`` comes
+    from ("" for the active one), or None."""
 
     def __init__(self, rgb=CLAY, alpha=1.0, roughness=0.6):
         self.rgb, self.alpha, self.roughness = tuple(rgb), alpha, roughness
@@ -23,7 +23,7 @@ class PreviewMaterial:
         self.attribute = None
 
     def mixed(self, other, share):
-        """Between this one (0) and another (1), with the picture of the larger part."""
+        """A mixture of this one (0) and another (1), with the image of the larger share."""
         major = other if share > 0.5 else self
         mixture = PreviewMaterial(
             between(self.rgb, other.rgb, share),
@@ -36,7 +36,8 @@ class PreviewMaterial:
 
 
 def surface_of(material, object_colour, averages):
-    """How a material (None: none) looks on an object of that colour. ``averages``: a dict, kept between calls."""
+    """The preview material for a material (or None) on an object of that colour. ``averages``: a cache, kept by the
+    caller."""
     if material is None:
         return PreviewMaterial()
     if getattr(material, "grease_pencil", None) is not None:
@@ -59,7 +60,7 @@ class _Shaders:
         self._reader = reader
 
     def of(self, output):
-        """What a material's output shows."""
+        """The preview material for an output node."""
         surface, volume = output.inputs["Surface"], output.inputs["Volume"]
         if link_into(surface):
             return self._shader(surface) or PreviewMaterial()
@@ -87,7 +88,7 @@ class _Shaders:
         name = next((name for name in ("Color", "Base Color") if node.inputs.get(name) is not None), None)
         if name is None:
             return None
-        surface = self._painted(node.inputs[name])
+        surface = self._coloured(node.inputs[name])
         surface.roughness = self._reader.named(node, "Roughness", 0.6)
         return surface
 
@@ -105,7 +106,7 @@ class _Shaders:
         share = bounded(self._reader.number(node.inputs[0]))
         if min(first.alpha, second.alpha) > _INVISIBLE:
             return first.mixed(second, share)
-        # A part lets through: by a texture, holes are cut into it; by a number, all of it is thinner.
+        # One part is transparent: a texture as factor cuts holes, a number makes everything thinner.
         visible, part = (second, share) if first.alpha <= _INVISIBLE else (first, 1 - share)
         if link_into(node.inputs[0]) is None:
             visible.alpha *= part
@@ -116,7 +117,10 @@ class _Shaders:
         if first is None or second is None:
             return first or second
         both = first.mixed(second, 0.5)
-        both.rgb, both.alpha = tuple(map(sum, zip(first.rgb, second.rgb))), max(first.alpha, second.alpha)  # noqa: B905
+        both.rgb, both.alpha = (
+            tuple(map(sum, zip(first.rgb, second.rgb, strict=True))),
+            max(first.alpha, second.alpha),
+        )
         return both
 
     def _glass(self, node):
@@ -125,11 +129,11 @@ class _Shaders:
         )
 
     def _emission(self, node):
-        return _lit(self._painted(node.inputs["Color"]), self._reader.named(node, "Strength", 1.0))
+        return _emitting(self._coloured(node.inputs["Color"]), self._reader.named(node, "Strength", 1.0))
 
     def _principled(self, node):
         named = self._reader.named
-        surface = self._painted(node.inputs["Base Color"])
+        surface = self._coloured(node.inputs["Base Color"])
         surface.roughness = named(node, "Roughness")
         clear = named(node, "Transmission Weight", named(node, "Transmission", 0.0))
         surface.alpha = 1 - (1 - _CLEAR) * bounded(clear) * (1 - bounded(named(node, "Metallic", 0.0)))
@@ -140,11 +144,13 @@ class _Shaders:
         strength = named(node, "Emission Strength", 1.0) if glow else 0.0
         light = self._reader.colour(glow) if strength > 0 else (0.0, 0.0, 0.0)
         if max(light) * strength > 0.02:
-            surface = surface.mixed(_lit(PreviewMaterial(light), strength), bounded(max(light) * strength))
+            surface = surface.mixed(
+                _emitting(PreviewMaterial(light), strength), bounded(max(light) * strength)
+            )
         return surface
 
-    def _painted(self, socket):
-        """A surface of the colour of an input, with the picture that comes in through it."""
+    def _coloured(self, socket):
+        """A preview material with the colour of an input, and the image behind it."""
         reader = self._reader
         reader.attribute = None
         surface = PreviewMaterial(reader.colour(socket))
@@ -158,8 +164,8 @@ class _Shaders:
         return surface
 
 
-def _lit(surface, strength):
-    """What shines: as bright as its colour can be, and no brighter."""
+def _emitting(surface, strength):
+    """An emitting material: as bright as its colour can be."""
     parts = [part * strength if math.isfinite(part * strength) else 1.0 for part in surface.rgb]
     surface.rgb = tuple(max(part, 0.0) / max(1.0, *parts) for part in parts)
     return surface
@@ -176,7 +182,7 @@ def _is_flat_picture(node):
 
 
 def _coordinates(vector):
-    """(name of the UV map, matrix or None) that a vector input stands for; None if its coordinates are no UV map's."""
+    """(name of the UV map, matrix or None) of a vector input; None if its coordinates come from elsewhere."""
     mapping = None
     for _ in range(4):
         link = link_into(vector)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A copy of what is to be seen of a scene at this frame: modifiers, simulations, instances, hair and particles done."""
+"""A copy of a scene's visible geometry at this frame: with modifiers, simulations, instances, hair and particles."""
 
 import copy
+import itertools
 import math
 from array import array
 
@@ -15,22 +16,22 @@ from ..blend.visibility import rendered_objects
 from .material_colours import PreviewMaterial, surface_of
 from .proxy_meshes import beads, blocks, tubes
 
-INSTANCES = 6000  # copies that are shown; of more, every second, third, …
+INSTANCES = 6000  # that are shown; of more, only every second, third, …
 _TO_MESH = {"CURVE", "SURFACE", "FONT", "META"}
 _AS_THEY_ARE = {"CURVES", "POINTCLOUD", "VOLUME"}
-_INK = "GREASEPENCIL"
-DRAWABLE = {"MESH", _INK, *_TO_MESH, *_AS_THEY_ARE}
+_GREASE_PENCIL = "GREASEPENCIL"
+DRAWABLE = {"MESH", _GREASE_PENCIL, *_TO_MESH, *_AS_THEY_ARE}
 _MOST_PIECES = 12_000
-_BEYOND = 1e12  # metres; not a number is no less
-_STROKE = 0.004  # thickness of a thread, against the size of its object
+_BEYOND = 1e12  # metres; NaN counts as beyond, too
+_STROKE = 0.004  # thickness of a strand, in sizes of its object
 _STRANDS = 2000  # hairs of a system that are shown
 
 
 class Piece:
-    """A drawn thing: ``owner`` is the name of the object that it belongs to, ``data`` is a data-block of the stage's,
-    ``low`` and ``high`` are the ends of its box along the world's axes, ``corners`` those of a box around it."""
+    """A drawn object or instance: ``owner`` is the name of its object, ``data`` belongs to the studio scene, ``low``
+    and ``high`` are the ends of its box along the world's axes, ``corners`` those of a box around it."""
 
-    is_solid = True  # or smoke, threads, dots
+    is_solid = True  # False for smoke, strands, dots
     is_liquid = False
 
     def __init__(self, owner, data, matrix, corners, *, exactly=True):
@@ -46,7 +47,7 @@ class Piece:
         self.high = Vector(max(end[axis] for end in ends) for axis in range(3))
 
     def outline(self, most):
-        """Points in the world that reach about as far as it does: at most so many of its vertices, or its corners."""
+        """Points in the world that outline it: about ``most`` of its vertices, or its corners."""
         if not isinstance(self.data, bpy.types.Mesh) or len(self.data.vertices) < 4:
             return self.corners
         flat = _coordinates(self.data)
@@ -56,11 +57,11 @@ class Piece:
 
 class SceneCopy:
     """``pieces``, and the names of what is missing: ``broken`` (with why), ``hidden`` in the viewport, ``unrendered``,
-    ``empty``; ``left_out`` counts instances, of the objects ``templates``. All data-blocks belong to ``stage``."""
+    ``empty``; ``left_out`` counts instances, of the objects ``templates``. ``studio`` owns all data-blocks."""
 
-    def __init__(self, stage, graph, objects, *, unrendered=False):
-        """Of ``objects`` of the scene (None: of all), with ``unrendered`` also of what renders do not show."""
-        self._stage, self._graph = stage, graph
+    def __init__(self, studio, graph, objects, *, unrendered=False):
+        """Copies ``objects`` of the scene (None: all), with ``unrendered`` also those that renders do not show."""
+        self._studio, self._graph = studio, graph
         self._copies, self._surfaces, self._averages = {}, {}, {}
         self.pieces, self.broken, self.left_out, self.templates = [], {}, 0, set()
         names = None if objects is None else {obj.name for obj in objects}
@@ -75,22 +76,22 @@ class SceneCopy:
         self.unrendered = sorted(not_rendered)
         self.hidden = sorted(candidates - met)
         drawn = {piece.owner for piece in self.pieces}
-        self.empty = sorted((candidates & met) - drawn - set(self.broken) - _balls(layer))
+        self.empty = sorted((candidates & met) - drawn - set(self.broken) - _metaballs(layer))
 
     def take_unevaluated(self, obj):
-        """Takes in an object that Blender has not evaluated, because it is hidden: as it is without modifiers."""
-        data = self._stage.owned(bpy.data.meshes.new_from_object(obj))
+        """Copies an object that is hidden, and so not evaluated: without its modifiers."""
+        data = self._studio.owned(bpy.data.meshes.new_from_object(obj))
         self._finish(obj.name, data, obj, obj.matrix_world.copy())
 
     def _take_all(self, names, rendered):
-        """The names of the objects that Blender shows, and of those among them that renders do not."""
+        """Copies the instances; returns the names of the visible objects, and of those that renders do not show."""
         met, not_rendered, placed, count = set(), set(), set(), 0
         instances = self._graph.object_instances
         step = max(1, math.ceil(len(instances) / INSTANCES))
         for instance in instances:
             if len(self.pieces) > _MOST_PIECES:
                 raise Refused(
-                    f"More than {_MOST_PIECES} objects are too many for one picture: show a part of them."
+                    f"More than {_MOST_PIECES} objects are too many for one picture: preview a part of them."
                 )
             obj = instance.object
             owner = (instance.parent if instance.is_instance else obj).original
@@ -102,7 +103,7 @@ class SceneCopy:
                 continue
             matrix = instance.matrix_world.copy()
             if not _is_finite(matrix):
-                self.broken[owner.name] = "its transform is not finite, or beyond all measure"
+                self.broken[owner.name] = "its transform is not finite, or far too large"
                 continue
             if instance.is_instance:
                 self.templates.add(obj.original.name)
@@ -116,7 +117,7 @@ class SceneCopy:
                 self._take_systems(obj, matrix)
                 if not instance.show_self or _gas_of(obj):
                     continue
-            # Text, curves and metaballs come twice: as themselves, and as an instance of the mesh that they make.
+            # Text, curves and metaballs come twice: as themselves, and as an instance of their mesh.
             is_made = instance.is_instance and obj.type == "MESH" and owner.type in _TO_MESH
             place = (owner.name, tuple(map(tuple, matrix)))
             if is_made and (place, len(obj.data.vertices)) in placed:
@@ -125,7 +126,7 @@ class SceneCopy:
         return met, not_rendered
 
     def _take(self, owner, obj, matrix):
-        """How many vertices the geometry of the object has that was taken in; None for what is no mesh."""
+        """Copies an object's geometry; returns its number of vertices, None if it is not a mesh."""
         if obj.data is None or obj.type not in DRAWABLE:
             return None
         key = (
@@ -145,30 +146,33 @@ class SceneCopy:
             return vertices
         data, corners, vertices = self._copies[key]
         if data is not None:
-            self._take_in(Piece(owner, data, matrix, corners, exactly=False), obj)
+            self._add(Piece(owner, data, matrix, corners, exactly=False), obj)
         return vertices
 
-    def _take_in(self, piece, obj):
+    def _add(self, piece, obj):
         piece.is_liquid = _shows_liquid(obj)
         self.pieces.append(piece)
 
     def _copied(self, obj):
-        """The geometry of an evaluated object; None if it cannot be had."""
-        if obj.type == _INK:  # Workbench can draw it, but takes seconds to get ready for that
-            mesh = tubes(_ink_of(obj.data), max(2 * _pen_of(obj.data), obj.dimensions.length * _STROKE))
-            return self._stage.owned(mesh) if mesh else None
+        """A copy of an evaluated object's geometry; None if there is none."""
+        if obj.type == _GREASE_PENCIL:  # Workbench can draw it, but needs seconds to prepare for it
+            mesh = tubes(
+                _stroke_segments(obj.data),
+                max(2 * _largest_radius(obj.data), obj.dimensions.length * _STROKE),
+            )
+            return self._studio.owned(mesh) if mesh else None
         if obj.type not in _TO_MESH and getattr(obj.data, "shape_keys", None) is None:
-            data = self._stage.owned(obj.data.copy())
+            data = self._studio.owned(obj.data.copy())
             if obj.type != "MESH" or data.vertices:
                 return data
-        # Keys would be copied too, and stay; and a mesh that is being edited shows its copies nothing.
+        # A plain copy would leave shape keys behind, and be empty for a mesh in edit mode.
         try:
-            return self._stage.owned(bpy.data.meshes.new_from_object(obj))
+            return self._studio.owned(bpy.data.meshes.new_from_object(obj))
         except RuntimeError:
             return None
 
     def _finish(self, owner, data, obj, matrix):
-        """Colours a copy and takes it in: (the data-block, its corners), twice None if there is nothing to be seen."""
+        """Colours a copy and adds it: (data-block, corners of its box), (None, None) if there is nothing visible."""
         nothing = (None, None)
         if data is None:
             return nothing
@@ -177,7 +181,7 @@ class SceneCopy:
         if not corners or (not is_mesh and corners[0] == corners[6]):
             return nothing
         if not _is_finite(corners):
-            self.broken[owner] = "its geometry has coordinates that are not finite, or beyond all measure"
+            self.broken[owner] = "its geometry has coordinates that are not finite, or far too large"
             return nothing
         if is_mesh and not data.polygons:
             data = self._thread(data, (corners[-1] - corners[0]).length)
@@ -185,21 +189,21 @@ class SceneCopy:
                 return nothing
         if is_mesh:
             self._colour(data, obj)
-        self._take_in(Piece(owner, data, matrix, corners), obj)
+        self._add(Piece(owner, data, matrix, corners), obj)
         return data, corners
 
     def _thread(self, mesh, size):
-        """A mesh of edges alone as one with surfaces."""
+        """A mesh of edges alone as tubes."""
         edges = ((mesh.vertices[start].co, mesh.vertices[end].co) for start, end in mesh.edge_keys)
         thread = tubes(edges, size * _STROKE)
         if thread is not None:
-            self._stage.owned(thread)
+            self._studio.owned(thread)
             for material in mesh.materials[:1]:
                 thread.materials.append(material)
         return thread
 
     def _surface(self, material, obj):
-        """A surface of one's own, of what was read once."""
+        """A PreviewMaterial for a material on an object, which the caller may change."""
         key = (material.name_full if material else None, tuple(obj.color))
         if key not in self._surfaces:
             self._surfaces[key] = surface_of(material, obj.color, self._averages)
@@ -211,29 +215,29 @@ class SceneCopy:
             material = mesh.materials[at] if at < len(mesh.materials) else None
             if at < len(slots) and slots[at].link == "OBJECT":
                 material = slots[at].material
-            if obj.type == _INK and slots:
+            if obj.type == _GREASE_PENCIL and slots:
                 material = slots[0].material
             surface = self._surface(material, obj)
             if surface.attribute is not None:
                 surface.rgb = _average_of(mesh, surface.attribute) or surface.rgb
-            if surface.image is not None and not _lay_on(mesh, at, surface):
+            if surface.image is not None and not _use_uv_map(mesh, at, surface):
                 surface.image = None
-            preview_material = self._stage.material(surface)
+            preview_material = self._studio.material(surface)
             if at < len(mesh.materials):
                 mesh.materials[at] = preview_material
             else:
                 mesh.materials.append(preview_material)
 
-    # What has no mesh of its own
+    # What has no mesh
 
     def _take_systems(self, obj, matrix):
-        """Hair, particles that are drawn as dots, smoke."""
+        """Adds hair, particles as dots, and smoke."""
         size = max(obj.dimensions.length, 1e-9) * _STROKE
         has_surface = _shows_liquid(obj)
         for system in obj.particle_systems:
             settings = system.settings
             if settings.type == "FLIP" and has_surface:
-                continue  # it is made of them, and stands for them
+                continue  # the liquid's surface stands for them
             if settings.type == "HAIR" and settings.render_type == "PATH":
                 mesh = tubes(_strands(obj, system), size / 2)
             elif settings.type != "HAIR" and settings.render_type in {"HALO", "LINE", "PATH"}:
@@ -264,17 +268,17 @@ class SceneCopy:
     def _take_made(self, obj, mesh, surfaces, matrix):
         if mesh is None:
             return
-        self._stage.owned(mesh)
+        self._studio.owned(mesh)
         for surface in surfaces:
-            mesh.materials.append(self._stage.material(surface))
+            mesh.materials.append(self._studio.material(surface))
         corners = _corners_of(mesh)
         if _is_finite(corners):
             self.pieces.append(Piece(obj.original.name, mesh, matrix, corners))
             self.pieces[-1].is_solid = False
 
 
-def _balls(layer):
-    """Names of metaballs: only one of a family is drawn, for all."""
+def _metaballs(layer):
+    """Names of metaballs: only one of each family is drawn."""
     return {obj.name for obj in layer.objects if obj.type == "META"}
 
 
@@ -283,7 +287,7 @@ def _is_finite(vectors):
 
 
 def _corners_of(mesh):
-    """The eight corners of a mesh's box, not a number if a coordinate is none; None for a mesh without vertices."""
+    """The eight corners of a mesh's box, one NaN if a coordinate is not finite; None without vertices."""
     if not mesh.vertices:
         return None
     flat = _coordinates(mesh)
@@ -301,7 +305,7 @@ def _coordinates(mesh):
 
 
 def _keeps_axes(matrix):
-    """Whether a box along the axes is still one when moved by the matrix."""
+    """Whether the matrix keeps boxes along the axes."""
     return all(sum(abs(part) > 1e-7 * max(map(abs, row[:3])) for part in row[:3]) <= 1 for row in matrix[:3])
 
 
@@ -315,8 +319,8 @@ def _average_of(mesh, name):
     return tuple(sum(values[at::4]) / len(attribute.data) for at in range(3))
 
 
-def _lay_on(mesh, slot, surface):
-    """Makes the UV map of a picture the active one, moved as its mapping says; False if there is no such map."""
+def _use_uv_map(mesh, slot, surface):
+    """Activates the UV map of an image, with its mapping applied; False if there is no such map."""
     layers = mesh.uv_layers
     layer = layers.get(surface.uv_map) if surface.uv_map else layers.active
     if layer is None:
@@ -338,27 +342,27 @@ def _strands(obj, system):
     for number in range(0, count, max(1, count // _STRANDS)):
         points = [system.co_hair(obj, particle_no=number, step=step) for step in range(steps + 1)]
         points = [point for point in points if point.length_squared > 0]
-        yield from zip(points, points[1:])  # noqa: B905, RUF007 - not in Python 3.9
+        yield from itertools.pairwise(points)
 
 
 def _strokes(data):
-    """(layer, stroke) of a drawing, as far as they are shown."""
+    """(layer, stroke) of a drawing, that are visible."""
     for layer in data.layers:
         frame = None if layer.hide else layer.current_frame()
         for stroke in frame.drawing.strokes if frame else ():
             yield layer, stroke
 
 
-def _pen_of(data):
+def _largest_radius(data):
     """The largest radius of its strokes."""
     return max((point.radius for _, stroke in _strokes(data) for point in stroke.points), default=0.0)
 
 
-def _ink_of(data):
+def _stroke_segments(data):
     """Line segments of a drawing."""
     for layer, stroke in _strokes(data):
         points = [layer.matrix_local @ point.position for point in stroke.points]
-        yield from zip(points, points[1:])  # noqa: B905, RUF007 - not in Python 3.9
+        yield from itertools.pairwise(points)
 
 
 def _gas_of(obj):
@@ -368,7 +372,7 @@ def _gas_of(obj):
 
 
 def _shows_liquid(obj):
-    """Whether an object is a domain with the surface of its liquid for a mesh; without, it shows its own."""
+    """Whether an object is a domain that shows the surface of its liquid, not its own mesh."""
     domain = domain_of(obj, shown_only=True)
     if domain is None or domain.domain_type != "LIQUID" or not domain.use_mesh:
         return False

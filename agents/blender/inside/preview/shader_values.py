@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What colour or number arrives at a socket of a shader tree, where a texture counts as its average.
+"""The colour or number that arrives at a socket of a shader tree; a texture counts as its average.
 
 Colours are scene-linear RGB.
 """
@@ -11,48 +11,48 @@ import bpy
 from mathutils import Color
 
 GREY = (0.5, 0.5, 0.5)
-_DEEPEST = 40  # nodes on one way: trees may be long, and broken ones may run in circles
-_SMALL = 1024  # pixels a side of a picture that is read as a whole;
-_THUMB = 8  # a larger one is shrunk to so many
+_DEEPEST = 40  # nodes in a chain: broken trees may have circles
+_SMALL = 1024  # pixels; an image of up to this size squared is read as a whole,
+_THUMB = 8  # a larger one is shrunk to this size
 
 
 class ShaderReader:
-    """Reads one tree. ``averages`` of pictures, by name, are kept for the next one.
+    """Reads one tree. ``averages``: of images, by name, a cache shared between trees.
 
-    ``attribute``: the name of the colour attribute that was met last, None if there was none.
+    ``attribute``: the name of the colour attribute that was read last, or None.
     """
 
     def __init__(self, object_colour, averages):
         self.object_colour = tuple(object_colour)[:3]
         self.averages = averages
         self.attribute = None
-        self._groups = ()  # the group nodes that lead to where it reads, innermost last
+        self._groups = ()  # the group nodes around the current node, innermost last
         self._depth = 0
 
     def colour(self, socket):
-        """The colour that an input takes."""
+        """The colour at an input."""
         if link_into(socket) is None:
             return _rgb(getattr(socket, "default_value", GREY))
         return self.follow(socket, self._colour_of, _rgb) or GREY
 
     def number(self, socket, otherwise=0.5):
-        """The number that an input takes; ``otherwise`` if there is no such input."""
+        """The number at an input; ``otherwise`` if there is none."""
         if socket is None:
             return otherwise
         return sum(self.colour(socket)) / 3
 
     def named(self, node, name, otherwise=0.5):
-        """The number that a node's input of that name takes."""
+        """The number at a node's input of that name."""
         return self.number(node.inputs.get(name), otherwise)
 
     def source(self, socket):
-        """The node that an input hangs on."""
+        """The node that an input is linked to."""
         return self.follow(socket, lambda node, _out: node)
 
     def follow(self, socket, read, value=None):
-        """What ``read`` (node, output) makes of what an input hangs on, seen through reroutes, groups and muted nodes.
+        """The result of ``read(node, output)`` for what feeds an input, through reroutes, groups and muted nodes.
 
-        ``value`` reads an input that hangs on nothing, at a group's border.
+        ``value`` reads the default of an unlinked input of a group node.
         """
         link = link_into(socket)
         if link is None:
@@ -73,7 +73,7 @@ class ShaderReader:
             self._groups, self._depth = groups, self._depth - 1
 
     def _through(self, node, out):
-        """(the input that an output only hands on, the groups around that); the output itself if it makes a value."""
+        """(the input that an output only passes on, the groups around it); the output itself if it is computed."""
         groups = self._groups
         if node.bl_idname == "NodeReroute":
             return node.inputs[0], groups
@@ -100,7 +100,7 @@ class ShaderReader:
         if kind.startswith("Tex"):
             ends = [node.inputs.get(name) for name in ("Color1", "Color2")]
             return between(*map(self.colour, ends), 0.5) if all(ends) and out.name == "Color" else GREY
-        # What is not known is taken to let its colour through.
+        # An unknown node is assumed to pass its colour on.
         through = next((entry for entry in node.inputs if entry.type == "RGBA" and entry.enabled), None)
         return self.colour(through) if through is not None else None
 
@@ -111,7 +111,7 @@ class ShaderReader:
 
 
 def link_into(socket):
-    """The link that gives an input its value; None where there is none that holds."""
+    """The valid link into an input; None if there is none."""
     return next((link for link in socket.links if link.is_valid and not link.is_muted), None)
 
 
@@ -122,7 +122,7 @@ def bounded(value):
 
 def between(first, second, share):
     """From one colour (0) to another (1)."""
-    return tuple(a + (b - a) * share for a, b in zip(first, second))  # noqa: B905 - Python 3.9 has no strict
+    return tuple(a + (b - a) * share for a, b in zip(first, second, strict=True))
 
 
 def _same(sockets, socket):
@@ -140,7 +140,7 @@ def _rgb(value):
 
 
 def _average_of(image):
-    """The average colour of a picture; None if it cannot be read."""
+    """The average colour of an image; None if it cannot be read."""
     values = _values_of(image)
     channels = image.channels
     if not values or not channels:
@@ -153,7 +153,7 @@ def _average_of(image):
 
 
 def _values_of(image):
-    """All values of a picture, or of a small copy if it is large; none if it cannot be read."""
+    """All values of an image, or of a small copy if it is large; () if it cannot be read."""
     if image.size[0] * image.size[1] <= _SMALL**2 or image.is_dirty:
         values = array("f", bytes(4 * len(image.pixels)))
         if values:
@@ -285,7 +285,7 @@ _KNOWN = {
     "CombineRGB": _combined,
     "Blackbody": _blackbody,
     "Math": _math,
-    # Weights of what is seen at a glancing angle: over a whole body, little.
+    # Weights of glancing angles: small on average.
     "Fresnel": lambda _reader, _node: (0.1,) * 3,
     "LayerWeight": lambda _reader, _node: (0.2,) * 3,
 }

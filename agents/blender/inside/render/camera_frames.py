@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders the scene's own camera view, a frame a call; every call leaves the scene's settings as they were."""
+"""Renders the view of the scene's camera, a frame for each call, and restores the scene's settings after it."""
 
 import contextlib
 import os
@@ -13,23 +13,24 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.simulation_zones import objects_with_zones
+from ..blend.temporary import temporary_settings, without_render_result
 from ..physics import caches
 from ..state.fingerprint import fingerprint
 from .shot_settings import settings_for, shot_of
 
 _STILL_FRAME = 1  # the frame at which scenes are compared
-_BACK_SECONDS = 20.0  # of stepping back to where the scene stood
+_BACK_SECONDS = 20.0  # for stepping back to the frame before
 _DENOISER = "Build without OpenImageDenoiser"  # as Cycles says it
 _SAMPLE = re.compile(r"Sample (\d+)/(\d+)")
 _REMAINING = re.compile(r"Remaining:\s*([\d:.]+)")
 
 
 def plan(arguments, report):
-    """What to render with which settings, after what was asked for and what the scene has; renders nothing.
+    """Chooses what to render and how, from the request and the scene; renders nothing.
 
-    Returns ``shot`` (see shot_of), ``scene`` (see fingerprint), ``unbaked`` (caches.unbaked and simulation
-    zones), ``notes``, and where the scene stands: ``current``, ``subframe``, ``frame_start``, ``frame_end``, ``fps``.
-    What is not baked is made to begin afresh, and the scene stays at frame 1 then.
+    Returns ``shot`` (see shot_of), ``scene`` (see fingerprint), ``unbaked`` (caches.unbaked and simulation zones),
+    ``notes``, and the timeline: ``current``, ``subframe``, ``frame_start``, ``frame_end``, ``fps``, ``fps_base``. If a
+    simulation is not baked, it is made to start again, and the scene stays at frame 1.
     """
     del report
     scene = bpy.context.scene
@@ -37,7 +38,7 @@ def plan(arguments, report):
     shot = shot_of(scene, arguments, notes)
     current, subframe = scene.frame_current, scene.frame_subframe
     unbaked = [*caches.unbaked(scene), *_zones(scene)]
-    with _Settings(settings_for(scene, shot, shot["samples"], "")):
+    with temporary_settings(settings_for(scene, shot, shot["samples"], "")):
         scene.frame_set(_STILL_FRAME)
         digests = fingerprint(scene)
     if unbaked:
@@ -60,7 +61,7 @@ def plan(arguments, report):
 
 
 def step(arguments, report):
-    """Goes through the frames ``first`` to ``last`` for ``seconds`` at most; returns the last one reached."""
+    """Steps through the frames ``first`` to ``last`` for at most ``seconds``; returns the last frame reached."""
     scene = bpy.context.scene
     first, last = arguments["first"], arguments["last"]
     deadline = time.monotonic() + arguments["seconds"]
@@ -75,42 +76,33 @@ def step(arguments, report):
 def render_frame(arguments, report):
     """Renders ``frame`` of ``shot`` with ``samples`` into ``path`` (PNG). Returns the seconds it took.
 
-    The scene stays at that frame: who renders the next one goes on from there.
+    The scene stays at that frame, so that the next one can go on from there.
     """
     scene = bpy.context.scene
     shot, path = arguments["shot"], arguments["path"]
-    had_result = "Render Result" in bpy.data.images
     started = time.perf_counter()
     try:
-        with _Settings(settings_for(scene, shot, arguments["samples"], path)), _Watched(report):
+        settings = temporary_settings(settings_for(scene, shot, arguments["samples"], path))
+        with without_render_result(), settings, _ProgressReports(report):
             scene.frame_set(arguments["frame"])
             bpy.ops.render.render(write_still=True, scene=scene.name)
     except RuntimeError as error:
-        said = str(error).strip()[:600]
-        if _DENOISER in said:
-            said = f"{said}. This Blender has no denoiser: pass denoise=false"
-        raise Refused(f"Blender cannot render this: {said}") from None
-    finally:
-        drop_result(had_result)
+        message = str(error).strip()[:600]
+        if _DENOISER in message:
+            message = f"{message}. This Blender was built without a denoiser: pass denoise=false"
+        raise Refused(f"Blender could not render this: {message}") from None
     sys.stdout.flush()
     if not os.path.isfile(path):
-        raise Refused(f"{shot['engine']} left no picture.")
+        raise Refused(f"{shot['engine']} wrote no picture.")
     return time.perf_counter() - started
 
 
 def put_back(arguments, report):
-    """The scene goes back to ``frame``, ``subframe``; steps from ``first``, unless that is None or takes long."""
+    """Takes the scene back to ``frame`` and ``subframe``, in steps from ``first`` unless that is None or takes long."""
     frame, first = arguments["frame"], arguments["first"]
     if first is not None and first < frame:
         step({"first": first, "last": frame - 1, "seconds": _BACK_SECONDS}, report)
     bpy.context.scene.frame_set(frame, subframe=arguments["subframe"])
-
-
-def drop_result(had):
-    """Rendering leaves its picture among the images; it goes, unless one was there before."""
-    result = bpy.data.images.get("Render Result")
-    if result is not None and not had:
-        bpy.data.images.remove(result)
 
 
 def _zones(scene):
@@ -126,28 +118,8 @@ def _zones(scene):
     ]
 
 
-class _Settings:
-    """Sets what is wanted, and puts it back; in the same order, since some settings bound others."""
-
-    def __init__(self, wanted):
-        self._wanted = list(wanted)
-
-    def __enter__(self):
-        self._before = [(owner, name, getattr(owner, name)) for owner, name, _ in self._wanted]
-        try:
-            for owner, name, value in self._wanted:
-                setattr(owner, name, value)
-        except BaseException:
-            self.__exit__()
-            raise
-
-    def __exit__(self, *error):
-        for owner, name, value in self._before:
-            setattr(owner, name, value)
-
-
-class _Watched:
-    """Reports how far the engine is with a frame, as a share of it. Engines tell from threads of their own."""
+class _ProgressReports:
+    """Reports the engine's progress with a frame, as a share. Engines call it from their own threads."""
 
     def __init__(self, report):
         self._report = report

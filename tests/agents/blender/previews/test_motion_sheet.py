@@ -50,13 +50,13 @@ o.keyframe_insert('rotation_euler', frame=1)
 o.location.x, o.rotation_euler.z = 10, 6.283185307
 o.keyframe_insert('location', frame=49)
 o.keyframe_insert('rotation_euler', frame=49)
-from snapshot import curves_of
+from simworlds_worker.blend.fcurves import curves_of
 for curve in curves_of(o):
     for key in curve.keyframe_points:
         key.interpolation = 'LINEAR'
 """
 STATE = """
-from fingerprint import fingerprint
+from simworlds_worker.state.fingerprint import fingerprint
 s = bpy.context.scene
 w = s.rigidbody_world
 blocks = {name: len(getattr(bpy.data, name)) for name in dir(bpy.data)
@@ -294,7 +294,7 @@ def test_what_is_in_a_closed_room_is_seen(studio: Studio) -> None:
 def test_a_simulation_that_ends_early_or_stands_still_is_told_with_why(studio: Studio) -> None:
     studio.run(FALL + "s.rigidbody_world.point_cache.frame_end = 15\ns.use_gravity = False")
     notes = actor(studio.use(TOOL, actors=["Crate"], frames=[1, 30]), "Crate")["notes"]
-    assert "Simulated up to frame 15 only: the rigid-body world." in notes
+    assert "Simulated only up to frame 15: the rigid-body world." in notes
     assert any("does not move" in note and "no gravity" in note for note in notes)
 
 
@@ -318,7 +318,7 @@ def test_motion_that_is_not_the_same_twice_is_told(studio: Studio) -> None:
         "bpy.app.handlers.frame_change_pre.append(wander)"
     )
     notes = actor(studio.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")["notes"]
-    assert any("does not repeat" in note for note in notes)
+    assert any("not repeatable" in note for note in notes)
 
 
 def test_what_cannot_be_seen_is_told(studio: Studio) -> None:
@@ -355,7 +355,7 @@ def test_progress_is_told_as_frames_go_by(studio: Studio) -> None:
 @pytest.mark.parametrize(
     ("asked", "told"),
     [
-        ({"actors": ["Crait"]}, "Near: 'Crate'"),
+        ({"actors": ["Crait"]}, "Nearest: 'Crate'"),
         ({"actors": []}, "actors"),
         ({"actors": ["Crate"] * 2}, "twice"),
         ({"actors": [f"A{n}" for n in range(9)]}, "actors"),
@@ -394,6 +394,6 @@ def test_what_is_not_in_the_view_layer_is_refused(studio: Studio) -> None:
 
 def test_an_answer_that_executed_code_forged_is_not_believed(own_studio: Studio) -> None:
     own_studio.run(FALL)
-    own_studio.run("import motion_sheet\nmotion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}")
+    own_studio.run("from simworlds_worker.motion import motion_sheet\nmotion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}")
     with pytest.raises(ToolBroke, match="cannot be understood"):
         own_studio.use(TOOL, actors=["Crate"])
