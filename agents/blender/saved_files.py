@@ -170,7 +170,7 @@ def look_afresh(launch: Launch, blend: Path, *, timeout: float) -> Seen:
         try:
             process = BlenderProcess(fresh)
             try:
-                return checked(Seen, process.call("look", {"path": str(blend)}, timeout=timeout).value)
+                return checked(Seen, process.call("inspect", {"path": str(blend)}, timeout=timeout).value)
             finally:
                 process.kill()
         except BlenderError as error:

@@ -54,7 +54,7 @@ def save(arguments, report):
     }
 
 
-def look(arguments, report):
+def inspect(arguments, report):
     """Opens ``path`` in a process that ends afterwards; returns ``objects`` and ``caches`` found in it."""
     del report
     read_file(arguments["path"])

@@ -59,7 +59,7 @@ def run(session: Session, asked: Verify, call: Call) -> Result:
     rules, plan = _rules(asked.rules), _plan(asked.plan)
     blender = session.blender
     with blender.alone():
-        stands = blender.call("stand_at", {"frame": None}, timeout=_SECONDS, given_up=call.given_up).value
+        stands = blender.call("go_to_frame", {"frame": None}, timeout=_SECONDS, given_up=call.given_up).value
         report = verify_scene(blender, rules, plan, call)
         checked = Checked(
             rules,

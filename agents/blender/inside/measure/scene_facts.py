@@ -17,7 +17,7 @@ _CHANNELS = {*_TRANSFORMS, *(f"delta_{channel}" for channel in _TRANSFORMS)}
 _WITHOUT_MOTION = ("hide_", "show_", "visible_", "color", "pass_index", "rigid_body.", "[")
 
 
-def snapshot(arguments, report):
+def scene_facts(arguments, report):
     """The facts, as agents.protocol.facts describes them. Raises Refused if Blender cannot evaluate the scene."""
     del arguments, report
     if circle := _circle_of(bpy.data.collections):

@@ -11,7 +11,7 @@ from ..physics.caches import renew, unbaked
 _MOST_FRAMES = 5000
 
 
-def stand_at(arguments, report):
+def go_to_frame(arguments, report):
     """Takes the scene to ``frame`` (None: it stays): in one jump, or step by step if a simulation is not baked.
 
     Returns the ``scene``'s name and its current ``frame``. Raises Refused if that needs too many frames.

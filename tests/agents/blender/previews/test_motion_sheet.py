@@ -394,6 +394,9 @@ def test_what_is_not_in_the_view_layer_is_refused(studio: Studio) -> None:
 
 def test_an_answer_that_executed_code_forged_is_not_believed(own_studio: Studio) -> None:
     own_studio.run(FALL)
-    own_studio.run("from simworlds_worker.motion import motion_sheet\nmotion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}")
+    own_studio.run(
+        "from simworlds_worker.motion import motion_sheet\n"
+        "motion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}"
+    )
     with pytest.raises(ToolBroke, match="cannot be understood"):
         own_studio.use(TOOL, actors=["Crate"])
