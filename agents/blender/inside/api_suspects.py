@@ -14,14 +14,14 @@ _LISTED = 12  # existing names that are listed for a missing one
 _SIDE_EFFECT_FREE = (ast.Name, ast.Attribute, ast.Subscript, ast.Constant, ast.Load)
 
 
-def suspect(error, frame, line, span):  # noqa: PLR0911 - one return for each kind of error
+def documentation_query(error, frame, line, span):  # noqa: PLR0911 - one return for each kind of error
     """The query that explains ``error``, or "" where the documentation has nothing to say.
 
     ``line`` is the source of the line that failed, ``span`` the first and last column of what failed on it.
     """
     words = str(error)
     if isinstance(error, AttributeError) and isinstance(getattr(error, "name", None), str):
-        path = _path_of(error.obj)
+        path = _documented_name(error.obj)
         return f"{path}.{error.name}" if path else ""
     if _is_missing_key(error):
         return _missing_key(frame, line, span)
@@ -41,7 +41,7 @@ def suspect(error, frame, line, span):  # noqa: PLR0911 - one return for each ki
     return ""
 
 
-def _path_of(value):
+def _documented_name(value):
     """The documentation's name of a value's type or module; "" if it is not Blender's."""
     kind = value if isinstance(value, type) else type(value)
     if isinstance(value, type(bpy)):
@@ -104,7 +104,7 @@ def _failed_lookup(frame, line, span):
         try:
             source = compile(ast.Expression(owner), "<owner>", "eval")
             owner_value = eval(source, frame.f_globals, frame.f_locals)  # noqa: S307 - names and attributes alone
-            path = _path_of(owner_value)
+            path = _documented_name(owner_value)
         except Exception:
             continue
         if path:

@@ -9,7 +9,7 @@ import traceback
 import bpy
 
 from . import interpreter_state
-from .api_suspects import existing_names, suspect
+from .api_suspects import documentation_query, existing_names
 from .changes import ChangeWatch
 
 FILE = "<blender_execute>"
@@ -85,7 +85,7 @@ def _describe_error(error, code):
     if frame is not None and line:
         try:
             failed = lines[line - 1] if line <= len(lines) else ""
-            ask = suspect(error, frame, failed, span)
+            ask = documentation_query(error, frame, failed, span)
             there = existing_names(error, frame, failed, span)
         except Exception as fault:
             sys.stderr.write(f"(could not tell what the error is about: {fault!r})\n")

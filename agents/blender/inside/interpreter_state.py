@@ -133,7 +133,7 @@ class InterpreterState:
         self._restore()
         left = []
         if threads := self._left_threads():
-            left.append(f"{threads} thread{'s' if threads > 1 else ''} that it started and did not end")
+            left.append(f"{threads} thread{'s' if threads > 1 else ''} of its own still running")
         if self._audited:
             left.append("an audit hook, which Python cannot remove")
         return left

@@ -16,7 +16,7 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from .blend.file_io import SCENE_FILE, make_own, read_file, reason
-from .physics.caches import find_caches
+from .physics.caches import file_prefix, find_caches
 
 _CACHES = "caches"  # in the workspace: where fluids are baked to
 _PACKED_SOURCES = {"FILE", "TILED"}
@@ -110,18 +110,18 @@ def kept_caches():
                 "outdated": cache.outdated,
                 "range": list(cache.range),
                 "where": "memory" if cache.folder is None else "disk",
-                **_held(cache),
+                **_frame_counts(cache),
             }
     return list(entries.values())
 
 
-def _held(cache):
+def _frame_counts(cache):
     """``frames``: how many exist; ``missing``: how many more there should be."""
     frames, missing = cache.frames, cache.missing
     if cache.points is None or cache.folder is None:
         return {"frames": frames, "missing": missing}
     # For point caches on disk, Blender reports frames that may since have been deleted.
-    count = len({name.rsplit("_", 2)[1] for name in _names(cache.folder, cache)})
+    count = len({name.rsplit("_", 2)[1] for name in _cache_files(cache.folder, cache)})
     return {"frames": count, "missing": max(0, frames + missing - count)}
 
 
@@ -199,13 +199,13 @@ def _folders():
                 holder, attribute = modifier, "bake_directory"
             else:
                 continue
-            name = _free(stem, lambda name: name.lower() in taken)
+            name = _unused_name(stem, lambda name: name.lower() in taken)
             taken.add(name.lower())
             folders.append(_Folder(holder, attribute, name))
     return folders
 
 
-def _free(stem, is_taken):
+def _unused_name(stem, is_taken):
     name, number = stem, 1
     while is_taken(name):
         number += 1
@@ -216,12 +216,12 @@ def _free(stem, is_taken):
 def _redirect(undo, beside, workspace):
     """Makes folders of the workspace point below ``beside``; yields their files."""
     for folder in _folders():
-        if _below(folder.real, workspace) is None or not os.path.isdir(folder.real):
+        if _relative_to(folder.real, workspace) is None or not os.path.isdir(folder.real):
             continue
         undo.callback(setattr, folder, "path", folder.path)
         folder.path = f"//{beside}/{folder.name}"
         for place, _, names in os.walk(folder.real):
-            inside, below = _below(place, workspace), os.path.relpath(place, folder.real)
+            inside, below = _relative_to(place, workspace), os.path.relpath(place, folder.real)
             for file_name in names:
                 yield [
                     os.path.join(inside, file_name),
@@ -231,12 +231,12 @@ def _redirect(undo, beside, workspace):
 
 def _bring_folder(folder, workspace, *, lent):
     """Brings a folder of caches into the workspace, where it can be baked again."""
-    inside = _below(folder.real, workspace)
+    inside = _relative_to(folder.real, workspace)
     if inside is not None and not lent:
         folder.path = f"//{inside}"
         return
     own = os.path.join(workspace, _CACHES)
-    name = _free(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
+    name = _unused_name(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
     if os.path.isdir(folder.real):
         os.makedirs(own, exist_ok=True)
         (shutil.move if lent else shutil.copytree)(folder.real, os.path.join(own, name))
@@ -244,10 +244,10 @@ def _bring_folder(folder, workspace, *, lent):
 
 
 def _point_files(workspace):
-    for cache in _on_disk():
-        inside = _below(cache.folder, workspace)
+    for cache in _disk_caches():
+        inside = _relative_to(cache.folder, workspace)
         if inside is not None:
-            for name in _names(cache.folder, cache):
+            for name in _cache_files(cache.folder, cache):
                 yield [os.path.join(inside, name), name]
 
 
@@ -257,15 +257,15 @@ def _bring_points(path, workspace):
     target = os.path.join(workspace, f"blendcache_{os.path.splitext(SCENE_FILE)[0]}")
     if source == target:
         return
-    for cache in _on_disk():
-        for name in _names(target, cache):
+    for cache in _disk_caches():
+        for name in _cache_files(target, cache):
             os.remove(os.path.join(target, name))
-        for name in _names(source, cache):
+        for name in _cache_files(source, cache):
             os.makedirs(target, exist_ok=True)
             shutil.copyfile(os.path.join(source, name), os.path.join(target, name))
 
 
-def _on_disk():
+def _disk_caches():
     """The point caches on disk, beside the .blend."""
     for scene in bpy.data.scenes:
         for cache in find_caches(scene):
@@ -273,9 +273,9 @@ def _on_disk():
                 yield cache
 
 
-def _names(folder, cache):
-    """The files of a point cache: named by itself, or after its object in hexadecimal."""
-    start = (cache.points.name or cache.owner.name.encode(errors="surrogateescape").hex().upper()) + "_"
+def _cache_files(folder, cache):
+    """The names of a point cache's files in a folder."""
+    start = file_prefix(cache.points, cache.owner)
     try:
         names = os.listdir(folder)
     except OSError:
@@ -287,7 +287,7 @@ def _absolute(path):
     return os.path.normpath(bpy.path.abspath(path))
 
 
-def _below(path, workspace):
+def _relative_to(path, workspace):
     """The path within the workspace; None for one outside."""
     real, root = os.path.realpath(path), os.path.realpath(workspace)
     return os.path.relpath(real, root) if real == root or real.startswith(root + os.sep) else None
@@ -321,13 +321,13 @@ def _external_files(apart=(), visit=None):
         return [
             {"what": "a file", "path": path, "missing": not os.path.exists(path)}
             for path in sorted(paths)
-            if path and not _is_own(path)
+            if path and not _is_cache_folder(path)
         ]
     uses = []
 
     def at(owner, path, _meta):
         real = _absolute(path)
-        if owner.library is not None or path in {"", "<builtin>", *apart} or _is_own(real):
+        if owner.library is not None or path in {"", "<builtin>", *apart} or _is_cache_folder(real):
             return None
         what = f"{owner.bl_rna.name.lower()} {owner.name!r}"
         uses.append({"what": what, "path": real, "missing": not os.path.exists(real)})
@@ -337,7 +337,7 @@ def _external_files(apart=(), visit=None):
     return uses
 
 
-def _is_own(path):
+def _is_cache_folder(path):
     """Whether it is the cache folder that Blender names after a .blend."""
     return os.path.basename(path).startswith("blendcache_")
 

@@ -109,19 +109,21 @@ class _TagPlan:
 def _collection(name, scene):
     if name == scene.collection.name and name not in bpy.data.collections:
         raise Refused(f"{name!r} is the scene's root (L1 of the protocol), which has no tags.")
-    return _named(name, bpy.data.collections, "collection", bpy.data.objects)
+    return _look_up(name, bpy.data.collections, "collection", bpy.data.objects)
 
 
 def _object(name):
-    return _named(name, bpy.data.objects, "object", bpy.data.collections)
+    return _look_up(name, bpy.data.objects, "object", bpy.data.collections)
 
 
-def _named(name, blocks, word, others):
+def _look_up(name, blocks, word, others):
     block = blocks.get(name)
     if block is None:
         if name in others:
             other = "collection" if word == "object" else "object"
-            raise Refused(f"{name!r} is not {_a(word)} but {_a(other)}; name it among the {other}s.")
+            raise Refused(
+                f"{name!r} is not {_article(word)} but {_article(other)}: name it among the {other}s."
+            )
         raise Refused(f"There is no {word} called {name!r}. {_name_hint(name, blocks, word)}")
     if block.library is not None:
         raise Refused(f"{name!r} is linked from {block.library.filepath}; its tags can only be set there.")
@@ -154,7 +156,7 @@ def _check_root(obj, plan):
         return
     if obj.type != "EMPTY":
         raise Refused(
-            f"{obj.name!r} is {_a(obj.type)}, but a root must be an Empty: add one, link it to the object's "
+            f"{obj.name!r} is {_article(obj.type)}, but a root must be an Empty: add one, link it to the object's "
             "collection, parent the meshes to it, and tag the Empty."
         )
     owners = plan.owners.get(obj, ())
@@ -183,7 +185,7 @@ def _check_contacts(obj, plan):
         return
     if not _can_touch(obj, plan):
         raise Refused(
-            f"{obj.name!r} is {_a(obj.type)} and not a root: it has no surface that could touch anything."
+            f"{obj.name!r} is {_article(obj.type)} and not a root: it has no surface that could touch anything."
         )
     if plan.is_requested(obj, CONTACT):
         plan.put(obj, CONTACT, list(dict.fromkeys(_contact_target(name, obj, plan) for name in names)))
@@ -210,7 +212,7 @@ def _contact_target(name, obj, plan):
         raise Refused(f"{obj.name!r} cannot be in contact with itself.")
     if not _can_touch(other, plan):
         raise Refused(
-            f"{obj.name!r} cannot touch {other.name!r}, which is {_a(other.type)} and not a root: it has no surface."
+            f"{obj.name!r} cannot touch {other.name!r}, which is {_article(other.type)}, not a root: it has no surface."
         )
     return other.name
 
@@ -230,7 +232,7 @@ def _warnings(plan, collections, objects):
         concerned += [collection for collection in owners if collection not in concerned]
         if not owners and obj.type in WITH_SURFACE:
             warnings.append(f"C3: {obj.name!r} is in no object (L3): link it to the collection of one.")
-        lost = [name for name in _names(obj.get(CONTACT)) if name not in plan.scene.objects]
+        lost = [name for name in _contact_names(obj.get(CONTACT)) if name not in plan.scene.objects]
         if lost:
             warnings.append(
                 f"V1: {obj.name!r} should touch {_listed(lost)}, but the scene has no such object."
@@ -318,11 +320,11 @@ def _tags_of(block):
     for tag in TAGS:
         value = block.get(tag)
         if value is not None:
-            tags[tag] = _names(value) if tag == CONTACT else value
+            tags[tag] = _contact_names(value) if tag == CONTACT else value
     return tags
 
 
-def _names(value):
+def _contact_names(value):
     """What ``contact_with`` names, however code has put it there."""
     if isinstance(value, str):
         return [value]
@@ -336,6 +338,6 @@ def _listed(names):
     return quoted(names, _LISTED)
 
 
-def _a(word):
+def _article(word):
     word = word.lower().replace("_", " ") if word.isupper() else word
     return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"

@@ -24,7 +24,7 @@ TOOLS = {
     "scene_facts": ("measure.scene_facts", "scene_facts"),
     "measure": ("measure.batch", "measure"),
     "go_to_frame": ("motion.timeline", "go_to_frame"),
-    "findings_image": ("preview.findings_image", "picture"),
+    "findings_image": ("preview.findings_image", "findings_image"),
     "group": ("group", "group"),
     "preview": ("preview.fixed_views", "preview"),
     "motion_sheet": ("motion.motion_sheet", "motion_sheet"),

@@ -43,7 +43,7 @@ def read_file(path):
     try:
         bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
     except RuntimeError as error:
-        raise Refused(f"{os.path.basename(path)} could not be opened: {reason(error)}") from None
+        raise Refused(f"{os.path.basename(path)} cannot be opened: {reason(error)}") from None
 
 
 def make_own(folder):
@@ -51,7 +51,7 @@ def make_own(folder):
     try:
         bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, SCENE_FILE), check_existing=False)
     except RuntimeError as error:
-        raise Refused(f"The folder {folder} could not be written: {reason(error)}") from None
+        raise Refused(f"The folder {folder} cannot be written: {reason(error)}") from None
     bpy.context.preferences.filepaths.save_version = 0
 
 
@@ -73,7 +73,7 @@ def write_file(arguments, report):
                 filepath=path, copy=True, check_existing=False, relative_remap=elsewhere
             )
     except RuntimeError as error:
-        raise Refused(f"{path} could not be written: {reason(error)}") from None
+        raise Refused(f"{path} cannot be written: {reason(error)}") from None
     sys.stdout.flush()
     return {"seconds": time.perf_counter() - started, "bytes": os.path.getsize(path)}
 

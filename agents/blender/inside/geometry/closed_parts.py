@@ -12,7 +12,7 @@ _MOST_PIECES = 2_000
 _SLACK = 3e-4  # metres; a tested solid may have been moved a little (see _nudged)
 
 
-def thinned(rows, most):
+def thin_out(rows, most):
     """At most about ``most`` rows, evenly chosen."""
     return rows[:: len(rows) // most + 1] if len(rows) > most else rows
 
@@ -67,14 +67,14 @@ def _in_closed_parts(solid):
     return (~is_open[known] & is_thick)[pieces]
 
 
-def is_in(solid, other):
+def is_inside(solid, other):
     """Whether a piece of ``solid``, whose surfaces do not cross, is inside the other."""
     first, low, high = _pieces_of(solid)
     first = first[((low >= other.low - _SLACK) & (high <= other.high + _SLACK)).all(axis=1)]
     if not len(first) or closed_parts_of(other).core is None:
         return False
     core = closed_parts_of(other).core
-    for triangle in thinned(first, _MOST_PIECES).tolist():
+    for triangle in thin_out(first, _MOST_PIECES).tolist():
         for place in (solid.points[solid.triangles[triangle]].mean(axis=0), middle_behind(solid, triangle)):
             if place is not None and core.nearest(place)[3] > TOUCH and core.holds(place):
                 return True

@@ -5,7 +5,7 @@ import math
 
 import numpy
 
-from .topology import some, topology_of
+from .topology import spread_numbers, topology_of
 
 _MOST_TRIANGLES = 20_000  # of a solid that are searched for contacts
 _MOST_ALONG = 3_000  # points along their edges
@@ -36,16 +36,20 @@ class ContactPoints:
 
 def contact_points(a, b, within):
     """The points where the surfaces of ``a`` and ``b`` are at most ``within`` apart."""
-    parts = [_dropped(a, b, within), _dropped(b, a, within, swapped=True), _crossed(a, b, within)]
+    parts = [
+        _projected_points(a, b, within),
+        _projected_points(b, a, within, swapped=True),
+        _edge_contacts(a, b, within),
+    ]
     return ContactPoints(*(numpy.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
-def _thinned(places):
+def _thin_out(places):
     """Numbers of some places: all if they are few, else the outermost and some in between."""
     if len(places) <= _MOST_TOUCHES:
         return range(len(places))
     outermost = numpy.unique((places @ _OUTWARDS.T).argmax(axis=0))
-    return sorted({*outermost.tolist(), *some(len(places), _MOST_TOUCHES).tolist()})
+    return sorted({*outermost.tolist(), *spread_numbers(len(places), _MOST_TOUCHES).tolist()})
 
 
 def _near(solid, other, within):
@@ -53,14 +57,14 @@ def _near(solid, other, within):
     corners = solid.points[solid.triangles]
     low, high = other.low - within, other.high + within
     near = numpy.nonzero(((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1))[0]
-    return near[some(len(near), _MOST_TRIANGLES)]
+    return near[spread_numbers(len(near), _MOST_TRIANGLES)]
 
 
-def _dropped(solid, other, within, *, swapped=False):
+def _projected_points(solid, other, within, *, swapped=False):
     """Contact points of corners of ``solid``, and of places along its edges, with ``other``."""
-    shape = topology_of(solid)
+    topology = topology_of(solid)
     near = _near(solid, other, within)
-    places, place_of, triangle_of = _places(shape, near)
+    places, place_of, triangle_of = _places(topology, near)
     low, high = other.low - within, other.high + within
     inside = numpy.nonzero(((places >= low) & (places <= high)).all(axis=1))[0]
     slack = max(1e-5, 2e-6 * float(numpy.abs(other.points).max()))
@@ -71,15 +75,15 @@ def _dropped(solid, other, within, *, swapped=False):
         if foot is not None:
             feet.append((at, foot))
     if not feet:
-        return _none()
-    feet = [feet[at] for at in _thinned(numpy.array([foot for _, foot in feet]))]
+        return _no_points()
+    feet = [feet[at] for at in _thin_out(numpy.array([foot for _, foot in feet]))]
     # A nearest point on an edge belongs to all triangles there, not only to the one that was returned.
     hits = numpy.array([(at, index, *foot) for at, foot in feet for _, _, index, _ in around(foot, slack)])
     hits = hits[_distinct(hits[:, 0].astype(int), topology_of(other).normals[hits[:, 1].astype(int)])]
     ats, others = hits[:, 0].astype(int), hits[:, 1].astype(int)
     of_touches = numpy.isin(place_of, ats)
     place_of, triangle_of = place_of[of_touches], triangle_of[of_touches]
-    chosen = _distinct(place_of, shape.normals[triangle_of])
+    chosen = _distinct(place_of, topology.normals[triangle_of])
     place_of, triangle_of = place_of[chosen], triangle_of[chosen]
     order = numpy.argsort(place_of, kind="stable")
     starts = numpy.searchsorted(place_of[order], numpy.arange(len(places) + 1))
@@ -99,21 +103,21 @@ def _distinct(places, normals):
     return numpy.unique(keys, return_index=True)[1]
 
 
-def corners_and_edges(solid, other):
+def edge_points_in_box(solid, other):
     """Corners of a solid, and places along its edges, that are in another one's box."""
     places = _places(topology_of(solid), _near(solid, other, 0.0))[0]
     return places[((places >= other.low) & (places <= other.high)).all(axis=1)]
 
 
-def _places(shape, near):
+def _places(topology, near):
     """(places, and in two rows: a place's number, a triangle that it is on) of some triangles of a shape."""
-    corners = shape.corners[near]
+    corners = topology.corners[near]
     known, back = numpy.unique(corners, return_inverse=True)
-    places, place_of, triangle_of = [shape.places[known]], [back.reshape(-1)], [numpy.repeat(near, 3)]
+    places, place_of, triangle_of = [topology.places[known]], [back.reshape(-1)], [numpy.repeat(near, 3)]
     edges, back = _edges_of(corners)
     steps = min(_STEPS, _MOST_ALONG // max(len(edges), 1))
     if steps:
-        first, last = shape.places[edges[:, 0]], shape.places[edges[:, 1]]
+        first, last = topology.places[edges[:, 0]], topology.places[edges[:, 1]]
         shares = (numpy.arange(steps) + 1) / (steps + 1)
         along = first[:, None] + shares[None, :, None] * (last - first)[:, None]
         places.append(along.reshape(-1, 3))
@@ -131,13 +135,13 @@ def _edges_of(corners):
     return numpy.stack([keys // count, keys % count], axis=1), back.reshape(-1)
 
 
-def _crossed(a, b, within):
+def _edge_contacts(a, b, within):
     """Contact points between edges that pass close to each other."""
     sides = []
     for solid, other in ((a, b), (b, a)):
-        shape, near = topology_of(solid), _near(solid, other, within)
-        edges, back = _edges_of(shape.corners[near])
-        first, last = shape.places[edges[:, 0]], shape.places[edges[:, 1]]
+        topology, near = topology_of(solid), _near(solid, other, within)
+        edges, back = _edges_of(topology.corners[near])
+        first, last = topology.places[edges[:, 0]], topology.places[edges[:, 1]]
         low, high = other.low - within, other.high + within
         chosen = ((numpy.minimum(first, last) <= high) & (numpy.maximum(first, last) >= low)).all(axis=1)[
             back
@@ -145,7 +149,7 @@ def _crossed(a, b, within):
         sides.append((first[back][chosen], (last - first)[back][chosen], numpy.tile(near, 3)[chosen]))
     (p, d, own), (q, e, others) = sides
     if not len(p) or not len(q) or len(p) * len(q) > _MOST_CROSSINGS:
-        return _none()
+        return _no_points()
     between = p[:, None] - q[None]
     dd, ee, de = (d * d).sum(1)[:, None], (e * e).sum(1)[None], d @ e.T
     dr, er = numpy.einsum("ik,ijk->ij", d, between), numpy.einsum("jk,ijk->ij", e, between)
@@ -159,7 +163,7 @@ def _crossed(a, b, within):
     return here[close], own[i][close], others[j][close]
 
 
-def _none():
+def _no_points():
     return numpy.zeros((0, 3)), numpy.zeros(0, int), numpy.zeros(0, int)
 
 
@@ -170,9 +174,11 @@ def normals_of(a, b, contacts):
     """
     sides = []
     for solid, triangles in ((a, contacts.own), (b, contacts.other)):
-        shape = topology_of(solid)
-        sign = shape.outward[triangles][:, None]
-        sides.append((sign, (shape.normals[triangles], shape.smooth(triangles, contacts.places))))
+        topology = topology_of(solid)
+        sign = topology.outward[triangles][:, None]
+        sides.append(
+            (sign, (topology.normals[triangles], topology.smooth_normals(triangles, contacts.places)))
+        )
     (sign_a, of_a), (sign_b, of_b) = sides
     pairs = []
     for normal in of_a:

@@ -10,8 +10,8 @@ room or a sky, and counts as a sheet.
 import numpy
 from mathutils import Vector
 
-from .closed_parts import TOUCH, closed_parts_of, is_in, middle_behind, thinned
-from .sheet_penetration import reach_through
+from .closed_parts import TOUCH, closed_parts_of, is_inside, middle_behind, thin_out
+from .sheet_penetration import sheet_depth
 from .solids import crossing_pairs
 from .topology import piece_labels
 from .triangle_intersections import IntersectionLines, normals_of, unit
@@ -33,7 +33,7 @@ _AXES = tuple(map(Vector, ((1, 0, 0), (0, 1, 0), (0, 0, 1))))
 _NUDGE, _MOST_NUDGE, _COARSE = 1e-5, 2e-4, 2e-6
 
 
-def crossing(a, b, noise=0.0):
+def penetration(a, b, noise=0.0):
     """(depth, place, reason if it is undecided) of two solids; None if they at most touch.
 
     Also None if their boxes show that they cannot be deeper in each other than ``noise``.
@@ -45,14 +45,14 @@ def crossing(a, b, noise=0.0):
         return None
     a, b = (_nudged(a), b) if len(a.triangles) <= len(b.triangles) else (a, _nudged(b))
     pairs = crossing_pairs(a, b, _MOST_PAIRS)
-    if not len(pairs) and not is_in(a, b) and not is_in(b, a):
+    if not len(pairs) and not is_inside(a, b) and not is_inside(b, a):
         return None
-    lines = IntersectionLines(a, b, thinned(pairs, _MOST_LINES))
+    lines = IntersectionLines(a, b, thin_out(pairs, _MOST_LINES))
     ours, theirs = closed_parts_of(a), closed_parts_of(b)
-    depth, place = _Shared(a, b, lines).depth()
+    depth, place = _SharedVolume(a, b, lines).depth()
     if ours.sheets is not None and theirs.sheets is not None and len(pairs):
-        reach = reach_through(ours.sheets, theirs.sheets)
-        depth, place = max((depth, place), reach, key=lambda reach: reach[0])
+        reach = sheet_depth(ours.sheets, theirs.sheets)
+        depth, place = max((depth, place), reach, key=lambda entry: entry[0])
     return min(depth, ceiling), Vector(place), ""
 
 
@@ -63,7 +63,7 @@ def _coincide(a, b):
     if closed_parts_of(a).core is not None or closed_parts_of(b).core is not None:
         return False
     for solid, other in ((a, b), (b, a)):
-        places = thinned(
+        places = thin_out(
             numpy.concatenate([solid.points, solid.points[solid.triangles].mean(axis=1)]), _MOST_OF_SHEET
         )
         if any(other.nearest(place, TOUCH)[0] is None for place in places.tolist()):
@@ -82,7 +82,7 @@ def _nudged(solid):
 # Solids with an inside
 
 
-class _Shared:
+class _SharedVolume:
     """The volume that two solids share, of which at least one has an inside."""
 
     def __init__(self, a, b, lines):
@@ -101,21 +101,21 @@ class _Shared:
         """(depth, place): of a point of one surface below the other, or of a point inside both."""
         lines = self._lines[0].middles
         best = 0.0, lines[0] if len(lines) else self._lines[0].solid.points[0]
-        best = max(
-            [best, *((depth, place) for depth, place, _ in self._deepest)], key=lambda candidate: candidate[0]
-        )
-        ways = self._ways()
-        for place in () if None in self._cores else self._middles():
+        best = max([best, *((depth, place) for depth, place, _ in self._deepest)], key=lambda entry: entry[0])
+        ways = self._directions_out()
+        for place in () if None in self._cores else self._inner_points():
             shortest = numpy.inf
             for way in ways:
-                shortest = min(shortest, self._way_out(1, place, way) + self._way_out(0, place, -way))
+                shortest = min(
+                    shortest, self._distance_out(1, place, way) + self._distance_out(0, place, -way)
+                )
                 if shortest <= best[0]:
                     break
             else:
                 best = shortest, place
         return best
 
-    def _way_out(self, number, place, way):
+    def _distance_out(self, number, place, way):
         """The distance out of a solid from a place in it or on it."""
         core = self._cores[number]
         if core is None:
@@ -127,22 +127,21 @@ class _Shared:
         inside = normal.dot(way) > 0 if core.oriented else core.holds(start)
         return length + _STEP if inside else 0.0
 
-    def _middles(self):
+    def _inner_points(self):
         """Points in the middle of one solid that are in the other one as well."""
         for ours, theirs in (self._cores, self._cores[::-1]):
             low, high = ours.boxes
             near = numpy.nonzero(((low <= theirs.high) & (high >= theirs.low)).all(axis=1))[0]
-            for triangle in thinned(near, _MIDDLES).tolist():
+            for triangle in thin_out(near, _MIDDLES).tolist():
                 place = middle_behind(ours, triangle)
                 if place is not None and theirs.holds(place):
                     yield place
 
-    def _ways(self):
+    def _directions_out(self):
         """Directions in which the way out may be shortest."""
-        lines, back = self._lines
         ways = [Vector(place) - foot for _, place, foot in self._deepest if foot is not None]
         sides = [_most_frequent(normals_of(lines.solid, lines.ours), _NORMALS) for lines in self._lines]
-        edges = [_most_frequent(_directions(lines), _EDGES) for lines in (lines, back)]
+        edges = [_most_frequent(_edge_directions(lines), _EDGES) for lines in self._lines]
         ways += [Vector(normal) for normals in sides for normal in normals]
         ways += [Vector(edge).cross(Vector(other)) for edge in edges[0] for other in edges[1]]
         ways += _AXES
@@ -155,9 +154,9 @@ def _deepest(solid, core, lines):
     inside = ((solid.points > core.low) & (solid.points < core.high)).all(axis=1)
     places = numpy.concatenate(
         [
-            thinned(solid.points[inside], _MOST_PLACES),
-            thinned(_on_edges(solid, lines), _MOST_PLACES),
-            thinned(_on_faces(solid, lines), _MOST_PLACES),
+            thin_out(solid.points[inside], _MOST_PLACES),
+            thin_out(_points_on_edges(solid, lines), _MOST_PLACES),
+            thin_out(_points_on_faces(solid, lines), _MOST_PLACES),
         ]
     )
     room = numpy.minimum(places - core.low, core.high - places).min(axis=1)
@@ -171,7 +170,7 @@ def _deepest(solid, core, lines):
     return best
 
 
-def _directions(lines):
+def _edge_directions(lines):
     places, _ = lines.solid.welded
     return unit(places[lines.edges[:, 1]] - places[lines.edges[:, 0]])
 
@@ -185,7 +184,7 @@ def _most_frequent(vectors, most):
     return level[first[numpy.argsort(-counts, kind="stable")[:most]]]
 
 
-def _on_edges(solid, lines):
+def _points_on_edges(solid, lines):
     """Points along edges, between where these go through the other surface."""
     if not len(lines.edges):
         return numpy.empty((0, 3))
@@ -203,7 +202,7 @@ def _on_edges(solid, lines):
     return (start[:, None] + along[..., None] * (end - start)[:, None]).reshape(-1, 3)
 
 
-def _on_faces(solid, lines):
+def _points_on_faces(solid, lines):
     """Points on faces: the middle of what goes through them, and between there and its outline."""
     if not len(lines.ours):
         return numpy.empty((0, 3))
@@ -214,7 +213,7 @@ def _on_faces(solid, lines):
     group = group.reshape(-1)
     sizes = numpy.bincount(group)
     centres = numpy.stack([numpy.bincount(group, axis) / sizes for axis in middles.T], axis=1)
-    outline = thinned(numpy.arange(len(middles)), _OUTLINE)
+    outline = thin_out(numpy.arange(len(middles)), _OUTLINE)
     middles, towards = middles[outline], centres[group[outline]]
     tried = [centres, *(towards + share * (middles - towards) for share in _TOWARDS)]
     return numpy.array([solid.nearest(place)[0] for place in numpy.concatenate(tried).tolist()]).reshape(

@@ -4,7 +4,7 @@
 import numpy
 from mathutils import Vector
 
-from .closed_parts import thinned
+from .closed_parts import thin_out
 from .solids import crossing_pairs
 from .topology import piece_labels
 from .triangle_intersections import IntersectionLines, cross, normals_of, unit
@@ -15,10 +15,10 @@ _MOST_OF_PART = 500
 _UPRIGHT = 0.9  # least cosine to the normal at the nearest point of a sheet, unless that is on its rim
 
 
-def reach_through(a, b):
+def sheet_depth(a, b):
     """(depth, place): how far one sheet reaches through another where they cross, on the shallower side."""
     pairs = crossing_pairs(a, b, _MOST_PAIRS)
-    lines = IntersectionLines(a, b, thinned(pairs, _MOST_LINES))
+    lines = IntersectionLines(a, b, thin_out(pairs, _MOST_LINES))
     if not len(lines.ours):
         return 0.0, a.points[0]
     ways = [_Side(lines, pairs[:, 0]).reach(), _Side(lines.swapped(), pairs[:, 1]).reach()]
@@ -91,7 +91,7 @@ class _Side:
         return ends, joined
 
     def _places_of(self, part):
-        return thinned(self._places[self._part == part], _MOST_OF_PART).tolist()
+        return thin_out(self._places[self._part == part], _MOST_OF_PART).tolist()
 
     def _reach_of(self, part):
         """The largest distance of a part from the other sheet."""

@@ -196,7 +196,7 @@ class Solids:
         if key not in self._made:
             if not names:
                 raise Unmeasurable("no object was named")
-            self._made[key] = _as_one(
+            self._made[key] = _merged(
                 " + ".join(names), [(self[name].points, self[name].triangles) for name in names]
             )
         return self._made[key]
@@ -224,7 +224,7 @@ class Solids:
             raise NoSurface(f"{name!r} has no surface")
         if not all(are_finite(points) for points, _ in placed):
             raise NotNumbers(f"{name!r} has coordinates that are not finite")
-        solid = _as_one(name, placed)
+        solid = _merged(name, placed)
         solid.eye = self._eye
         return solid
 
@@ -244,29 +244,29 @@ _CHUNK = 20_000  # triangles that are tested at once if both solids have more
 
 def crossing_pairs(a, b, most):
     """Pairs (n × 2) of triangles of two solids that cross or touch; of very many, about ``most``."""
-    ours, theirs = _reaching(a, b), _reaching(b, a)
+    ours, theirs = _triangles_in_box(a, b), _triangles_in_box(b, a)
     if not len(ours) or not len(theirs):
         return numpy.empty((0, 2), int)
     theirs, other = _tree_of(b, theirs)
     if len(theirs) <= _CHUNK or len(ours) <= _CHUNK:
         ours, tree = _tree_of(a, ours)
-        return _numbered(tree.overlap(other), ours, theirs)
+        return _with_own_numbers(tree.overlap(other), ours, theirs)
     chunks, count = [], 0
     for start in range(0, len(ours), _CHUNK):
         some = ours[start : start + _CHUNK]
-        chunks.append(_numbered(a.part(some).tree.overlap(other), some, theirs))
+        chunks.append(_with_own_numbers(a.part(some).tree.overlap(other), some, theirs))
         count += len(chunks[-1])
         if count >= most:
             break
     return numpy.concatenate(chunks)
 
 
-def _numbered(pairs, ours, theirs):
+def _with_own_numbers(pairs, ours, theirs):
     pairs = numpy.array(pairs, int).reshape(-1, 2)
     return numpy.stack([ours[pairs[:, 0]], theirs[pairs[:, 1]]], axis=1)
 
 
-def _reaching(solid, other):
+def _triangles_in_box(solid, other):
     """The triangles of a solid whose boxes reach into that of another one."""
     low, high = solid.boxes
     # Axis by axis: a reduction over rows of three takes several times as long.
@@ -283,7 +283,7 @@ def _tree_of(solid, chosen):
     return chosen, solid.part(chosen).tree
 
 
-def _as_one(name, parts):
+def _merged(name, parts):
     """A solid of several (points, triangles)."""
     shifts = numpy.cumsum([0, *(len(points) for points, _ in parts)])
     return Solid(

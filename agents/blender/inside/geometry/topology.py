@@ -67,7 +67,7 @@ class SurfaceTopology:
         alike = keys[order][1:] == keys[order][:-1]
         return triangles[order][:-1][alike], triangles[order][1:][alike]
 
-    def face(self, triangle, normal, within):
+    def face_mask(self, triangle, normal, within):
         """Mask of the triangles of the face that a triangle belongs to, as seen along ``normal``.
 
         Those connected to it without a sharp edge, and those in its plane, with a tolerance of ``within``.
@@ -83,7 +83,7 @@ class SurfaceTopology:
         level = (ahead > 0.9994) & (flat <= within)
         return ((patch == patch[triangle]) | level) & (numpy.abs(self.normals @ normal) > 0.3)
 
-    def smooth(self, triangles, places):
+    def smooth_normals(self, triangles, places):
         """Smoothed normals at places on triangles; sharp edges stay sharp."""
         order, starts = self._incident
         vertices = self.corners[triangles].reshape(-1)
@@ -97,7 +97,7 @@ class SurfaceTopology:
         )
         sums = [numpy.bincount(rows, weights * axis, len(vertices)) for axis in others.T]
         normals = unit(numpy.stack(sums, axis=1)).reshape(-1, 3, 3)
-        return unit(numpy.einsum("ij,ijk->ik", self._shares(triangles, places), normals))
+        return unit(numpy.einsum("ij,ijk->ik", self._barycentric(triangles, places), normals))
 
     @functools.cached_property
     def _incident(self):
@@ -115,7 +115,7 @@ class SurfaceTopology:
             angles.append(numpy.arccos(numpy.clip(numpy.einsum("ij,ij->i", edge, other), -1, 1)))
         return numpy.stack(angles, axis=1).reshape(-1)
 
-    def _shares(self, triangles, places):
+    def _barycentric(self, triangles, places):
         """Barycentric coordinates of places on triangles."""
         a, b, c = (self.places[self.corners[triangles, corner]] for corner in range(3))
         opposite = [numpy.cross(c - b, places - b), numpy.cross(a - c, places - c)]
@@ -158,7 +158,7 @@ def piece_labels(count, corners):
     return connected_labels(count, corners[:, :2], corners[:, 1:])
 
 
-def some(count, most):
+def spread_numbers(count, most):
     """Numbers below ``count``: all, or about ``most``, spread evenly but not at a regular step, as meshes have rows."""
     if count <= most:
         return numpy.arange(count)

@@ -23,8 +23,8 @@ class IntersectionLines:
         mine, others = (
             solid.points[solid.triangles[pairs[:, side]]] for side, solid in enumerate((solid, other))
         )
-        shares, places, hit = _through(mine, others)
-        shares_back, places_back, hit_back = _through(others, mine)
+        shares, places, hit = _side_hits(mine, others)
+        shares_back, places_back, hit_back = _side_hits(others, mine)
         there = numpy.concatenate([places, places_back], axis=1)
         valid = numpy.concatenate([hit, hit_back], axis=1)
         along = cross(_normals(mine), _normals(others))
@@ -62,7 +62,7 @@ class IntersectionLines:
         return swapped
 
 
-def _through(corners, others):
+def _side_hits(corners, others):
     """(share along the side, place, whether it hits) of each side (n × 3) of triangles against others, row by row."""
     sides = corners[:, _TURNS] - corners
     base = others[:, None, 0]

@@ -7,11 +7,11 @@ import math
 import bpy
 import numpy
 
-from ..geometry.distances import apart, gap
-from ..geometry.penetration import crossing
+from ..geometry.distances import box_distance, gap
+from ..geometry.penetration import penetration
 from ..geometry.solids import NoSurface, NotNumbers, Solids, Unmeasurable
 from ..geometry.topology import connected_labels
-from .camera_visibility import view
+from .camera_visibility import camera_view
 from .containment import embedding, enclosure
 from .frame_loop import FOLLOWED, Followers, unmeasured_as_answer
 from .openings import opening
@@ -34,10 +34,10 @@ def measure(arguments, report):
         if request["kind"] not in FOLLOWED:
             by_frame.setdefault(request.get("frame"), []).append(place)
     # What is measured at the current frame, before changing it: objects may have been moved off their keys.
-    _answer(requests, by_frame.pop(None, []), answers)
+    _measure_here(requests, by_frame.pop(None, []), answers)
     try:
         for frame in followers.through(by_frame, report):
-            _answer(requests, by_frame.get(frame, []), answers)
+            _measure_here(requests, by_frame.get(frame, []), answers)
     except Unmeasurable as reason:
         for answer in answers:
             if answer.get("unmeasured") == _NOT_REACHED:
@@ -46,7 +46,7 @@ def measure(arguments, report):
     return answers
 
 
-def _answer(requests, places, answers):
+def _measure_here(requests, places, answers):
     if not places:
         return
     solids = Solids()
@@ -61,7 +61,7 @@ def _answer(requests, places, answers):
 def _gap(request, solids):
     ours, theirs = ([*_solids_with_surface(solids, request[side])] for side in "ab")
     best = None
-    for a, b in sorted(itertools.product(ours, theirs), key=lambda pair: apart(*pair)):
+    for a, b in sorted(itertools.product(ours, theirs), key=lambda pair: box_distance(*pair)):
         best = gap(a, b, best[0] if best else math.inf, request["enough"]) or best
         if best[0] <= request["enough"]:
             break
@@ -93,13 +93,13 @@ def _crossings(request, solids):
             undecided.append({"a": name, "b": name, "undecided": str(reason)})
     moving = None if request["moving"] is None else set(request["moving"])
     but = {tuple(sorted(pair)) for pair in request["but"]}
-    for a, b in _near(there):
+    for a, b in _pairs_near(there):
         if moving is not None and a.name not in moving and b.name not in moving:
             continue
         if tuple(sorted((a.name, b.name))) in but:
             continue
         try:
-            shared = crossing(a, b, request["noise"])
+            shared = penetration(a, b, request["noise"])
         except Exception as error:
             undecided.append({"a": a.name, "b": b.name, "undecided": f"{type(error).__name__}: {error}"})
             continue
@@ -119,7 +119,7 @@ def _way_out(a, b):
     return way
 
 
-def _near(solids, within=0.0):
+def _pairs_near(solids, within=0.0):
     """Pairs of solids whose boxes overlap, or are at most ``within`` apart."""
     solids = sorted(solids, key=lambda solid: solid.low[0])
     if len(solids) < 2:
@@ -174,11 +174,11 @@ def _pieces(request, solids):
             name = above[name]
         return name
 
-    for a, b in _near(there, request["most"]):
+    for a, b in _pairs_near(there, request["most"]):
         if top(a.name) != top(b.name):
             share = request["share"] * min(a.diagonal, b.diagonal)
             within = min(request["most"], max(request["least"], share))
-            if gap(a, b, within, within) is not None or crossing(a, b) is not None:
+            if gap(a, b, within, within) is not None or penetration(a, b) is not None:
                 above[top(a.name)] = top(b.name)
     groups = {}
     for solid in there:
@@ -224,5 +224,5 @@ MEASURED = {
     "embedding": embedding,
     "over": over,
     "beside": beside,
-    "view": view,
+    "view": camera_view,
 }

@@ -8,7 +8,7 @@ from mathutils import Vector
 from ..blend.fluids import domain_of
 from ..blend.visibility import rendered_objects
 from ..geometry.solids import Unmeasurable
-from ..motion.mesh_tracker import spread
+from ..motion.mesh_tracker import surface_points
 from .movement import actor_of
 
 _SAMPLES = 1000
@@ -18,7 +18,7 @@ _CLEAR = 0.5  # a surface is see-through from this transmission up, or below thi
 _SEEN_THROUGH = {"BSDF_GLASS", "BSDF_TRANSPARENT", "BSDF_REFRACTION"}
 
 
-def view(request, solids):
+def camera_view(request, solids):
     """The share of objects inside the picture, how much of the picture they cover, and what hides them."""
     scene, graph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
     camera = scene.camera
@@ -32,7 +32,7 @@ def view(request, solids):
     projection = _projection(scene, camera, graph)
     flat = _projected(projection, samples)
     inside = (numpy.abs(flat[:, :3]) <= flat[:, 3:]).all(axis=1) & (flat[:, 3] > 0)
-    result = {"inside": float(inside.mean()), "cover": _cover(_projected(projection, outline))}
+    result = {"inside": float(inside.mean()), "cover": _covered_share(_projected(projection, outline))}
     result["at"] = samples.mean(axis=0).tolist()
     if inside.any():
         result.update(
@@ -48,14 +48,14 @@ def _places(names, solids, graph):
         actor = actor_of((name,))
         if actor.measured in {"particles", "fluid"}:
             state = actor.state_at(graph)
-            points = [] if state is None else [tuple(place) for place in state.some(_SAMPLES)]
+            points = [] if state is None else [tuple(place) for place in state.sample(_SAMPLES)]
             samples.append(numpy.array(points).reshape(-1, 3))
             outline.append(samples[-1])
         if actor.measured == "vertices" or (actor.measured == "particles" and _is_shown(actor.objects[0])):
             surfaces.append(name)
     if surfaces or not samples:
         solid = solids.joined(surfaces or names)
-        samples.append(spread(solid, _SAMPLES))
+        samples.append(surface_points(solid, _SAMPLES))
         outline.append(solid.points)
         if not len(samples[-1]):
             raise Unmeasurable("its faces have no area")
@@ -88,7 +88,7 @@ def _projected(projection, places):
 # Size in the picture
 
 
-def _cover(flat):
+def _covered_share(flat):
     """The share of the picture inside the convex outline of projected points."""
     ahead = flat[flat[:, 3] > 1e-6]
     if len(ahead) < 3:
@@ -107,14 +107,14 @@ def _hull(points):
     for line in (points, points[::-1]):
         half = []
         for point in line:
-            while len(half) > 1 and _left(half[-2], half[-1], point) <= 0:
+            while len(half) > 1 and _orientation(half[-2], half[-1], point) <= 0:
                 half.pop()
             half.append(point)
         halves += half[:-1]
     return halves
 
 
-def _left(a, b, c):
+def _orientation(a, b, c):
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 

@@ -5,7 +5,7 @@ import numpy
 from mathutils import Vector
 
 from ..geometry.solids import Unmeasurable
-from ..motion.contacts import between
+from ..motion.contacts import surface_distance
 
 _PASSED = 0.25  # share of an object's samples that must change sides for it to count as having passed through
 _TESTED = 16  # of the points that seem deepest inside, how many are tested exactly
@@ -30,7 +30,7 @@ class TouchFollower:
             return
         for name in self._request["a"]:
             own = tracker.body(name)
-            places = own.placed(own.samples)
+            places = own.to_world(own.samples)
             last = self._places.get(name)
             self._places[name] = places
             speed = 0.0
@@ -46,7 +46,7 @@ class TouchFollower:
         if frame in self._frames or name in self._request["a"]:
             return
         mine, other = tracker.surface(own.name), tracker.surface(name)
-        if not (mine.there and other.there):
+        if not (mine.exists and other.exists):
             return
         self._looked_at.add(name)
         box, self._boxes[name] = self._boxes.get(name), numpy.array([other.low, other.high])
@@ -54,7 +54,7 @@ class TouchFollower:
         reach = self._request["within"] + mine.slack + other.slack
         if not other.is_near(mine.low, mine.high, reach + speed):
             return
-        if between(mine, other, reach) <= reach:
+        if surface_distance(mine, other, reach) <= reach:
             self._frames.add(frame)
         elif last is not None and _will_meet(own, tracker.body(name), places, last, reach):
             self._frames.add(frame + 1)
@@ -69,17 +69,17 @@ class TouchFollower:
 def _will_meet(own, other, places, last, reach):
     """Whether two objects meet within the next frame if both go on moving as in the last one."""
     ways = (
-        (other, other.seen(last, before=True), other.seen(places)),
+        (other, other.to_own_space(last, before=True), other.to_own_space(places)),
         (
             own,
-            own.seen(other.placed(other.samples, before=True), before=True),
-            own.seen(other.placed(other.samples)),
+            own.to_own_space(other.to_world(other.samples, before=True), before=True),
+            own.to_own_space(other.to_world(other.samples)),
         ),
     )
-    return any(_crossed(body, now, now + (now - before), reach=reach) for body, before, now in ways)
+    return any(_line_hits(body, now, now + (now - before), reach=reach) for body, before, now in ways)
 
 
-def _crossed(body, starts, ends, *, reach=0.0, least=_STILL):
+def _line_hits(body, starts, ends, *, reach=0.0, least=_STILL):
     """Which lines from starts to ends in a body's own space meet its surface, and where: [(number, place), …].
 
     Each is extended by ``reach``; those shorter than ``least`` are ignored.
@@ -111,25 +111,27 @@ class PassageFollower:
         del graph
         for name in self._request["a"]:
             own = tracker.body(name)
-            places = own.placed(own.samples)
+            places = own.to_world(own.samples)
             for other in self._request["b"]:
                 self._pair(frame, own, places, tracker.body(other))
 
     def _pair(self, frame, own, places, other):
         beyond = self._request["beyond"]
         pair = own.name, other.name
-        now, before = other.seen(places), self._seen.get(pair)
+        now, before = other.to_own_space(places), self._seen.get(pair)
         self._seen[pair] = now
         if before is None or len(before) != len(now):
             before = now
-        if not _reaches(other.solid, numpy.minimum(now, before), numpy.maximum(now, before), beyond):
+        if not _may_be_inside(other.solid, numpy.minimum(now, before), numpy.maximum(now, before), beyond):
             return
-        if _is_clear(other.solid, before, now, beyond):
+        if _stays_clear(other.solid, before, now, beyond):
             return
         depths = [_depth(other, now, beyond)]
         if own.solid.closed and other.solid.closed:
-            inside = _depth(own, own.seen(other.placed(other.samples)), beyond)
-            depths.append(inside and (inside[0], other.seen(own.placed(numpy.array([inside[1]])))[0]))
+            inside = _depth(own, own.to_own_space(other.to_world(other.samples)), beyond)
+            depths.append(
+                inside and (inside[0], other.to_own_space(own.to_world(numpy.array([inside[1]])))[0])
+            )
         deepest = max((deep for deep in depths if deep is not None), default=None, key=lambda deep: deep[0])
         if deepest is not None:
             self._note(frame, other, deepest, through=False)
@@ -140,7 +142,7 @@ class PassageFollower:
         before, now = ways
         passed = self._passed.setdefault(pair, set())
         behind = []
-        for number, place in _crossed(other, before, now, least=self._request["beyond"]):
+        for number, place in _line_hits(other, before, now, least=self._request["beyond"]):
             if self._is_through(other.solid, Vector(before[number]), Vector(now[number]), place):
                 passed.add(number)
                 behind.append(((Vector(now[number]) - place).length, now[number]))
@@ -164,7 +166,7 @@ class PassageFollower:
     def _note(self, frame, other, deepest, *, through):
         depth, place = deepest
         if depth > self._result["depth"]:
-            at = other.placed(numpy.array([place]))[0].tolist()
+            at = other.to_world(numpy.array([place]))[0].tolist()
             self._result.update(depth=depth, through=through, frame=frame, at=at)
 
     def result(self):
@@ -172,7 +174,7 @@ class PassageFollower:
         return self._result
 
 
-def _reaches(solid, lows, highs, beyond):
+def _may_be_inside(solid, lows, highs, beyond):
     """Whether points between lows and highs may be ``beyond`` deep in a solid, judging by its box.
 
     Of a flat one: that far on both sides.
@@ -184,7 +186,7 @@ def _reaches(solid, lows, highs, beyond):
     return bool(numpy.where(flat, on_both, deep).all())
 
 
-def _is_clear(solid, before, now, beyond):
+def _stays_clear(solid, before, now, beyond):
     """Whether an object stays so far from a solid that no point of it, nor its path, can be ``beyond`` deep in it.
 
     For a rolling ball, say, this saves the exact test.
@@ -208,7 +210,7 @@ def _depth(body, places, beyond):
     """
     solid = body.solid
     if not solid.closed:
-        return _through(solid, places, beyond)
+        return _sheet_depth(solid, places, beyond)
     inside = ((places >= solid.low + beyond) & (places <= solid.high - beyond)).all(axis=1)
     depths = []
     for place in places[inside].tolist():
@@ -219,7 +221,7 @@ def _depth(body, places, beyond):
     return next((deep for deep in depths[:_TESTED] if solid.holds(deep[1])), None)
 
 
-def _through(sheet, places, beyond):
+def _sheet_depth(sheet, places, beyond):
     sides = {True: (0.0, None), False: (0.0, None)}
     for place in places.tolist():
         foot, normal, _, away = sheet.nearest(place)

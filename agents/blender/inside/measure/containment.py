@@ -6,9 +6,9 @@ import math
 import numpy
 from mathutils import Vector
 
-from ..geometry.contact_points import corners_and_edges
+from ..geometry.contact_points import edge_points_in_box
 from ..geometry.solids import Unmeasurable
-from ..geometry.topology import some, topology_of, unit
+from ..geometry.topology import spread_numbers, topology_of, unit
 
 _SAMPLES = 256
 _PAIRS = 64
@@ -81,7 +81,7 @@ class _Cavity:
         vessel[free] = [self._is_enclosed(place) for place in places[free].tolist()]
         cage = vessel.copy()
         if not vessel.all() and free.any() and self._is_perforated(places[free].mean(axis=0)):
-            cage[free] = [self._seen(place) >= _PAIRS for place in places[free]]
+            cage[free] = [self._directions_with_surface(place) >= _PAIRS for place in places[free]]
         return depths > 0, vessel, cage
 
     def _depths(self, places):
@@ -111,9 +111,9 @@ class _Cavity:
         """Whether it surrounds a point with gaps to see through: a basket, a cage."""
         start = Vector(place)
         hit = sum(self._whole.tree.ray_cast(start, way)[0] is not None for way in _RAYS_AROUND)
-        return hit < _SEEN_THROUGH * self._seen(place)
+        return hit < _SEEN_THROUGH * self._directions_with_surface(place)
 
-    def _seen(self, place):
+    def _directions_with_surface(self, place):
         """In how many directions around a point there is a part of its surface."""
         if self._bars is None:
             self._bars = _samples(self._whole, _BAR_SAMPLES)[0].astype(numpy.float32)
@@ -123,34 +123,34 @@ class _Cavity:
 
 def _samples(solid, count):
     """(points spread evenly over a surface, outward normals there)."""
-    shape = topology_of(solid)
+    topology = topology_of(solid)
     # The same surface has the same samples, whatever the order of its triangles and corners.
-    corners = numpy.sort(shape.corners, axis=1)
-    order = numpy.lexsort(shape.places[corners].mean(axis=1).T)
-    whole = numpy.cumsum(shape.areas[order])
+    corners = numpy.sort(topology.corners, axis=1)
+    order = numpy.lexsort(topology.places[corners].mean(axis=1).T)
+    whole = numpy.cumsum(topology.areas[order])
     if not whole[-1] > 0:
         raise Unmeasurable(f"{solid.name!r} has faces without an area")
     wanted = (numpy.arange(count) + 0.5) / count * whole[-1]
     triangles = order[numpy.minimum(numpy.searchsorted(whole, wanted), len(whole) - 1)]
     steps = numpy.arange(count)
     root, share = numpy.sqrt((steps * 0.754877666 + 0.5) % 1), (steps * 0.569840290 + 0.5) % 1
-    a, b, c = (shape.places[corners[triangles, corner]] for corner in range(3))
+    a, b, c = (topology.places[corners[triangles, corner]] for corner in range(3))
     weights = (1 - root)[:, None], (root * (1 - share))[:, None], (root * share)[:, None]
     places = weights[0] * a + weights[1] * b + weights[2] * c
-    outward = shape.outward[triangles][:, None]
-    return places, shape.normals[triangles] * numpy.where(outward == 0, 1, outward)
+    outward = topology.outward[triangles][:, None]
+    return places, topology.normals[triangles] * numpy.where(outward == 0, 1, outward)
 
 
 def _within_reach(solid, places, slack):
     """Which points are inside the convex hull of a solid, roughly."""
-    shape = topology_of(solid)
-    largest = numpy.argsort(shape.areas)[-_PAIRS:]
+    topology = topology_of(solid)
+    largest = numpy.argsort(topology.areas)[-_PAIRS:]
     ways = numpy.concatenate(
-        [numpy.eye(3), -numpy.eye(3), shape.normals[largest], -shape.normals[largest], _AROUND]
+        [numpy.eye(3), -numpy.eye(3), topology.normals[largest], -topology.normals[largest], _AROUND]
     )
     reach = numpy.full(len(ways), -numpy.inf)
-    for start in range(0, len(shape.places), 20_000):
-        reach = numpy.maximum(reach, (shape.places[start : start + 20_000] @ ways.T).max(axis=0))
+    for start in range(0, len(topology.places), 20_000):
+        reach = numpy.maximum(reach, (topology.places[start : start + 20_000] @ ways.T).max(axis=0))
     return (places @ ways.T <= reach + slack).all(axis=1)
 
 
@@ -158,14 +158,14 @@ def embedding(request, solids):
     """How far a part must move to be out of its host, in the best direction."""
     part, host = solids.joined(request["part"]), solids.joined(request["host"])
     pairs = host.tree.overlap(part.tree)
-    shape = topology_of(host)
+    topology = topology_of(host)
     if host.closed:
-        sunk = [place for place in corners_and_edges(part, host).tolist() if host.holds(place)]
+        sunk = [place for place in edge_points_in_box(part, host).tolist() if host.holds(place)]
         touched = [pair[0] for pair in pairs] or [host.nearest(place)[2] for place in sunk]
-        ways = _most_common(shape.normals[touched] * shape.outward[touched][:, None]) if touched else []
+        ways = _most_common(topology.normals[touched] * topology.outward[touched][:, None]) if touched else []
     else:
-        sunk = part.points[some(len(part.points), _SUNK)].tolist()
-        ways = _up(shape.normals[[pair[0] for pair in pairs]]) if pairs else []
+        sunk = part.points[spread_numbers(len(part.points), _SUNK)].tolist()
+        ways = _directions_out_of_sheet(topology.normals[[pair[0] for pair in pairs]]) if pairs else []
     best = None
     for way in ways:
         deepest = max(
@@ -188,7 +188,7 @@ def _most_common(normals):
     return [mean / numpy.linalg.norm(mean) for mean in means if numpy.linalg.norm(mean) > _STEEP]
 
 
-def _up(normals):
+def _directions_out_of_sheet(normals):
     """Directions out of a sheet: up if it is level, to either side if it is upright."""
     level = numpy.where(normals[:, 2:] < 0, -normals, normals)
     way = level.mean(axis=0)

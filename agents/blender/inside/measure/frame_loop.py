@@ -13,7 +13,7 @@ import bpy
 from ..geometry.solids import Unmeasurable
 from ..motion.mesh_tracker import MeshTracker
 from ..motion.timeline import FrameStepper
-from ..physics.caches import renew
+from ..physics.caches import restart_unbaked
 from .collisions import PassageFollower, TouchFollower
 from .movement import PathFollower, TogetherFollower
 
@@ -68,7 +68,7 @@ class Followers:
                 f"{count} frames would have to be visited{'; bake first' * bool(stepper.stepped_for)}"
             )
         if stepper.stepped_for:
-            renew(bpy.context.scene)  # else Blender would use the state after a jump as a result
+            restart_unbaked(bpy.context.scene)  # else Blender would use the state after a jump as a result
         done, tracker = itertools.count(), MeshTracker()
         with stepper:
             for frame, graph in stepper.through(frames, lambda at: report(next(done), count, f"frame {at}")):

@@ -10,8 +10,8 @@ from mathutils import Matrix, Vector
 
 from ..geometry.solids import Unmeasurable
 from ..motion.actors import Actor
-from ..motion.contacts import between
-from ..motion.trajectories import Track, rotated
+from ..motion.contacts import surface_distance
+from ..motion.trajectories import Track, best_rotation
 
 _POINTS = 1000  # of an actor that are followed
 _NEAREST = 0.1  # share of an actor's points, those nearest to the other one, that are compared
@@ -61,7 +61,7 @@ class PathFollower:
         state = self._actor.state_at(graph)
         self._track.add(frame, state)
         self._origins.append(state and self._origin(graph))
-        self._ways.append(_way(self._mark, state))
+        self._ways.append(_mean_distance(self._mark, state))
         if state is not None and not self._size:
             self._size = max(state.high - state.low)
         if frame in self._marks:
@@ -105,7 +105,7 @@ def _pairs(before, after):
     return (before.places[both], after.places[both]) if both.any() else None
 
 
-def _way(before, after):
+def _mean_distance(before, after):
     pairs = _pairs(before, after)
     return None if pairs is None else float(numpy.linalg.norm(pairs[1] - pairs[0], axis=1).mean())
 
@@ -134,8 +134,8 @@ class TogetherFollower:
         if self._first is None:
             self._first = a, b, _nearest(a, b.centre), _nearest(b, a.centre)
         first_a, first_b, near_a, near_b = self._first
-        middle_a, turn_a = _turned(first_a, a, near_a)
-        middle_b, turn_b = _turned(first_b, b, near_b)
+        middle_a, turn_a = _middle_and_rotation(first_a, a, near_a)
+        middle_b, turn_b = _middle_and_rotation(first_b, b, near_b)
         before = _middle(first_a, near_a) - _middle(first_b, near_b)
         carried = before if turn_b is None else turn_b @ before
         shift = (middle_a - (middle_b + carried)).length
@@ -162,8 +162,8 @@ def _next_to_each_other(a, b, tracker):
     gaps = {}
     for ours, theirs in itertools.product(a.objects, b.objects):
         surfaces = [tracker.surface(obj.name) for obj in (ours, theirs) if obj.type == "MESH"]
-        if len(surfaces) == 2 and all(surface.there for surface in surfaces):
-            gaps[ours.name, theirs.name] = between(*surfaces, _FAR)
+        if len(surfaces) == 2 and all(surface.exists for surface in surfaces):
+            gaps[ours.name, theirs.name] = surface_distance(*surfaces, _FAR)
     least = min(gaps.values(), default=_FAR)
     if least >= _FAR:
         return a, b
@@ -182,7 +182,7 @@ def _nearest(state, place):
     count = min(len(ways), max(_FEWEST, int(_NEAREST * len(ways))))
     chosen = numpy.zeros(len(ways), bool)
     chosen[numpy.argsort(ways, kind="stable")[:count]] = True
-    if rotated(state.places[chosen], state.places[chosen]) is None:  # they lie on a line
+    if best_rotation(state.places[chosen], state.places[chosen]) is None:  # they lie on a line
         chosen[:] = True
     return chosen
 
@@ -191,7 +191,7 @@ def _middle(state, chosen):
     return state.centre if chosen is None else Vector(state.places[chosen].mean(axis=0))
 
 
-def _turned(first, now, chosen):
+def _middle_and_rotation(first, now, chosen):
     """(the mean of the chosen points, their rotation since the first state).
 
     Particles and fluids have no rotation.
@@ -200,7 +200,7 @@ def _turned(first, now, chosen):
         return now.centre, None
     if _pairs(first, now) is None:
         raise Unmeasurable("its points are not the same ones from frame to frame")
-    rotation = rotated(first.places[chosen], now.places[chosen])
+    rotation = best_rotation(first.places[chosen], now.places[chosen])
     if rotation is None:
         raise Unmeasurable("its points are on a line, so it has no measurable rotation")
     return _middle(now, chosen), Matrix.Rotation(rotation.length, 3, rotation)

@@ -25,8 +25,8 @@ def opening(request, solids):
     the plane with the narrowest gap counts.
     """
     filler, host = solids.joined(request["filler"]), solids.joined(request["host"])
-    sections = [_Section(filler, host, way) for way in _ways(filler, host)]
-    section = min(sections, key=lambda section: _doubt(section.rim(_COARSE)))
+    sections = [_Section(filler, host, way) for way in _candidate_axes(filler, host)]
+    section = min(sections, key=lambda section: _axis_rank(section.rim(_COARSE)))
     rim, way = section.rim(), section.way
     if not rim:
         return {"unbounded": 360.0, "at": ((filler.low + filler.high) / 2).tolist()}
@@ -44,7 +44,7 @@ def opening(request, solids):
     return {"unbounded": 360.0 * (widest - 1) / _DIRECTIONS, "gap": gap, "at": tuple(at)}
 
 
-def _doubt(rim):
+def _axis_rank(rim):
     """A sort key: the axis straight through the opening has a rim all around, and the narrowest gap."""
     return -len(rim), max(((foot - place).length for place, foot in rim.values()), default=0.0)
 
@@ -61,20 +61,20 @@ def _gap(place, foot, beside, way):
     return least
 
 
-def _ways(filler, host):
+def _candidate_axes(filler, host):
     """Directions that an opening may have: the most frequent normals of nearby faces."""
     candidates = [numpy.eye(3)[axis] for axis in range(3)]
     around = filler.diagonal / 2
     for solid in (filler, host):
-        shape = topology_of(solid)
-        corners = shape.places[shape.corners]
+        topology = topology_of(solid)
+        corners = topology.places[topology.corners]
         near = (
             (corners.min(axis=1) <= filler.high + around) & (corners.max(axis=1) >= filler.low - around)
         ).all(axis=1)
-        normals = shape.normals[near]
+        normals = topology.normals[near]
         level = numpy.where((normals @ (0.577, 0.211, 0.789) < 0)[:, None], -normals, normals)
         kinds, back = numpy.unique(level.round(2) + 0.0, axis=0, return_inverse=True)
-        weighed = level * shape.areas[near][:, None]
+        weighed = level * topology.areas[near][:, None]
         sums = numpy.stack([numpy.bincount(back.reshape(-1), axis, len(kinds)) for axis in weighed.T], axis=1)
         lengths = numpy.linalg.norm(sums, axis=1)
         candidates += [
@@ -116,8 +116,8 @@ class _Section:
         for turn in range(0, _DIRECTIONS, every):
             angle = 2 * math.pi * turn / _DIRECTIONS
             heading = math.cos(angle), math.sin(angle)
-            places = [place for height in heights if (place := self._seen(heading, height)) is not None]
-            if not places and (place := self._felt(heading, _STEPS // every)) is not None:
+            places = [place for height in heights if (place := self._rim_by_ray(heading, height)) is not None]
+            if not places and (place := self._rim_by_coverage(heading, _STEPS // every)) is not None:
                 places = [place]
             if places:
                 feet = [(place, self._filler.nearest(place)[0]) for place in places]
@@ -128,12 +128,12 @@ class _Section:
         u, v = self._middle + distance * numpy.array(heading)
         return Vector(u * self._axes[0] + v * self._axes[1] + height * numpy.array(self.way))
 
-    def _seen(self, heading, height):
+    def _rim_by_ray(self, heading, height):
         """Where a ray from the middle meets the host."""
         start = self._place(0.0, heading, height)
         return self._host.tree.ray_cast(start, self._place(1.0, heading, height) - start, self._reach)[0]
 
-    def _felt(self, heading, steps):
+    def _rim_by_coverage(self, heading, steps):
         """Where the host begins to cover what is behind it."""
         last = 0.0
         for step in range(1, steps + 1):

@@ -8,9 +8,9 @@ from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from ..geometry.contact_points import contact_points, normals_of
-from ..geometry.penetration import crossing
+from ..geometry.penetration import penetration
 from ..geometry.solids import Unmeasurable
-from ..geometry.topology import some, topology_of
+from ..geometry.topology import spread_numbers, topology_of
 
 _UP = 0.1  # cosine; a surface that faces up less than this supports nothing
 _FLOOR = 0.9  # cosine; a surface that faces up more than this is a floor
@@ -27,7 +27,7 @@ def depth(request, solids):
     deepest = {"depth": 0.0, "at": None}
     for solid in ours:
         for place in numpy.nonzero(((lows <= solid.high) & (highs >= solid.low)).all(axis=1))[0]:
-            shared = crossing(solid, theirs[place])
+            shared = penetration(solid, theirs[place])
             if shared is None:
                 continue
             deep, where, reason = shared
@@ -74,7 +74,7 @@ def _clearance(child, parents, within):
         # A point exactly above an edge counts as beside it.
         inside = (places[:, :2] > lower.low[:2] + _EDGE) & (places[:, :2] < lower.high[:2] - _EDGE)
         places = places[inside.all(axis=1)]
-        for place in places[some(len(places), _LOOKED_DOWN)].tolist():
+        for place in places[spread_numbers(len(places), _LOOKED_DOWN)].tolist():
             start = Vector((place[0], place[1], place[2] - way * within))
             hit, _, _, distance = lower.tree.ray_cast(start, Vector((0, 0, way)))
             if hit is not None and (best is None or distance < best[0]):
@@ -91,9 +91,9 @@ def centre_of_mass(solids):
         moments += (numpy.sign(volumes) * parts).sum(axis=1)
     if whole <= 0:
         for solid in solids:
-            shape = topology_of(solid)
-            whole += float(shape.areas.sum())
-            moments += (shape.areas[:, None] * shape.places[shape.corners].mean(axis=1)).sum(axis=0)
+            topology = topology_of(solid)
+            whole += float(topology.areas.sum())
+            moments += (topology.areas[:, None] * topology.places[topology.corners].mean(axis=1)).sum(axis=0)
     if whole <= 0:
         raise Unmeasurable(f"{solids[0].name!r} has faces without an area, so no centre of mass")
     return (moments / whole).tolist()
@@ -139,7 +139,7 @@ def _overhang(child, parent, normal, within):
     """How far the face of one (solid, triangle) extends beyond that of another, seen along a normal."""
     (ours, theirs), (own, face) = zip(
         *(
-            (topology_of(solid), topology_of(solid).face(triangle, normal, within))
+            (topology_of(solid), topology_of(solid).face_mask(triangle, normal, within))
             for solid, triangle in (child, parent)
         ),
         strict=True,
@@ -147,7 +147,7 @@ def _overhang(child, parent, normal, within):
     if not face.any() or not own.any():
         return 0.0
     corners = ours.places[numpy.unique(ours.corners[own])]
-    corners = corners[some(len(corners), _LOOKED_DOWN)]
+    corners = corners[spread_numbers(len(corners), _LOOKED_DOWN)]
     flat = _flattened(theirs.places, normal), theirs.corners[face]
     tree = BVHTree.FromPolygons(flat[0].tolist(), flat[1].tolist(), all_triangles=True)
     return max(tree.find_nearest(place)[3] for place in _flattened(corners, normal).tolist())

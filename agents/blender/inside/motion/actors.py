@@ -46,7 +46,7 @@ class Actor:
             if not parts:
                 return None
             places, alive = (
-                numpy.concatenate([thinned(array, self._most) for array in each])
+                numpy.concatenate([thin_out(array, self._most) for array in each])
                 for each in zip(*parts, strict=True)
             )
             state = ActorState(places, alive=alive)
@@ -86,7 +86,7 @@ class ActorState:
             self.centre = Vector(numpy.average(there, axis=0, weights=weights))
             self.low, self.high = Vector(there.min(axis=0)), Vector(there.max(axis=0))
 
-    def some(self, count):
+    def sample(self, count):
         """About ``count`` of its points, evenly chosen."""
         there = self.places[self.alive]
         return [Vector(place) for place in there[:: max(1, len(there) // count)].tolist()]
@@ -154,7 +154,7 @@ def round_to(number, step=1e-4):
     return None if number is None else round(round(number / step) * step, 6)
 
 
-def thinned(elements, most):
+def thin_out(elements, most):
     """At most ``most`` elements (None: all), evenly chosen; the same ones each time for the same number."""
     return elements if most is None else elements[:: -(-len(elements) // most) or 1]
 
@@ -162,14 +162,14 @@ def thinned(elements, most):
 def _surface(evaluated, most=None):
     """The vertices of an object's evaluated geometry."""
     if evaluated.type == "MESH":
-        return transformed(thinned(coordinates(evaluated.data.vertices), most), evaluated.matrix_world)
+        return transformed(thin_out(coordinates(evaluated.data.vertices), most), evaluated.matrix_world)
     if evaluated.type not in _EVALUATES_TO_MESH:
         return numpy.empty((0, 3))
     try:
         mesh = evaluated.to_mesh()
     except RuntimeError:  # it has no surface
         return numpy.empty((0, 3))
-    places = transformed(thinned(coordinates(mesh.vertices), most), evaluated.matrix_world)
+    places = transformed(thin_out(coordinates(mesh.vertices), most), evaluated.matrix_world)
     evaluated.to_mesh_clear()
     return places
 

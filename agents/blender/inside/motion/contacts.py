@@ -28,12 +28,12 @@ class TrackedSurface:
     def __init__(self, obj):
         self.obj = obj
         self.slack = _slack(obj)
-        self.there = False
+        self.exists = False
         self.matrix = None
         self._is_rigid = not obj.modifiers and getattr(obj.data, "shape_keys", None) is None
         self._places = self._tree = self._local = None
 
-    def at(self, graph):
+    def update(self, graph):
         """Updates it from an evaluated dependency graph; its vertices only when they are needed."""
         evaluated = self.obj.evaluated_get(graph)
         self._now = evaluated, graph
@@ -41,12 +41,12 @@ class TrackedSurface:
             return
         mesh = evaluated.data
         self.matrix = evaluated.matrix_world.copy()
-        self.there = (
+        self.exists = (
             0 < len(mesh.polygons) <= MOST_POLYGONS
             and not is_empty_domain(evaluated)
             and all(math.isfinite(part) for row in self.matrix for part in row)
         )
-        if self.there:
+        if self.exists:
             self._fresh = False
             corners = transformed(numpy.array(evaluated.bound_box), self.matrix)
             self.low, self.high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
@@ -167,14 +167,14 @@ class Contacts:
     def look(self, frame, graph, tracks):
         """Measures the gaps at a frame that the ``tracks`` have measured already."""
         for surface in self._surfaces.values():
-            surface.at(graph)
+            surface.update(graph)
         for track, own, others, gaps in zip(tracks, self._own, self._others, self._gaps, strict=True):
             state = track.last
             if state is None:
                 continue
             small = math.dist(state.low, state.high)
             for name, other in others:
-                if not other.there:
+                if not other.exists:
                     continue
                 size = (
                     min(small, math.dist(other.low, other.high))
@@ -189,7 +189,7 @@ class Contacts:
                 if gap < gaps.setdefault(name, {}).get(frame, (math.inf, 0))[0]:
                     gaps[name][frame] = gap, reach
 
-    def over(self, number, track, start, end):
+    def summary(self, number, track, start, end):
         """What actor ``number`` touches from frame ``start`` to ``end``.
 
         A list of ``with`` (a name), ``frames`` ([first, last] of each time) and ``gap`` (metres, at the first frame).
@@ -205,7 +205,9 @@ class Contacts:
             ]
             if touching:
                 gap = round_to(frames[touching[0]][0])
-                contacts.append({"with": name, "frames": _times(touching, track.frames)[:_TIMES], "gap": gap})
+                contacts.append(
+                    {"with": name, "frames": _frame_runs(touching, track.frames)[:_TIMES], "gap": gap}
+                )
         return sorted(contacts, key=lambda contact: (contact["frames"], contact["gap"]))
 
     def _hits(self, number, track, name, frame):
@@ -215,7 +217,7 @@ class Contacts:
         return min(near, key=near.get) == name
 
 
-def _times(touching, measured):
+def _frame_runs(touching, measured):
     """[first, last] of each unbroken run of frames, among those that were measured."""
     times, following = [], dict(itertools.pairwise(measured))
     for frame in touching:
@@ -228,16 +230,16 @@ def _times(touching, measured):
 
 def _gap(own, other, state, reach):
     """The distance of an actor to a surface if it is within ``reach``, or infinite."""
-    own = [surface for surface in own if surface.there]
+    own = [surface for surface in own if surface.exists]
     if not own:
-        places = [(point, other.nearest(point, reach)) for point in state.some(_POINTS)]
+        places = [(point, other.nearest(point, reach)) for point in state.sample(_POINTS)]
         return min(((place - point).length for point, place in places if place is not None), default=math.inf)
     near = [surface for surface in own if other.is_near(surface.low, surface.high, reach)]
-    nearest = min((between(surface, other, reach) for surface in near), default=math.inf)
+    nearest = min((surface_distance(surface, other, reach) for surface in near), default=math.inf)
     return nearest if nearest <= reach else math.inf
 
 
-def between(a, b, reach):
+def surface_distance(a, b, reach):
     """The distance of two surfaces if it is within ``reach``, else infinite: the nearest of some points are projected
     to and fro between the surfaces until they settle."""
     seeds = []

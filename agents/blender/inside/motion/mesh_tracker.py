@@ -27,7 +27,7 @@ class TrackedBody:
         self._shape = self._solid = self._samples = self._inwards = None
         self.frame = self.before = None
 
-    def at(self, frame, graph):
+    def update(self, frame, graph):
         """Updates it to a frame."""
         if frame == self.frame:
             return
@@ -77,21 +77,21 @@ class TrackedBody:
             points = self.solid.points
             self._samples = points[:: -(-len(points) // _SAMPLES)]
             if self._is_rigid:
-                self._samples = numpy.concatenate([self._samples, spread(self.solid, _SAMPLES)])
+                self._samples = numpy.concatenate([self._samples, surface_points(self.solid, _SAMPLES)])
         return self._samples
 
-    def placed(self, places, *, before=False):
+    def to_world(self, places, *, before=False):
         """Transforms points from its own space to the world, as of this frame or of the one before."""
         turn, place = self.before if before else self._pose
         return places @ turn.T + place
 
-    def seen(self, places, *, before=False):
+    def to_own_space(self, places, *, before=False):
         """Transforms points from the world to its own space, as of this frame or of the one before."""
         turn, place = self.before if before else self._pose
         return (places - place) @ turn
 
 
-def spread(solid, count):
+def surface_points(solid, count):
     """About ``count`` points spread over the triangles of a solid by area; always the same ones."""
     corners = solid.points[solid.triangles]
     sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -116,22 +116,22 @@ class MeshTracker:
         """Updates everything to a frame."""
         self._frame, self._graph = frame, graph
         for surface in self._surfaces.values():
-            surface.at(graph)
+            surface.update(graph)
         for body in self._bodies.values():
-            body.at(frame, graph)
+            body.update(frame, graph)
 
     def surface(self, name):
         """The surface on which distances are measured. Raises Unmeasurable."""
         if name not in self._surfaces:
             self._surfaces[name] = TrackedSurface(mesh_object(name))
-            self._surfaces[name].at(self._graph)
+            self._surfaces[name].update(self._graph)
         return self._surfaces[name]
 
     def body(self, name):
         """The body in which depths are measured. Raises Unmeasurable."""
         if name not in self._bodies:
             self._bodies[name] = TrackedBody(mesh_object(name))
-            self._bodies[name].at(self._frame, self._graph)
+            self._bodies[name].update(self._frame, self._graph)
         return self._bodies[name]
 
 

@@ -15,7 +15,7 @@ from .keyed_frames import keyed_frames
 from .reliability_notes import notes_on
 from .timeline import FrameStepper
 from .trajectories import Track
-from .viewpoints import close_by, wants_close_views, whole_path
+from .viewpoints import close_view, path_view, wants_close_views
 
 _FEWEST, _MOST = 6, 12  # pictures of an actor
 _USUAL = 7  # pictures without phases
@@ -42,20 +42,20 @@ def motion_sheet(arguments, report):
     tracks = [Track(actor, scene.render.fps / scene.render.fps_base) for actor in actors]
     contacts = Contacts(scene, actors)
     pictures = FramePictures(scene)
-    strips = _Strips(tracks, sampled, arguments)
+    strips = _PictureStrips(tracks, sampled, arguments)
     steps = stepper.count(measured)
     if steps > _LONGEST:
         hint = f" Bake first: {', '.join(stepper.stepped_for[:3])}." if stepper.stepped_for else ""
         raise Refused(f"{steps} frames would have to be visited; {_LONGEST} at most.{hint}")
-    meter = _Meter(report, steps + stepper.count(sampled))
+    progress = _Progress(report, steps + stepper.count(sampled))
     with stepper:
-        for frame, graph in stepper.through(measured, meter.step):
+        for frame, graph in stepper.through(measured, progress.step):
             for track in tracks:
                 track.add(frame, track.actor.state_at(graph))
             contacts.look(frame, graph, tracks)
         strips.plan()
-        for frame, graph in stepper.through(sampled if strips.any else [], meter.step):
-            strips.draw(frame, graph, pictures, meter)
+        for frame, graph in stepper.through(sampled if strips.any else [], progress.step):
+            strips.draw(frame, graph, pictures, progress)
     return {
         "start": first,
         "end": last,
@@ -80,7 +80,7 @@ def motion_sheet(arguments, report):
     }
 
 
-class _Meter:
+class _Progress:
     """Reports progress over ``total`` frames."""
 
     def __init__(self, report, total):
@@ -143,7 +143,7 @@ def _evenly(first, last, count):
 # Pictures
 
 
-class _Strips:
+class _PictureStrips:
     """The pictures of all actors: the whole path of each and, if the actor is small in it, close views."""
 
     def __init__(self, tracks, sampled, arguments):
@@ -158,12 +158,12 @@ class _Strips:
     def plan(self):
         """Chooses the views, once the tracks are complete."""
         for number, track in enumerate(self._tracks):
-            view = whole_path(track, self._tile)
+            view = path_view(track, self._tile)
             if view is None:
                 continue
             self._add(number, "path", dict.fromkeys(self._sampled, view))
             if wants_close_views(track, view):
-                self._add(number, "close", {frame: close_by(track, view, frame) for frame in self._sampled})
+                self._add(number, "close", {frame: close_view(track, view, frame) for frame in self._sampled})
 
     def _add(self, number, kind, views):
         pictures = [{"frame": frame, "view": view and view.as_dict()} for frame, view in views.items()]
@@ -174,7 +174,7 @@ class _Strips:
                 self._jobs[frame].append((number, view, path))
                 self.any = True
 
-    def draw(self, frame, graph, pictures, meter):
+    def draw(self, frame, graph, pictures, progress):
         """Renders the pictures of the current frame."""
         states = [track.actor.state_at(graph) for track in self._tracks]
         for track, state in zip(self._tracks, states, strict=True):
@@ -183,9 +183,9 @@ class _Strips:
         for number, view, path in self._jobs[frame]:
             names = {obj.name for obj in self._tracks[number].actor.objects}
             state = states[number]
-            jobs.append(PictureJob(names, state.some(_RAYS) if state is not None else [], view, path))
+            jobs.append(PictureJob(names, state.sample(_RAYS) if state is not None else [], view, path))
         for number, _ in enumerate(pictures.render(jobs), 1):
-            meter.part(number / len(jobs), f"drawing frame {frame}")
+            progress.part(number / len(jobs), f"drawing frame {frame}")
 
 
 # Entries
@@ -212,8 +212,8 @@ def _actor_entry(track, span):
 
 def _phase_entry(track, number, phase, contacts):
     entry = {"phase": phase["name"], "start": phase["start"], "end": phase["end"]}
-    entry.update(track.over(phase["start"], phase["end"]))
-    entry["contacts"] = contacts.over(number, track, phase["start"], phase["end"])
+    entry.update(track.summary(phase["start"], phase["end"]))
+    entry["contacts"] = contacts.summary(number, track, phase["start"], phase["end"])
     return entry
 
 

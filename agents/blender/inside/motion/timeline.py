@@ -6,7 +6,7 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.simulation_zones import objects_with_zones
-from ..physics.caches import renew, unbaked
+from ..physics.caches import restart_unbaked, unbaked
 
 _MOST_FRAMES = 5000
 
@@ -25,7 +25,7 @@ def go_to_frame(arguments, report):
                 f"Going to frame {frame} would simulate {frame - first} frames, more than {_MOST_FRAMES}: bake first."
             )
         if starts:
-            renew(scene)
+            restart_unbaked(scene)
         for at in range(first, frame + 1):
             report(at - first, frame - first, f"frame {at}")
             scene.frame_set(at)

@@ -45,7 +45,7 @@ class Track:
                 if len(before):
                     point_speed = float(numpy.linalg.norm(after - before, axis=1).mean()) / seconds
                 if self.actor.measured != "particles":
-                    rotation = rotated(before, after)
+                    rotation = best_rotation(before, after)
                     self.deforms = self.deforms or self._is_deformed(state)
         self.frames.append(frame)
         self.centres.append(state and state.centre)
@@ -122,7 +122,7 @@ class Track:
         first = next((centre for centre in self.centres if centre is not None), None)
         return [None if centre is None else (centre - first).length for centre in self.centres]
 
-    def over(self, start, end):
+    def summary(self, start, end):
         """A summary of the motion from frame ``start`` to ``end``, as data (metres, m/s, degrees)."""
         inside = [at for at, frame in enumerate(self.frames) if start <= frame <= end]
         there = [at for at in inside if self.centres[at] is not None]
@@ -156,7 +156,7 @@ class Track:
         return (after - before).length if before is not None and after is not None else 0.0
 
 
-def rotated(before, after):
+def best_rotation(before, after):
     """The rotation that best maps places (n × 3) to other ones: its axis, as long as the angle in radians.
 
     None if the places do not determine it.

@@ -5,7 +5,7 @@ import math
 
 from mathutils import Matrix, Vector
 
-from ..preview.framing import BoundingBox, turned_to
+from ..preview.framing import BoundingBox, camera_rotation
 
 # (azimuth, elevation) in degrees, preferred first; azimuth 0 looks along +Y, 90 along -X.
 _ANGLES = ((30, 24), (-30, 24), (60, 24), (-60, 24), (0, 24), (90, 24), (30, 45), (-30, 45), (0, 65))
@@ -46,7 +46,7 @@ class OrthographicView:
         }
 
 
-def whole_path(track, tile):
+def path_view(track, tile):
     """The view of everything that a track covers, in pictures ``tile`` pixels wide; None if it never exists."""
     boxes = [(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
     if not boxes:
@@ -67,7 +67,7 @@ def wants_close_views(track, view):
     return track.actor.measured == "vertices" and 1e-4 * view.width < max(sizes) < _SMALL * view.width
 
 
-def close_by(track, view, frame):
+def close_view(track, view, frame):
     """A view of the actor alone at a frame, at the same scale for every frame; None if it does not exist there."""
     at = track.frames.index(frame)
     if track.lows[at] is None:
@@ -94,7 +94,7 @@ def _axes(angle):
         -math.cos(azimuth) * math.cos(elevation),
         math.sin(elevation),
     )
-    return tuple(axis.copy() for axis in turned_to(towards, (0, 0, 1)).col)
+    return tuple(axis.copy() for axis in camera_rotation(towards, (0, 0, 1)).col)
 
 
 def _best_angle(places):

@@ -43,7 +43,7 @@ def bake(arguments, report):
     try:
         for job in jobs:
             job.prepare(frames)
-        with _Frames(scene, frames):
+        with _BakeRange(scene, frames):
             _run(scene, jobs, every, progress)
         with _domains_off(_unchosen_fluids(every, jobs)):
             _check_result(scene, jobs, progress)
@@ -107,7 +107,7 @@ def _prepare_file(folder, chosen):
     return notes
 
 
-class _Frames:
+class _BakeRange:
     """Sets the scene's frame range for the bake: Blender bakes particles over that one. Puts it back at the end."""
 
     def __init__(self, scene, frames):
@@ -144,7 +144,7 @@ class _Job:
         if cache.domain is not None:
             # A folder of its own for every bake: if this one is interrupted, the files of the last one remain.
             cache.domain.cache_directory = f"//{self._new_folder()}"
-            _free(cache.domain)
+            _forget_bake(cache.domain)
             cache.domain.cache_type = "ALL"
         else:
             with bpy.context.temp_override(point_cache=cache.points):
@@ -208,7 +208,7 @@ class _Job:
         return entry
 
 
-def _free(domain):
+def _forget_bake(domain):
     """Makes Blender forget what is baked. Its own operator goes on in a thread after it has returned, and crashes."""
     for part in _FLUID_PARTS:
         setattr(domain, f"has_cache_baked_{part}", False)

@@ -129,15 +129,14 @@ class PhysicsCache:
         if self.domain is not None:
             return sum(os.path.getsize(path) for path in _files(self.folder))
         if self.folder:
-            # One file a frame, named like the cache or after the object in hexadecimal; others' lie beside them.
-            start = self.points.name or self.owner.name.encode(errors="surrogateescape").hex().upper()
+            # One file for each frame; those of other caches are beside them.
+            start = file_prefix(self.points, self.owner)
             return sum(
                 os.path.getsize(path)
                 for path in _files(self.folder)
-                if os.path.basename(path).startswith(f"{start}_")
+                if os.path.basename(path).startswith(start)
             )
-        match = re.search(r"\(([\d.,]+)\s*([KMGT]?i?B)\)", self.points.info)
-        return int(float(match[1].replace(",", "")) * _UNITS.get(match[2], 1)) if match else 0
+        return bytes_in_memory(self.points) or 0
 
     @property
     def missing(self):
@@ -187,6 +186,17 @@ def find_caches(scene):
     return caches
 
 
+def file_prefix(points, owner):
+    """How the files of a point cache are named: after the cache, or after its object or scene in hexadecimal."""
+    return f"{points.name or owner.name.encode(errors='surrogateescape').hex().upper()}_"
+
+
+def bytes_in_memory(points):
+    """The size of a point cache in memory, as Blender says it; None if it does not say."""
+    match = re.search(r"\(([\d.,]+)\s*(bytes|[KMGT]?i?B)\)", points.info)
+    return round(float(match[1].replace(",", "")) * _UNITS.get(match[2], 1)) if match else None
+
+
 def of_objects(scene, names):
     """Those caches of a scene that the named objects take part in: their own, and that of the rigid-body world."""
     names = set(names)
@@ -198,20 +208,19 @@ def of_objects(scene, names):
     ]
 
 
-def unbaked(scene, objects=None):
-    """The caches (all, or those that ``objects`` take part in) that do not allow skipping frames.
+def unbaked(scene):
+    """The caches that do not allow skipping frames.
 
     ``start`` is the frame from which to step. What is switched off in the viewport is not simulated.
     """
-    caches = find_caches(scene) if objects is None else of_objects(scene, [obj.name for obj in objects])
     return [
         {"kind": cache.kind, "object": cache.object, "label": cache.label, "start": cache.range[0]}
-        for cache in caches
+        for cache in find_caches(scene)
         if cache.simulated and not (cache.baked and not cache.outdated)
     ]
 
 
-def renew(scene):
+def restart_unbaked(scene):
     """Makes simulations that are not baked start again at their first frame.
 
     After a jump to a frame, Blender keeps the state there and would use it as a result when it steps through later.

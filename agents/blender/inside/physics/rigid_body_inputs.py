@@ -28,12 +28,12 @@ def _note(*_):
     for scene in bpy.data.scenes:
         world = scene.rigidbody_world
         if world is not None and world.point_cache is not None and world.point_cache.is_baked:
-            _remembered[_key(scene)] = _state(scene)
+            _remembered[_key(scene)] = _inputs_digest(scene)
 
 
 def is_outdated(scene):
     """Whether the bake of a scene's rigid-body world is older than what it depends on."""
-    state = _state(scene)
+    state = _inputs_digest(scene)
     if not scene.rigidbody_world.point_cache.is_outdated:
         _remembered[_key(scene)] = state
     return _remembered.get(_key(scene)) != state
@@ -43,16 +43,20 @@ def _key(scene):
     return getattr(scene, "session_uid", scene.name)
 
 
-def _state(scene):
+def _inputs_digest(scene):
     """A digest of what the simulation depends on."""
     world = scene.rigidbody_world
     inputs = [_settings(world), tuple(scene.gravity), scene.use_gravity]
     for collection in (world.collection, world.constraints):
         for obj in collection.objects if collection else ():
-            inputs += [_settings(obj.rigid_body), _settings(obj.rigid_body_constraint), _shape(obj.data)]
+            inputs += [
+                _settings(obj.rigid_body),
+                _settings(obj.rigid_body_constraint),
+                _mesh_digest(obj.data),
+            ]
             carrier = obj
             while carrier is not None:
-                inputs += [carrier.name, _place(carrier)]
+                inputs += [carrier.name, _transform_inputs(carrier)]
                 carrier = carrier.parent
     return hashlib.sha256(repr(inputs).encode(errors="surrogateescape")).hexdigest()
 
@@ -70,7 +74,7 @@ def _settings(part):
     return settings
 
 
-def _place(obj):
+def _transform_inputs(obj):
     """Its transform; if it is animated, its keys, since the transform changes with the frame."""
     animation = obj.animation_data
     if animation is not None and animation.action is not None:
@@ -81,7 +85,7 @@ def _place(obj):
     return [tuple(row) for matrix in (obj.matrix_basis, obj.matrix_parent_inverse) for row in matrix]
 
 
-def _shape(data):
+def _mesh_digest(data):
     """A digest of a mesh's vertices; None for other data."""
     if not isinstance(data, bpy.types.Mesh):
         return None

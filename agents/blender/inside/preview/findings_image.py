@@ -9,9 +9,9 @@ from mathutils import Matrix, Vector
 
 from ..blend.protocol_tags import OBJECT, ROLE
 from .fixed_views import SCENE, PreviewRenderer, copy_of, note_missing
-from .framing import VIEWS, BoundingBox, boxes_of, turned_to
+from .framing import VIEWS, BoundingBox, boxes_of, camera_rotation
 from .material_colours import CLAY, PreviewMaterial
-from .shader_values import between
+from .shader_values import interpolated
 from .studio_scene import StudioScene, drawing_engine
 
 _OTHERS = PreviewMaterial(CLAY, 0.32, 0.8)
@@ -28,7 +28,7 @@ _FILE = ".close-up-{}.png"
 _FRONT, _RIGHT = VIEWS[0], VIEWS[1]
 
 
-def picture(arguments, report):
+def findings_image(arguments, report):
     """Renders four views, framed on the objects of ``findings``, and close-ups of the first findings with a place.
 
     Each finding has ``objects`` (names), ``colour``, ``at`` (None: in the middle of its first object), ``size`` of the
@@ -53,7 +53,7 @@ def picture(arguments, report):
         renderer.set_up(True, False, notes, around=around)
         places = [finding.place for finding in marked if finding.place is not None]
         with renderer.cleaned_up():
-            views = list(renderer.sides(report, len(VIEWS), places))
+            views = list(renderer.fixed_views(report, len(VIEWS), places))
             for view in views:
                 seen = iter(view.get("marks", ()))
                 view["marks"] = [None if finding.place is None else next(seen) for finding in marked]
@@ -116,7 +116,9 @@ def _tints(findings):
         for finding in findings:
             for name in getattr(finding, names):
                 if names != "first" or name in finding.small:
-                    tints.setdefault(name, PreviewMaterial(between(CLAY, finding.colour, share), alpha, 0.6))
+                    tints.setdefault(
+                        name, PreviewMaterial(interpolated(CLAY, finding.colour, share), alpha, 0.6)
+                    )
     return tints
 
 
@@ -157,7 +159,7 @@ class _CloseUps:
     def render(self, number, finding):
         """The picture of a finding, seen from the side, so that its two objects are next to each other."""
         name, towards, up = _RIGHT if _axis(finding.boxes) == 1 else _FRONT
-        rotation = turned_to(towards, up)
+        rotation = camera_rotation(towards, up)
         if any(min(box.size) < _FLAT for box in finding.boxes):
             rotation = rotation @ Matrix.Rotation(-_TILT, 3, "X")  # a sheet seen edge-on is invisible
         whole = _AROUND * min(box.diagonal for box in finding.boxes)

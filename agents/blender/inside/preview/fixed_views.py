@@ -13,22 +13,22 @@ from simworlds.sandbox.inside.refusal import Refused
 from ..blend.names import listed, nearest, quoted
 from ..blend.protocol_tags import OBJECT, ROLE, SYSTEM, object_collections
 from ..physics.caches import unbaked
-from .framing import CLOSE, LOOSE, VIEWS, WIDE, BoundingBox, boxes_of, fitted, focus, turned_to
+from .framing import CLOSE, LOOSE, VIEWS, WIDE, BoundingBox, boxes_of, camera_rotation, choose_framed, fit
 from .room_cutaway import RoomCutaway
 from .room_detection import find_room, large_pieces
 from .scene_copy import DRAWABLE, SceneCopy
 from .studio_scene import REACH, StudioScene, drawing_engine
 
 MESH, SCENE = "mesh", "scene"  # kinds of subjects, besides OBJECT and SYSTEM
-_NAMED = 6  # in a note; the rest is counted
-_OUTLINE = 6000  # points that are looked at to frame
+_NAMED = 6  # in a note; the rest are counted
+_OUTLINE = 6000  # points from which the framing is chosen
 _LABELS = 14
 _SHADOWED = 300_000  # faces; of more, shadows take seconds
-_SCATTERED = 12  # times as much as a solid's do those of dots and threads cost
-_IN_ROOM = 0.4  # how much less slanting the light is there, for walls' shadows not to cover what is in it
+_SCATTERED = 12  # faces of dots and strands cost this many times as much as a solid's
+_IN_ROOM = 0.4  # slant of the light in a room, low so that the walls' shadows do not cover its content
 _FILE = ".preview-{}.png"
 _EXTREMES = (1e-9, 1e9)  # metres across that can still be drawn
-_FARTHEST = 1000 * REACH  # from what the camera looks at
+_FARTHEST = 1000 * REACH  # of a camera from its subject
 _CAMERA_WIDER = 2  # times a panel that the camera's picture may be wide
 
 
@@ -47,10 +47,10 @@ def preview(arguments, report):
         renderer.set_up(kind in {SYSTEM, SCENE}, arguments["everything"], notes)
         camera = scene.camera if kind == SCENE else None
         with renderer.cleaned_up():
-            views = list(renderer.sides(report, len(VIEWS) + (camera is not None)))
+            views = list(renderer.fixed_views(report, len(VIEWS) + (camera is not None)))
             if camera is not None:
                 report(len(views), len(views) + 1, "camera")
-                views += renderer.through(camera, scene.render, notes)
+                views += renderer.camera_view(camera, scene.render, notes)
         note_missing(subject, notes)
         return {
             "title": title,
@@ -136,7 +136,7 @@ def copy_of(studio, kind, title, objects, notes):
     graph = bpy.context.evaluated_depsgraph_get()
     subject = SceneCopy(studio, graph, objects, unrendered=kind == MESH)
     if kind == MESH and not subject.pieces and subject.hidden:
-        subject.take_unevaluated(objects[0])
+        subject.copy_unevaluated(objects[0])
         if subject.pieces:
             notes.append(f"{title!r} is hidden in the viewport: it is shown without its modifiers.")
             subject.hidden = []
@@ -202,7 +202,7 @@ class PreviewRenderer:
         wanted = {name: boxes[name] for name in around if name in boxes} or boxes
         framed, beyond, outside = sorted(wanted), [], []
         if is_layout and not everything:
-            framed, beyond, outside = focus(wanted, self._subject.templates)
+            framed, beyond, outside = choose_framed(wanted, self._subject.templates)
         self.whole = BoundingBox.around(boxes[name] for name in framed)
         self._margin = WIDE if len(wanted) < len(boxes) else LOOSE if beyond else CLOSE
         across = self.whole.diagonal
@@ -252,12 +252,12 @@ class PreviewRenderer:
                     os.remove(os.path.join(self._folder, _FILE.format(number)))
             raise
 
-    def sides(self, report, total, marks=()):
+    def fixed_views(self, report, total, marks=()):
         """The pictures from the fixed sides; with ``marks``, where in them these places of the world are."""
         for number, (name, towards, up) in enumerate(VIEWS):
             report(number, total, name)
-            rotation = turned_to(towards, up)
-            middle, across = fitted(self._outline, rotation, self._margin)
+            rotation = camera_rotation(towards, up)
+            middle, across = fit(self._outline, rotation, self._margin)
             place = self._studio.placed(Matrix.Translation(middle)).translation
             matrix = rotation.to_4x4()
             matrix.translation = place + rotation.col[2] * self.away
@@ -281,7 +281,7 @@ class PreviewRenderer:
                 "ground": self._size * (0.5 + middle.z / across) if not towards[2] else None,
             }
 
-    def through(self, camera, render, notes):
+    def camera_view(self, camera, render, notes):
         """The picture through a camera of the scene; none, and a note, if it cannot be rendered."""
         seen = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
         matrix = seen.matrix_world.copy()

@@ -79,13 +79,13 @@ def boxes_of(pieces):
     return {owner: BoundingBox.around(group) for owner, group in grouped.items()}
 
 
-def focus(boxes, templates=()):
+def choose_framed(boxes, templates=()):
     """(names to frame, names that are larger than the picture, names that are outside it), of boxes by name.
 
     Framing grounds, skies, what is far away, and ``templates`` for instances that are aside would make everything else
     a dot.
     """
-    outside = _stand_aside(boxes, templates)
+    outside = _templates_aside(boxes, templates)
     outside = sorted({*outside, *_far_away({name: boxes[name] for name in boxes if name not in outside})})
     beyond, core = [], None
     for name in sorted(boxes.keys() - set(outside), key=lambda name: boxes[name].diagonal):
@@ -102,7 +102,7 @@ def focus(boxes, templates=()):
     return sorted(boxes.keys() - {*outside, *beyond}), sorted(beyond), outside
 
 
-def _stand_aside(boxes, templates):
+def _templates_aside(boxes, templates):
     """Names of the templates that are farther from everything else than its diagonal."""
     rest = [box for name, box in boxes.items() if name not in templates]
     if not rest:
@@ -123,14 +123,14 @@ def _far_away(boxes):
     return far if len(far) <= max(1, len(boxes) // 10) else []
 
 
-def turned_to(towards, up):
+def camera_rotation(towards, up):
     """A camera's rotation matrix; its columns are right, up and towards the viewer."""
     z = Vector(towards).normalized()
     x = Vector(up).cross(z).normalized()
     return Matrix((x, z.cross(x), z)).transposed()
 
 
-def fitted(points, rotation, margin):
+def fit(points, rotation, margin):
     """(place in the world, width in metres) of a square orthographic picture that holds the points."""
     flat = [rotation.transposed() @ point for point in points]
     low, high = (Vector(f(point[axis] for point in flat) for axis in range(3)) for f in (min, max))

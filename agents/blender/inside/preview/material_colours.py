@@ -5,7 +5,7 @@ import math
 
 from mathutils import Matrix
 
-from .shader_values import ShaderReader, between, bounded, link_into
+from .shader_values import ShaderReader, clamped, interpolated, link_into
 
 CLAY = (0.62, 0.61, 0.59)  # colour of objects without a material
 _CLEAR = 0.3  # alpha of transparent materials, which are to stay visible
@@ -26,7 +26,7 @@ class PreviewMaterial:
         """A mixture of this one (0) and another (1), with the image of the larger share."""
         major = other if share > 0.5 else self
         mixture = PreviewMaterial(
-            between(self.rgb, other.rgb, share),
+            interpolated(self.rgb, other.rgb, share),
             self.alpha + (other.alpha - self.alpha) * share,
             self.roughness + (other.roughness - self.roughness) * share,
         )
@@ -48,8 +48,8 @@ def surface_of(material, object_colour, averages):
     if output is None:
         return PreviewMaterial(material.diffuse_color[:3], material.diffuse_color[3], material.roughness)
     surface = _Shaders(ShaderReader(object_colour, averages)).of(output)
-    surface.rgb = tuple(map(bounded, surface.rgb))
-    surface.alpha, surface.roughness = bounded(surface.alpha), bounded(surface.roughness)
+    surface.rgb = tuple(map(clamped, surface.rgb))
+    surface.alpha, surface.roughness = clamped(surface.alpha), clamped(surface.roughness)
     return surface
 
 
@@ -103,7 +103,7 @@ class _Shaders:
         first, second = self._shader(node.inputs[1]), self._shader(node.inputs[2])
         if first is None or second is None:
             return first or second
-        share = bounded(self._reader.number(node.inputs[0]))
+        share = clamped(self._reader.number(node.inputs[0]))
         if min(first.alpha, second.alpha) > _INVISIBLE:
             return first.mixed(second, share)
         # One part is transparent: a texture as factor cuts holes, a number makes everything thinner.
@@ -136,16 +136,16 @@ class _Shaders:
         surface = self._coloured(node.inputs["Base Color"])
         surface.roughness = named(node, "Roughness")
         clear = named(node, "Transmission Weight", named(node, "Transmission", 0.0))
-        surface.alpha = 1 - (1 - _CLEAR) * bounded(clear) * (1 - bounded(named(node, "Metallic", 0.0)))
+        surface.alpha = 1 - (1 - _CLEAR) * clamped(clear) * (1 - clamped(named(node, "Metallic", 0.0)))
         alpha = node.inputs.get("Alpha")
         if alpha is not None and link_into(alpha) is None:  # a texture cuts holes
-            surface.alpha *= bounded(alpha.default_value)
+            surface.alpha *= clamped(alpha.default_value)
         glow = node.inputs.get("Emission Color") or node.inputs.get("Emission")
         strength = named(node, "Emission Strength", 1.0) if glow else 0.0
         light = self._reader.colour(glow) if strength > 0 else (0.0, 0.0, 0.0)
         if max(light) * strength > 0.02:
             surface = surface.mixed(
-                _emitting(PreviewMaterial(light), strength), bounded(max(light) * strength)
+                _emitting(PreviewMaterial(light), strength), clamped(max(light) * strength)
             )
         return surface
 

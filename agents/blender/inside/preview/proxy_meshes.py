@@ -40,7 +40,7 @@ def tubes(segments, thickness):
     return _mesh(points, faces)
 
 
-def beads(spots):
+def octahedra(spots):
     """An octahedron at each of the spots (place, radius); None if there are none."""
     points, faces = [], []
     for place, radius in spots[:: max(1, -(-len(spots) // _MOST_BEADS))]:
@@ -50,7 +50,7 @@ def beads(spots):
     return _mesh(points, faces)
 
 
-def blocks(density, flame, across, box):
+def gas_cells(density, flame, across, box):
     """The surface of a gas's cells that are not empty, flames with material 1; None if all are empty.
 
     ``density`` and ``flame`` are flat grids of ``across`` cells in ``box`` (eight corners, as of an object).

@@ -156,18 +156,18 @@ def _size(studio, piece):
     return (piece.high - piece.low).length * studio.scale
 
 
-def _on(studio, place):
+def _in_studio(studio, place):
     return studio.placed(Matrix.Translation(place)).translation
 
 
 def _top(studio, box):
     """A point just above a box."""
-    return _on(studio, Vector((*box.centre.xy, box.high.z))) + Vector((0, 0, _ABOVE_TOP))
+    return _in_studio(studio, Vector((*box.centre.xy, box.high.z))) + Vector((0, 0, _ABOVE_TOP))
 
 
 def _grid(studio, placed):
     """Points spread evenly over the space of both the large objects and what is framed."""
-    ends = [_on(studio, end) for piece, _ in placed for end in (piece.low, piece.high)]
+    ends = [_in_studio(studio, end) for piece, _ in placed for end in (piece.low, piece.high)]
     low = [max(-REACH / 2, min(end[axis] for end in ends)) for axis in range(3)]
     high = [min(REACH / 2, max(end[axis] for end in ends)) for axis in range(3)]
     counts = [range(count) for count in _GRID]

@@ -14,7 +14,7 @@ from simworlds.sandbox.inside.refusal import Refused
 from ..blend.fluids import domain_of
 from ..blend.visibility import rendered_objects
 from .material_colours import PreviewMaterial, surface_of
-from .proxy_meshes import beads, blocks, tubes
+from .proxy_meshes import gas_cells, octahedra, tubes
 
 INSTANCES = 6000  # that are shown; of more, only every second, third, …
 _TO_MESH = {"CURVE", "SURFACE", "FONT", "META"}
@@ -67,7 +67,7 @@ class SceneCopy:
         names = None if objects is None else {obj.name for obj in objects}
         layer = graph.view_layer
         rendered = None if unrendered else {obj.name for obj in rendered_objects(layer.layer_collection)}
-        met, not_rendered = self._take_all(names, rendered)
+        met, not_rendered = self._copy_instances(names, rendered)
         candidates = {
             obj.name
             for obj in (layer.objects if objects is None else objects)
@@ -78,12 +78,12 @@ class SceneCopy:
         drawn = {piece.owner for piece in self.pieces}
         self.empty = sorted((candidates & met) - drawn - set(self.broken) - _metaballs(layer))
 
-    def take_unevaluated(self, obj):
+    def copy_unevaluated(self, obj):
         """Copies an object that is hidden, and so not evaluated: without its modifiers."""
         data = self._studio.owned(bpy.data.meshes.new_from_object(obj))
-        self._finish(obj.name, data, obj, obj.matrix_world.copy())
+        self._colour_and_add(obj.name, data, obj, obj.matrix_world.copy())
 
-    def _take_all(self, names, rendered):
+    def _copy_instances(self, names, rendered):
         """Copies the instances; returns the names of the visible objects, and of those that renders do not show."""
         met, not_rendered, placed, count = set(), set(), set(), 0
         instances = self._graph.object_instances
@@ -114,7 +114,7 @@ class SceneCopy:
                     self.left_out += 1
                     continue
             else:
-                self._take_systems(obj, matrix)
+                self._copy_particles_and_gas(obj, matrix)
                 if not instance.show_self or _gas_of(obj):
                     continue
             # Text, curves and metaballs come twice: as themselves, and as an instance of their mesh.
@@ -122,10 +122,10 @@ class SceneCopy:
             place = (owner.name, tuple(map(tuple, matrix)))
             if is_made and (place, len(obj.data.vertices)) in placed:
                 continue
-            placed.add((place, self._take(owner.name, obj, matrix)))
+            placed.add((place, self._copy_instance(owner.name, obj, matrix)))
         return met, not_rendered
 
-    def _take(self, owner, obj, matrix):
+    def _copy_instance(self, owner, obj, matrix):
         """Copies an object's geometry; returns its number of vertices, None if it is not a mesh."""
         if obj.data is None or obj.type not in DRAWABLE:
             return None
@@ -140,9 +140,9 @@ class SceneCopy:
             tuple(obj.color),
         )
         if key not in self._copies:
-            copied = self._copied(obj)
+            copied = self._copy_data(obj)
             vertices = len(copied.vertices) if isinstance(copied, bpy.types.Mesh) else None
-            self._copies[key] = (*self._finish(owner, copied, obj, matrix), vertices)
+            self._copies[key] = (*self._colour_and_add(owner, copied, obj, matrix), vertices)
             return vertices
         data, corners, vertices = self._copies[key]
         if data is not None:
@@ -153,7 +153,7 @@ class SceneCopy:
         piece.is_liquid = _shows_liquid(obj)
         self.pieces.append(piece)
 
-    def _copied(self, obj):
+    def _copy_data(self, obj):
         """A copy of an evaluated object's geometry; None if there is none."""
         if obj.type == _GREASE_PENCIL:  # Workbench can draw it, but needs seconds to prepare for it
             mesh = tubes(
@@ -171,7 +171,7 @@ class SceneCopy:
         except RuntimeError:
             return None
 
-    def _finish(self, owner, data, obj, matrix):
+    def _colour_and_add(self, owner, data, obj, matrix):
         """Colours a copy and adds it: (data-block, corners of its box), (None, None) if there is nothing visible."""
         nothing = (None, None)
         if data is None:
@@ -230,7 +230,7 @@ class SceneCopy:
 
     # What has no mesh
 
-    def _take_systems(self, obj, matrix):
+    def _copy_particles_and_gas(self, obj, matrix):
         """Adds hair, particles as dots, and smoke."""
         size = max(obj.dimensions.length, 1e-9) * _STROKE
         has_surface = _shows_liquid(obj)
@@ -241,7 +241,7 @@ class SceneCopy:
             if settings.type == "HAIR" and settings.render_type == "PATH":
                 mesh = tubes(_strands(obj, system), size / 2)
             elif settings.type != "HAIR" and settings.render_type in {"HALO", "LINE", "PATH"}:
-                mesh = beads(
+                mesh = octahedra(
                     [
                         (particle.location, max(particle.size / 2, size))
                         for particle in system.particles
@@ -252,20 +252,20 @@ class SceneCopy:
                 continue
             slots = obj.material_slots
             number = min(settings.material, len(slots)) - 1
-            self._take_made(
+            self._add_proxy(
                 obj, mesh, [self._surface(slots[number].material if slots else None, obj)], Matrix()
             )
         domain = _gas_of(obj)
         if domain is not None:
             grids = domain.density_grid, domain.flame_grid, tuple(domain.domain_resolution)
-            self._take_made(
+            self._add_proxy(
                 obj,
-                blocks(*grids, obj.bound_box),
+                gas_cells(*grids, obj.bound_box),
                 [PreviewMaterial((0.3,) * 3, 0.5), PreviewMaterial((1, 0.3, 0.03), 0.8)],
                 matrix,
             )
 
-    def _take_made(self, obj, mesh, surfaces, matrix):
+    def _add_proxy(self, obj, mesh, surfaces, matrix):
         if mesh is None:
             return
         self._studio.owned(mesh)

@@ -84,9 +84,9 @@ class ShaderReader:
         if node.bl_idname == "ShaderNodeGroup" and node.node_tree is not None:
             ends = [entry for entry in node.node_tree.nodes if entry.bl_idname == "NodeGroupOutput"]
             ends.sort(key=lambda entry: not entry.is_active_output)
-            return (_same(ends[0].inputs, out) if ends else None), (*groups, node)
+            return (_matching_socket(ends[0].inputs, out) if ends else None), (*groups, node)
         if node.bl_idname == "NodeGroupInput" and groups:
-            return _same(groups[-1].inputs, out), groups[:-1]
+            return _matching_socket(groups[-1].inputs, out), groups[:-1]
         return out, groups
 
     def _colour_of(self, node, out):
@@ -99,7 +99,7 @@ class ShaderReader:
             return _KNOWN[kind](self, node)
         if kind.startswith("Tex"):
             ends = [node.inputs.get(name) for name in ("Color1", "Color2")]
-            return between(*map(self.colour, ends), 0.5) if all(ends) and out.name == "Color" else GREY
+            return interpolated(*map(self.colour, ends), 0.5) if all(ends) and out.name == "Color" else GREY
         # An unknown node is assumed to pass its colour on.
         through = next((entry for entry in node.inputs if entry.type == "RGBA" and entry.enabled), None)
         return self.colour(through) if through is not None else None
@@ -115,17 +115,17 @@ def link_into(socket):
     return next((link for link in socket.links if link.is_valid and not link.is_muted), None)
 
 
-def bounded(value):
+def clamped(value):
     """Between 0 and 1."""
     return min(1.0, max(0.0, value)) if math.isfinite(value) else 0.0
 
 
-def between(first, second, share):
+def interpolated(first, second, share):
     """From one colour (0) to another (1)."""
     return tuple(a + (b - a) * share for a, b in zip(first, second, strict=True))
 
 
-def _same(sockets, socket):
+def _matching_socket(sockets, socket):
     return next((other for other in sockets if other.identifier == socket.identifier), None)
 
 
@@ -181,7 +181,7 @@ def _attribute(reader, node):
 def _mix(reader, node):
     factor, first, second = [entry for entry in node.inputs if entry.enabled][:3]
     blend = node.blend_type if getattr(node, "data_type", "RGBA") == "RGBA" else "MIX"
-    return _blended(blend, bounded(reader.number(factor)), reader.colour(first), reader.colour(second))
+    return _blended(blend, clamped(reader.number(factor)), reader.colour(first), reader.colour(second))
 
 
 def _blended(blend, share, first, second):
@@ -197,13 +197,13 @@ def _blended(blend, share, first, second):
         "DIVIDE": lambda a, b: a / b if b else a,
     }
     mix = mixes.get(blend)
-    return between(first, tuple(map(mix, first, second)) if mix else second, share)
+    return interpolated(first, tuple(map(mix, first, second)) if mix else second, share)
 
 
 def _ramp(reader, node):
     source = reader.source(node.inputs[0])
     if source is None or not source.bl_idname.startswith("ShaderNodeTex"):
-        return tuple(node.color_ramp.evaluate(bounded(reader.number(node.inputs[0])))[:3])
+        return tuple(node.color_ramp.evaluate(clamped(reader.number(node.inputs[0])))[:3])
     # Noise keeps to the middle of its range.
     first, last = (0.3, 0.7) if "Noise" in source.bl_idname else (0.0, 1.0)
     samples = [node.color_ramp.evaluate(first + (last - first) * (at + 0.5) / 16) for at in range(16)]
@@ -212,16 +212,18 @@ def _ramp(reader, node):
 
 def _hue_saturation(reader, node):
     before = reader.colour(node.inputs["Color"])
-    colour = Color(map(bounded, before))
+    colour = Color(map(clamped, before))
     hue = (colour.h + reader.named(node, "Hue") + 0.5) % 1.0
-    colour.hsv = hue, bounded(colour.s * reader.named(node, "Saturation", 1.0)), colour.v
+    colour.hsv = hue, clamped(colour.s * reader.named(node, "Saturation", 1.0)), colour.v
     share = reader.number(node.inputs.get("Factor") or node.inputs.get("Fac"), 1.0)
-    return between(before, tuple(part * reader.named(node, "Value", 1.0) for part in colour), bounded(share))
+    return interpolated(
+        before, tuple(part * reader.named(node, "Value", 1.0) for part in colour), clamped(share)
+    )
 
 
 def _invert(reader, node):
     before = reader.colour(node.inputs[1])
-    return between(before, tuple(1 - part for part in before), bounded(reader.number(node.inputs[0])))
+    return interpolated(before, tuple(1 - part for part in before), clamped(reader.number(node.inputs[0])))
 
 
 def _gamma(reader, node):
@@ -245,14 +247,14 @@ def _combined(reader, node):
     if mode == "rgb":
         return parts
     colour = Color()
-    setattr(colour, mode, tuple(map(bounded, parts)))
+    setattr(colour, mode, tuple(map(clamped, parts)))
     return tuple(colour)
 
 
 def _blackbody(reader, node):
     """Roughly: red at 1,000 K, white at 6,500 K, bluish above."""
     kelvin = reader.number(node.inputs[0])
-    warm, cold = bounded((kelvin - 1000) / 5500), bounded((kelvin - 6500) / 10000)
+    warm, cold = clamped((kelvin - 1000) / 5500), clamped((kelvin - 6500) / 10000)
     return (1.0 - 0.5 * cold, 0.25 + 0.75 * warm**0.7 - 0.25 * cold, warm**1.8)
 
 
@@ -263,14 +265,14 @@ def _math(reader, node):
     return (known.get(node.operation, 0.5),) * 3
 
 
-def _put_out(reader, node):
+def _output_value(reader, node):
     del reader
     return _rgb(node.outputs[0].default_value)
 
 
 _KNOWN = {
-    "RGB": _put_out,
-    "Value": _put_out,
+    "RGB": _output_value,
+    "Value": _output_value,
     "VertexColor": _attribute,
     "Attribute": _attribute,
     "Mix": _mix,

@@ -42,7 +42,7 @@ def plan(arguments, report):
         scene.frame_set(_STILL_FRAME)
         digests = fingerprint(scene)
     if unbaked:
-        caches.renew(scene)
+        caches.restart_unbaked(scene)
     else:
         scene.frame_set(current, subframe=subframe)
     render = scene.render

@@ -14,12 +14,12 @@ _MAJOR, _MINOR, _PROFILE, _CORE, _END = 0x3098, 0x30FB, 0x30FD, 0x1, 0x3038
 
 def best_engine():
     """(Workbench, "") if that can draw, else (Cycles, reason)."""
-    fault = _fault()
+    fault = _opengl_fault()
     return (WORKBENCH, "") if not fault else (CYCLES, fault)
 
 
 @functools.lru_cache(maxsize=1)
-def _fault():
+def _opengl_fault():
     """Why OpenGL is not available without a display; "" if it is. Only Linux needs the test."""
     if sys.platform != "linux" or not bpy.app.background:
         return ""

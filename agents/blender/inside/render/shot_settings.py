@@ -189,7 +189,7 @@ def settings_for(scene, shot, samples, path):
         ("use_file_extension", False),
         ("use_overwrite", True),
         ("use_placeholder", False),
-        ("filepath", literal(path)),
+        ("filepath", escaped_path(path)),
     ):
         yield render, name, value
     # Each of these limits the next: they are set, and restored, in this order.
@@ -219,6 +219,6 @@ def _samples_setting(scene, engine, samples):
     return scene.eevee, "taa_render_samples", samples
 
 
-def literal(path):
+def escaped_path(path):
     """A path escaped for an output setting: since 5.0, braces in it are variables."""
     return path.replace("{", "{{").replace("}", "}}") if bpy.app.version >= (5, 0, 0) else path

@@ -10,7 +10,7 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.temporary import without_render_result
-from .shot_settings import literal
+from .shot_settings import escaped_path
 
 _SCENE = ".video"
 
@@ -61,7 +61,7 @@ def _set_up(scene, arguments):
     render.resolution_percentage = 100
     render.fps, render.fps_base = arguments["fps"], arguments["fps_base"]
     render.use_file_extension, render.use_overwrite, render.use_placeholder = False, True, False
-    render.filepath = literal(arguments["path"])
+    render.filepath = escaped_path(arguments["path"])
     if hasattr(image, "media_type"):
         image.media_type = "VIDEO"
     image.file_format = "FFMPEG"

@@ -6,7 +6,7 @@ import math
 import bpy
 from mathutils import Vector
 
-from .rna_values import differing, number, numbers, plain, text
+from .rna_values import changed_settings, number, numbers, text, to_json
 
 # Inputs that a summary of a shader lists; the others are listed if they are linked, or in full detail.
 _SUMMARY_INPUTS = {
@@ -33,7 +33,7 @@ def material_facts(material, detail):
     if method != "DITHERED":
         entry["surface_render_method"] = method
     if detail == "full":
-        settings = differing(material, leave=("diffuse_color",))
+        settings = changed_settings(material, leave=("diffuse_color",))
         if settings:
             entry["settings"] = settings
     if material.library is not None:
@@ -55,7 +55,7 @@ def camera_facts(obj, scene):
         entry["lens"] = number(camera.lens)
         entry["angle"] = number(math.degrees(camera.angle))
     entry["clip"] = numbers((camera.clip_start, camera.clip_end))
-    settings = differing(camera, leave=_CAMERA_LISTED)
+    settings = changed_settings(camera, leave=_CAMERA_LISTED)
     if camera.dof.use_dof:
         focus = camera.dof.focus_object
         settings["dof"] = {
@@ -91,7 +91,7 @@ def light_facts(obj):
     entry["energy"] = number(light.energy)
     entry["color"] = numbers(light.color)
     entry.update(_size_of_light(light))
-    if settings := differing(light, leave=_LIGHT_LISTED):
+    if settings := changed_settings(light, leave=_LIGHT_LISTED):
         entry["settings"] = settings
     tree = light.node_tree
     if tree is not None and len(tree.nodes) > 2:
@@ -190,7 +190,7 @@ def _node_facts(node, everything):
         if not socket.enabled or socket.hide_value or not hasattr(socket, "default_value"):
             continue
         if everything or (name in _SUMMARY_INPUTS and not _is_default(name, socket, node)):
-            inputs[name] = plain(socket.default_value)
+            inputs[name] = to_json(socket.default_value)
     if inputs:
         entry["inputs"] = inputs
     return entry
@@ -232,7 +232,7 @@ def _tree(tree):
 
 def _own_settings(node):
     """The settings of a node's own type that are not at their defaults."""
-    return differing(node, leave=bpy.types.Node.bl_rna.properties.keys())
+    return changed_settings(node, leave=bpy.types.Node.bl_rna.properties.keys())
 
 
 def render_facts(scene, detail):
@@ -242,16 +242,16 @@ def render_facts(scene, detail):
     entry["output"] = text(render.filepath)
     entry["format"] = render.image_settings.file_format
     entry["view_transform"] = scene.view_settings.view_transform
-    settings = differing(render, leave=_RENDER_LISTED)
+    settings = changed_settings(render, leave=_RENDER_LISTED)
     engine = {"CYCLES": "cycles", "BLENDER_EEVEE": "eevee", "BLENDER_EEVEE_NEXT": "eevee"}.get(render.engine)
     own = getattr(scene, engine, None) if engine else None
     if own is not None:
-        settings.update({f"{engine}.{name}": value for name, value in differing(own).items()})
+        settings.update({f"{engine}.{name}": value for name, value in changed_settings(own).items()})
     for name, struct in (("image_settings", render.image_settings), ("view_settings", scene.view_settings)):
-        changed = differing(struct, leave=("file_format", "view_transform"))
+        changed = changed_settings(struct, leave=("file_format", "view_transform"))
         settings.update({f"{name}.{key}": value for key, value in changed.items()})
     if render.image_settings.file_format == "FFMPEG":
-        changed = differing(render.ffmpeg)
+        changed = changed_settings(render.ffmpeg)
         settings.update({f"ffmpeg.{key}": value for key, value in changed.items()})
     limit = None if detail == "full" else 24
     if settings:

@@ -63,13 +63,13 @@ class BlockReader:
         """{part: (digest, the data-blocks that this part points to)}."""
         block, digests = self._block, {}
         self._note_animation(block)
-        rest, members = self._members(block)
+        rest, members = self._plans_by_part(block)
         for part, plan in members.items():
             self._begin()
             self._feed(*self._values(block, plan))
             if part == rest:
                 self._feed(type(block).__name__)
-                self._special(block)
+                self._feed_special(block)
             digests[part] = self._finish_part()
         for part, content in extra_parts_of(block).items():
             self._begin()
@@ -100,7 +100,7 @@ class BlockReader:
             self._feed(*self._values(struct, self._plan(struct)))
             if hasattr(struct, "keys"):
                 self._feed(*self._custom(struct))
-            self._special(struct)
+            self._feed_special(struct)
         return self._hash.hexdigest(), self._reached
 
     def _feed(self, *parts):
@@ -121,7 +121,7 @@ class BlockReader:
             plan = self._plans[kind] = reading_plan_of(struct, pictures=self._pictures)
         return plan
 
-    def _members(self, block):
+    def _plans_by_part(self, block):
         """The part for all that has none of its own, and {part: how to read its properties}."""
         known = self._plans.get((type(block), "parts"))
         if known is None:
@@ -181,12 +181,12 @@ class BlockReader:
             elif how == "PATH":
                 yield contents_of_path(value, self._block)
             elif how == "POINTER":
-                yield self._without_animated(struct, name, self._pointed(value))
+                yield self._without_animated(struct, name, self._reference(value))
             else:
                 content = _flat(value) if how == "ARRAY" else sorted(value) if how == "FLAGS" else value
                 yield self._without_animated(struct, name, content)
 
-    def _pointed(self, value):
+    def _reference(self, value):
         if value is None:
             return None
         if is_id(value) and not getattr(value, "is_embedded_data", False):
@@ -206,7 +206,7 @@ class BlockReader:
             listed = [item for item in listed if not item.name.startswith(".")]
         yield len(listed)
         for item in listed:
-            yield self._pointed(item)
+            yield self._reference(item)
 
     def _columns(self, items, count):
         """Feeds many simple elements property by property; returns whether they were simple."""
@@ -228,14 +228,14 @@ class BlockReader:
         for key, value in items:
             yield key
             if is_id(value):
-                content = self._pointed(value)
+                content = self._reference(value)
             elif hasattr(value, "to_dict"):
                 content = value.to_dict()
             else:
                 content = value.to_list() if hasattr(value, "to_list") else value
             yield self._without_animated(struct, key, content)
 
-    def _special(self, struct):
+    def _feed_special(self, struct):
         """Feeds content that no property holds."""
         if isinstance(struct, bpy.types.Mesh):
             for name, member, code, wide in _MESH:

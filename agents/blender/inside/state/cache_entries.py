@@ -7,12 +7,11 @@ import re
 import bpy
 
 from ..physics import rigid_body_inputs
+from ..physics.caches import bytes_in_memory, file_prefix
 from .rna_values import text
 
 MOST_FILES = 50_000  # of one cache folder that are read
-_UNITS = {"bytes": 1, "B": 1, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30, "TiB": 1 << 40}
 _FRAMES = re.compile(r"([\d,]+) frames? (?:found|on disk|in memory)")
-_SIZE = re.compile(r"\(([\d.,]+) (bytes|B|KiB|MiB|GiB|TiB)\)")
 _FRAME_NUMBER = re.compile(r"_(-?\d{4,})\.")
 
 
@@ -41,8 +40,8 @@ def point_cache_facts(cache, owner):
     elif cache.use_disk_cache:
         facts["on_disk"] = True
         facts.update(_files_of(owner, cache))
-    elif size := _SIZE.search(cache.info):
-        facts["bytes"] = round(float(size[1].replace(",", "")) * _UNITS[size[2]])
+    elif (size := bytes_in_memory(cache)) is not None:
+        facts["bytes"] = size
     return facts
 
 
@@ -52,8 +51,8 @@ def _files_of(owner, cache):
         return {}
     stem = os.path.splitext(os.path.basename(bpy.data.filepath))[0]
     folder = os.path.join(os.path.dirname(bpy.data.filepath), f"blendcache_{stem}")
-    start = cache.name or owner.name.encode(errors="surrogateescape").hex().upper()
-    total = sum(size for name, size in _entries(folder) if name.startswith(f"{start}_"))
+    start = file_prefix(cache, owner)
+    total = sum(size for name, size in _entries(folder) if name.startswith(start))
     return {"bytes": total} if total else {}
 
 

@@ -24,8 +24,8 @@ def fingerprint(scene):
     Output paths and formats do not count.
     """
     plans, read = {}, {}
-    for block in _reached([scene], plans, read, pictures=True):
-        read[block] = _whole(read[block])
+    for block in _read_reachable([scene], plans, read, pictures=True):
+        read[block] = _block_digest(read[block])
     return {key_of(block): digest for block, digest in read.items()}
 
 
@@ -36,13 +36,13 @@ def data_blocks(report):
     ({"Object Cube": {"data": ["Mesh Cube"], …}}: which data-blocks each part points to).
     """
     plans, read = {}, {}
-    kept = _kept()
-    for count, _ in enumerate(_reached(kept, plans, read, pictures=False)):
+    blocks = _saved_blocks()
+    for count, _ in enumerate(_read_reachable(blocks, plans, read, pictures=False)):
         if count % 500 == 499:
             report(count, None, "reading data-blocks")
     by_key = {key_of(block): parts for block, parts in read.items()}
     return {
-        "digests": {key: _whole(parts) for key, parts in by_key.items()},
+        "digests": {key: _block_digest(parts) for key, parts in by_key.items()},
         "parts": {
             key: {name: digest[:_SHORT] for name, (digest, _) in parts.items()}
             for key, parts in by_key.items()
@@ -55,7 +55,7 @@ def data_blocks(report):
     }
 
 
-def _reached(roots, plans, read, *, pictures):
+def _read_reachable(roots, plans, read, *, pictures):
     """Reads ``roots`` and everything they point to into ``read``; yields each block after reading it."""
     waiting, seen = list(roots), {block.as_pointer() for block in roots}
     while waiting:
@@ -69,7 +69,7 @@ def _reached(roots, plans, read, *, pictures):
         yield block
 
 
-def _whole(parts):
+def _block_digest(parts):
     listed = sorted((name, digest) for name, (digest, _) in parts.items())
     return hashlib.blake2b(repr(listed).encode(), digest_size=12).hexdigest()
 
@@ -78,7 +78,7 @@ def _used_keys(uses):
     return sorted({key_of(block) for block in uses if not _is_no_content(block)})
 
 
-def _kept():
+def _saved_blocks():
     """The data-blocks that saving keeps: not those without users, or used only by such."""
     users = {block: set(map(_owner, above)) for block, above in bpy.data.user_map().items() if is_id(block)}
     blocks = [block for block in users if not _is_no_content(block)]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Modifier stacks and constraints, in order, with the settings that are not at their defaults."""
 
-from .rna_values import differing, plain, text
+from .rna_values import changed_settings, text, to_json
 
 # Their settings are listed with the physics.
 _OF_PHYSICS = {"CLOTH", "SOFT_BODY", "COLLISION", "FLUID", "PARTICLE_SYSTEM", "DYNAMIC_PAINT"}
@@ -20,7 +20,7 @@ def modifiers_of(obj):
         off = [word for word in ("viewport", "render") if not getattr(modifier, f"show_{word}")]
         if off:
             entry["off"] = off
-        settings = {} if modifier.type in _OF_PHYSICS else differing(modifier)
+        settings = {} if modifier.type in _OF_PHYSICS else changed_settings(modifier)
         if modifier.type == "NODES":
             settings = {**_nodes(modifier), **settings}
         if settings:
@@ -40,8 +40,8 @@ def _nodes(modifier):
         if f"{identifier}_use_attribute" in keys and modifier[f"{identifier}_use_attribute"]:
             settings[name] = f"attribute {text(str(modifier.get(f'{identifier}_attribute_name', '')))}"
         elif identifier in keys:
-            value = plain(modifier[identifier])
-            if value != plain(default):
+            value = to_json(modifier[identifier])
+            if value != to_json(default):
                 settings[name] = value
         if len(settings) > 24:
             settings["…"] = "further inputs"
@@ -75,7 +75,7 @@ def constraints_of(obj):
 
 def _constraint(constraint):
     entry = {"name": text(constraint.name), "type": constraint.type}
-    settings = differing(constraint)
+    settings = changed_settings(constraint)
     targets = getattr(constraint, "targets", None)
     if targets:
         settings["targets"] = [text(target.target.name) if target.target else None for target in targets][:16]

@@ -5,7 +5,7 @@ import math
 
 from ..blend.protocol_tags import TAGS
 from .modifier_stacks import constraints_of, modifiers_of
-from .rna_values import custom, number, numbers, plain, text
+from .rna_values import custom_properties, number, numbers, text, to_json
 
 _FULL = "full"
 _DEEPEST = 60  # collections within collections
@@ -14,7 +14,7 @@ _DEEPEST = 60  # collections within collections
 def tags_of(block):
     """The protocol's properties of a scene, collection or object, as data."""
     keys = set(block.keys())
-    return {tag: plain(block[tag]) for tag in TAGS if tag in keys} if keys else {}
+    return {tag: to_json(block[tag]) for tag in TAGS if tag in keys} if keys else {}
 
 
 class SceneObjects:
@@ -225,7 +225,7 @@ def _more(obj):
         entry["display_type"] = obj.display_type
     if obj.pass_index:
         entry["pass_index"] = obj.pass_index
-    own = {name: value for name, value in custom(obj).items() if name not in TAGS}
+    own = {name: value for name, value in custom_properties(obj).items() if name not in TAGS}
     if own:
-        entry["custom"] = plain(own)
+        entry["custom"] = to_json(own)
     return entry

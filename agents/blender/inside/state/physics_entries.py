@@ -5,7 +5,7 @@ from array import array
 from itertools import compress
 
 from .cache_entries import fluid_cache_facts, nodes_cache_facts, point_cache_facts
-from .rna_values import differing, number, numbers, plain, text
+from .rna_values import changed_settings, number, numbers, text, to_json
 
 MOST_PARTICLES = 200_000  # of one system that are read
 _ALIVE = 3  # of Particle.alive_state
@@ -22,7 +22,7 @@ _MEANT_FOR = {
 }
 
 
-def world_facts(scene):
+def rigid_body_world_facts(scene):
     """The rigid-body world of a scene; None if it has none."""
     world = scene.rigidbody_world
     if world is None:
@@ -33,7 +33,9 @@ def world_facts(scene):
         entry["constraints"] = len(world.constraints.objects)
     for setting in ("substeps_per_frame", "solver_iterations", "time_scale"):
         entry[setting] = number(getattr(world, setting))
-    _add_settings(entry, differing(world, leave=("substeps_per_frame", "solver_iterations", "time_scale")))
+    _add_settings(
+        entry, changed_settings(world, leave=("substeps_per_frame", "solver_iterations", "time_scale"))
+    )
     _add_settings(entry, _weights(world.effector_weights))
     if world.point_cache is not None:
         entry["cache"] = point_cache_facts(world.point_cache, scene)
@@ -66,7 +68,9 @@ def _add_settings(entry, settings):
 def _weights(weights):
     """The effector weights that are not 1."""
     return (
-        {f"effector_weights.{name}": value for name, value in differing(weights).items()} if weights else {}
+        {f"effector_weights.{name}": value for name, value in changed_settings(weights).items()}
+        if weights
+        else {}
     )
 
 
@@ -81,14 +85,14 @@ def _rigid_body(obj):
     }
     if body.kinematic:
         entry["animated"] = True
-    return _add_settings(entry, differing(body))
+    return _add_settings(entry, changed_settings(body))
 
 
 def _rigid_body_constraint(obj):
     joint = obj.rigid_body_constraint
     ends = [text(end.name) if end is not None else None for end in (joint.object1, joint.object2)]
     entry = {"kind": "rigid_body_constraint", "name": text(obj.name), "type": joint.type, "objects": ends}
-    return _add_settings(entry, differing(joint, leave=("object1", "object2")))
+    return _add_settings(entry, changed_settings(joint, leave=("object1", "object2")))
 
 
 def _field(obj, field):
@@ -99,21 +103,21 @@ def _field(obj, field):
         "strength": number(field.strength),
     }
     others = [name for name, types in _MEANT_FOR.items() if field.type not in types.split()]
-    return _add_settings(entry, differing(field, leave=("strength", *others), variant=field.type))
+    return _add_settings(entry, changed_settings(field, leave=("strength", *others), variant=field.type))
 
 
 def _cloth(obj, modifier, _graph):
     entry = {"kind": "cloth", "name": text(obj.name)}
-    _add_settings(entry, differing(modifier.settings))
+    _add_settings(entry, changed_settings(modifier.settings))
     _add_settings(entry, _weights(modifier.settings.effector_weights))
-    collisions = differing(modifier.collision_settings)
+    collisions = changed_settings(modifier.collision_settings)
     _add_settings(entry, {f"collision_settings.{name}": value for name, value in collisions.items()})
     return {**entry, "cache": point_cache_facts(modifier.point_cache, obj)}
 
 
 def _soft_body(obj, modifier, _graph):
     entry = {"kind": "soft_body", "name": text(obj.name)}
-    _add_settings(entry, differing(modifier.settings))
+    _add_settings(entry, changed_settings(modifier.settings))
     _add_settings(entry, _weights(modifier.settings.effector_weights))
     return {**entry, "cache": point_cache_facts(modifier.point_cache, obj)}
 
@@ -121,7 +125,7 @@ def _soft_body(obj, modifier, _graph):
 def _collision(obj, _modifier, _graph):
     if obj.collision is None:
         return None
-    return _add_settings({"kind": "collision", "name": text(obj.name)}, differing(obj.collision))
+    return _add_settings({"kind": "collision", "name": text(obj.name)}, changed_settings(obj.collision))
 
 
 def _nodes(obj, modifier, _graph):
@@ -145,8 +149,8 @@ def _particles(obj, modifier, graph):
         lifetime=number(settings.lifetime),
     )
     entry.update(_alive(obj, system, graph))
-    _add_settings(entry, differing(settings))
-    _add_settings(entry, differing(system, leave=("settings",)))
+    _add_settings(entry, changed_settings(settings))
+    _add_settings(entry, changed_settings(system, leave=("settings",)))
     _add_settings(entry, _weights(settings.effector_weights))
     if settings.type in _SIMULATED and (settings.type != "HAIR" or system.use_hair_dynamics):
         entry["cache"] = point_cache_facts(system.point_cache, obj)
@@ -182,10 +186,10 @@ def _fluid(obj, modifier, _graph):
     if kind != "DOMAIN":
         own = "flow_type" if kind == "FLOW" else "effector_type"
         entry["type"] = getattr(settings, own)
-        return _add_settings(entry, differing(settings, leave=(own,), variant=entry["type"]))
+        return _add_settings(entry, changed_settings(settings, leave=(own,), variant=entry["type"]))
     entry["type"] = settings.domain_type
     entry["resolution"] = settings.resolution_max
-    _add_settings(entry, differing(settings, variant=settings.domain_type))
+    _add_settings(entry, changed_settings(settings, variant=settings.domain_type))
     _add_settings(entry, _weights(settings.effector_weights))
     return {**entry, "cache": fluid_cache_facts(settings)}
 
@@ -198,14 +202,14 @@ def _paint(obj, modifier, _graph):
             {
                 "name": text(surface.name),
                 "type": surface.surface_type,
-                **({"settings": settings} if (settings := differing(surface)) else {}),
+                **({"settings": settings} if (settings := changed_settings(surface)) else {}),
                 "cache": point_cache_facts(surface.point_cache, obj),
             }
             for surface in list(canvas.canvas_surfaces)[:8]
         ]
     brush = modifier.brush_settings
     if brush is not None:
-        entry["brush"] = plain(brush.paint_source)
+        entry["brush"] = to_json(brush.paint_source)
     return entry
 
 

@@ -15,9 +15,8 @@ from .appearance import camera_facts, light_facts, material_facts, render_facts,
 from .fingerprint import data_blocks
 from .likely_mistakes import notes_of
 from .object_entries import SceneObjects, object_facts, tags_of, tree_of
-from .physics_entries import physics_of
-from .physics_entries import world_facts as rigid_body_world_facts
-from .rna_values import few, number, numbers, text
+from .physics_entries import physics_of, rigid_body_world_facts
+from .rna_values import number, numbers, shortened, text
 from .world_extents import MOST_INSTANCES, ExtentReader, evaluated_graph
 
 MOST_OBJECTS = 5_000  # of one readout
@@ -96,7 +95,7 @@ class _Reading:
     def animation(self):
         yield from animation_facts(self.everything, None if self.whole else self.chosen, self.detail)
         if self.whole and (unused := unused_actions()):
-            yield {"name": "unused actions", "actions": few(unused), "count": len(unused)}
+            yield {"name": "unused actions", "actions": shortened(unused), "count": len(unused)}
 
     def materials(self):
         slots = (slot for obj in self.chosen for slot in obj.material_slots)
@@ -151,16 +150,18 @@ def _scene_facts(reading):
     if tags := tags_of(scene):
         facts["tags"] = tags
     if scene.timeline_markers:
-        facts["markers"] = few([f"{marker.name} {marker.frame}" for marker in scene.timeline_markers], 24)
+        facts["markers"] = shortened(
+            [f"{marker.name} {marker.frame}" for marker in scene.timeline_markers], 24
+        )
     if len(bpy.data.scenes) > 1:
-        facts["other_scenes"] = few([other.name for other in bpy.data.scenes if other != scene], 8)
+        facts["other_scenes"] = shortened([other.name for other in bpy.data.scenes if other != scene], 8)
     if layer is not None and len(scene.view_layers) > 1:
         facts["view_layer"] = text(layer.name)
     used = {obj.name_full for every in bpy.data.scenes for obj in every.objects}
     if len(bpy.data.objects) > len(used):
         facts["outside"] = len(bpy.data.objects) - len(used)
     if bpy.data.libraries:
-        facts["libraries"] = few([library.filepath for library in bpy.data.libraries])
+        facts["libraries"] = shortened([library.filepath for library in bpy.data.libraries])
     return facts
 
 

@@ -41,7 +41,7 @@ def text(value):
     )
 
 
-def plain(value, depth=0):
+def to_json(value, depth=0):
     """Any value of a property as JSON of limited size; a data-block is its name."""
     if value is None or isinstance(value, bool):
         return value
@@ -74,11 +74,11 @@ def _plain_dict(value, depth):
         if len(entries) == LONGEST_DICT:
             entries["…"] = f"{len(value) - LONGEST_DICT} more"
             break
-        entries[text(str(key))] = plain(value[key], depth + 1)
+        entries[text(str(key))] = to_json(value[key], depth + 1)
     return entries
 
 
-def few(names, most=LONGEST_LIST):
+def shortened(names, most=LONGEST_LIST):
     """The first of many names, and how many more there are."""
     names = [text(name) for name in names]
     return [*names[:most], f"… {len(names) - most} more"] if len(names) > most else names
@@ -90,18 +90,18 @@ _KINDS = {"b": "bool", "i": "int", "f": "float", "d": "float"}
 def _plain_list(value, depth):
     count = len(value)
     if count > LONGEST_LIST and isinstance(value[0], str) and isinstance(value[-1], str):
-        return few([item for item in value if isinstance(item, str)])
+        return shortened([item for item in value if isinstance(item, str)])
     if count > LONGEST_LIST or depth >= _DEEPEST:
         return f"{_KINDS.get(getattr(value, 'typecode', ''), 'list')}[{count}]"
-    return [plain(value[index], depth + 1) for index in range(count)]
+    return [to_json(value[index], depth + 1) for index in range(count)]
 
 
-def custom(block):
+def custom_properties(block):
     """The custom properties of a data-block as {name: value}."""
     return {key: value for key, value in block.items() if key not in {"_RNA_UI", "cycles"}}
 
 
-def differing(struct, *, leave=(), variant=""):
+def changed_settings(struct, *, leave=(), variant=""):
     """The settings of a struct that are not at their defaults: {identifier: value}.
 
     Without read-only, deprecated and user interface settings, and those that ``leave`` names. ``variant``: which of
@@ -114,7 +114,7 @@ def differing(struct, *, leave=(), variant=""):
         value = getattr(struct, identifier, _MISSING)
         if value is _MISSING or _same(value, default):
             continue
-        settings[identifier] = plain(value)
+        settings[identifier] = to_json(value)
     return settings
 
 

@@ -145,7 +145,7 @@ def test_something_that_is_there_twice_is_found(studio: Studio, kind: str) -> No
     assert set(found.objects) == {"A", "B"}
     if kind == "plane":
         assert found.outcome == "undecided"
-        assert "may be there twice" in found.message
+        assert "may be a duplicate" in found.message
     else:
         assert found.measured == pytest.approx(0.4, rel=0.02)
 
