@@ -137,7 +137,7 @@ class _Group:
         return [obj for obj in tops if obj != self.root and obj.parent != (self.root or obj)]
 
     def find_place(self, extents):
-        """Where the root is to be, before anything is changed."""
+        """Finds the place for a new root. Changes nothing."""
         boxes = [
             box
             for obj in self._all

@@ -3,7 +3,7 @@
 
 
 def domain_of(obj, *, shown_only=False):
-    """The settings of the fluid domain that an object is; None if it is none.
+    """The fluid domain settings of an object; None if it is not a domain.
 
     ``shown_only``: a domain whose modifier is switched off in the viewport does not count.
     """

@@ -104,8 +104,8 @@ def middle_behind(solid, triangle):
     a, b, c = solid.points[solid.triangles[triangle]]
     normal = Vector(b - a).cross(Vector(c - a)).normalized()
     start = Vector((a + b + c) / 3)
-    for way in (-normal, normal):
-        hit = core.tree.ray_cast(start + way * TOUCH, way)[0]
+    for direction in (-normal, normal):
+        hit = core.tree.ray_cast(start + direction * TOUCH, direction)[0]
         if hit is not None and core.holds(middle := (start + hit) / 2):
             return middle
     return None

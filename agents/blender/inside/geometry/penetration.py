@@ -102,12 +102,13 @@ class _SharedVolume:
         lines = self._lines[0].middles
         best = 0.0, lines[0] if len(lines) else self._lines[0].solid.points[0]
         best = max([best, *((depth, place) for depth, place, _ in self._deepest)], key=lambda entry: entry[0])
-        ways = self._directions_out()
+        directions = self._directions_out()
         for place in () if None in self._cores else self._inner_points():
             shortest = numpy.inf
-            for way in ways:
+            for direction in directions:
                 shortest = min(
-                    shortest, self._distance_out(1, place, way) + self._distance_out(0, place, -way)
+                    shortest,
+                    self._distance_out(1, place, direction) + self._distance_out(0, place, -direction),
                 )
                 if shortest <= best[0]:
                     break
@@ -115,16 +116,16 @@ class _SharedVolume:
                 best = shortest, place
         return best
 
-    def _distance_out(self, number, place, way):
+    def _distance_out(self, number, place, direction):
         """The distance out of a solid from a place in it or on it."""
         core = self._cores[number]
         if core is None:
             return 0.0
-        start = place + way * _STEP
-        hit, normal, _, length = core.tree.ray_cast(start, way)
+        start = place + direction * _STEP
+        hit, normal, _, length = core.tree.ray_cast(start, direction)
         if hit is None:
             return 0.0
-        inside = normal.dot(way) > 0 if core.oriented else core.holds(start)
+        inside = normal.dot(direction) > 0 if core.oriented else core.holds(start)
         return length + _STEP if inside else 0.0
 
     def _inner_points(self):
@@ -139,14 +140,14 @@ class _SharedVolume:
 
     def _directions_out(self):
         """Directions in which the way out may be shortest."""
-        ways = [Vector(place) - foot for _, place, foot in self._deepest if foot is not None]
+        directions = [Vector(place) - foot for _, place, foot in self._deepest if foot is not None]
         sides = [_most_frequent(normals_of(lines.solid, lines.ours), _NORMALS) for lines in self._lines]
         edges = [_most_frequent(_edge_directions(lines), _EDGES) for lines in self._lines]
-        ways += [Vector(normal) for normals in sides for normal in normals]
-        ways += [Vector(edge).cross(Vector(other)) for edge in edges[0] for other in edges[1]]
-        ways += _AXES
-        ways = [way.normalized() for way in ways if way.length > 1e-9]
-        return [*ways, *(-way for way in ways)]
+        directions += [Vector(normal) for normals in sides for normal in normals]
+        directions += [Vector(edge).cross(Vector(other)) for edge in edges[0] for other in edges[1]]
+        directions += _AXES
+        directions = [direction.normalized() for direction in directions if direction.length > 1e-9]
+        return [*directions, *(-direction for direction in directions)]
 
 
 def _deepest(solid, core, lines):

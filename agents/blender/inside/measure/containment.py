@@ -31,7 +31,7 @@ def _directions():
 
 _AROUND = _directions()
 _COARSE = _AROUND.astype(numpy.float32)
-_RAYS_AROUND = [Vector(way) for way in _AROUND]
+_RAYS_AROUND = [Vector(direction) for direction in _AROUND]
 
 
 def enclosure(request, solids):
@@ -98,8 +98,8 @@ class _Cavity:
         """Whether at least half of all directions hit the container."""
         hit = miss = 0
         cast, start = self._whole.tree.ray_cast, Vector(place)
-        for way in _RAYS_AROUND:
-            if cast(start, way)[0] is None:
+        for direction in _RAYS_AROUND:
+            if cast(start, direction)[0] is None:
                 miss += 1
             else:
                 hit += 1
@@ -110,7 +110,7 @@ class _Cavity:
     def _is_perforated(self, place):
         """Whether it surrounds a point with gaps to see through: a basket, a cage."""
         start = Vector(place)
-        hit = sum(self._whole.tree.ray_cast(start, way)[0] is not None for way in _RAYS_AROUND)
+        hit = sum(self._whole.tree.ray_cast(start, direction)[0] is not None for direction in _RAYS_AROUND)
         return hit < _SEEN_THROUGH * self._directions_with_surface(place)
 
     def _directions_with_surface(self, place):
@@ -145,13 +145,13 @@ def _within_reach(solid, places, slack):
     """Which points are inside the convex hull of a solid, roughly."""
     topology = topology_of(solid)
     largest = numpy.argsort(topology.areas)[-_PAIRS:]
-    ways = numpy.concatenate(
+    directions = numpy.concatenate(
         [numpy.eye(3), -numpy.eye(3), topology.normals[largest], -topology.normals[largest], _AROUND]
     )
-    reach = numpy.full(len(ways), -numpy.inf)
+    reach = numpy.full(len(directions), -numpy.inf)
     for start in range(0, len(topology.places), 20_000):
-        reach = numpy.maximum(reach, (topology.places[start : start + 20_000] @ ways.T).max(axis=0))
-    return (places @ ways.T <= reach + slack).all(axis=1)
+        reach = numpy.maximum(reach, (topology.places[start : start + 20_000] @ directions.T).max(axis=0))
+    return (places @ directions.T <= reach + slack).all(axis=1)
 
 
 def embedding(request, solids):
@@ -162,14 +162,20 @@ def embedding(request, solids):
     if host.closed:
         sunk = [place for place in edge_points_in_box(part, host).tolist() if host.holds(place)]
         touched = [pair[0] for pair in pairs] or [host.nearest(place)[2] for place in sunk]
-        ways = _most_common(topology.normals[touched] * topology.outward[touched][:, None]) if touched else []
+        directions = (
+            _most_common(topology.normals[touched] * topology.outward[touched][:, None]) if touched else []
+        )
     else:
         sunk = part.points[spread_numbers(len(part.points), _SUNK)].tolist()
-        ways = _directions_out_of_sheet(topology.normals[[pair[0] for pair in pairs]]) if pairs else []
+        directions = _directions_out_of_sheet(topology.normals[[pair[0] for pair in pairs]]) if pairs else []
     best = None
-    for way in ways:
+    for direction in directions:
         deepest = max(
-            ((distance, place) for place in sunk if (distance := _way_out(host, place, way)) is not None),
+            (
+                (distance, place)
+                for place in sunk
+                if (distance := _way_out(host, place, direction)) is not None
+            ),
             default=(0.0, None),
         )
         if best is None or deepest[0] < best[0]:
@@ -191,10 +197,10 @@ def _most_common(normals):
 def _directions_out_of_sheet(normals):
     """Directions out of a sheet: up if it is level, to either side if it is upright."""
     level = numpy.where(normals[:, 2:] < 0, -normals, normals)
-    way = level.mean(axis=0)
-    way = way / max(float(numpy.linalg.norm(way)), 1e-9)
-    return [way] if way[2] > _STEEP else [way, -way]
+    direction = level.mean(axis=0)
+    direction = direction / max(float(numpy.linalg.norm(direction)), 1e-9)
+    return [direction] if direction[2] > _STEEP else [direction, -direction]
 
 
-def _way_out(host, place, way):
-    return host.tree.ray_cast(Vector(place), Vector(way))[3]
+def _way_out(host, place, direction):
+    return host.tree.ray_cast(Vector(place), Vector(direction))[3]

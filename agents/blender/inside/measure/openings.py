@@ -25,9 +25,9 @@ def opening(request, solids):
     the plane with the narrowest gap counts.
     """
     filler, host = solids.joined(request["filler"]), solids.joined(request["host"])
-    sections = [_Section(filler, host, way) for way in _candidate_axes(filler, host)]
+    sections = [_Section(filler, host, direction) for direction in _candidate_axes(filler, host)]
     section = min(sections, key=lambda section: _axis_rank(section.rim(_COARSE)))
-    rim, way = section.rim(), section.way
+    rim, direction = section.rim(), section.direction
     if not rim:
         return {"unbounded": 360.0, "at": ((filler.low + filler.high) / 2).tolist()}
     turns = sorted(rim)
@@ -35,7 +35,7 @@ def opening(request, solids):
     widest = max(b - a for a, b in zip(turns, after, strict=True))
     gaps = [
         (
-            _gap(*rim[turn], [rim[neighbour % _DIRECTIONS][0] for neighbour in (last, following)], way),
+            _gap(*rim[turn], [rim[neighbour % _DIRECTIONS][0] for neighbour in (last, following)], direction),
             rim[turn][0],
         )
         for last, turn, following in zip(before, turns, after, strict=True)
@@ -49,14 +49,14 @@ def _axis_rank(rim):
     return -len(rim), max(((foot - place).length for place, foot in rim.values()), default=0.0)
 
 
-def _gap(place, foot, beside, way):
+def _gap(place, foot, beside, direction):
     """The width of the gap at a place of the rim, measured across it; in a corner, not along the diagonal."""
     away, least = foot - place, (foot - place).length
     for other in beside:
-        along = (other - place) - (other - place).dot(way) * way
+        along = (other - place) - (other - place).dot(direction) * direction
         if along.length > 0:
             along.normalize()
-            parts = abs(away.dot(along)), abs(away.dot(way)), abs(away.dot(way.cross(along)))
+            parts = abs(away.dot(along)), abs(away.dot(direction)), abs(away.dot(direction.cross(along)))
             least = min(least, max(parts))
     return least
 
@@ -80,22 +80,22 @@ def _candidate_axes(filler, host):
         candidates += [
             sums[place] / lengths[place] for place in numpy.argsort(-lengths)[:_WAYS] if lengths[place] > 0
         ]
-    ways = []
-    for way in candidates:
-        if all(abs(way @ other) < 0.999999 for other in ways):
-            ways.append(way)
-    return ways
+    directions = []
+    for direction in candidates:
+        if all(abs(direction @ other) < 0.999999 for other in directions):
+            directions.append(direction)
+    return directions
 
 
 class _Section:
     """A filler and a host, seen along the axis of the opening."""
 
-    def __init__(self, filler, host, way):
-        self._filler, self._host, self.way = filler, host, Vector(way)
-        across = numpy.cross(way, numpy.eye(3)[int(numpy.argmin(numpy.abs(way)))])
+    def __init__(self, filler, host, direction):
+        self._filler, self._host, self.direction = filler, host, Vector(direction)
+        across = numpy.cross(direction, numpy.eye(3)[int(numpy.argmin(numpy.abs(direction)))])
         across /= numpy.linalg.norm(across)
-        self._axes = across, numpy.cross(way, across)
-        along = filler.points @ way
+        self._axes = across, numpy.cross(direction, across)
+        along = filler.points @ direction
         self._low, self._high = float(along.min()), float(along.max())
         self._middle = numpy.array(
             [((spread := filler.points @ axis).min() + spread.max()) / 2 for axis in self._axes]
@@ -126,7 +126,7 @@ class _Section:
 
     def _place(self, distance, heading, height):
         u, v = self._middle + distance * numpy.array(heading)
-        return Vector(u * self._axes[0] + v * self._axes[1] + height * numpy.array(self.way))
+        return Vector(u * self._axes[0] + v * self._axes[1] + height * numpy.array(self.direction))
 
     def _rim_by_ray(self, heading, height):
         """Where a ray from the middle meets the host."""
@@ -154,4 +154,4 @@ class _Section:
     def _covered(self, distance, heading):
         start = self._place(distance, heading, self._low - _BESIDE)
         length = self._high - self._low + 2 * _BESIDE
-        return self._host.tree.ray_cast(start, self.way, length)[0]
+        return self._host.tree.ray_cast(start, self.direction, length)[0]

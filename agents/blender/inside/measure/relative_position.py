@@ -69,11 +69,12 @@ def beside(request, solids):
     along = (middle_a - middle_b)[request["axis"]] * request["way"]
     off = numpy.maximum(0.0, numpy.maximum(middle_a - high_b, low_b - middle_a))
     off[request["axis"]] = off[2] = 0.0  # left of something means left at any height
-    ways = [side, *numpy.eye(3), (middle_a - middle_b) @ axes]
+    directions = [side, *numpy.eye(3), (middle_a - middle_b) @ axes]
     for name in request["turned"]:
-        ways += [*axes_of(name)]
+        directions += [*axes_of(name)]
     gap = max(
-        float((a @ way).min() - (b @ way).max()) for way in _within(ways, side, math.radians(request["cone"]))
+        float((a @ direction).min() - (b @ direction).max())
+        for direction in _within(directions, side, math.radians(request["cone"]))
     )
     return {
         "angle": math.degrees(math.atan2(float(numpy.linalg.norm(off)), along)),
@@ -82,12 +83,12 @@ def beside(request, solids):
     }
 
 
-def _within(ways, side, cone):
+def _within(directions, side, cone):
     """The directions, or their opposites, within an angle of ``side``, as unit vectors."""
-    for way in ways:
-        length = numpy.linalg.norm(way)
+    for direction in directions:
+        length = numpy.linalg.norm(direction)
         if length > 0:
-            unit = way / length * (1 if way @ side >= 0 else -1)
+            unit = direction / length * (1 if direction @ side >= 0 else -1)
             if unit @ side >= math.cos(cone) - 1e-9:
                 yield unit
 

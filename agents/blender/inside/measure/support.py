@@ -67,7 +67,7 @@ def _outline(places):
 def _clearance(child, parents, within):
     """How far a child is above its parents, and where; {} if they are not below it."""
     best = None
-    for upper, lower, way in ((child, parents, -1), (parents, child, 1)):
+    for upper, lower, direction in ((child, parents, -1), (parents, child, 1)):
         places = upper.points
         if len(upper.triangles) < _LOOKED_DOWN:
             places = numpy.concatenate([places, places[upper.triangles].mean(axis=1)])
@@ -75,8 +75,8 @@ def _clearance(child, parents, within):
         inside = (places[:, :2] > lower.low[:2] + _EDGE) & (places[:, :2] < lower.high[:2] - _EDGE)
         places = places[inside.all(axis=1)]
         for place in places[spread_numbers(len(places), _LOOKED_DOWN)].tolist():
-            start = Vector((place[0], place[1], place[2] - way * within))
-            hit, _, _, distance = lower.tree.ray_cast(start, Vector((0, 0, way)))
+            start = Vector((place[0], place[1], place[2] - direction * within))
+            hit, _, _, distance = lower.tree.ray_cast(start, Vector((0, 0, direction)))
             if hit is not None and (best is None or distance < best[0]):
                 best = distance, place
     return {} if best is None else {"clearance": max(0.0, best[0] - within), "at": best[1]}

@@ -10,7 +10,7 @@ from mathutils import Vector
 
 from . import caches
 
-_POINTS = 2000  # of one object that are looked at
+_POINTS = 2000  # of one object that are sampled
 _CORNERS = 8
 _NO_GAS = 1e-6  # density in all cells together
 _STILL = 0.005  # of its size that something must move to count as moving

@@ -366,7 +366,7 @@ def _stroke_segments(data):
 
 
 def _gas_of(obj):
-    """The settings of the gas domain that an object is; None if it is none."""
+    """The fluid domain settings of an object; None if it is not a domain of gas."""
     domain = domain_of(obj, shown_only=True)
     return domain if domain is not None and domain.domain_type == "GAS" else None
 
