@@ -167,7 +167,7 @@ def open_elsewhere(launch: Launch, blend: Path, *, timeout: float) -> FileConten
         try:
             process = BlenderProcess(second)
             try:
-                reply = process.call("look", {"path": str(blend)}, timeout=timeout)
+                reply = process.call("inspect", {"path": str(blend)}, timeout=timeout)
                 return validated(FileContents, reply.value)
             finally:
                 process.kill()

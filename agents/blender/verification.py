@@ -36,5 +36,5 @@ def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | N
         except (Refusal, ToolBroke) as error:
             return [{"unmeasured": str(error)}] * len(requests)
 
-    told = blender.call("snapshot", {}, timeout=SNAPSHOT_SECONDS, cancelled=call.cancelled)
+    told = blender.call("scene_facts", {}, timeout=SNAPSHOT_SECONDS, cancelled=call.cancelled)
     return verify(Facts.read(told.value), ask, rules, plan)

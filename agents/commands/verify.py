@@ -134,7 +134,7 @@ def _run(
         with _opened(scene, given, call) as blender:
             waiting.for_("Going to the frame")
             stands = blender.call(
-                "stand_at", {"frame": given["frame"]}, timeout=_STAND_SECONDS, progress=call.progress
+                "go_to_frame", {"frame": given["frame"]}, timeout=_STAND_SECONDS, progress=call.progress
             ).value
             process = blender.inner_pid
             waiting.for_("Measuring")

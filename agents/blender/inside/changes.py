@@ -1,35 +1,36 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a piece of code has changed in the open file: names of what came, went and was altered."""
+"""What code changed in the open file: names of data-blocks and modifiers added, removed and changed."""
 
 import bpy
 from bpy.app.handlers import persistent
 
-# Collections of bpy.data that are told of, by the name a reader expects.
-KINDS = {
-    "objects": "objects",
-    "materials": "materials",
-    "collections": "collections",
-    "meshes": "meshes",
-    "lights": "lights",
-    "cameras": "cameras",
-    "actions": "actions",
-    "node_groups": "node_groups",
-    "images": "images",
-    "scenes": "scenes",
-    "worlds": "worlds",
-}
-LISTED = 40  # names of one kind in a report; the rest is counted
+# Collections of bpy.data whose changes are reported.
+KINDS = (
+    *(
+        "objects",
+        "materials",
+        "collections",
+        "meshes",
+        "lights",
+        "cameras",
+        "actions",
+        "node_groups",
+        "images",
+    ),
+    *("scenes", "worlds"),
+)
+LISTED = 40  # names of one kind in a report; the rest are counted
 
 _updated = set()
 
 
-def uid(thing):
-    """What tells a data-block or modifier from every other one, whatever it is called."""
+def uid(block):
+    """A number that identifies a data-block or modifier, whatever its name."""
     for name in ("session_uid", "persistent_uid"):
-        number = getattr(thing, name, None)
+        number = getattr(block, name, None)
         if number is not None:
             return number
-    return thing.as_pointer()  # Blender before 4.1
+    return block.as_pointer()  # Blender before 4.1
 
 
 @persistent
@@ -44,14 +45,14 @@ def _listen():
         handlers.append(_note_updates)
 
 
-class Watch:
-    """The state of the file before some code runs; ``report`` tells what is different after it."""
+class ChangeWatch:
+    """Remembers the file before some code runs; ``report`` returns the differences after it."""
 
     def __init__(self):
         _listen()
         self._settle()
         _updated.clear()
-        self._before = _census()
+        self._before = _names_by_kind()
         self._modifiers = _modifiers()
 
     @staticmethod
@@ -63,48 +64,38 @@ class Watch:
     def report(self):
         """{kind: {"added" | "removed" | "changed": names}}; modifiers by ``Object[Modifier]``; {} if nothing is."""
         self._settle()
-        after, told = _census(), {}
-        for kind in KINDS:
-            old, new = self._before[kind], after[kind]
-            changed = {
-                name for key, name in new.items() if key in old and (key in _updated or old[key] != name)
-            }
-            entry = _entry(
-                (name for key, name in new.items() if key not in old),
-                (name for key, name in old.items() if key not in new),
-                changed,
-            )
-            if entry:
-                told[kind] = entry
+        report = {}
+        for kind, new in _names_by_kind().items():
+            old = self._before[kind]
+            updated = {key for key in new if key in old and (key in _updated or old[key] != new[key])}
+            if entry := _entry(old, new, updated):
+                report[kind] = entry
         old, new = self._modifiers, _modifiers()
-        entry = _entry(
-            (name for key, name in new.items() if key not in old),
-            (name for key, name in old.items() if key not in new),
-            (name for key, name in new.items() if key in old and name != old[key]),
-        )
-        if entry:
-            told["modifiers"] = entry
-        return told
+        if entry := _entry(old, new, {key for key in new if key in old and new[key] != old[key]}):
+            report["modifiers"] = entry
+        return report
 
 
-def _census():
-    return {
-        kind: {uid(block): block.name for block in getattr(bpy.data, attribute)}
-        for kind, attribute in KINDS.items()
-    }
+def _names_by_kind():
+    return {kind: {uid(block): block.name for block in getattr(bpy.data, kind)} for kind in KINDS}
 
 
 def _modifiers():
-    found = {}
-    for thing in bpy.data.objects:
-        for modifier in thing.modifiers:
-            found[uid(thing), uid(modifier)] = f"{thing.name}[{modifier.name}]"
-    return found
+    names = {}
+    for obj in bpy.data.objects:
+        for modifier in obj.modifiers:
+            names[uid(obj), uid(modifier)] = f"{obj.name}[{modifier.name}]"
+    return names
 
 
-def _entry(added, removed, changed):
+def _entry(old, new, changed):
+    """The names that differ between ``old`` and ``new`` ({uid: name}), and those of the uids that ``changed``."""
     entry = {}
-    for word, names in (("added", added), ("removed", removed), ("changed", changed)):
+    for word, names in (
+        ("added", {name for key, name in new.items() if key not in old}),
+        ("removed", {name for key, name in old.items() if key not in new}),
+        ("changed", {new[key] for key in changed}),
+    ):
         listed = sorted(names)
         if len(listed) > LISTED:
             listed = [*listed[:LISTED], f"… and {len(listed) - LISTED} more"]

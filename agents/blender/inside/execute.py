@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a piece of code in a fresh namespace and tells what came of it."""
+"""Runs code in a fresh namespace and returns its value, its changes to the file, and its error."""
 
 import ast
 import linecache
@@ -9,13 +9,13 @@ import traceback
 import bpy
 
 from . import interpreter_state
-from .api_suspects import names_there, suspect
-from .changes import Watch
+from .api_suspects import documentation_query, existing_names
+from .changes import ChangeWatch
 
 FILE = "<blender_execute>"
 _LONGEST_VALUE = 4000
 _LONGEST_TRACEBACK = 6000
-_AROUND = 3  # lines shown before and after the one that failed
+_LINES_AROUND = 3  # lines shown before and after the one that failed
 
 
 def execute(arguments, report):
@@ -24,22 +24,22 @@ def execute(arguments, report):
     code = arguments["code"]
     linecache.cache[FILE] = (len(code), None, code.splitlines(keepends=True), FILE)
     result = {"value": None, "error": None}
-    watch = Watch()
+    watch = ChangeWatch()
     failure = None
     try:
         result["value"] = _run(code)
     except BaseException as error:
         failure = error
-    # Code may have bent what tells the outcome, or set a tracer on it or an alarm, which raise and are gone then.
+    # The code may have patched what is used below, or left a tracer or an alarm that raises here once.
     for _ in range(3):
         try:
-            interpreter_state.current.put_names_back()
+            interpreter_state.current.restore_names()
             break
         except Exception:
             continue
     if failure is not None:
-        result["error"] = _told(failure, code)
-        failure = None  # and with it the code's names
+        result["error"] = _describe_error(failure, code)
+        failure = None  # frees the code's names
     try:
         result["changed"] = watch.report()
     except Exception as error:
@@ -57,57 +57,57 @@ def _run(code):
     if last is None:
         return None
     value = eval(compile(ast.Expression(last.value), FILE, "eval"), namespace)  # noqa: S307 - as above
-    return None if value is None else _shown(value)
+    return None if value is None else _describe_value(value)
 
 
-def _shown(value):
+def _describe_value(value):
     try:
         text = repr(value)
     except Exception as error:
-        text = f"<{type(value).__name__}, whose repr fails: {type(error).__name__}: {error}>"
+        text = f"<{type(value).__name__}, repr() failed: {type(error).__name__}: {error}>"
     return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}… ({len(text)} characters)"
 
 
-def _told(error, code):
-    """An exception as data: ``type``, ``message``, ``line`` (1-based), ``source`` around it, ``traceback``, ``ask``,
-    ``there`` (names in the place of one that is missing)."""
+def _describe_error(error, code):
+    """An exception as data: ``type``, ``message``, ``line`` (1-based), ``source`` around it, ``traceback``, ``ask``
+    (query for the documentation), ``there`` (names that exist instead of a missing one)."""
     if isinstance(error, SyntaxError):
         line, frame, span = error.lineno, None, None
-        shown = traceback.format_exception_only(error)
+        formatted = traceback.format_exception_only(error)
     else:
-        outer, inner = _own_parts(error.__traceback__)
+        outer, inner = _executed_frames(error.__traceback__)
         line = inner.tb_lineno if inner else None
         frame = inner.tb_frame if inner else None
-        span = _span(inner) if inner else None
-        shown = traceback.format_exception(type(error), error, outer)
+        span = _failed_span(inner) if inner else None
+        formatted = traceback.format_exception(type(error), error, outer)
     lines = code.splitlines()
     ask, there = "", []
     if frame is not None and line:
         try:
             failed = lines[line - 1] if line <= len(lines) else ""
-            ask = suspect(error, frame, failed, span)
-            there = names_there(error, frame, failed, span)
+            ask = documentation_query(error, frame, failed, span)
+            there = existing_names(error, frame, failed, span)
         except Exception as fault:
-            sys.stderr.write(f"(what the error is about could not be found out: {fault!r})\n")
+            sys.stderr.write(f"(could not tell what the error is about: {fault!r})\n")
     try:
         message = str(error)
     except BaseException as fault:
-        message = f"<its text cannot be had: {type(fault).__name__}>"
+        message = f"<no message: str() failed with {type(fault).__name__}>"
     if isinstance(error, SystemExit):
-        message = f"the code called sys.exit({error.code!r}); Blender goes on"
+        message = f"the code called sys.exit({error.code!r}), which does not end Blender here"
     return {
         "type": type(error).__name__,
         "message": message[:2000],
         "line": line,
-        "source": _around(lines, line),
-        "traceback": "".join(shown)[-_LONGEST_TRACEBACK:],
+        "source": _lines_around(lines, line),
+        "traceback": "".join(formatted)[-_LONGEST_TRACEBACK:],
         "ask": ask,
         "there": there,
     }
 
 
-def _own_parts(trace):
-    """(outermost, innermost) part of a traceback that lies in the executed code; (None, None) if none does."""
+def _executed_frames(trace):
+    """(outermost, innermost) frame of a traceback that is in the executed code; (None, None) if there is none."""
     outer = inner = None
     while trace is not None:
         if trace.tb_frame.f_code.co_filename == FILE:
@@ -116,7 +116,7 @@ def _own_parts(trace):
     return outer, inner
 
 
-def _span(trace):
+def _failed_span(trace):
     """(first, last) column in bytes of what failed on the line, if Python knows."""
     positions = getattr(trace.tb_frame.f_code, "co_positions", None)
     if positions is None:
@@ -128,10 +128,10 @@ def _span(trace):
     return None
 
 
-def _around(lines, line):
+def _lines_around(lines, line):
     if not line:
         return ""
-    first, last = max(1, line - _AROUND), min(len(lines), line + _AROUND)
+    first, last = max(1, line - _LINES_AROUND), min(len(lines), line + _LINES_AROUND)
     return "\n".join(
         f"{'>' if number == line else ' '} {number:4d}  {lines[number - 1][:200]}"
         for number in range(first, last + 1)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes objects (L3) of the scene protocol out of what is there: collections, a root Empty, parents, tags.
+"""Groups existing objects into objects (L3) of the scene protocol: collections, a root Empty, parents, tags.
 
 Everything is checked before anything is changed. Nothing moves in the world.
 """
 
-import difflib
 import math
 
 import bpy
@@ -12,8 +11,10 @@ from mathutils import Matrix, Vector
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from .state.world_extents import Extents, evaluated_graph
-from .tag import CONTACT, OBJECT, ROLE, ROOT, SYSTEM, WITH_SURFACE, tag
+from .blend.names import nearest
+from .blend.protocol_tags import CONTACT, OBJECT, ROLE, ROOT, SYSTEM
+from .state.world_extents import ExtentReader, evaluated_graph
+from .tag import WITH_SURFACE, tag
 
 _EMPTY_SHARE = 0.25  # of the object's diagonal: how large its root is drawn
 
@@ -28,78 +29,81 @@ def group(arguments, report):
     """
     bpy.context.view_layer.update()
     scene = bpy.context.scene
-    wanted = [_Group(scene, given) for given in arguments["groups"]]
-    _check_together(scene, wanted)
-    extents = Extents(evaluated_graph())
-    for one in wanted:
-        one.find_place(extents)
+    groups = [_Group(scene, request) for request in arguments["groups"]]
+    _check_together(scene, groups)
+    extents = ExtentReader(evaluated_graph())
+    for each in groups:
+        each.find_place(extents)
     tree = [scene.collection, *scene.collection.children_recursive]
-    free = [one for one in tree if not _is_used_by_physics(scene, one)]
-    for number, one in enumerate(wanted):
-        report(number, len(wanted), one.name)
-        one.make(free)
+    free = [collection for collection in tree if not _is_used_by_physics(scene, collection)]
+    for number, each in enumerate(groups):
+        report(number, len(groups), each.name)
+        each.make(free)
     bpy.context.view_layer.update()
-    told = tag(_tags(wanted), report)
-    return {"groups": [one.told() for one in wanted], "warnings": told["warnings"]}
+    tagged = tag(_tags(groups), report)
+    return {"groups": [each.as_dict() for each in groups], "warnings": tagged["warnings"]}
 
 
-def _check_together(scene, wanted):
+def _check_together(scene, groups):
+    """Raises Refused where the groups contradict each other."""
     seen, taken = set(), {}
-    for one in wanted:
-        if one.name in seen:
-            raise Refused(f"{one.name!r} is named twice; say once what belongs to it.")
-        seen.add(one.name)
-        for thing in one.members:
-            if thing in taken:
-                raise Refused(f"{thing.name!r} cannot be in {taken[thing]!r} and in {one.name!r}.")
-            taken[thing] = one.name
-    systems = {one.system for one in wanted}
-    for one in wanted:
-        if one.name in systems:
-            raise Refused(f"{one.name!r} cannot be a system and an object: collections share names.")
-        for name in one.contacts or ():
-            if name == one.name:
-                raise Refused(f"{name!r} is not in contact with itself.")
+    for group in groups:
+        if group.name in seen:
+            raise Refused(f"{group.name!r} is named twice: name it once, with all its members.")
+        seen.add(group.name)
+        for obj in group.members:
+            if obj in taken:
+                raise Refused(f"{obj.name!r} cannot be in both {taken[obj]!r} and {group.name!r}.")
+            taken[obj] = group.name
+    systems = {group.system for group in groups}
+    for group in groups:
+        if group.name in systems:
+            raise Refused(
+                f"{group.name!r} cannot be both a system and an object: choose another name for one."
+            )
+        for name in group.contacts or ():
+            if name == group.name:
+                raise Refused(f"{name!r} cannot be in contact with itself.")
             if name not in seen and name not in scene.objects and _role(name) != OBJECT:
-                near = _nearest(name, [*seen, *scene.objects.keys()])
-                raise Refused(f"{one.name!r} cannot touch {name!r}: there is no such object.{near}")
+                hint = _name_hint(name, [*seen, *scene.objects.keys()])
+                raise Refused(f"{group.name!r} cannot touch {name!r}: there is no such object.{hint}")
 
 
-def _tags(wanted):
-    systems = {one.system: None for one in wanted if one.system}
+def _tags(groups):
+    systems = {group.system: None for group in groups if group.system}
     collections = [[name, {ROLE: SYSTEM}] for name in systems]
-    collections += [[one.name, {ROLE: OBJECT, **one.tags}] for one in wanted]
+    collections += [[group.name, {ROLE: OBJECT, **group.tags}] for group in groups]
     roots = []
-    for one in wanted:
-        contacts = {} if one.contacts is None else {CONTACT: one.contacts}
-        roots.append([one.root.name, {ROOT: True, **contacts}])
+    for group in groups:
+        contacts = {} if group.contacts is None else {CONTACT: group.contacts}
+        roots.append([group.root.name, {ROOT: True, **contacts}])
     return {"collections": collections, "objects": roots, "scene": {}}
 
 
 class _Group:
-    """What is to become of one object. Raises Refused for what cannot be."""
+    """One object (L3) to be made or completed. Raises Refused for what is impossible."""
 
-    def __init__(self, scene, given):
+    def __init__(self, scene, request):
         self._scene = scene
-        self.name, self.system = given["object"], given["system"]
-        self.tags, self.contacts = given["tags"], given["contact_with"]
-        self._location = given["location"]
+        self.name, self.system = request["object"], request["system"]
+        self.tags, self.contacts = request["tags"], request["contact_with"]
+        self._location = request["location"]
         self._freed, self._left = {}, set()
         self._collection = _collection(self.name, OBJECT)
         if self.system is not None:
             _collection(self.system, SYSTEM)
         elif self._collection is None or not self._is_below_system():
-            raise Refused(f"Which system is {self.name!r} to be in? Name one, as 'furniture' or 'ground'.")
+            raise Refused(f"{self.name!r} is in no system yet: name one, such as 'furniture' or 'ground'.")
         before = _contents(self._collection) if self._collection else []
-        if given["members"] is None and not before:
-            raise Refused(f"There is nothing in {self.name!r}: name its members.")
-        self.members = [_member(scene, name) for name in given["members"] or ()]
+        if request["members"] is None and not before:
+            raise Refused(f"{self.name!r} is empty: name its members.")
+        self.members = [_member(scene, name) for name in request["members"] or ()]
         self._all = list(dict.fromkeys([*before, *self.members]))
-        if not any(thing.type in WITH_SURFACE for thing in self._all):
-            raise Refused(f"{self.name!r} would have no mesh: name one among its members.")
+        if not any(obj.type in WITH_SURFACE for obj in self._all):
+            raise Refused(f"{self.name!r} would have no mesh: add one to its members.")
         self.root = self._find_root(before)
-        for thing in self._tops():
-            _check_parent(thing, self.name)
+        for obj in self._topmost():
+            _check_parent(obj, self.name)
 
     def _is_below_system(self):
         def below(parent):
@@ -109,58 +113,57 @@ class _Group:
             )
 
         return any(
-            one.get(ROLE) == SYSTEM and below(one) for one in self._scene.collection.children_recursive
+            collection.get(ROLE) == SYSTEM and below(collection)
+            for collection in self._scene.collection.children_recursive
         )
 
     def _find_root(self, before):
         """The root that it has, or the Empty to which all its meshes are parented already; None if there is none."""
-        roots = [thing for thing in before if thing.get(ROOT)]
-        if len(roots) > 1 or any(thing.type != "EMPTY" for thing in roots):
-            names = ", ".join(repr(thing.name) for thing in roots)
+        roots = [obj for obj in before if obj.get(ROOT)]
+        if len(roots) > 1 or any(obj.type != "EMPTY" for obj in roots):
+            names = ", ".join(repr(obj.name) for obj in roots)
             raise Refused(
-                f"{self.name!r} has {names} as root; an object has one, and that is an Empty: untag it."
+                f"{self.name!r} has {names} as root, but an object has one root, an Empty: untag the others."
             )
         if roots:
             return roots[0]
-        tops = {_top(thing, self._all) for thing in self._all if thing.type in WITH_SURFACE}
+        tops = {_topmost_in_group(obj, self._all) for obj in self._all if obj.type in WITH_SURFACE}
         top = tops.pop()
         return top if not tops and top.type == "EMPTY" and top.parent is None else None
 
-    def _tops(self):
-        """What is to be parented to the root: whatever hangs on nothing that belongs to the object."""
-        tops = dict.fromkeys(_top(thing, self._all) for thing in self._all)
-        return [thing for thing in tops if thing != self.root and thing.parent != (self.root or thing)]
+    def _topmost(self):
+        """The objects to parent to the root: those whose parent, if any, is outside the group."""
+        tops = dict.fromkeys(_topmost_in_group(obj, self._all) for obj in self._all)
+        return [obj for obj in tops if obj != self.root and obj.parent != (self.root or obj)]
 
     def find_place(self, extents):
-        """Where the root is to be, before anything is changed."""
+        """Finds the place for a new root. Changes nothing."""
         boxes = [
             box
-            for thing in self._all
-            if thing.type in WITH_SURFACE
-            and (box := extents.measure(thing, extents.evaluated(thing))[0]) is not None
+            for obj in self._all
+            if obj.type in WITH_SURFACE
+            and (box := extents.measure(obj, extents.evaluated(obj))[0]) is not None
         ]
         ends = [value for box in boxes for value in (*box.low, *box.high)]
         if not all(map(math.isfinite, ends)):
-            raise Refused(f"{self.name!r} has geometry at places that are no numbers; mend that first.")
+            raise Refused(f"{self.name!r} has geometry with coordinates that are not finite: fix that first.")
         if self._location is None and not boxes and self.root is None:
-            raise Refused(f"{self.name!r} has no geometry to find its bottom by: give a location.")
+            raise Refused(f"{self.name!r} has no geometry from which to find its bottom: give a location.")
         low = Vector(min((box.low[axis] for box in boxes), default=0.0) for axis in range(3))
         high = Vector(max((box.high[axis] for box in boxes), default=0.0) for axis in range(3))
         self._bottom = Vector(((low.x + high.x) / 2, (low.y + high.y) / 2, low.z))
         self._across = (high - low).length
         if self.root is not None and self._location is not None and _is_driven(self.root):
-            raise Refused(
-                f"The root {self.root.name!r} is animated or constrained: it cannot be put elsewhere."
-            )
+            raise Refused(f"The root {self.root.name!r} is animated or constrained, so it cannot be moved.")
 
     def make(self, free):
         """Makes it. ``free``: the collections that objects may be taken out of."""
         self._link(free)
         self._place_root()
-        for thing in self._tops():
-            if thing.parent is not None:
-                self._freed[thing.name] = thing.parent.name
-            _hang(thing, self.root)
+        for obj in self._topmost():
+            if obj.parent is not None:
+                self._freed[obj.name] = obj.parent.name
+            _parent_to_root(obj, self.root)
 
     def _link(self, free):
         top = self._scene.collection
@@ -171,13 +174,13 @@ class _Group:
             _move_below(system, top, top)
             _move_below(self._collection, system, top)
         inside = [self._collection, *_untagged_below(self._collection)]
-        for thing in self.members:
-            for other in thing.users_collection:
+        for obj in self.members:
+            for other in obj.users_collection:
                 if other not in inside and (other in free or other.get(ROLE) == OBJECT):
-                    other.objects.unlink(thing)
+                    other.objects.unlink(obj)
                     self._left.add(other.name)
-            if not any(thing.name in one.objects for one in inside):
-                self._collection.objects.link(thing)
+            if not any(obj.name in collection.objects for collection in inside):
+                self._collection.objects.link(obj)
 
     def _place_root(self):
         if self.root is None:
@@ -193,119 +196,123 @@ class _Group:
             self.root.parent = None
             self.root.matrix_world = world
         if self._location is not None:
-            below = [(thing, _space(thing)) for thing in self.root.children]
+            below = [(obj, _parent_space(obj)) for obj in self.root.children]
             self.root.location = Vector(self._location)
             bpy.context.view_layer.update()
-            for thing, space in below:
-                thing.matrix_parent_inverse = self.root.matrix_world.inverted() @ space
+            for obj, space in below:
+                obj.matrix_parent_inverse = self.root.matrix_world.inverted() @ space
 
-    def told(self):
-        """It, as it is now."""
+    def as_dict(self):
+        """The group as it is now, as data."""
         return {
             "object": self.name,
             "systems": sorted(
-                one.name
-                for one in bpy.data.collections
-                if one.get(ROLE) == SYSTEM and self._collection in one.children_recursive
+                collection.name
+                for collection in bpy.data.collections
+                if collection.get(ROLE) == SYSTEM and self._collection in collection.children_recursive
             ),
             "root": self.root.name,
             "location": [round(value, 6) for value in self.root.matrix_world.translation],
-            "members": sorted(thing.name for thing in _contents(self._collection) if thing != self.root),
+            "members": sorted(obj.name for obj in _contents(self._collection) if obj != self.root),
             "taken_out_of": sorted(self._left),
             "freed_from": self._freed,
         }
 
 
-# What there is
+# Look-ups
 
 
 def _collection(name, role):
-    """The collection of that name, None if there is none. Raises Refused if it cannot be what it is to be."""
+    """The collection of that name, None if there is none. Raises Refused if it cannot have the role."""
     longest = bpy.types.ID.bl_rna.properties["name"].length_max - 1
     if not name.strip() or len(name.encode()) > longest:
-        raise Refused(f"{name[:80]!r} cannot be a name: it is empty, or has more than {longest} bytes.")
-    found = bpy.data.collections.get(name)
-    if found is None:
+        raise Refused(f"{name[:80]!r} is not a valid name: it must have 1 to {longest} bytes.")
+    collection = bpy.data.collections.get(name)
+    if collection is None:
         return None
-    if found.library is not None:
-        raise Refused(f"{name!r} is linked from {found.library.filepath}; it can only be changed there.")
+    if collection.library is not None:
+        raise Refused(f"{name!r} is linked from {collection.library.filepath}; it can only be changed there.")
     other = {SYSTEM: OBJECT, OBJECT: SYSTEM}[role]
-    if found.get(ROLE) == other:
-        raise Refused(f"{name!r} is tagged as {other} already, and is to be {role} now; choose another name.")
-    return found
+    if collection.get(ROLE) == other:
+        raise Refused(
+            f"{name!r} is already tagged as {other}, so it cannot become {role}: choose another name."
+        )
+    return collection
 
 
 def _role(name):
-    found = bpy.data.collections.get(name)
-    return found.get(ROLE) if found else None
+    collection = bpy.data.collections.get(name)
+    return collection.get(ROLE) if collection else None
 
 
 def _member(scene, name):
-    thing = scene.objects.get(name)
-    if thing is None:
-        raise Refused(f"The scene has no object {name!r}.{_nearest(name, scene.objects.keys())}")
-    if thing.library is not None:
-        raise Refused(f"{name!r} is linked from {thing.library.filepath}; it can only be changed there.")
-    if thing.type in {"LIGHT", "CAMERA"} or (thing.field is not None and thing.field.type != "NONE"):
-        kind = "force field" if thing.type not in {"LIGHT", "CAMERA"} else thing.type.lower()
-        raise Refused(f"{name!r} is a {kind}, and no part of an object: link it into a system of its own.")
-    return thing
+    obj = scene.objects.get(name)
+    if obj is None:
+        raise Refused(f"The scene has no object {name!r}.{_name_hint(name, scene.objects.keys())}")
+    if obj.library is not None:
+        raise Refused(f"{name!r} is linked from {obj.library.filepath}; it can only be changed there.")
+    if obj.type in {"LIGHT", "CAMERA"} or (obj.field is not None and obj.field.type != "NONE"):
+        kind = "force field" if obj.type not in {"LIGHT", "CAMERA"} else obj.type.lower()
+        raise Refused(
+            f"{name!r} is a {kind}, which cannot be part of an object: link it into a system instead."
+        )
+    return obj
 
 
-def _check_parent(thing, name):
-    """That taking ``thing`` off its parent loses nothing but the parent."""
-    parent = thing.parent
-    if parent is None or (thing.parent_type == "OBJECT" and parent.type not in {"ARMATURE", "LATTICE"}):
+def _check_parent(obj, name):
+    """Raises Refused if unparenting ``obj`` would lose more than the parent."""
+    parent = obj.parent
+    if parent is None or (obj.parent_type == "OBJECT" and parent.type not in {"ARMATURE", "LATTICE"}):
         return
     raise Refused(
-        f"{thing.name!r} is moved by {parent.name!r} (parent type {thing.parent_type}), which is no member of "
-        f"{name!r}: name it among the members as well, or clear the parent."
+        f"{obj.name!r} is moved by {parent.name!r} (parent type {obj.parent_type}), which is not in "
+        f"{name!r}: add it to the members, or clear the parent."
     )
 
 
 def _contents(collection):
     """The objects of an L3: its own, and those of untagged collections below it."""
-    found = {}
-    for one in (collection, *_untagged_below(collection)):
-        found.update(dict.fromkeys(one.objects))
-    return list(found)
+    members = {}
+    for child in (collection, *_untagged_below(collection)):
+        members.update(dict.fromkeys(child.objects))
+    return list(members)
 
 
 def _untagged_below(collection):
-    found = []
-    for one in collection.children:
-        if not one.get(ROLE):
-            found += [one, *_untagged_below(one)]
-    return found
+    below = []
+    for child in collection.children:
+        if not child.get(ROLE):
+            below += [child, *_untagged_below(child)]
+    return below
 
 
-def _top(thing, group):
-    """The uppermost of the chain of parents from ``thing`` that is in the group."""
-    while thing.parent in group:
-        thing = thing.parent
-    return thing
+def _topmost_in_group(obj, group):
+    """The uppermost of the chain of parents from ``obj`` up that is in the group."""
+    while obj.parent in group:
+        obj = obj.parent
+    return obj
 
 
-def _is_driven(thing):
-    data = thing.animation_data
+def _is_driven(obj):
+    data = obj.animation_data
     animated = data is not None and (data.action is not None or len(data.drivers) or len(data.nla_tracks))
-    return bool(animated or any(not one.mute for one in thing.constraints))
+    return bool(animated or any(not constraint.mute for constraint in obj.constraints))
 
 
 def _is_used_by_physics(scene, collection):
-    """Whether something else than the tree of collections goes by what is in it."""
+    """Whether anything but the tree of collections depends on what is in it."""
     world = scene.rigidbody_world
     if world is not None and collection in (world.collection, world.constraints):
         return True
     if collection == scene.collection:
         return False
     users = bpy.data.user_map(subset=[collection]).get(collection, ())
-    return any(not isinstance(one, (bpy.types.Collection, bpy.types.Scene)) for one in users)
+    return any(not isinstance(user, (bpy.types.Collection, bpy.types.Scene)) for user in users)
 
 
-def _nearest(name, names):
-    found = difflib.get_close_matches(name, list(names), 3, 0.5)
-    return f" Nearest: {', '.join(map(repr, found))}." if found else ""
+def _name_hint(name, names):
+    near = nearest(name, names)
+    return f" Nearest: {', '.join(map(repr, near))}." if near else ""
 
 
 # Changes
@@ -324,15 +331,15 @@ def _move_below(collection, parent, top):
             other.children.unlink(collection)
 
 
-def _space(thing):
+def _parent_space(obj):
     """The space that an object's own location, rotation and scale are in."""
-    if thing.parent is None:
+    if obj.parent is None:
         return Matrix()
-    return thing.parent.matrix_world @ thing.matrix_parent_inverse
+    return obj.parent.matrix_world @ obj.matrix_parent_inverse
 
 
-def _hang(thing, root):
+def _parent_to_root(obj, root):
     """Parents to the root; where it is, how it is turned and sheared, and what animates it, stay."""
-    space = _space(thing)
-    thing.parent, thing.parent_type = root, "OBJECT"
-    thing.matrix_parent_inverse = root.matrix_world.inverted() @ space
+    space = _parent_space(obj)
+    obj.parent, obj.parent_type = root, "OBJECT"
+    obj.matrix_parent_inverse = root.matrix_world.inverted() @ space

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts the interpreter back between two calls: executed code must not poison the next one."""
+"""Restores the Python interpreter after each call, so that executed code cannot break the next one."""
 
 import _thread
 import builtins
@@ -21,8 +21,8 @@ _GRACE_SECONDS = 0.5
 _STREAMS = ("stdin", "stdout", "stderr")
 _ALARMS = (signal.ITIMER_REAL, signal.ITIMER_VIRTUAL, signal.ITIMER_PROF)
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM, signal.SIGVTALRM, signal.SIGPROF, signal.SIGCHLD)
-# Modules whose names, all of them, are put back: this side's tools lean on them.
-_LEANED_ON = (
+# Modules of which every name is restored: the tools depend on them.
+_RESTORED_MODULES = (
     *(
         "ast",
         "builtins",
@@ -54,22 +54,24 @@ _CODE = (types.FunctionType, types.BuiltinFunctionType, types.ModuleType, type)
 _current_frames = sys._current_frames
 _count_started = _thread._count
 
-current = None  # the one of this process
+current = None  # this process's InterpreterState
 
 
 class InterpreterState:
-    """Remembers how things stood at the start. ``high``: lowest number for descriptors that are kept."""
+    """Remembers the interpreter at the start. ``high``: the lowest number for the descriptors that it keeps."""
 
     def __init__(self, high):
         for name in _STREAMS[1:]:
             getattr(sys, name).reconfigure(errors="backslashreplace", line_buffering=True)
         self._fds = {number: fcntl.fcntl(number, fcntl.F_DUPFD_CLOEXEC, high) for number in (0, 1, 2)}
-        # Last words of a crash: which line of Python it was in.
+        # On a crash, writes which line of Python it was in.
         faulthandler.enable(file=self._fds[2], all_threads=False)
         self._streams = {name: getattr(sys, name) for name in _STREAMS}
         self._modules = {**sys.modules}
         self._names = [
-            (module, {**vars(module)}) for name in _LEANED_ON if (module := sys.modules.get(name)) is not None
+            (module, {**vars(module)})
+            for name in _RESTORED_MODULES
+            if (module := sys.modules.get(name)) is not None
         ]
         self._seen = 0
         self._builtins = {**vars(builtins)}
@@ -99,8 +101,8 @@ class InterpreterState:
         if event == "sys.addaudithook":
             self._audited += 1
 
-    def lean_on(self, folder):
-        """Modules that have been loaded from below ``folder`` are this side's: their functions are put back, too."""
+    def protect_modules(self, folder):
+        """Has the functions and classes of all modules loaded from below ``folder`` restored as well."""
         if len(sys.modules) == self._seen:
             return
         self._seen = len(sys.modules)
@@ -108,36 +110,35 @@ class InterpreterState:
         for module in list(sys.modules.values()):
             path = getattr(module, "__file__", None) or ""
             if path.startswith(folder + os.sep) and id(module) not in known:
-                code = {name: thing for name, thing in vars(module).items() if isinstance(thing, _CODE)}
+                code = {name: value for name, value in vars(module).items() if isinstance(value, _CODE)}
                 self._names.append((module, code))
 
     def before(self):
-        """A call begins: what it leaves behind will be counted from here."""
+        """Call it before a call: what that leaves behind is counted from here."""
         self._threads = set(_current_frames())
         self._started = _count_started()
         self._tasks = _tasks()
         self._audited = 0
 
     def after(self):
-        """Puts back what the call has bent, and writes out what it printed.
+        """Restores what the call changed, and flushes what it printed.
 
-        Returns in words what it left behind that cannot be put back.
+        Returns descriptions of what it left behind that cannot be undone.
         """
-        self._calm()
+        self._stop_alarms_and_tracers()
         for stream in {*(getattr(sys, name, None) for name in _STREAMS[1:]), *self._streams.values()}:
             with contextlib.suppress(Exception):
                 stream.flush()
         self._flush_c(None)
-        self._put_back()
+        self._restore()
         left = []
         if threads := self._left_threads():
-            left.append(f"{threads} thread{'s' if threads > 1 else ''} of its own that went on")
+            left.append(f"{threads} thread{'s' if threads > 1 else ''} of its own still running")
         if self._audited:
-            left.append("an audit hook, which Python cannot take back")
+            left.append("an audit hook, which Python cannot remove")
         return left
 
-    def _calm(self):
-        """No alarm rings any more, no tracer looks on."""
+    def _stop_alarms_and_tracers(self):
         for alarm in _ALARMS:
             signal.setitimer(alarm, 0)
         faulthandler.cancel_dump_traceback_later()
@@ -152,14 +153,14 @@ class InterpreterState:
                 monitoring.set_events(tool, 0)
                 monitoring.free_tool_id(tool)
 
-    def _put_back(self):
+    def _restore(self):
         for number, kept in self._fds.items():
             os.dup2(kept, number)
         for name, stream in self._streams.items():
             if stream is not None and stream.closed:
                 self._streams[name] = self._reopened(name)
             setattr(sys, name, self._streams[name])
-        self.put_names_back()
+        self.restore_names()
         for kept, content in self._lists:
             kept[:] = content
         sys.path, sys.meta_path, sys.path_hooks, warnings.filters = (kept for kept, _ in self._lists[:4])
@@ -179,16 +180,16 @@ class InterpreterState:
             numpy.seterr(divide="warn", over="warn", under="ignore", invalid="warn")
         gc.enable()
 
-    def put_names_back(self):
-        """What names stand for in the modules that this side leans on, and which modules there are.
+    def restore_names(self):
+        """Restores the names in protected modules, the builtins, and the modules in ``sys.modules``.
 
-        Names that have come are left alone: importing a submodule makes one.
+        New names in modules stay: importing a submodule adds one.
         """
         for module, kept in self._names:
             now = vars(module)
-            for name, thing in kept.items():
-                if now.get(name) is not thing:
-                    now[name] = thing
+            for name, value in kept.items():
+                if now.get(name) is not value:
+                    now[name] = value
         for name in vars(builtins).keys() - self._builtins.keys():
             del vars(builtins)[name]
         for name, module in self._modules.items():
@@ -203,27 +204,27 @@ class InterpreterState:
         return open(number, mode, encoding="utf-8", errors="backslashreplace", buffering=1, closefd=False)
 
     def _left_threads(self):
-        """How many of the call's threads go on, after a moment in which they may end."""
-        self._let_begin()
+        """How many of the call's threads still run after a grace period."""
+        self._let_threads_start()
         deadline = time.monotonic() + _GRACE_SECONDS
-        while left := self._going_on():
+        while left := self._running():
             if time.monotonic() > deadline:
                 return left
             time.sleep(0.005)
         return 0
 
-    def _going_on(self):
-        """Threads that run Python's code, and those that it has started: they may run C's alone."""
+    def _running(self):
+        """The number of new threads: those that run Python, or those that Python started, which may run only C."""
         return max(len(set(_current_frames()) - self._threads), _count_started() - self._started)
 
-    def _let_begin(self):
-        """Lets threads that were just made come to their first line: until then Python does not know of them."""
+    def _let_threads_start(self):
+        """Waits until new threads reach their first line: until then Python does not know of them."""
         deadline = time.monotonic() + _GRACE_SECONDS
         new = _tasks() - self._tasks
-        calm = 0
-        while new and calm < 2 and time.monotonic() < deadline and not self._going_on():
-            time.sleep(0.002)  # whoever waits for the interpreter has it meanwhile
-            calm = 0 if any(map(_is_about_to_run, new)) else calm + 1
+        quiet_rounds = 0
+        while new and quiet_rounds < 2 and time.monotonic() < deadline and not self._running():
+            time.sleep(0.002)  # lets a waiting thread have the interpreter
+            quiet_rounds = 0 if any(map(_is_about_to_run, new)) else quiet_rounds + 1
 
 
 def _tasks():
@@ -235,7 +236,7 @@ def _tasks():
 
 
 def _is_about_to_run(task):
-    """Whether a thread runs or is to, or has not waited yet, as it does for the interpreter before its first line."""
+    """Whether a thread runs, is ready to, or never waited yet: before its first line it waits for the interpreter."""
     try:
         with open(f"/proc/self/task/{task}/status") as file:
             status = file.read()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What works in this Blender, found by trying it. The open file is spoilt by most of it."""
+"""Tries out what works in this Blender. Most checks replace the open file."""
 
 import os
 import socket
@@ -8,16 +8,16 @@ import time
 
 import bpy
 
-from .render.graphics import WORKBENCH, best_engine
+from .render.engines import WORKBENCH, best_engine
 
 _PIXELS = 64
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 
 
 def try_escapes(arguments, report):
-    """Which of these a sandbox does not keep out: ``read``, ``write``, ``network``, ``process``, ``secret``.
+    """Which of these the sandbox fails to prevent: ``read``, ``write``, ``network``, ``process``, ``secret``.
 
-    ``file`` and ``folder`` lie outside of what may be read and written; ``variable`` is one of the environment.
+    ``file`` and ``folder`` are outside what may be read and written; ``variable`` is an environment variable.
     """
     del report
     return {
@@ -38,8 +38,8 @@ def _works(act):
 
 
 def workbench(arguments, report):
-    """Draws a cube. Returns ``fault`` ("" if Workbench can draw), ``seconds``, ``renderer`` (the card's name, as far as
-    it is known) and whether that is ``software``."""
+    """Draws a cube. Returns ``fault`` ("" if Workbench can draw), ``seconds``, ``renderer`` (the GPU's name, if known)
+    and whether that is ``software``."""
     del arguments
     report(0, None, "drawing with Workbench")
     engine, fault = best_engine()
@@ -50,7 +50,7 @@ def workbench(arguments, report):
     seconds, shades = _rendered(scene)
     renderer = _renderer()
     return {
-        "fault": "" if shades > 1 else "the picture is empty",
+        "fault": "" if shades > 1 else "the rendered picture is empty",
         "seconds": seconds,
         "renderer": renderer,
         "software": any(word in renderer.lower() for word in _SOFTWARE),
@@ -58,21 +58,25 @@ def workbench(arguments, report):
 
 
 def cycles(arguments, report):
-    """Renders a cube on the processor. Returns ``fault``, ``seconds`` and ``devices``: {type: names}, as of cards."""
+    """Renders a cube on the processor. Returns ``fault``, ``seconds`` and ``devices``: {type: names of GPUs}."""
     del arguments
     report(0, None, "rendering with Cycles")
     scene = _scene()
     try:
         scene.render.engine = "CYCLES"
     except TypeError:
-        return {"fault": "this Blender was made without Cycles", "seconds": 0.0, "devices": {}}
+        return {"fault": "this Blender was built without Cycles", "seconds": 0.0, "devices": {}}
     scene.cycles.samples, scene.cycles.device, scene.cycles.use_denoising = 1, "CPU", False
     seconds, shades = _rendered(scene)
-    return {"fault": "" if shades > 1 else "the picture is empty", "seconds": seconds, "devices": _devices()}
+    return {
+        "fault": "" if shades > 1 else "the rendered picture is empty",
+        "seconds": seconds,
+        "devices": _devices(),
+    }
 
 
 def video(arguments, report):
-    """Returns ``supported``: whether films can be written, and the ``version`` of what writes them."""
+    """Returns ``supported``: whether video can be written, and the ``version`` of the codec library."""
     del arguments, report
     written = bpy.app.ffmpeg
     return {"supported": bool(written.supported), "version": ".".join(map(str, written.avcodec_version))}
@@ -85,15 +89,15 @@ def _scene():
     scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     scene.camera.location.z = 6
     lamp = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "SUN"))
-    for thing in (scene.camera, lamp):
-        scene.collection.objects.link(thing)
+    for obj in (scene.camera, lamp):
+        scene.collection.objects.link(obj)
     scene.render.resolution_x = scene.render.resolution_y = _PIXELS
     scene.render.resolution_percentage = 100
     return scene
 
 
 def _rendered(scene):
-    """(seconds, how many different greens there are in the picture)."""
+    """(seconds, number of different shades of green in the picture)."""
     scene.render.image_settings.file_format = "PNG"
     scene.render.filepath = os.path.join(bpy.app.tempdir, "checkup.png")
     started = time.perf_counter()
@@ -110,13 +114,13 @@ def _renderer():
         import gpu
 
         return str(gpu.platform.renderer_get())
-    except (ImportError, SystemError):  # drawing was not set up for Python
+    except (ImportError, SystemError):  # no GPU context for Python
         return ""
 
 
 def _devices():
     addon = bpy.context.preferences.addons.get("cycles")
-    found = {}
+    names_by_type = {}
     for kind in ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI"):
         try:
             devices = addon.preferences.get_devices_for_type(kind)
@@ -124,5 +128,5 @@ def _devices():
             continue
         names = [device.name for device in devices or () if device.type == kind]
         if names:
-            found[kind] = names
-    return found
+            names_by_type[kind] = names
+    return names_by_type

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tools of the live Blender, served to its supervisor."""
+"""Serves the tools of the live Blender to its supervisor."""
 
 import os
 
@@ -9,30 +9,30 @@ from . import interpreter_state
 from .physics import rigid_body_inputs
 
 # Tool → (module of this package, function). A tool takes its arguments and ``report(done, total, text)``, and returns
-# what JSON can say.
+# JSON data.
 TOOLS = {
     "execute": ("execute", "execute"),
-    "open": ("files.blend_files", "open_file"),
-    "write": ("files.blend_files", "write_file"),
-    "ping": ("files.blend_files", "ping"),
+    "open": ("blend.file_io", "open_file"),
+    "write": ("blend.file_io", "write_file"),
+    "ping": ("blend.file_io", "ping"),
     "tag": ("tag", "tag"),
-    "save": ("files.portable_copy", "save"),
-    "look": ("files.portable_copy", "look"),
-    "load": ("files.portable_copy", "load"),
-    "kept_caches": ("files.portable_copy", "caches_of_file"),
+    "save": ("portable_copy", "save"),
+    "inspect": ("portable_copy", "inspect"),
+    "load": ("portable_copy", "load"),
+    "kept_caches": ("portable_copy", "caches_of_file"),
     "bake": ("physics.bake", "bake"),
-    "snapshot": ("measure.scene_facts", "snapshot"),
+    "scene_facts": ("measure.scene_facts", "scene_facts"),
     "measure": ("measure.batch", "measure"),
-    "stand_at": ("motion.timeline", "stand_at"),
-    "findings_image": ("preview.findings_image", "picture"),
+    "go_to_frame": ("motion.timeline", "go_to_frame"),
+    "findings_image": ("preview.findings_image", "findings_image"),
     "group": ("group", "group"),
-    "preview": ("preview.previews", "preview"),
+    "preview": ("preview.fixed_views", "preview"),
     "motion_sheet": ("motion.motion_sheet", "motion_sheet"),
-    "scene_state": ("state.scene_state", "scene_state"),
-    "render_plan": ("render.frame_render", "plan"),
-    "render_step": ("render.frame_render", "step"),
-    "render_frame": ("render.frame_render", "render_frame"),
-    "render_put_back": ("render.frame_render", "put_back"),
+    "scene_state": ("state.readout", "scene_state"),
+    "render_plan": ("render.camera_frames", "plan"),
+    "render_step": ("render.camera_frames", "step"),
+    "render_frame": ("render.camera_frames", "render_frame"),
+    "render_put_back": ("render.camera_frames", "put_back"),
     "render_video": ("render.video", "assemble"),
     "fluid_self_test": ("physics.fluid_self_test", "self_test"),
     "check_escapes": ("self_check", "try_escapes"),
@@ -44,13 +44,13 @@ _FOLDER = os.path.dirname(os.path.abspath(__file__))
 
 
 class _Guard:
-    """Puts the interpreter back after each call, this package's modules included."""
+    """Restores the interpreter after each call, this package's modules included."""
 
     def __init__(self):
         self._interpreter = interpreter_state.InterpreterState(service.HIGH)
 
     def before(self):
-        self._interpreter.lean_on(_FOLDER)
+        self._interpreter.protect_modules(_FOLDER)
         self._interpreter.before()
 
     def after(self):
@@ -64,6 +64,6 @@ def main(arguments):
     tools = service.Tools(__package__, TOOLS)
     service.serve(
         int(arguments[0]),
-        lambda tool, given, report: tools.find(tool)(given, report),
+        lambda tool, arguments, report: tools.find(tool)(arguments, report),
         _Guard(),
     )

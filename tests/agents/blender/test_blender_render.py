@@ -191,7 +191,7 @@ def test_without_a_camera_it_says_how_to_add_one(session: LiveSession) -> None:
 
 def test_a_camera_that_is_none_is_refused_with_the_names_of_those_there_are(session: LiveSession) -> None:
     session.run(SCENE)
-    with pytest.raises(Refusal, match=r"'Cube' is no camera.*'Camera'"):
+    with pytest.raises(Refusal, match=r"'Cube' is not a camera.*'Camera'"):
         session.use(TOOL, camera="Cube")
     with pytest.raises(Refusal, match=r"no camera 'Nobody'.*'Camera'"):
         session.use(TOOL, camera="Nobody")

@@ -160,21 +160,24 @@ def test_a_root_moves_to_another_empty_in_one_call(session: LiveSession) -> None
         ({"collections": [{"name": "tabel", "role": "object"}]}, "Nearest: 'table'"),
         ({"collections": [{"name": "Leg", "role": "object"}]}, "not a collection but an object"),
         ({"collections": [{"name": "Scene Collection", "role": "system"}]}, "the scene's root"),
-        ({"collections": [{"name": "room", "motion_kind": "none"}]}, "without being an object (L3)"),
+        ({"collections": [{"name": "room", "motion_kind": "none"}]}, "only objects (L3) have it"),
         ({"collections": [{"name": "table", "role": None}]}, "set deformation_kind to null"),
         ({"collections": [{"name": "table", "role": "system"}]}, "set deformation_kind to null"),
         ({"collections": [{"name": "table"}, {"name": "table", "role": "object"}]}, "named twice"),
         ({"objects": [{"name": "leg", "is_object_root": True}]}, "Nearest: 'Leg'"),
         ({"objects": [{"name": "table", "is_object_root": True}]}, "not an object but a collection"),
-        ({"objects": [{"name": "Leg", "is_object_root": True}]}, "'Leg' is a mesh, and a root is an Empty"),
+        (
+            {"objects": [{"name": "Leg", "is_object_root": True}]},
+            "'Leg' is a mesh, but a root must be an Empty",
+        ),
         (
             {"objects": [{"name": "Outside", "is_object_root": True}]},
-            "lies in no object (L3), only in 'room'",
+            "is in no object (L3), only in 'room'",
         ),
         ({"objects": [{"name": "Leg", "contact_with": ["Flor"]}]}, "no such object. Nearest: 'floor"),
-        ({"objects": [{"name": "Leg", "contact_with": ["Leg"]}]}, "not in contact with itself"),
-        ({"objects": [{"name": "Leg", "contact_with": ["Lamp"]}]}, "which is a light and no root"),
-        ({"objects": [{"name": "Outside", "contact_with": ["Leg"]}]}, "'Outside' is an empty and no root"),
+        ({"objects": [{"name": "Leg", "contact_with": ["Leg"]}]}, "cannot be in contact with itself"),
+        ({"objects": [{"name": "Leg", "contact_with": ["Lamp"]}]}, "which is a light, not a root"),
+        ({"objects": [{"name": "Outside", "contact_with": ["Leg"]}]}, "'Outside' is an empty and not a root"),
         (
             {"objects": [{"name": "Leg", "contact_with": ["Top"]}], "collections": [{"name": ""}]},
             "collections.0.name",
@@ -221,11 +224,11 @@ def test_one_wrong_target_leaves_the_right_ones_untouched(session: LiveSession) 
         ("room.children.link(ground); scene.collection.children.unlink(ground)", TAGGED, ["C2"]),
         ("room.name = 'room.001'", {"collections": [{"name": "room.001", "role": "system"}]}, ["C5", "C6"]),
         ("bpy.data.objects['Top'].parent = bpy.data.objects['Leg']", TAGGED, []),
-        ("bpy.data.objects['Top'].parent = None", TAGGED, ["G1: 'Top' of 'table' does not hang"]),
+        ("bpy.data.objects['Top'].parent = None", TAGGED, ["G1: parent to the root 'table_root' of 'table': 'Top'."]),
         ("root.parent = bpy.data.objects['floor_root']", TAGGED, ["G1", "G2: root 'table_root'"]),
         ("floor.objects.link(bpy.data.objects['Top'])", TAGGED, ["G1", "C3: 'Top' of 'floor'", "C3: 'Top' of 'table'"]),
         ("table.objects.link(bpy.data.objects.new('Eye', bpy.data.cameras.new('Eye')))", TAGGED, ["W3: 'Eye' in "]),
-        ("put(bpy.data.objects['Leg'], room)", TAGGED, ["C3: 'Leg' lies in no object"]),
+        ("put(bpy.data.objects['Leg'], room)", TAGGED, ["C3: 'Leg' is in no object"]),
     ],
 )  # fmt: skip
 def test_what_the_protocol_misses_is_told(
@@ -256,7 +259,7 @@ def test_what_code_has_put_there_is_told_and_can_be_put_right(session: LiveSessi
     found = session.use(TOOL, objects=[{"name": "Leg"}, {"name": "Top"}])
     assert found.data["objects"] == {"Leg": {"contact_with": ["Slap"]}, "Top": {"contact_with": []}}
     assert any(
-        "'Leg' is to touch 'Slap', which the scene does not have" in one for one in found.data["warnings"]
+        "'Leg' should touch 'Slap', but the scene has no such object" in one for one in found.data["warnings"]
     )
     session.use(
         TOOL, objects=[{"name": "Leg", "contact_with": ["Slab"]}, {"name": "Top", "contact_with": []}]

@@ -98,7 +98,7 @@ def take(
 ) -> Shot:
     """The open scene as the case is to be looked at."""
     if case.look == "tree":
-        told = session.blender.call("snapshot", {}, timeout=60).value
+        told = session.blender.call("scene_facts", {}, timeout=60).value
         return Shot(tree(Facts.read(told), names if finding else (), case.baked))
     if case.look == "camera":
         return Shot(rendered(session))

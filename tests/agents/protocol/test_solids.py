@@ -316,7 +316,7 @@ def test_what_is_seen_is_measured_and_told_in_the_facts(session: LiveSession, sc
     assert gap(session) == pytest.approx(0.01, abs=2e-4)
     high = measured(session, Extents(("B",))).high
     assert high[2] == pytest.approx(0.5, abs=2e-4)
-    told = session.blender.call("snapshot", {}, timeout=60).value["objects"]
+    told = session.blender.call("scene_facts", {}, timeout=60).value["objects"]
     facts = next(one for one in told if one["name"] == "B")
     assert facts["surface"]
     assert facts["polygons"] > 0
@@ -349,7 +349,7 @@ def test_what_has_no_faces_has_no_surface(session: LiveSession, script: str) -> 
     with pytest.raises(Unmeasured, match="'B' has no surface"):
         gap(session)
     assert measured(session, Crossings(("A", "B"))).pairs == ()
-    told = session.blender.call("snapshot", {}, timeout=60).value["objects"]
+    told = session.blender.call("scene_facts", {}, timeout=60).value["objects"]
     assert not next(one for one in told if one["name"] == "B")["surface"]
 
 
@@ -379,7 +379,7 @@ def test_what_is_hidden_is_told_apart(
     script += "scene.collection.children.link(kept)\nkept.objects.link(cube)\n"
     script += 'layer = bpy.context.view_layer.layer_collection.children["Kept"]\n'
     made(session, CUBE + script + hide)
-    told = session.blender.call("snapshot", {}, timeout=60).value["objects"]
+    told = session.blender.call("scene_facts", {}, timeout=60).value["objects"]
     facts = next(one for one in told if one["name"] == "Cube")
     assert (facts["rendered"], facts["evaluated"]) == (rendered, evaluated)
     assert facts["surface"]

@@ -1,27 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a solid has an inside, and what has none."""
+"""The closed parts of a solid, which have an inside, and its sheets, which have none."""
 
 import numpy
 from mathutils import Vector
 
-from .contact_regions import labels
+from .topology import piece_labels
 
-TOUCH = 2e-5  # metres; what is no deeper only touches
-_THIN = 0.002  # an inside that is no wider is none: no place in it is deeper than noise
+TOUCH = 2e-5  # metres; what is no deeper counts as touching
+_THIN = 0.002  # metres; a part that is no thicker counts as a sheet
 _MOST_PIECES = 2_000
-_SLACK = 3e-4  # metres; what is tested may stand a hair's breadth beside where it is
+_SLACK = 3e-4  # metres; a tested solid may have been moved a little (see _nudged)
 
 
-def thinned(rows, most):
-    """Some rows, evenly chosen, of more."""
+def thin_out(rows, most):
+    """At most about ``most`` rows, evenly chosen."""
     return rows[:: len(rows) // most + 1] if len(rows) > most else rows
 
 
-class _Body:
-    """What of a solid has an inside (``core``) and what has none (``sheets``): solids, or None."""
+class _ClosedParts:
+    """The parts of a solid that have an inside (``core``) and those that have none (``sheets``): solids, or None."""
 
     def __init__(self, solid):
-        mask = _in_bodies(solid)
+        mask = _in_closed_parts(solid)
         if mask.all():
             core, sheets = solid, None
         elif not mask.any():
@@ -33,24 +33,23 @@ class _Body:
         self.core, self.sheets = core, sheets
 
 
-def body_of(solid):
-    """See _Body; made once."""
-    if solid.body is None:
-        solid.body = _Body(solid)
-    return solid.body
+def closed_parts_of(solid):
+    """The _ClosedParts of a solid; cached."""
+    if solid.closed_parts is None:
+        solid.closed_parts = _ClosedParts(solid)
+    return solid.closed_parts
 
 
-def _in_bodies(solid):
-    """Which triangles belong to a piece that is closed and not thin."""
-    places, same = solid.welded
-    corners = same[solid.triangles]
+def _in_closed_parts(solid):
+    """A mask of the triangles of pieces that are closed and not thin."""
+    places, corners = solid.welded[0], solid.corners
     a, b, c = (places[corners[:, corner]] for corner in range(3))
     across = numpy.cross(b - a, c - a)
     areas = numpy.linalg.norm(across, axis=1) / 2
     volumes = numpy.einsum("ij,ij->i", a - places.mean(axis=0), across) / 6
     if solid.closed and solid.oriented and 2 * abs(volumes.sum()) >= _THIN * areas.sum():
         return numpy.ones(len(corners), bool)
-    label = labels(len(places), corners[:, :2], corners[:, 1:])
+    label = piece_labels(len(places), corners)
     known, pieces = numpy.unique(label[corners[:, 0]], return_inverse=True)
     pieces, count = pieces.reshape(-1), len(known)
     edges, sides = solid.edges
@@ -58,7 +57,7 @@ def _in_bodies(solid):
     is_open[label[edges[sides % 2 == 1][:, 0]]] = True
     if solid.oriented:
         held = numpy.abs(numpy.bincount(pieces, volumes, count))
-    else:  # its triangles do not tell in from out: as much as fits
+    else:  # without consistent normals: the volume of its box
         low, high = numpy.full((count, 3), numpy.inf), numpy.full((count, 3), -numpy.inf)
         for corner in (a, b, c):
             numpy.minimum.at(low, pieces, corner)
@@ -68,26 +67,24 @@ def _in_bodies(solid):
     return (~is_open[known] & is_thick)[pieces]
 
 
-def is_in(one, other):
-    """Whether a piece of one, of which nothing crosses the other, is inside of it."""
-    first, low, high = _pieces_of(one)
+def is_inside(solid, other):
+    """Whether a piece of ``solid``, whose surfaces do not cross, is inside the other."""
+    first, low, high = _pieces_of(solid)
     first = first[((low >= other.low - _SLACK) & (high <= other.high + _SLACK)).all(axis=1)]
-    if not len(first) or body_of(other).core is None:
+    if not len(first) or closed_parts_of(other).core is None:
         return False
-    core = body_of(other).core
-    for triangle in thinned(first, _MOST_PIECES).tolist():
-        for place in (one.points[one.triangles[triangle]].mean(axis=0), middle_behind(one, triangle)):
+    core = closed_parts_of(other).core
+    for triangle in thin_out(first, _MOST_PIECES).tolist():
+        for place in (solid.points[solid.triangles[triangle]].mean(axis=0), middle_behind(solid, triangle)):
             if place is not None and core.nearest(place)[3] > TOUCH and core.holds(place):
                 return True
     return False
 
 
 def _pieces_of(solid):
-    """(a triangle of each piece that hangs together, the low and high corners of the boxes around them); made once."""
+    """(a triangle of each connected piece, low corners of the pieces' boxes, high corners); cached."""
     if solid.pieces is None:
-        places, same = solid.welded
-        corners = same[solid.triangles]
-        label = labels(len(places), corners[:, :2], corners[:, 1:])[corners[:, 0]]
+        label = piece_labels(len(solid.welded[0]), solid.corners)[solid.corners[:, 0]]
         order = numpy.argsort(label, kind="stable")
         starts = numpy.flatnonzero(numpy.diff(label[order], prepend=-1))
         low, high = solid.boxes
@@ -100,15 +97,15 @@ def _pieces_of(solid):
 
 
 def middle_behind(solid, triangle):
-    """The middle of what of a closed solid is behind a triangle; None for an open one."""
-    core = body_of(solid).core
+    """The middle of the material of a closed solid behind a triangle; None for an open one."""
+    core = closed_parts_of(solid).core
     if core is None:
         return None
     a, b, c = solid.points[solid.triangles[triangle]]
     normal = Vector(b - a).cross(Vector(c - a)).normalized()
     start = Vector((a + b + c) / 3)
-    for way in (-normal, normal):
-        hit = core.tree.ray_cast(start + way * TOUCH, way)[0]
+    for direction in (-normal, normal):
+        hit = core.tree.ray_cast(start + direction * TOUCH, direction)[0]
         if hit is not None and core.holds(middle := (start + hit) / 2):
             return middle
     return None

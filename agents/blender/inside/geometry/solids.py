@@ -1,38 +1,40 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Evaluated geometry as triangles in the world: what distance and penetration are measured on. Metres."""
+"""Evaluated objects as triangles in the world, on which distances and depths are measured. Metres."""
+
+import functools
 
 import bpy
 import numpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from .evaluated import Instances, Shape, TooManyInstances, are_numbers, mesh_of
+from .evaluated_meshes import Instances, TooManyInstances, TriangleMesh, are_finite, mesh_of
 
 MOST_TRIANGLES = 4_000_000
-# Three directions of no importance: a ray along an edge or through a vertex would count twice.
+# Arbitrary directions: a ray along an edge or through a vertex would count twice.
 _RAYS = tuple(
-    Vector(one).normalized()
-    for one in ((0.371, 0.604, 0.705), (-0.713, 0.181, 0.677), (0.253, -0.871, 0.421))
+    Vector(ray).normalized()
+    for ray in ((0.371, 0.604, 0.705), (-0.713, 0.181, 0.677), (0.253, -0.871, 0.421))
 )
 _STEP = 1e-5
-_COARSE = 4e-7  # of a coordinate: what is less is lost in single precision
+_COARSE = 4e-7  # of a coordinate: smaller differences are lost in single precision
 _MOST_HITS = 1000
 
 
 class Unmeasurable(Exception):  # noqa: N818 - reads as the state it names
-    """Something cannot be measured; the message says why."""
+    """The measurement is impossible; the message says why."""
 
 
 class NoSurface(Unmeasurable):
-    """It is there, but has no faces at this frame."""
+    """It exists, but has no faces at this frame."""
 
 
 class NotNumbers(Unmeasurable):
-    """It has places that are not numbers."""
+    """It has coordinates that are not finite."""
 
 
 class Solid:
-    """The triangles of one object: ``points`` (n × 3, world), ``triangles`` (m × 3). ``closed``: it has an inside."""
+    """The triangles of one object: ``points`` (n × 3, world), ``triangles`` (m × 3)."""
 
     def __init__(self, name, points, triangles):
         self.name = name
@@ -40,85 +42,70 @@ class Solid:
         self.triangles = triangles
         self.low, self.high = points.min(axis=0), points.max(axis=0)
         self.eye = None  # where the camera is
-        self.shape = self.body = self.nudged = self.pieces = None  # what others found out about it
-        self._tree = self._closed = self._oriented = self._welded = self._sides = self._boxes = None
+        self.topology = self.closed_parts = self.nudged = self.pieces = None  # caches of other modules
 
-    @property
+    @functools.cached_property
     def tree(self):
         """Its BVH tree."""
-        if self._tree is None:
-            self._tree = BVHTree.FromPolygons(
-                self.points.tolist(), self.triangles.tolist(), all_triangles=True
-            )
-        return self._tree
+        return BVHTree.FromPolygons(self.points.tolist(), self.triangles.tolist(), all_triangles=True)
 
     @property
     def has_tree(self):
-        """Whether its tree was made already."""
-        return self._tree is not None
+        """Whether its tree exists already."""
+        return "tree" in vars(self)
 
-    @property
+    @functools.cached_property
     def boxes(self):
         """(low, high) corners of the boxes around its triangles."""
-        if self._boxes is None:
-            a, b, c = (self.points[column] for column in self.triangles.T)
-            self._boxes = (
-                numpy.minimum(numpy.minimum(a, b), c),
-                numpy.maximum(numpy.maximum(a, b), c),
-            )
-        return self._boxes
+        a, b, c = (self.points[column] for column in self.triangles.T)
+        return numpy.minimum(numpy.minimum(a, b), c), numpy.maximum(numpy.maximum(a, b), c)
 
-    @property
+    @functools.cached_property
     def welded(self):
-        """(places, and for every point which of them it is at): equal points are at one place."""
-        if self._welded is None:
-            order = numpy.lexsort(self.points.T)
-            ordered = self.points[order]
-            first = numpy.ones(len(order), bool)
-            first[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
-            same = numpy.empty(len(order), int)
-            same[order] = numpy.cumsum(first) - 1
-            self._welded = ordered[first], same
-        return self._welded
+        """(places, number of each point's place): equal points are at one place."""
+        order = numpy.lexsort(self.points.T)
+        ordered = self.points[order]
+        first = numpy.ones(len(order), bool)
+        first[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+        same = numpy.empty(len(order), int)
+        same[order] = numpy.cumsum(first) - 1
+        return ordered[first], same
+
+    @functools.cached_property
+    def corners(self):
+        """The places of its triangles' corners (m × 3, numbers)."""
+        return self.welded[1][self.triangles]
 
     @property
     def edges(self):
-        """(edges as pairs of places, how many triangles each has); equal points count as one."""
-        return self._edges()[:2]
+        """(edges as pairs of places, how many triangles each has)."""
+        return self._edges[:2]
 
+    @functools.cached_property
     def _edges(self):
-        """… and for each how many more triangles go along it one way than the other."""
-        if self._sides is None:
-            places, same = self.welded
-            corners = same[self.triangles]
-            pairs = numpy.concatenate([corners[:, (0, 1)], corners[:, (1, 2)], corners[:, (2, 0)]])
-            pairs = pairs[pairs[:, 0] != pairs[:, 1]]
-            low, high = pairs.min(axis=1), pairs.max(axis=1)
-            keys, back, counts = numpy.unique(
-                low * len(places) + high, return_inverse=True, return_counts=True
-            )
-            ways = numpy.bincount(back, numpy.where(pairs[:, 0] == low, 1, -1), len(keys))
-            self._sides = numpy.stack([keys // len(places), keys % len(places)], axis=1), counts, ways
-        return self._sides
+        """(edges, numbers of triangles, how many more triangles go along it one way than the other)."""
+        count = len(self.welded[0])
+        pairs = numpy.concatenate([self.corners[:, sides] for sides in ((0, 1), (1, 2), (2, 0))])
+        pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+        low, high = pairs.min(axis=1), pairs.max(axis=1)
+        keys, back, counts = numpy.unique(low * count + high, return_inverse=True, return_counts=True)
+        ways = numpy.bincount(back, numpy.where(pairs[:, 0] == low, 1, -1), len(keys))
+        return numpy.stack([keys // count, keys % count], axis=1), counts, ways
 
-    @property
+    @functools.cached_property
     def closed(self):
-        """Whether every edge has two triangles, or an even number of them."""
-        if self._closed is None:
-            _, counts = self.edges
-            self._closed = bool(len(counts)) and bool((counts % 2 == 0).all())
-        return self._closed
+        """Whether every edge has an even number of triangles."""
+        _, counts = self.edges
+        return bool(len(counts)) and bool((counts % 2 == 0).all())
 
-    @property
+    @functools.cached_property
     def oriented(self):
-        """Whether neighbouring triangles are turned the same way, so that their sides tell in from out."""
-        if self._oriented is None:
-            self._oriented = not self._edges()[2].any()
-        return self._oriented
+        """Whether the normals are consistent, so that they show which side is inside."""
+        return not self._edges[2].any()
 
     @property
     def hollow(self):
-        """Whether what a closed one holds is not its material: it is turned inside out, or the camera is in it."""
+        """Whether a closed one is hollow: it is inside out, or the camera is in it."""
         corners = self.points[self.triangles] - self.points.mean(axis=0)
         volume = numpy.einsum("ij,ij->", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2]))
         if self.oriented and volume < 0:
@@ -132,7 +119,7 @@ class Solid:
         return float(numpy.linalg.norm(self.high - self.low))
 
     def holds(self, point):
-        """Whether a point is inside of it, by two of three rays. Only for what is closed."""
+        """Whether a point is inside it, by a majority of three rays. Only for a closed one."""
         first, second = (self._is_around(point, ray) for ray in _RAYS[:2])
         return first if first == second else self._is_around(point, _RAYS[2])
 
@@ -147,21 +134,22 @@ class Solid:
             hits += 1
             count += 1 if normal.dot(ray) > 0 else -1
             start = place + step
-        # Triangles that are turned every way tell nothing by their sides, only by their number.
+        # Without consistent normals, only the number of hits counts.
         return count != 0 if self.oriented else hits % 2 == 1
 
     def nearest(self, point, within=None):
-        """(place, normal, triangle, distance) of its surface next to a point; Nones if that is further away."""
+        """(place, normal, triangle, distance) of the nearest point of its surface, Nones beyond ``within``."""
         return self.tree.find_nearest(point) if within is None else self.tree.find_nearest(point, within)
 
     def moved(self, step):
-        """A copy of it, that far from where it is."""
+        """A copy of it, moved by ``step``."""
         copy = Solid(self.name, self.points + step, self.triangles)
         places, same = self.welded
-        copy.eye, copy._welded = self.eye, (places + step, same)
-        copy._closed, copy._sides, copy._oriented = self._closed, self._sides, self._oriented
-        if self._boxes is not None:
-            copy._boxes = self._boxes[0] + step, self._boxes[1] + step
+        copy.eye, copy.welded = self.eye, (places + step, same)
+        unchanged = ("corners", "_edges", "closed", "oriented")
+        vars(copy).update({name: value for name, value in vars(self).items() if name in unchanged})
+        if "boxes" in vars(self):
+            copy.boxes = self.boxes[0] + step, self.boxes[1] + step
         if self.pieces is not None:
             copy.pieces = self.pieces[0], self.pieces[1] + step, self.pieces[2] + step
         return copy
@@ -170,13 +158,13 @@ class Solid:
         """A solid of some of its triangles (a mask, or their numbers)."""
         triangles = self.triangles[chosen]
         used, numbers = numpy.unique(triangles, return_inverse=True)
-        found = Solid(self.name, self.points[used], numbers.reshape(-1, 3))
-        found.eye = self.eye
-        return found
+        solid = Solid(self.name, self.points[used], numbers.reshape(-1, 3))
+        solid.eye = self.eye
+        return solid
 
 
 class Solids:
-    """The solids of the evaluated scene at its current frame, made when they are asked for."""
+    """The solids of the evaluated scene at its current frame, made when needed."""
 
     def __init__(self):
         self._graph = bpy.context.evaluated_depsgraph_get()
@@ -189,96 +177,96 @@ class Solids:
             self._eye = numpy.array(camera.evaluated_get(self._graph).matrix_world.translation)
 
     def __getitem__(self, name):
-        found = self._made.get(name)
-        if found is None:
+        solid = self._made.get(name)
+        if solid is None:
             try:
-                found = self._solid(name)
+                solid = self._solid(name)
             except Unmeasurable as reason:
-                found = reason
-            self._made[name] = found
-        if isinstance(found, Unmeasurable):
-            raise type(found)(*found.args)
-        return found
+                solid = reason
+            self._made[name] = solid
+        if isinstance(solid, Unmeasurable):
+            raise type(solid)(*solid.args)
+        return solid
 
     def joined(self, names):
-        """Several as one."""
+        """The solid that several objects form together."""
         if len(names) == 1:
             return self[names[0]]
         key = tuple(names)
         if key not in self._made:
             if not names:
-                raise Unmeasurable("nothing was named")
-            self._made[key] = _as_one(
+                raise Unmeasurable("no object was named")
+            self._made[key] = _merged(
                 " + ".join(names), [(self[name].points, self[name].triangles) for name in names]
             )
         return self._made[key]
 
     def _solid(self, name):
         if self._things is None:
-            self._things = {thing.name: thing for thing in bpy.context.scene.objects}
-        thing = self._things.get(name)
-        if thing is None:
+            self._things = {obj.name: obj for obj in bpy.context.scene.objects}
+        obj = self._things.get(name)
+        if obj is None:
             raise Unmeasurable(f"there is no object {name!r} in the scene")
-        evaluated = thing.evaluated_get(self._graph)
+        evaluated = obj.evaluated_get(self._graph)
         if not evaluated.is_evaluated:
             raise Unmeasurable(
                 f"{name!r} is not evaluated: it, or its collection, is hidden from the viewport or excluded"
             )
-        shapes = [*self._instanced(thing)]
+        shapes = [*self._instanced(obj)]
         with mesh_of(evaluated) as mesh:
             if mesh is not None and len(mesh.polygons):
-                shapes.append((Shape(mesh), evaluated.matrix_world))
+                shapes.append((TriangleMesh(mesh), evaluated.matrix_world))
             count = sum(len(shape.triangles) for shape, _ in shapes)
             if count > MOST_TRIANGLES:
                 raise Unmeasurable(f"{name!r} has {count} triangles, more than {MOST_TRIANGLES}")
             placed = [shape.placed(matrix) for shape, matrix in shapes]
         if not placed:
             raise NoSurface(f"{name!r} has no surface")
-        if not all(are_numbers(points) for points, _ in placed):
-            raise NotNumbers(f"{name!r} has places that are not numbers")
-        solid = _as_one(name, placed)
+        if not all(are_finite(points) for points, _ in placed):
+            raise NotNumbers(f"{name!r} has coordinates that are not finite")
+        solid = _merged(name, placed)
         solid.eye = self._eye
         return solid
 
-    def _instanced(self, thing):
+    def _instanced(self, obj):
         """[(shape, matrix)] of the instances that an object makes."""
         try:
-            return self._instances.of(thing)
+            return self._instances.of(obj)
         except TooManyInstances as reason:
             raise Unmeasurable(str(reason)) from None
 
 
-# Which triangles meet
+# Pairs of triangles
 
 
-_CHUNK = 20_000  # triangles that are looked at in one go where both have more
+_CHUNK = 20_000  # triangles that are tested at once if both solids have more
 
 
-def meeting(a, b, most):
-    """Pairs (n × 2) of triangles of two solids that cross or touch; of very many, ``most`` or a few more."""
-    ours, theirs = _reaching(a, b), _reaching(b, a)
+def crossing_pairs(a, b, most):
+    """Pairs (n × 2) of triangles of two solids that cross or touch; of very many, about ``most``."""
+    ours, theirs = _triangles_in_box(a, b), _triangles_in_box(b, a)
     if not len(ours) or not len(theirs):
         return numpy.empty((0, 2), int)
     theirs, other = _tree_of(b, theirs)
     if len(theirs) <= _CHUNK or len(ours) <= _CHUNK:
         ours, tree = _tree_of(a, ours)
-        return _numbered(tree.overlap(other), ours, theirs)
-    found, count = [], 0
+        return _with_own_numbers(tree.overlap(other), ours, theirs)
+    chunks, count = [], 0
     for start in range(0, len(ours), _CHUNK):
         some = ours[start : start + _CHUNK]
-        found.append(_numbered(a.part(some).tree.overlap(other), some, theirs))
-        count += len(found[-1])
+        chunks.append(_with_own_numbers(a.part(some).tree.overlap(other), some, theirs))
+        count += len(chunks[-1])
         if count >= most:
             break
-    return numpy.concatenate(found)
+    return numpy.concatenate(chunks)
 
 
-def _numbered(pairs, ours, theirs):
+def _with_own_numbers(pairs, ours, theirs):
     pairs = numpy.array(pairs, int).reshape(-1, 2)
     return numpy.stack([ours[pairs[:, 0]], theirs[pairs[:, 1]]], axis=1)
 
 
-def _reaching(solid, other):
+def _triangles_in_box(solid, other):
     """The triangles of a solid whose boxes reach into that of another one."""
     low, high = solid.boxes
     # Axis by axis: a reduction over rows of three takes several times as long.
@@ -289,17 +277,17 @@ def _reaching(solid, other):
 
 
 def _tree_of(solid, chosen):
-    """(the triangles that a tree is of, the tree): the solid's own, or one of a few triangles."""
+    """(numbers of the triangles in a tree, the tree): the solid's own, or one of the chosen triangles."""
     if solid.has_tree or 4 * len(chosen) > len(solid.triangles):
         return numpy.arange(len(solid.triangles)), solid.tree
     return chosen, solid.part(chosen).tree
 
 
-def _as_one(name, found):
+def _merged(name, parts):
     """A solid of several (points, triangles)."""
-    shifts = numpy.cumsum([0, *(len(points) for points, _ in found)])
+    shifts = numpy.cumsum([0, *(len(points) for points, _ in parts)])
     return Solid(
         name,
-        numpy.concatenate([points for points, _ in found]),
-        numpy.concatenate([triangles + shift for (_, triangles), shift in zip(found, shifts, strict=False)]),
+        numpy.concatenate([points for points, _ in parts]),
+        numpy.concatenate([triangles + shift for (_, triangles), shift in zip(parts, shifts, strict=False)]),
     )

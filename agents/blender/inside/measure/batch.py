@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers batches of measurements, frame by frame (see agents.protocol.measures.measure)."""
+"""Takes batches of measurements, frame by frame (see agents.protocol.measures.measure)."""
 
 import itertools
 import math
@@ -7,61 +7,61 @@ import math
 import bpy
 import numpy
 
-from ..geometry.contact_regions import labels
-from ..geometry.distances import apart, gap
-from ..geometry.penetration import crossing
+from ..geometry.distances import box_distance, gap
+from ..geometry.penetration import penetration
 from ..geometry.solids import NoSurface, NotNumbers, Solids, Unmeasurable
-from .camera_view import view
+from ..geometry.topology import connected_labels
+from .camera_visibility import camera_view
 from .containment import embedding, enclosure
-from .frame_walk import FOLLOWED, Following, telling
+from .frame_loop import FOLLOWED, Followers, unmeasured_as_answer
 from .openings import opening
-from .position import axes_of, beside, over
+from .relative_position import axes_of, beside, over
 from .support import depth, flush, support
 
-_NOT_REACHED = "it was not reached"
+_NOT_REACHED = "the measurement stopped before its frame"
 
 
 def measure(arguments, report):
     """[{"value": …} or {"unmeasured": why}] for ``requests``, in their order.
 
-    Frames are visited in order, each once for all that is measured there; where a simulation is not baked, they are
-    stepped through from its start. The scene is left at the frame that it stood at.
+    Frames are visited in order, each once for all its requests; if a simulation is not baked, every frame from its
+    start is visited. The scene ends at the frame where it was.
     """
     requests = arguments["requests"]
     answers = [{"unmeasured": _NOT_REACHED} for _ in requests]
-    following, by_frame = Following(requests, answers), {}
+    followers, by_frame = Followers(requests, answers), {}
     for place, request in enumerate(requests):
         if request["kind"] not in FOLLOWED:
             by_frame.setdefault(request.get("frame"), []).append(place)
-    # The frame that the scene stands at is visited too: what was moved since need not be what is keyed there.
-    _answer(requests, by_frame.pop(None, []), answers)
+    # What is measured at the current frame, before changing it: objects may have been moved off their keys.
+    _measure_here(requests, by_frame.pop(None, []), answers)
     try:
-        for frame in following.through(by_frame, report):
-            _answer(requests, by_frame.get(frame, []), answers)
+        for frame in followers.through(by_frame, report):
+            _measure_here(requests, by_frame.get(frame, []), answers)
     except Unmeasurable as reason:
         for answer in answers:
             if answer.get("unmeasured") == _NOT_REACHED:
                 answer["unmeasured"] = str(reason)
-    following.tell()
+    followers.finish()
     return answers
 
 
-def _answer(requests, places, answers):
+def _measure_here(requests, places, answers):
     if not places:
         return
     solids = Solids()
     for place in places:
         request = requests[place]
-        with telling(answers, place):
+        with unmeasured_as_answer(answers, place):
             if request["kind"] not in MEASURED:
-                raise Unmeasurable(f"nobody measures {request['kind']!r} here")
+                raise Unmeasurable(f"there is no measurement {request['kind']!r}")
             answers[place] = {"value": MEASURED[request["kind"]](request, solids)}
 
 
 def _gap(request, solids):
-    ours, theirs = ([*_shown(solids, request[side])] for side in "ab")
+    ours, theirs = ([*_solids_with_surface(solids, request[side])] for side in "ab")
     best = None
-    for a, b in sorted(itertools.product(ours, theirs), key=lambda pair: apart(*pair)):
+    for a, b in sorted(itertools.product(ours, theirs), key=lambda pair: box_distance(*pair)):
         best = gap(a, b, best[0] if best else math.inf, request["enough"]) or best
         if best[0] <= request["enough"]:
             break
@@ -69,49 +69,49 @@ def _gap(request, solids):
     return {"distance": distance, "here": tuple(here), "there": tuple(there)}
 
 
-def _shown(solids, names):
+def _solids_with_surface(solids, names):
     """The solids of some names; of several, those that have a surface at this frame. Raises Unmeasurable."""
-    found, missing = [], None
+    with_surface, missing = [], None
     for name in names:
         try:
-            found.append(solids[name])
+            with_surface.append(solids[name])
         except NoSurface as reason:
             missing = reason
-    if not found:
-        raise missing or Unmeasurable("nothing was named")
-    return found
+    if not with_surface:
+        raise missing or Unmeasurable("no object was named")
+    return with_surface
 
 
 def _crossings(request, solids):
-    found, undecided, made = [], [], []
+    pairs, undecided, there = [], [], []
     for name in request["names"]:
         try:
-            made.append(solids[name])
+            there.append(solids[name])
         except NoSurface:
             continue
         except Unmeasurable as reason:
             undecided.append({"a": name, "b": name, "undecided": str(reason)})
     moving = None if request["moving"] is None else set(request["moving"])
     but = {tuple(sorted(pair)) for pair in request["but"]}
-    for a, b in _near(made):
+    for a, b in _pairs_near(there):
         if moving is not None and a.name not in moving and b.name not in moving:
             continue
         if tuple(sorted((a.name, b.name))) in but:
             continue
         try:
-            told = crossing(a, b, request["noise"])
+            shared = penetration(a, b, request["noise"])
         except Exception as error:
             undecided.append({"a": a.name, "b": b.name, "undecided": f"{type(error).__name__}: {error}"})
             continue
-        if told is not None:
-            depth, place, reason = told
-            told = {"a": a.name, "b": b.name, "depth": depth, "at": tuple(place), "undecided": reason}
-            found.append(told | {"way": _way_out(a, b)})
-    return {"pairs": found + undecided}
+        if shared is not None:
+            depth, place, reason = shared
+            shared = {"a": a.name, "b": b.name, "depth": depth, "at": tuple(place), "undecided": reason}
+            pairs.append(shared | {"way": _way_out(a, b)})
+    return {"pairs": pairs + undecided}
 
 
 def _way_out(a, b):
-    """The shortest move of a solid along an axis after which its box is beside another one's."""
+    """The shortest move of ``a`` along an axis that takes its box out of that of ``b``."""
     down, up = a.high - b.low, b.high - a.low
     axis = int(numpy.minimum(down, up).argmin())
     way = [0.0, 0.0, 0.0]
@@ -119,13 +119,13 @@ def _way_out(a, b):
     return way
 
 
-def _near(solids, within=0.0):
-    """Pairs whose boxes overlap, or come so near."""
-    solids = sorted(solids, key=lambda one: one.low[0])
+def _pairs_near(solids, within=0.0):
+    """Pairs of solids whose boxes overlap, or are at most ``within`` apart."""
+    solids = sorted(solids, key=lambda solid: solid.low[0])
     if len(solids) < 2:
         return
-    lows = numpy.array([one.low for one in solids])
-    highs = numpy.array([one.high for one in solids]) + within
+    lows = numpy.array([solid.low for solid in solids])
+    highs = numpy.array([solid.high for solid in solids]) + within
     ends = numpy.searchsorted(lows[:, 0], highs[:, 0], side="right")
     for at, end in enumerate(ends.tolist()):
         others = slice(at + 1, end)
@@ -154,19 +154,19 @@ def _poses(request, _solids):
     graph = bpy.context.evaluated_depsgraph_get()
     matrices = {}
     for name in request["names"]:
-        thing = bpy.context.scene.objects.get(name)
-        if thing is None:
+        obj = bpy.context.scene.objects.get(name)
+        if obj is None:
             raise Unmeasurable(f"there is no object {name!r} in the scene")
-        numbers = [value for row in thing.evaluated_get(graph).matrix_world for value in row]
+        numbers = [value for row in obj.evaluated_get(graph).matrix_world for value in row]
         if not all(map(math.isfinite, numbers)):
-            raise Unmeasurable(f"the transform of {name!r} has values that are no numbers")
+            raise Unmeasurable(f"the transform of {name!r} has values that are not finite")
         matrices[name] = numbers
     return {"matrices": matrices}
 
 
 def _pieces(request, solids):
-    made = _shown(solids, request["names"])
-    above = {one.name: one.name for one in made}
+    there = _solids_with_surface(solids, request["names"])
+    above = {solid.name: solid.name for solid in there}
 
     def top(name):
         while above[name] != name:
@@ -174,15 +174,15 @@ def _pieces(request, solids):
             name = above[name]
         return name
 
-    for a, b in _near(made, request["most"]):
+    for a, b in _pairs_near(there, request["most"]):
         if top(a.name) != top(b.name):
             share = request["share"] * min(a.diagonal, b.diagonal)
             within = min(request["most"], max(request["least"], share))
-            if gap(a, b, within, within) is not None or crossing(a, b) is not None:
+            if gap(a, b, within, within) is not None or penetration(a, b) is not None:
                 above[top(a.name)] = top(b.name)
     groups = {}
-    for one in made:
-        groups.setdefault(top(one.name), []).append(one.name)
+    for solid in there:
+        groups.setdefault(top(solid.name), []).append(solid.name)
     return {"pieces": sorted(groups.values())}
 
 
@@ -190,11 +190,8 @@ def _surface(request, solids):
     try:
         solid = solids[request["name"]]
     except NotNumbers:
-        return dict.fromkeys(("vertices", "polygons", "open_edges", "parts"), 0) | {
-            "finite": False,
-            "volume": 0,
-            "area": 0,
-        }
+        counts = ("vertices", "polygons", "open_edges", "parts", "volume", "area")
+        return dict.fromkeys(counts, 0) | {"finite": False}
     corners = solid.points[solid.triangles]
     normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     edges, counts = solid.edges
@@ -206,11 +203,11 @@ def _surface(request, solids):
         "open_edges": int((counts != 2).sum()),
         "volume": abs(volume) if math.isfinite(volume) else 0.0,
         "area": float(numpy.linalg.norm(normals, axis=1).sum() / 2),
-        "parts": len(numpy.unique(labels(len(solid.welded[0]), *edges.T)[edges[:, 0]])),
+        "parts": len(numpy.unique(connected_labels(len(solid.welded[0]), *edges.T)[edges[:, 0]])),
     }
 
 
-# Kind of request → what measures it at the current frame.
+# Kind of request → function that measures it at the current frame.
 MEASURED = {
     "gap": _gap,
     "crossings": _crossings,
@@ -227,5 +224,5 @@ MEASURED = {
     "embedding": embedding,
     "over": over,
     "beside": beside,
-    "view": view,
+    "view": camera_view,
 }

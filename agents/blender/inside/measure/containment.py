@@ -6,14 +6,15 @@ import math
 import numpy
 from mathutils import Vector
 
-from ..geometry.contact_regions import corners_and_edges, shape_of, some
+from ..geometry.contact_points import edge_points_in_box
 from ..geometry.solids import Unmeasurable
+from ..geometry.topology import spread_numbers, topology_of, unit
 
 _SAMPLES = 256
 _PAIRS = 64
-_SURFACE = 1500  # places of a cage's bars
-_SEEN_THROUGH = 0.6  # a wall is perforated if less of what it is in front of is hidden by it
-_SUNK = 5000  # places from which it is looked for the way out
+_BAR_SAMPLES = 1500  # points on a cage's bars
+_SEEN_THROUGH = 0.6  # a wall counts as perforated if it hides a smaller share than this
+_SUNK = 5000  # points from which the way out is measured
 _WAYS = 12
 _STEEP = 0.3
 _STEP = 1e-5
@@ -30,16 +31,16 @@ def _directions():
 
 _AROUND = _directions()
 _COARSE = _AROUND.astype(numpy.float32)
-_RAYS_AROUND = [Vector(way) for way in _AROUND]
+_RAYS_AROUND = [Vector(direction) for direction in _AROUND]
 
 
 def enclosure(request, solids):
-    """Shares of the samples of a content that are in a container's cavity, and in its walls.
+    """The shares of a content's samples that are in a container's cavity, and in its walls.
 
-    A place is in the cavity if at least half of all directions lead to the container. Below the plane of a flat rim
-    that is so everywhere, above it nowhere: an open container is thereby closed at its rim. Where a closed container
-    holds a place in its material, its winding number tells; a container that is closed all around and has no hollow
-    (a tank that is one box) holds its content in that.
+    A point is in the cavity if at least half of all directions from it hit the container. That is so everywhere below
+    the plane of a flat rim and nowhere above it, which closes an open container at its rim. Whether a point is in the
+    material of a closed container follows from its winding number; a closed container without a hollow (a tank that is
+    a plain box) holds its content in its volume.
     """
     content, container = solids.joined(request["content"]), solids.joined(request["container"])
     places, normals = _samples(content, _SAMPLES)
@@ -47,10 +48,12 @@ def enclosure(request, solids):
     cavity = _Cavity(
         container, [solids[name] for name in request["container"]], max(_STEP, request["noise"] - step)
     )
-    # Of what lies at a wall, the places a little further in are looked at; a sheet has them on either side.
+    # Samples are moved inwards a little, so that contact with a wall does not count; for a sheet, to either side.
     sides = (-1,) if content.closed else (-1, 1)
-    told = [cavity.look(places + side * step * normals) for side in sides]
-    inside = max((numpy.logical_or.reduce(reading) for reading in zip(*told, strict=True)), key=numpy.mean)
+    readings = [cavity.look(places + side * step * normals) for side in sides]
+    inside = max(
+        (numpy.logical_or.reduce(reading) for reading in zip(*readings, strict=True)), key=numpy.mean
+    )
     in_wall = numpy.logical_and.reduce([cavity.in_wall(places + side * step * normals) for side in sides])
     answer = {"inside": float(inside.mean()), "wall": float((in_wall & ~inside).mean())}
     if not inside.all():
@@ -59,26 +62,26 @@ def enclosure(request, solids):
 
 
 class _Cavity:
-    """What a container leaves free: in its hollow, within its bars, or, where it has neither, in its volume."""
+    """The space in a container: its hollow, within its bars, or, if it has neither, its volume."""
 
     def __init__(self, whole, parts, noise):
         self._whole, self._noise = whole, noise
-        self._parts = [one for one in parts if one.closed]
+        self._parts = [part for part in parts if part.closed]
         self._bars = None
 
     def in_wall(self, places):
-        """Which places are in its material, deeper than noise."""
+        """Which points are in its material, deeper than noise."""
         return self._depths(places) > self._noise
 
     def look(self, places):
-        """Which places are in it, if it is a volume; if it is a vessel; if it is a cage."""
+        """Which points are in it, taken as a volume, as a vessel, and as a cage."""
         depths = self._depths(places)
         free = _within_reach(self._whole, places, self._noise) & (depths <= self._noise)
         vessel = free.copy()
         vessel[free] = [self._is_enclosed(place) for place in places[free].tolist()]
         cage = vessel.copy()
         if not vessel.all() and free.any() and self._is_perforated(places[free].mean(axis=0)):
-            cage[free] = [self._seen(place) >= _PAIRS for place in places[free]]
+            cage[free] = [self._directions_with_surface(place) >= _PAIRS for place in places[free]]
         return depths > 0, vessel, cage
 
     def _depths(self, places):
@@ -92,11 +95,11 @@ class _Cavity:
         return depth
 
     def _is_enclosed(self, place):
-        """Whether at least half of all directions lead to it."""
+        """Whether at least half of all directions hit the container."""
         hit = miss = 0
         cast, start = self._whole.tree.ray_cast, Vector(place)
-        for way in _RAYS_AROUND:
-            if cast(start, way)[0] is None:
+        for direction in _RAYS_AROUND:
+            if cast(start, direction)[0] is None:
                 miss += 1
             else:
                 hit += 1
@@ -105,68 +108,74 @@ class _Cavity:
         return hit >= _PAIRS
 
     def _is_perforated(self, place):
-        """Whether one sees out between parts of it that are all around: a basket, a cage."""
+        """Whether it surrounds a point with gaps to see through: a basket, a cage."""
         start = Vector(place)
-        hit = sum(self._whole.tree.ray_cast(start, way)[0] is not None for way in _RAYS_AROUND)
-        return hit < _SEEN_THROUGH * self._seen(place)
+        hit = sum(self._whole.tree.ray_cast(start, direction)[0] is not None for direction in _RAYS_AROUND)
+        return hit < _SEEN_THROUGH * self._directions_with_surface(place)
 
-    def _seen(self, place):
-        """In how many of the directions around a place there is something of its surface nearby."""
+    def _directions_with_surface(self, place):
+        """In how many directions around a point there is a part of its surface."""
         if self._bars is None:
-            self._bars = _samples(self._whole, _SURFACE)[0].astype(numpy.float32)
+            self._bars = _samples(self._whole, _BAR_SAMPLES)[0].astype(numpy.float32)
         away = self._bars - place.astype(numpy.float32)
-        return len(numpy.unique((_unit(away) @ _COARSE.T).argmax(axis=1)))
+        return len(numpy.unique((unit(away) @ _COARSE.T).argmax(axis=1)))
 
 
 def _samples(solid, count):
-    """(places spread evenly over a surface, normals out of it there)."""
-    shape = shape_of(solid)
-    # Whatever order its triangles and their corners are in, the same surface has the same samples.
-    corners = numpy.sort(shape.corners, axis=1)
-    order = numpy.lexsort(shape.places[corners].mean(axis=1).T)
-    whole = numpy.cumsum(shape.areas[order])
+    """(points spread evenly over a surface, outward normals there)."""
+    topology = topology_of(solid)
+    # The same surface has the same samples, whatever the order of its triangles and corners.
+    corners = numpy.sort(topology.corners, axis=1)
+    order = numpy.lexsort(topology.places[corners].mean(axis=1).T)
+    whole = numpy.cumsum(topology.areas[order])
     if not whole[-1] > 0:
         raise Unmeasurable(f"{solid.name!r} has faces without an area")
     wanted = (numpy.arange(count) + 0.5) / count * whole[-1]
     triangles = order[numpy.minimum(numpy.searchsorted(whole, wanted), len(whole) - 1)]
     steps = numpy.arange(count)
     root, share = numpy.sqrt((steps * 0.754877666 + 0.5) % 1), (steps * 0.569840290 + 0.5) % 1
-    a, b, c = (shape.places[corners[triangles, corner]] for corner in range(3))
+    a, b, c = (topology.places[corners[triangles, corner]] for corner in range(3))
     weights = (1 - root)[:, None], (root * (1 - share))[:, None], (root * share)[:, None]
     places = weights[0] * a + weights[1] * b + weights[2] * c
-    outward = shape.outward[triangles][:, None]
-    return places, shape.normals[triangles] * numpy.where(outward == 0, 1, outward)
+    outward = topology.outward[triangles][:, None]
+    return places, topology.normals[triangles] * numpy.where(outward == 0, 1, outward)
 
 
 def _within_reach(solid, places, slack):
-    """Which places are no further out than the solid, seen from anywhere around it."""
-    shape = shape_of(solid)
-    largest = numpy.argsort(shape.areas)[-_PAIRS:]
-    ways = numpy.concatenate(
-        [numpy.eye(3), -numpy.eye(3), shape.normals[largest], -shape.normals[largest], _AROUND]
+    """Which points are inside the convex hull of a solid, roughly."""
+    topology = topology_of(solid)
+    largest = numpy.argsort(topology.areas)[-_PAIRS:]
+    directions = numpy.concatenate(
+        [numpy.eye(3), -numpy.eye(3), topology.normals[largest], -topology.normals[largest], _AROUND]
     )
-    reach = numpy.full(len(ways), -numpy.inf)
-    for start in range(0, len(shape.places), 20_000):
-        reach = numpy.maximum(reach, (shape.places[start : start + 20_000] @ ways.T).max(axis=0))
-    return (places @ ways.T <= reach + slack).all(axis=1)
+    reach = numpy.full(len(directions), -numpy.inf)
+    for start in range(0, len(topology.places), 20_000):
+        reach = numpy.maximum(reach, (topology.places[start : start + 20_000] @ directions.T).max(axis=0))
+    return (places @ directions.T <= reach + slack).all(axis=1)
 
 
 def embedding(request, solids):
-    """How far a part would have to be moved to be out of its host, the shortest way."""
+    """How far a part must move to be out of its host, in the best direction."""
     part, host = solids.joined(request["part"]), solids.joined(request["host"])
     pairs = host.tree.overlap(part.tree)
-    shape = shape_of(host)
+    topology = topology_of(host)
     if host.closed:
-        sunk = [place for place in corners_and_edges(part, host).tolist() if host.holds(place)]
+        sunk = [place for place in edge_points_in_box(part, host).tolist() if host.holds(place)]
         touched = [pair[0] for pair in pairs] or [host.nearest(place)[2] for place in sunk]
-        ways = _most_common(shape.normals[touched] * shape.outward[touched][:, None]) if touched else []
+        directions = (
+            _most_common(topology.normals[touched] * topology.outward[touched][:, None]) if touched else []
+        )
     else:
-        sunk = part.points[some(len(part.points), _SUNK)].tolist()
-        ways = _up(shape.normals[[pair[0] for pair in pairs]]) if pairs else []
+        sunk = part.points[spread_numbers(len(part.points), _SUNK)].tolist()
+        directions = _directions_out_of_sheet(topology.normals[[pair[0] for pair in pairs]]) if pairs else []
     best = None
-    for way in ways:
+    for direction in directions:
         deepest = max(
-            ((distance, place) for place in sunk if (distance := _way_out(host, place, way)) is not None),
+            (
+                (distance, place)
+                for place in sunk
+                if (distance := _way_out(host, place, direction)) is not None
+            ),
             default=(0.0, None),
         )
         if best is None or deepest[0] < best[0]:
@@ -179,23 +188,19 @@ def embedding(request, solids):
 def _most_common(normals):
     kinds, counts = numpy.unique(normals.round(1) + 0.0, axis=0, return_counts=True)
     chosen = kinds[numpy.argsort(-counts)[:_WAYS]]
-    found = [normals.mean(axis=0)] if len(normals) else []
+    means = [normals.mean(axis=0)] if len(normals) else []
     for kind in chosen:
-        found.append(normals[(numpy.abs(normals - kind) <= 0.06).all(axis=1)].mean(axis=0))
-    return [one / numpy.linalg.norm(one) for one in found if numpy.linalg.norm(one) > _STEEP]
+        means.append(normals[(numpy.abs(normals - kind) <= 0.06).all(axis=1)].mean(axis=0))
+    return [mean / numpy.linalg.norm(mean) for mean in means if numpy.linalg.norm(mean) > _STEEP]
 
 
-def _up(normals):
-    """Out of a sheet: upwards, if it lies; to either side, if it stands."""
+def _directions_out_of_sheet(normals):
+    """Directions out of a sheet: up if it is level, to either side if it is upright."""
     level = numpy.where(normals[:, 2:] < 0, -normals, normals)
-    way = level.mean(axis=0)
-    way = way / max(float(numpy.linalg.norm(way)), 1e-9)
-    return [way] if way[2] > _STEEP else [way, -way]
+    direction = level.mean(axis=0)
+    direction = direction / max(float(numpy.linalg.norm(direction)), 1e-9)
+    return [direction] if direction[2] > _STEEP else [direction, -direction]
 
 
-def _unit(vectors):
-    return vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=1), 1e-12)[:, None]
-
-
-def _way_out(host, place, way):
-    return host.tree.ray_cast(Vector(place), Vector(way))[3]
+def _way_out(host, place, direction):
+    return host.tree.ray_cast(Vector(place), Vector(direction))[3]

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures how a filler sits in an opening (see agents.protocol.measures.contact)."""
+"""Measures how well a filler fits its opening (see agents.protocol.measures.contact)."""
 
 import math
 
 import numpy
 from mathutils import Vector
 
-from ..geometry.contact_regions import shape_of
+from ..geometry.topology import topology_of
 
 _DIRECTIONS = 96
 _COARSE = 6
-_PLANES = 7  # across the filler, in which it is looked for the rim
-_BESIDE = 0.01  # metres before and behind the filler in which a host that is a sheet may be
+_PLANES = 7  # across the filler, in which the rim is searched for
+_BESIDE = 0.01  # metres before and behind the filler in which the host may be if it is a sheet
 _STEPS = 48
 _HALVINGS = 16
 _WAYS = 8
@@ -20,79 +20,82 @@ _WAYS = 8
 def opening(request, solids):
     """See OpeningMeasure.
 
-    Through the middle of the filler, planes are laid across the way that leads through the opening. In each, rays lead
-    from the middle to the rim; where a host is a sheet, whose rim no ray can meet, it is felt for where it begins to
-    cover what is behind it. Of all planes, the one with the narrowest rim counts, direction by direction.
+    The filler is cut by planes across the axis of the opening. In each, rays go from the middle to the rim; of a host
+    that is a sheet, whose rim no ray can hit, the rim is where it begins to cover what is behind it. In each direction,
+    the plane with the narrowest gap counts.
     """
     filler, host = solids.joined(request["filler"]), solids.joined(request["host"])
-    sections = [_Section(filler, host, way) for way in _ways(filler, host)]
-    section = min(sections, key=lambda one: _doubt(one.rim(_COARSE)))
-    rim, way = section.rim(), section.way
+    sections = [_Section(filler, host, direction) for direction in _candidate_axes(filler, host)]
+    section = min(sections, key=lambda section: _axis_rank(section.rim(_COARSE)))
+    rim, direction = section.rim(), section.direction
     if not rim:
         return {"unbounded": 360.0, "at": ((filler.low + filler.high) / 2).tolist()}
     turns = sorted(rim)
     before, after = [turns[-1] - _DIRECTIONS, *turns[:-1]], [*turns[1:], turns[0] + _DIRECTIONS]
     widest = max(b - a for a, b in zip(turns, after, strict=True))
     gaps = [
-        (_gap(*rim[turn], [rim[one % _DIRECTIONS][0] for one in (last, following)], way), rim[turn][0])
+        (
+            _gap(*rim[turn], [rim[neighbour % _DIRECTIONS][0] for neighbour in (last, following)], direction),
+            rim[turn][0],
+        )
         for last, turn, following in zip(before, turns, after, strict=True)
     ]
-    gap, at = max(gaps, key=lambda one: one[0])
+    gap, at = max(gaps, key=lambda entry: entry[0])
     return {"unbounded": 360.0 * (widest - 1) / _DIRECTIONS, "gap": gap, "at": tuple(at)}
 
 
-def _doubt(rim):
-    """For comparing: an opening has a rim all around, and is least wide when it is looked at straight through it."""
+def _axis_rank(rim):
+    """A sort key: the axis straight through the opening has a rim all around, and the narrowest gap."""
     return -len(rim), max(((foot - place).length for place, foot in rim.values()), default=0.0)
 
 
-def _gap(place, foot, beside, way):
-    """How wide the gap at a place of the rim is, across it: in a corner not along the diagonal."""
+def _gap(place, foot, beside, direction):
+    """The width of the gap at a place of the rim, measured across it; in a corner, not along the diagonal."""
     away, least = foot - place, (foot - place).length
     for other in beside:
-        along = (other - place) - (other - place).dot(way) * way
+        along = (other - place) - (other - place).dot(direction) * direction
         if along.length > 0:
             along.normalize()
-            parts = abs(away.dot(along)), abs(away.dot(way)), abs(away.dot(way.cross(along)))
+            parts = abs(away.dot(along)), abs(away.dot(direction)), abs(away.dot(direction.cross(along)))
             least = min(least, max(parts))
     return least
 
 
-def _ways(filler, host):
-    """Directions in which an opening may lead through the host: those in which most of the faces nearby look."""
-    found = [numpy.eye(3)[axis] for axis in range(3)]
+def _candidate_axes(filler, host):
+    """Directions that an opening may have: the most frequent normals of nearby faces."""
+    candidates = [numpy.eye(3)[axis] for axis in range(3)]
     around = filler.diagonal / 2
     for solid in (filler, host):
-        shape = shape_of(solid)
-        corners = shape.places[shape.corners]
+        topology = topology_of(solid)
+        corners = topology.places[topology.corners]
         near = (
             (corners.min(axis=1) <= filler.high + around) & (corners.max(axis=1) >= filler.low - around)
         ).all(axis=1)
-        normals = shape.normals[near]
+        normals = topology.normals[near]
         level = numpy.where((normals @ (0.577, 0.211, 0.789) < 0)[:, None], -normals, normals)
         kinds, back = numpy.unique(level.round(2) + 0.0, axis=0, return_inverse=True)
-        weighed = level * shape.areas[near][:, None]
+        weighed = level * topology.areas[near][:, None]
         sums = numpy.stack([numpy.bincount(back.reshape(-1), axis, len(kinds)) for axis in weighed.T], axis=1)
         lengths = numpy.linalg.norm(sums, axis=1)
-        found += [
+        candidates += [
             sums[place] / lengths[place] for place in numpy.argsort(-lengths)[:_WAYS] if lengths[place] > 0
         ]
-    ways = []
-    for way in found:
-        if all(abs(way @ other) < 0.999999 for other in ways):
-            ways.append(way)
-    return ways
+    directions = []
+    for direction in candidates:
+        if all(abs(direction @ other) < 0.999999 for other in directions):
+            directions.append(direction)
+    return directions
 
 
 class _Section:
-    """A filler and a host, looked at along the way that leads through the opening."""
+    """A filler and a host, seen along the axis of the opening."""
 
-    def __init__(self, filler, host, way):
-        self._filler, self._host, self.way = filler, host, Vector(way)
-        across = numpy.cross(way, numpy.eye(3)[int(numpy.argmin(numpy.abs(way)))])
+    def __init__(self, filler, host, direction):
+        self._filler, self._host, self.direction = filler, host, Vector(direction)
+        across = numpy.cross(direction, numpy.eye(3)[int(numpy.argmin(numpy.abs(direction)))])
         across /= numpy.linalg.norm(across)
-        self._axes = across, numpy.cross(way, across)
-        along = filler.points @ way
+        self._axes = across, numpy.cross(direction, across)
+        along = filler.points @ direction
         self._low, self._high = float(along.min()), float(along.max())
         self._middle = numpy.array(
             [((spread := filler.points @ axis).min() + spread.max()) / 2 for axis in self._axes]
@@ -109,28 +112,28 @@ class _Section:
             self._host.holds(self._place(0.0, (1.0, 0.0), height)) for height in heights
         ):
             return {}
-        found = {}
+        rim = {}
         for turn in range(0, _DIRECTIONS, every):
             angle = 2 * math.pi * turn / _DIRECTIONS
             heading = math.cos(angle), math.sin(angle)
-            places = [place for height in heights if (place := self._seen(heading, height)) is not None]
-            if not places and (place := self._felt(heading, _STEPS // every)) is not None:
+            places = [place for height in heights if (place := self._rim_by_ray(heading, height)) is not None]
+            if not places and (place := self._rim_by_coverage(heading, _STEPS // every)) is not None:
                 places = [place]
             if places:
                 feet = [(place, self._filler.nearest(place)[0]) for place in places]
-                found[turn] = min(feet, key=lambda one: (one[1] - one[0]).length)
-        return found
+                rim[turn] = min(feet, key=lambda pair: (pair[1] - pair[0]).length)
+        return rim
 
     def _place(self, distance, heading, height):
         u, v = self._middle + distance * numpy.array(heading)
-        return Vector(u * self._axes[0] + v * self._axes[1] + height * numpy.array(self.way))
+        return Vector(u * self._axes[0] + v * self._axes[1] + height * numpy.array(self.direction))
 
-    def _seen(self, heading, height):
+    def _rim_by_ray(self, heading, height):
         """Where a ray from the middle meets the host."""
         start = self._place(0.0, heading, height)
         return self._host.tree.ray_cast(start, self._place(1.0, heading, height) - start, self._reach)[0]
 
-    def _felt(self, heading, steps):
+    def _rim_by_coverage(self, heading, steps):
         """Where the host begins to cover what is behind it."""
         last = 0.0
         for step in range(1, steps + 1):
@@ -151,4 +154,4 @@ class _Section:
     def _covered(self, distance, heading):
         start = self._place(distance, heading, self._low - _BESIDE)
         length = self._high - self._low + 2 * _BESIDE
-        return self._host.tree.ray_cast(start, self.way, length)[0]
+        return self._host.tree.ray_cast(start, self.direction, length)[0]

@@ -1,29 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The facts that rules judge by: what is in the scene at its current frame. Changes nothing."""
+"""The facts about the scene at its current frame, by which the protocol's rules judge. Changes nothing."""
 
 import math
-from types import SimpleNamespace
 
 import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..blend.fcurves import curves_of, played_curves
+from ..blend.protocol_tags import CONTACT, ROLE, ROOT, STRICT_GROUNDING
 from ..physics.caches import find_caches
 
 _TRANSFORMS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 _CHANNELS = {*_TRANSFORMS, *(f"delta_{channel}" for channel in _TRANSFORMS)}
-# What may be animated without moving anything; the last are custom properties.
-_LOOKS = ("hide_", "show_", "visible_", "color", "pass_index", "rigid_body.", "[")
+# Properties whose animation moves nothing; the last are custom properties.
+_WITHOUT_MOTION = ("hide_", "show_", "visible_", "color", "pass_index", "rigid_body.", "[")
 
 
-def snapshot(arguments, report):
-    """Everything that agents.protocol.facts describes. Raises Refused for what Blender cannot evaluate."""
+def scene_facts(arguments, report):
+    """The facts, as agents.protocol.facts describes them. Raises Refused if Blender cannot evaluate the scene."""
     del arguments, report
     if circle := _circle_of(bpy.data.collections):
-        told = " → ".join(map(repr, circle))
-        raise Refused(
-            f"Collections make instances of each other in a circle, {told}: break it before it is evaluated."
-        )
+        names = " → ".join(map(repr, circle))
+        raise Refused(f"Collections instance each other in a circle, {names}: remove one of these instances.")
     try:
         from .geometry_facts import GeometryFacts
     except ImportError as error:
@@ -41,37 +40,39 @@ def snapshot(arguments, report):
         "fps": scene.render.fps / scene.render.fps_base,
         "gravity": _vector(scene.gravity) if scene.use_gravity else (0.0, 0.0, 0.0),
         "metres": scene.unit_settings.scale_length,
-        "strict_grounding": bool(scene.get("strict_grounding", False)),
+        "strict_grounding": bool(scene.get(STRICT_GROUNDING, False)),
         "camera": scene.camera.name if scene.camera else None,
         "world_light": _world_light(world) if world else 0.0,
         "collections": _collections(scene),
-        "objects": [_object(thing, holders, geometry) for thing in scene.objects],
+        "objects": [_object(obj, holders, geometry) for obj in scene.objects],
         "caches": [_cache(cache) for cache in find_caches(scene)],
     }
 
 
 def _circle_of(collections):
-    """Names of collections that make instances of each other in a circle; Blender crashes when it evaluates those."""
+    """Names of collections that instance each other in a circle, which would crash Blender; None if there are none."""
     makes = {
-        one: {thing.instance_collection for thing in one.all_objects if thing.instance_type == "COLLECTION"}
+        collection: {
+            obj.instance_collection for obj in collection.all_objects if obj.instance_type == "COLLECTION"
+        }
         - {None}
-        for one in collections
+        for collection in collections
     }
     done, path = set(), []
 
-    def search(one):
-        if one in path:
-            return [*path[path.index(one) :], one]
-        if one in done or one not in makes:
+    def search(collection):
+        if collection in path:
+            return [*path[path.index(collection) :], collection]
+        if collection in done or collection not in makes:
             return None
-        done.add(one)
-        path.append(one)
-        found = next(filter(None, map(search, makes[one])), None)
+        done.add(collection)
+        path.append(collection)
+        circle = next(filter(None, map(search, makes[collection])), None)
         path.pop()
-        return found
+        return circle
 
-    found = next(filter(None, map(search, makes)), None)
-    return [one.name for one in found] if found else None
+    circle = next(filter(None, map(search, makes)), None)
+    return [collection.name for collection in circle] if circle else None
 
 
 def _number(value):
@@ -88,7 +89,7 @@ def _text(value):
 
 
 def _collections(scene):
-    """All below the scene's own, each once, with the collections that hold it."""
+    """All collections below the scene's own, each once, with its parents."""
     parents = {}
     waiting = [(scene.collection, "")]
     seen = set()
@@ -102,50 +103,50 @@ def _collections(scene):
             waiting.append((below, below.name))
     return [
         {
-            "name": one.name,
+            "name": collection.name,
             "parents": above,
-            "objects": [thing.name for thing in one.objects],
-            "role": _text(one.get("protocol_role")),
-            "deformation_kind": _text(one.get("deformation_kind")),
-            "motion_kind": _text(one.get("motion_kind")),
-            "allows_disconnected": bool(one.get("allows_disconnected", False)),
+            "objects": [obj.name for obj in collection.objects],
+            "role": _text(collection.get(ROLE)),
+            "deformation_kind": _text(collection.get("deformation_kind")),
+            "motion_kind": _text(collection.get("motion_kind")),
+            "allows_disconnected": bool(collection.get("allows_disconnected", False)),
         }
-        for one, above in parents.items()
+        for collection, above in parents.items()
     ]
 
 
 def _holders(scene):
-    """Object → names of the collections that it is in. Asking each for its users_collection would take long."""
-    found = {}
-    for one in (scene.collection, *bpy.data.collections):
-        for thing in one.objects:
-            found.setdefault(thing, []).append(one.name)
-    return found
+    """Object → names of the collections that it is in. Reading each users_collection would be slow."""
+    holders = {}
+    for collection in (scene.collection, *bpy.data.collections):
+        for obj in collection.objects:
+            holders.setdefault(obj, []).append(collection.name)
+    return holders
 
 
-def _object(thing, holders, geometry):
-    told = {
-        "name": thing.name,
-        "type": thing.type,
-        "data": thing.data.name if thing.data else None,
-        "collections": holders.get(thing, []),
-        "parent": thing.parent.name if thing.parent else None,
-        "is_root": bool(thing.get("is_object_root", False)),
-        "contact_with": _names(thing.get("contact_with")),
-        "modifiers": [_modifier(one) for one in thing.modifiers],
-        "constraints": [_constraint(one) for one in thing.constraints],
-        "rigid_body": _rigid_body(thing),
-        "keys": _keys(thing),
-        "animated_shape_keys": _has_animated_shapes(thing),
-        "drivers": len(thing.animation_data.drivers) if thing.animation_data else 0,
-        "driven": sorted(_driven(thing)),
+def _object(obj, holders, geometry):
+    facts = {
+        "name": obj.name,
+        "type": obj.type,
+        "data": obj.data.name if obj.data else None,
+        "collections": holders.get(obj, []),
+        "parent": obj.parent.name if obj.parent else None,
+        "is_root": bool(obj.get(ROOT, False)),
+        "contact_with": _names(obj.get(CONTACT)),
+        "modifiers": [_modifier(entry) for entry in obj.modifiers],
+        "constraints": [_constraint(entry) for entry in obj.constraints],
+        "rigid_body": _rigid_body(obj),
+        "keys": _keys(obj),
+        "animated_shape_keys": _has_animated_shapes(obj),
+        "drivers": len(obj.animation_data.drivers) if obj.animation_data else 0,
+        "driven": sorted(_driven(obj)),
     }
-    field = thing.field
+    field = obj.field
     if field is not None and field.type != "NONE":
-        told["force_field"] = field.type
-    if thing.type == "LIGHT":
-        told.update(light=thing.data.type, energy=_number(thing.data.energy))
-    return told | geometry.of(thing)
+        facts["force_field"] = field.type
+    if obj.type == "LIGHT":
+        facts.update(light=obj.data.type, energy=_number(obj.data.energy))
+    return facts | geometry.of(obj)
 
 
 def _names(value):
@@ -162,24 +163,26 @@ def _names(value):
 def _modifier(modifier):
     target = next(
         (
-            one
+            value
             for name in ("object", "target", "mirror_object", "auxiliary_target")
-            if isinstance(one := getattr(modifier, name, None), bpy.types.Object)
+            if isinstance(value := getattr(modifier, name, None), bpy.types.Object)
         ),
         None,
     )
-    told = {"name": modifier.name, "type": modifier.type, "on": bool(modifier.show_render)}
+    facts = {"name": modifier.name, "type": modifier.type, "on": bool(modifier.show_render)}
     if modifier.type == "FLUID":
-        told["type"] = f"FLUID_{modifier.fluid_type}"
+        facts["type"] = f"FLUID_{modifier.fluid_type}"
     if target is not None:
-        told["target"] = target.name
-    return told
+        facts["target"] = target.name
+    return facts
 
 
 def _constraint(constraint):
     target = getattr(constraint, "target", None)
     if target is None:  # an Armature constraint has several
-        target = next((one.target for one in getattr(constraint, "targets", ()) if one.target), None)
+        target = next(
+            (candidate.target for candidate in getattr(constraint, "targets", ()) if candidate.target), None
+        )
     return {
         "type": constraint.type,
         "on": not constraint.mute and constraint.influence > 0,
@@ -187,12 +190,12 @@ def _constraint(constraint):
     }
 
 
-def _rigid_body(thing):
-    body = thing.rigid_body
+def _rigid_body(obj):
+    body = obj.rigid_body
     if body is None:
         return None
-    # A body that is let go in the course of the timeline is the solver's then.
-    switched = any(curve.data_path == "rigid_body.kinematic" and _varies(curve) for curve in curves_of(thing))
+    # A body that is released during the timeline is moved by the solver from then on.
+    switched = any(curve.data_path == "rigid_body.kinematic" and _varies(curve) for curve in curves_of(obj))
     return {
         "active": body.type == "ACTIVE",
         "kinematic": bool(body.kinematic) and not switched,
@@ -200,42 +203,9 @@ def _rigid_body(thing):
     }
 
 
-def curves_of(data):
-    """The f-curves that animate a data-block: of its slot in a layered action, or of an action of old."""
-    animation = getattr(data, "animation_data", None)
-    action = animation.action if animation else None
-    if action is None:
-        return []
-    if hasattr(action, "fcurves"):
-        return list(action.fcurves)
-    slot = animation.action_slot
-    if slot is None:
-        return []
-    return [
-        curve
-        for layer in action.layers
-        for strip in layer.strips
-        for bag in strip.channelbags
-        if bag.slot_handle == slot.handle
-        for curve in bag.fcurves
-    ]
-
-
-def _moving_curves(data):
+def _changing_curves(block):
     """The f-curves that change something over time: of the action, and of what is played in NLA tracks."""
-    animation = getattr(data, "animation_data", None)
-    strips = (
-        [strip for track in animation.nla_tracks if not track.mute for strip in track.strips]
-        if animation
-        else []
-    )
-    played = [
-        curve
-        for strip in strips
-        if not strip.mute
-        for curve in curves_of(SimpleNamespace(animation_data=strip))
-    ]
-    return [curve for curve in (*curves_of(data), *played) if not curve.mute and _varies(curve)]
+    return [curve for curve in played_curves(block) if not curve.mute and _varies(curve)]
 
 
 def _varies(curve):
@@ -245,29 +215,29 @@ def _varies(curve):
     return len(values) > 1
 
 
-def _keys(thing):
-    """Channel → the most keys that one of its curves has; of curves that may move it."""
-    found = {}
-    for curve in _moving_curves(thing):
-        if not curve.data_path.startswith(_LOOKS):
+def _keys(obj):
+    """Channel → the largest number of keys in one of its curves; of curves that may move the object."""
+    counts = {}
+    for curve in _changing_curves(obj):
+        if not curve.data_path.startswith(_WITHOUT_MOTION):
             channel = curve.data_path if curve.data_path in _CHANNELS else "other"
             count = max(len(curve.keyframe_points), len(curve.sampled_points))
-            found[channel] = max(found.get(channel, 1), count)
-    return found
+            counts[channel] = max(counts.get(channel, 1), count)
+    return counts
 
 
-def _driven(thing):
-    """Channels of its own place, rotation and size that drivers set."""
-    drivers = thing.animation_data.drivers if thing.animation_data else ()
+def _driven(obj):
+    """Transform channels that drivers set."""
+    drivers = obj.animation_data.drivers if obj.animation_data else ()
     return {driver.data_path for driver in drivers if driver.data_path in _CHANNELS}
 
 
-def _has_animated_shapes(thing):
-    shapes = getattr(thing.data, "shape_keys", None)
+def _has_animated_shapes(obj):
+    shapes = getattr(obj.data, "shape_keys", None)
     if shapes is None:
         return False
     drivers = len(shapes.animation_data.drivers) if shapes.animation_data else 0
-    return bool(drivers or _moving_curves(shapes))
+    return bool(drivers or _changing_curves(shapes))
 
 
 def _cache(cache):
@@ -286,13 +256,13 @@ def _cache(cache):
 
 
 def _world_light(world):
-    """How strongly the world shines: the brightest background of its nodes, or its plain colour."""
+    """How strongly the world emits light: its brightest background node, or its plain colour."""
     tree = world.node_tree if getattr(world, "use_nodes", True) else None
     return max(_vector(world.color)) if tree is None else _brightest(tree, set())
 
 
 def _brightest(tree, seen):
-    """The strength of the brightest node that shines, in a tree and those that it calls."""
+    """The strength of the brightest emitting node in a tree and its groups."""
     if tree is None or tree in seen:
         return 0.0
     seen.add(tree)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures what rests on, leans on, or is in something else (see agents.protocol.measures.contact)."""
+"""Measures how objects rest on, lean on or penetrate others (see agents.protocol.measures.contact)."""
 
 import math
 
@@ -7,138 +7,139 @@ import numpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from ..geometry.contact_regions import normals_of, shape_of, some, touches
-from ..geometry.penetration import crossing
+from ..geometry.contact_points import contact_points, normals_of
+from ..geometry.penetration import penetration
 from ..geometry.solids import Unmeasurable
+from ..geometry.topology import spread_numbers, topology_of
 
-_UP = 0.1  # a surface that is turned up less than that (the cosine) bears nothing
-_FLOOR = 0.9  # one that is turned up more is a floor
-_LOOKED_DOWN = 2000  # places from which it is looked down, or up
+_UP = 0.1  # cosine; a surface that faces up less than this supports nothing
+_FLOOR = 0.9  # cosine; a surface that faces up more than this is a floor
+_LOOKED_DOWN = 2000  # points from which rays go down, or up
 _SEVERAL = 6
 _EDGE = 1e-5
 _AROUND = numpy.array([(math.cos(turn * math.pi / 32), math.sin(turn * math.pi / 32)) for turn in range(64)])
 
 
 def depth(request, solids):
-    """How deep two groups of objects are in each other, taken mesh by mesh."""
+    """How deep two groups of objects penetrate each other, mesh by mesh."""
     ours, theirs = ([solids[name] for name in request[side]] for side in "ab")
-    lows, highs = (numpy.array([getattr(one, side) for one in theirs]) for side in ("low", "high"))
+    lows, highs = (numpy.array([getattr(solid, side) for solid in theirs]) for side in ("low", "high"))
     deepest = {"depth": 0.0, "at": None}
-    for one in ours:
-        for place in numpy.nonzero(((lows <= one.high) & (highs >= one.low)).all(axis=1))[0]:
-            told = crossing(one, theirs[place])
-            if told is None:
+    for solid in ours:
+        for place in numpy.nonzero(((lows <= solid.high) & (highs >= solid.low)).all(axis=1))[0]:
+            shared = penetration(solid, theirs[place])
+            if shared is None:
                 continue
-            found, where, reason = told
-            if found is None:
-                raise Unmeasurable(f"{one.name!r} and {theirs[place].name!r} cross, but {reason}")
-            if found > deepest["depth"]:
-                deepest = {"depth": found, "at": tuple(where)}
+            deep, where, reason = shared
+            if deep is None:
+                raise Unmeasurable(f"{solid.name!r} and {theirs[place].name!r} cross, but {reason}")
+            if deep > deepest["depth"]:
+                deepest = {"depth": deep, "at": tuple(where)}
     return deepest
 
 
 def support(request, solids):
-    """What bears a child from below, and where its centre of mass is."""
+    """The contacts that support a child from below, and its centre of mass."""
     child, parents = solids.joined(request["child"]), solids.joined(request["parents"])
-    found = touches(child, parents, request["within"])
-    told = {"centre": centre_of_mass([solids[name] for name in request["child"]]), "bearing": []}
-    opposed = numpy.full(len(found), 2.0)
-    for own, other in normals_of(child, parents, found) if len(found) else ():
+    contacts = contact_points(child, parents, request["within"])
+    result = {"centre": centre_of_mass([solids[name] for name in request["child"]]), "bearing": []}
+    opposed = numpy.full(len(contacts), 2.0)
+    for own, other in normals_of(child, parents, contacts) if len(contacts) else ():
         from_below = (other[:, 2] > _UP) & (own[:, 2] < 0)
         cosine = numpy.einsum("ij,ij->i", own, other)
         opposed = numpy.where(from_below, numpy.minimum(opposed, cosine), opposed)
     if (opposed <= 1).any():
-        told["opposed"] = float(opposed.min())
-        told["at"] = found.places[int(opposed.argmin())].tolist()
-        told["bearing"] = _outline(found.places[opposed <= request["opposed"]])
+        result["opposed"] = float(opposed.min())
+        result["at"] = contacts.places[int(opposed.argmin())].tolist()
+        result["bearing"] = _outline(contacts.places[opposed <= request["opposed"]])
     else:
-        told.update(_clearance(child, parents, request["within"]))
-    return told
+        result.update(_clearance(child, parents, request["within"]))
+    return result
 
 
 def _outline(places):
-    """Those of some places that are outermost, seen from above."""
+    """The outermost of some points, seen from above."""
     if not len(places):
         return []
     return places[numpy.unique((places[:, :2] @ _AROUND.T).argmax(axis=0))].tolist()
 
 
 def _clearance(child, parents, within):
-    """How far something is above what is below it; nothing where there is nothing."""
+    """How far a child is above its parents, and where; {} if they are not below it."""
     best = None
-    for one, other, way in ((child, parents, -1), (parents, child, 1)):
-        places = one.points
-        if len(one.triangles) < _LOOKED_DOWN:
-            places = numpy.concatenate([places, places[one.triangles].mean(axis=1)])
-        # What is right above an edge of it is beside it.
-        inside = (places[:, :2] > other.low[:2] + _EDGE) & (places[:, :2] < other.high[:2] - _EDGE)
+    for upper, lower, direction in ((child, parents, -1), (parents, child, 1)):
+        places = upper.points
+        if len(upper.triangles) < _LOOKED_DOWN:
+            places = numpy.concatenate([places, places[upper.triangles].mean(axis=1)])
+        # A point exactly above an edge counts as beside it.
+        inside = (places[:, :2] > lower.low[:2] + _EDGE) & (places[:, :2] < lower.high[:2] - _EDGE)
         places = places[inside.all(axis=1)]
-        for place in places[some(len(places), _LOOKED_DOWN)].tolist():
-            start = Vector((place[0], place[1], place[2] - way * within))
-            hit, _, _, distance = other.tree.ray_cast(start, Vector((0, 0, way)))
+        for place in places[spread_numbers(len(places), _LOOKED_DOWN)].tolist():
+            start = Vector((place[0], place[1], place[2] - direction * within))
+            hit, _, _, distance = lower.tree.ray_cast(start, Vector((0, 0, direction)))
             if hit is not None and (best is None or distance < best[0]):
                 best = distance, place
     return {} if best is None else {"clearance": max(0.0, best[0] - within), "at": best[1]}
 
 
 def centre_of_mass(solids):
-    """Of the closed pieces of some solids if they have any, as if they were full; else of their surfaces."""
+    """The centre of mass of the closed pieces of some solids, taken as full; without any, of their surfaces."""
     whole, moments = 0.0, numpy.zeros(3)
     for solid in solids:
-        _, volumes, parts = shape_of(solid).volumes()
+        _, volumes, parts = topology_of(solid).volumes()
         whole += float(numpy.abs(volumes).sum())
         moments += (numpy.sign(volumes) * parts).sum(axis=1)
     if whole <= 0:
         for solid in solids:
-            shape = shape_of(solid)
-            whole += float(shape.areas.sum())
-            moments += (shape.areas[:, None] * shape.places[shape.corners].mean(axis=1)).sum(axis=0)
+            topology = topology_of(solid)
+            whole += float(topology.areas.sum())
+            moments += (topology.areas[:, None] * topology.places[topology.corners].mean(axis=1)).sum(axis=0)
     if whole <= 0:
-        raise Unmeasurable(f"{solids[0].name!r} has faces without an area: no centre of mass")
+        raise Unmeasurable(f"{solids[0].name!r} has faces without an area, so no centre of mass")
     return (moments / whole).tolist()
 
 
 def flush(request, solids):
-    """How a face of the child that touches the parent is turned to it, and how far it stands out over its face."""
+    """The angle between touching faces of child and parent, and how far the child's face overhangs."""
     child, parent = solids.joined(request["child"]), solids.joined(request["parent"])
     within = request["within"]
-    found = touches(child, parent, within)
+    contacts = contact_points(child, parent, within)
     ranked = []
-    for own, other in normals_of(child, parent, found) if len(found) else ():
+    for own, other in normals_of(child, parent, contacts) if len(contacts) else ():
         cosine = numpy.einsum("ij,ij->i", own, other)
         floor = other[:, 2] > _FLOOR
         if request["sideways"]:
             cosine, floor = numpy.where(floor, 2.0, cosine), numpy.zeros(len(floor), bool)
-        order = numpy.lexsort((cosine.round(5), floor))[: len(found)]
+        order = numpy.lexsort((cosine.round(5), floor))[: len(contacts)]
         ranked += [
             (bool(floor[at]), float(cosine[at]), int(at), other[at]) for at in order[:200] if cosine[at] <= 1
         ]
     if not ranked:
         return {"touching": []}
-    ranked.sort(key=lambda one: one[:2])
+    ranked.sort(key=lambda entry: entry[:2])
     best_floor, best = ranked[0][:2]
     faces = {}
     for floor, cosine, at, normal in ranked:
         if floor == best_floor and cosine <= best + 1e-4 and len(faces) < _SEVERAL:
-            plane = (*normal.round(2), round(float(normal @ found.places[at]) / max(within, 1e-6)))
+            plane = (*normal.round(2), round(float(normal @ contacts.places[at]) / max(within, 1e-6)))
             faces.setdefault(plane, (at, normal))
     over, at = min(
-        (_stands_out((child, found.own[at]), (parent, found.other[at]), normal, within), at)
+        (_overhang((child, contacts.own[at]), (parent, contacts.other[at]), normal, within), at)
         for at, normal in faces.values()
     )
     return {
         "angle": math.degrees(math.acos(max(-1.0, min(1.0, -best)))),
         "stands_out": over,
-        "at": found.places[at].tolist(),
-        "touching": _outline(found.places),
+        "at": contacts.places[at].tolist(),
+        "touching": _outline(contacts.places),
     }
 
 
-def _stands_out(child, parent, normal, within):
-    """How far the face of one (solid, triangle) reaches beyond that of another one, seen along a normal."""
+def _overhang(child, parent, normal, within):
+    """How far the face of one (solid, triangle) extends beyond that of another, seen along a normal."""
     (ours, theirs), (own, face) = zip(
         *(
-            (shape_of(solid), shape_of(solid).face(triangle, normal, within))
+            (topology_of(solid), topology_of(solid).face_mask(triangle, normal, within))
             for solid, triangle in (child, parent)
         ),
         strict=True,
@@ -146,7 +147,7 @@ def _stands_out(child, parent, normal, within):
     if not face.any() or not own.any():
         return 0.0
     corners = ours.places[numpy.unique(ours.corners[own])]
-    corners = corners[some(len(corners), _LOOKED_DOWN)]
+    corners = corners[spread_numbers(len(corners), _LOOKED_DOWN)]
     flat = _flattened(theirs.places, normal), theirs.corners[face]
     tree = BVHTree.FromPolygons(flat[0].tolist(), flat[1].tolist(), all_triangles=True)
     return max(tree.find_nearest(place)[3] for place in _flattened(corners, normal).tolist())

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The things whose motion is asked for, by name, and where their evaluated geometry is at a frame."""
-
-import difflib
+"""Actors: objects and collections whose motion is followed, and where their geometry is at a frame."""
 
 import bpy
 import numpy
@@ -9,67 +7,72 @@ from mathutils import Vector
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..blend.fluids import domain_of
+from ..blend.names import nearest
+from ..blend.protocol_tags import OBJECT, ROLE, ROOT
+from ..geometry.evaluated_meshes import coordinates, transformed
+
 _EVALUATES_TO_MESH = {"CURVE", "SURFACE", "META", "FONT"}
 _EMITTING = {"EMITTER", "FLIP"}
-_THIN = 0.01  # density up to which a cell of a gas counts as empty
+_THIN = 0.01  # density up to which a cell of gas counts as empty
 
 
 class Actor:
-    """A thing that moves as one: ``name``, the ``objects`` that it is made of, and what of them is ``measured``.
+    """What moves as one: ``name``, its ``objects``, and what of them is ``measured``.
 
-    ``most``: about so many of its points are looked at, evenly among them; by default all.
+    ``most``: about how many of its points are followed, evenly chosen; None for all.
     """
 
     def __init__(self, name, kind, objects, most=None):
         self.name, self.kind, self.objects = name, kind, objects
         self._most = None if most is None else max(1, most // len(objects))
-        if any(_particles(thing) for thing in objects):
+        if any(_particles(obj) for obj in objects):
             self.measured = "particles"
-        elif any(domain_of(thing) for thing in objects):
+        elif any(domain_of(obj) for obj in objects):
             self.measured = "fluid"
-        elif any(_has_surface(thing) for thing in objects):
+        elif any(_has_surface(obj) for obj in objects):
             self.measured = "vertices"
         else:
             self.measured = "origin"
 
-    def moment(self, graph):
-        """Where it is, in an evaluated dependency graph.
+    def state_at(self, graph):
+        """Its state in an evaluated dependency graph.
 
-        None where there is nothing of it (no particle born yet), or where it is at places that are no numbers.
+        None if it does not exist at that frame (no particle born yet), or has coordinates that are not finite.
         """
-        evaluated = [thing.evaluated_get(graph) for thing in self.objects]
+        evaluated = [obj.evaluated_get(graph) for obj in self.objects]
         if self.measured == "particles":
-            parts = [part for thing in evaluated for part in _particle_places(thing)]
+            parts = [part for obj in evaluated for part in _particle_places(obj)]
             if not parts:
                 return None
             places, alive = (
-                numpy.concatenate([thinned(one, self._most) for one in each])
+                numpy.concatenate([thin_out(array, self._most) for array in each])
                 for each in zip(*parts, strict=True)
             )
-            moment = Moment(places, alive=alive)
+            state = ActorState(places, alive=alive)
         elif self.measured == "fluid":
-            fluids = [_fluid(thing) for thing in evaluated if domain_of(thing) is not None]
+            fluids = [_fluid(obj) for obj in evaluated if domain_of(obj) is not None]
             fluids = [fluid for fluid in fluids if fluid is not None]
             if not fluids:
                 return None
             places, weights = (numpy.concatenate(each) for each in zip(*fluids, strict=True))
-            moment = Moment(places, weights=weights)
+            state = ActorState(places, weights=weights)
         else:
             places = numpy.concatenate(
                 [
-                    _surface(thing, self._most) if self.measured == "vertices" else _origin(thing)
-                    for thing in evaluated
+                    _surface(obj, self._most) if self.measured == "vertices" else _origin(obj)
+                    for obj in evaluated
                 ]
             )
-            moment = Moment(places if len(places) else _instances(self.objects, graph))
-        return moment if moment.is_there else None
+            state = ActorState(places if len(places) else _instances(self.objects, graph))
+        return state if state.is_there else None
 
 
-class Moment:
+class ActorState:
     """An actor at one frame.
 
-    ``places`` (n × 3, metres) are those of its points, the same ones in every moment that has as many; ``alive`` tells
-    which of them exist. Weighed points, as of a fluid, are not the same from frame to frame. ``centre`` is the mean,
+    ``places`` (n × 3, metres) are those of its points, the same ones in every state with as many; ``alive`` is a mask
+    of those that exist. Weighted points, as of a fluid, are not the same from frame to frame. ``centre`` is the mean,
     ``low`` and ``high`` are the corners of the box along the world's axes.
     """
 
@@ -83,8 +86,8 @@ class Moment:
             self.centre = Vector(numpy.average(there, axis=0, weights=weights))
             self.low, self.high = Vector(there.min(axis=0)), Vector(there.max(axis=0))
 
-    def some(self, count):
-        """About so many of its points, evenly among them."""
+    def sample(self, count):
+        """About ``count`` of its points, evenly chosen."""
         there = self.places[self.alive]
         return [Vector(place) for place in there[:: max(1, len(there) // count)].tolist()]
 
@@ -92,9 +95,9 @@ class Moment:
 def resolve(names, scene):
     """The actors of these names, collections tagged as objects before objects. Raises Refused."""
     layer = bpy.context.view_layer
-    collections = {one.name: one for one in scene.collection.children_recursive}
-    tagged = {name for name, one in collections.items() if one.get("protocol_role") == "object"}
-    found = []
+    collections = {collection.name: collection for collection in scene.collection.children_recursive}
+    tagged = {name for name, collection in collections.items() if collection.get(ROLE) == OBJECT}
+    actors = []
     for name in names:
         if name in tagged or (name in collections and name not in scene.objects):
             objects = list(collections[name].all_objects)
@@ -106,90 +109,67 @@ def resolve(names, scene):
             raise Refused(_unknown(name[:100], list(known)))
         if not objects:
             raise Refused(f"The collection {name!r} is empty.")
-        there = [thing for thing in objects if thing.name in layer.objects]
+        there = [obj for obj in objects if obj.name in layer.objects]
         if not there:
-            raise Refused(f"{name!r} is not in the view layer {layer.name!r}, so nothing moves it.")
-        found.append(Actor(name, kind, _with_geometry(there)))
-    return found
+            raise Refused(f"{name!r} is not in the view layer {layer.name!r}, so it does not move.")
+        actors.append(Actor(name, kind, _with_geometry(there)))
+    return actors
 
 
 def _unknown(name, known):
-    near = difflib.get_close_matches(name, known, 5, 0.5)
-    near += [one for one in known if name.lower() in one.lower() and one not in near][:3]
-    hint = f" Near: {', '.join(map(repr, near))}." if near else ""
+    near = nearest(name, known, 5)
+    hint = f" Nearest: {', '.join(map(repr, near))}." if near else ""
     if not near and known:
         hint = f" There are: {', '.join(map(repr, known[:12]))}{' …' if len(known) > 12 else ''}."
     return f"{name!r} is neither an object nor a collection of this scene.{hint}"
 
 
 def _with_geometry(objects):
-    """The objects that can be measured by what is seen of them; of an empty alone, what hangs on it."""
-    shown = [thing for thing in objects if _has_surface(thing) or _particles(thing)]
-    if not shown:
+    """The objects with visible geometry; of an Empty alone, its children's; else the root or first object."""
+    visible = [obj for obj in objects if _has_surface(obj) or _particles(obj)]
+    if not visible:
         layer = bpy.context.view_layer
-        below = [child for thing in objects for child in thing.children_recursive]
-        shown = [child for child in below if child.name in layer.objects and _has_surface(child)]
-    if shown:
-        return sorted(set(shown), key=lambda thing: thing.name)
-    roots = [thing for thing in objects if thing.get("is_object_root")]
+        below = [child for obj in objects for child in obj.children_recursive]
+        visible = [child for child in below if child.name in layer.objects and _has_surface(child)]
+    if visible:
+        return sorted(set(visible), key=lambda obj: obj.name)
+    roots = [obj for obj in objects if obj.get(ROOT)]
     return roots[:1] or objects[:1]
 
 
-def _has_surface(thing):
-    return thing.type == "MESH" or thing.type in _EVALUATES_TO_MESH or thing.instance_type == "COLLECTION"
+def _has_surface(obj):
+    return obj.type == "MESH" or obj.type in _EVALUATES_TO_MESH or obj.instance_type == "COLLECTION"
 
 
-def _particles(thing):
-    """The particle systems by which an object moves."""
-    domain = domain_of(thing)
+def _particles(obj):
+    """Numbers of the particle systems that stand for an object's motion."""
+    domain = domain_of(obj)
     if domain is not None and domain.use_mesh:
         return []
-    return [index for index, one in enumerate(thing.particle_systems) if one.settings.type in _EMITTING]
-
-
-def domain_of(thing):
-    """The settings of the fluid domain that an object is; None if it is none."""
-    for modifier in thing.modifiers:
-        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
-            return modifier.domain_settings
-    return None
+    return [index for index, system in enumerate(obj.particle_systems) if system.settings.type in _EMITTING]
 
 
 def round_to(number, step=1e-4):
-    """A number as it is told; None stays None."""
+    """A number rounded for reports; None stays None."""
     return None if number is None else round(round(number / step) * step, 6)
 
 
-def coordinates(elements, name="co"):
-    """A vector property of all elements, n × 3."""
-    values = numpy.empty(3 * len(elements), numpy.float32)
-    elements.foreach_get(name, values)
-    return values.reshape(-1, 3)
-
-
-def thinned(elements, most):
-    """At most so many of some elements (None: all), evenly among them, and the same ones of as many."""
+def thin_out(elements, most):
+    """At most ``most`` elements (None: all), evenly chosen; the same ones each time for the same number."""
     return elements if most is None else elements[:: -(-len(elements) // most) or 1]
-
-
-def placed(places, matrix):
-    """Places of an object in the world, n × 3."""
-    turn = numpy.array(matrix, float)
-    with numpy.errstate(all="ignore"):
-        return places.astype(float) @ turn[:3, :3].T + turn[:3, 3]
 
 
 def _surface(evaluated, most=None):
     """The vertices of an object's evaluated geometry."""
     if evaluated.type == "MESH":
-        return placed(thinned(coordinates(evaluated.data.vertices), most), evaluated.matrix_world)
+        return transformed(thin_out(coordinates(evaluated.data.vertices), most), evaluated.matrix_world)
     if evaluated.type not in _EVALUATES_TO_MESH:
         return numpy.empty((0, 3))
     try:
         mesh = evaluated.to_mesh()
     except RuntimeError:  # it has no surface
         return numpy.empty((0, 3))
-    places = placed(thinned(coordinates(mesh.vertices), most), evaluated.matrix_world)
+    places = transformed(thin_out(coordinates(mesh.vertices), most), evaluated.matrix_world)
     evaluated.to_mesh_clear()
     return places
 
@@ -216,7 +196,7 @@ def _fluid(evaluated):
 
 
 def is_empty_domain(evaluated):
-    """Whether the mesh of an evaluated object is but the box of a fluid domain."""
+    """Whether the mesh of an evaluated object is only the box of a fluid domain, without liquid."""
     return domain_of(evaluated) is not None and len(evaluated.data.vertices) == len(
         evaluated.original.data.vertices
     )
@@ -235,25 +215,25 @@ def _gas(evaluated, domain):
     cells = numpy.stack(
         [filled % across[0], filled // across[0] % across[1], filled // (across[0] * across[1])], 1
     )
-    return placed(low + (cells + 0.5) * ((high - low) / across), evaluated.matrix_world), density[filled]
+    return transformed(low + (cells + 0.5) * ((high - low) / across), evaluated.matrix_world), density[filled]
 
 
 def _instances(objects, graph):
-    """The corners of what objects make instances of that have no geometry of their own."""
-    names = {thing.name for thing in objects}
+    """The corners of the boxes of all instances that some objects make."""
+    names = {obj.name for obj in objects}
     boxes = [
-        placed(numpy.array(one.object.bound_box), one.matrix_world)
-        for one in graph.object_instances
-        if one.is_instance and one.parent is not None and one.parent.original.name in names
+        transformed(numpy.array(instance.object.bound_box), instance.matrix_world)
+        for instance in graph.object_instances
+        if instance.is_instance and instance.parent is not None and instance.parent.original.name in names
     ]
     return numpy.concatenate([numpy.empty((0, 3)), *boxes])
 
 
 def _origin(evaluated):
-    """An object without geometry: the ends of its bones, or else places on its axes, which tell how it is turned."""
+    """Points of an object without geometry: the ends of its bones, or points on its axes, which show its rotation."""
     if evaluated.pose is not None:
         ends = [end for bone in evaluated.pose.bones for end in (bone.head, bone.tail)]
-        return placed(numpy.array(ends).reshape(-1, 3), evaluated.matrix_world)
+        return transformed(numpy.array(ends).reshape(-1, 3), evaluated.matrix_world)
     reach = max(evaluated.empty_display_size, 0.05)
     matrix = evaluated.matrix_world.normalized()
-    return placed(reach * numpy.concatenate([numpy.eye(3), -numpy.eye(3)]), matrix)
+    return transformed(reach * numpy.concatenate([numpy.eye(3), -numpy.eye(3)]), matrix)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What actors touch while they move: gaps between evaluated surfaces, frame by frame, and what follows from them."""
+"""What actors touch while they move, from the gaps between evaluated surfaces at each frame."""
 
 import itertools
 import math
@@ -9,43 +9,46 @@ import numpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from .actors import coordinates, domain_of, is_empty_domain, placed, round_to
+from ..blend.fluids import domain_of
+from ..blend.protocol_tags import object_collections
+from ..geometry.evaluated_meshes import coordinates, transformed
+from .actors import is_empty_domain, round_to
 
-LARGEST = 100_000  # polygons of a surface that is looked at
-_POINTS = 200  # of a surface from which the way to another one is sought
+MOST_POLYGONS = 100_000  # of a surface that is measured
+_POINTS = 200  # of a surface, from which distances to another one are measured
 _SEEDS, _ROUNDS, _NEIGHBOURS = 4, 24, 40
-_FREE_FALLS = 3.0  # a speed that changes by more than so many times what gravity does in a frame: a blow
-_BLOW = 0.5  # m/s; a change by less is none
-_TIMES = 50  # that a contact begins anew, which are told
+_FREE_FALLS = 3.0  # a change of speed of this many times what gravity does in a frame is a blow
+_BLOW = 0.5  # m/s; a smaller change is not a blow
+_TIMES = 50  # periods of one contact that are listed
 
 
-class Surface:
-    """An object's evaluated mesh. Its tree is kept as long as the mesh stays what it is."""
+class TrackedSurface:
+    """An object's evaluated mesh over many frames. Its BVH tree is kept as long as the mesh does not change."""
 
-    def __init__(self, thing):
-        self.thing = thing
-        self.slack = _slack(thing)
-        self.there = False
+    def __init__(self, obj):
+        self.obj = obj
+        self.slack = _slack(obj)
+        self.exists = False
         self.matrix = None
-        self._is_rigid = not thing.modifiers and getattr(thing.data, "shape_keys", None) is None
+        self._is_rigid = not obj.modifiers and getattr(obj.data, "shape_keys", None) is None
         self._places = self._tree = self._local = None
 
-    def at(self, graph):
-        """Looks at where it is in an evaluated dependency graph; at its vertices only when they are asked for."""
-        evaluated = self.thing.evaluated_get(graph)
+    def update(self, graph):
+        """Updates it from an evaluated dependency graph; its vertices only when they are needed."""
+        evaluated = self.obj.evaluated_get(graph)
         self._now = evaluated, graph
         if self._is_rigid and self.matrix == evaluated.matrix_world:
             return
         mesh = evaluated.data
         self.matrix = evaluated.matrix_world.copy()
-        self.there = (
-            0 < len(mesh.polygons) <= LARGEST
+        self.exists = (
+            0 < len(mesh.polygons) <= MOST_POLYGONS
             and not is_empty_domain(evaluated)
             and all(math.isfinite(part) for row in self.matrix for part in row)
         )
-        if self.there:
+        if self.exists:
             self._fresh = False
-            corners = placed(numpy.array(evaluated.bound_box), self.matrix)
+            corners = transformed(numpy.array(evaluated.bound_box), self.matrix)
             self.low, self.high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
 
     def is_near(self, low, high, reach):
@@ -66,7 +69,7 @@ class Surface:
             self._step = 2 * math.dist(box[0], box[6]) / math.sqrt(len(self._local))
 
     def points(self):
-        """(places all over it, in the world; how far from one of them another place of it may be)."""
+        """(points all over it, in the world; how far any point of it is at most from one of them)."""
         self._refresh()
         return [self.matrix @ point for point in self._local], self._step * max(
             map(abs, self.matrix.to_scale())
@@ -80,14 +83,14 @@ class Surface:
         return getattr(self._tree, search)(self.matrix.inverted_safe() @ point, within / max(scale, 1e-9))
 
     def nearest(self, point, within):
-        """The place of it next to a point of the world, if that is near enough."""
+        """Its nearest place to a point of the world; None if that is farther than ``within``."""
         if not self.is_near(point, point, within):
             return None
         place = self._find("find_nearest", point, within)[0]
         return None if place is None else self.matrix @ place
 
     def corners_near(self, point, within):
-        """The vertices of its polygons that come so near to a point, in the world."""
+        """The vertices of its polygons within a distance of a point, in the world."""
         mesh = self._now[0].data
         polygons = self._find("find_nearest_range", point, within)[:_NEIGHBOURS]
         numbers = {at for _, _, polygon, _ in polygons for at in mesh.polygons[polygon].vertices}
@@ -95,7 +98,7 @@ class Surface:
 
 
 def _spread(mesh, places):
-    """Places all over a surface: its vertices, and if these are few, points on its triangles."""
+    """Points all over a surface: its vertices and, if these are few, points on its triangles."""
     yield from map(Vector, places[:: math.ceil(len(places) / _POINTS)].tolist())
     if len(places) >= _POINTS:
         return
@@ -111,13 +114,13 @@ def _spread(mesh, places):
                 yield a + (b - a) * u + (c - a) * v
 
 
-def _slack(thing):
-    """How far from a surface its collisions begin, in metres."""
+def _slack(obj):
+    """The distance from a surface at which its collisions begin, in metres."""
     slack = 0.0
-    body = thing.rigid_body
+    body = obj.rigid_body
     if body is not None and (body.use_margin or body.collision_shape == "MESH"):
         slack = body.collision_margin
-    for modifier in thing.modifiers:
+    for modifier in obj.modifiers:
         if modifier.type == "CLOTH":
             slack = max(slack, modifier.collision_settings.distance_min)
         elif modifier.type == "COLLISION":
@@ -126,7 +129,7 @@ def _slack(thing):
 
 
 class Contacts:
-    """Watches the gaps between actors and everything else that has a surface."""
+    """Measures the gaps between actors and everything else that has a surface."""
 
     def __init__(self, scene, actors):
         self._blow = max(
@@ -135,21 +138,20 @@ class Contacts:
         self._surfaces = {}
         self._own = [self._own_surfaces(actor) for actor in actors]
         owners = {
-            thing.name: one.name
-            for one in scene.collection.children_recursive
-            if one.get("protocol_role") == "object"
-            for thing in one.all_objects
+            obj.name: collection.name
+            for collection in object_collections(scene)
+            for obj in collection.all_objects
         }
-        touchable = [thing for thing in bpy.context.view_layer.objects if _is_touchable(thing)]
+        touchable = [obj for obj in bpy.context.view_layer.objects if _is_touchable(obj)]
         self._others = []
         for actor in actors:
-            own = {thing.name for thing in actor.objects}
+            own = {obj.name for obj in actor.objects}
             same = {owners.get(name) for name in own}
             self._others.append(
                 [
-                    (_told_name(thing, owners.get(thing.name), same), self._surface(thing))
-                    for thing in touchable
-                    if thing.name not in own
+                    (_name_to_report(obj, owners.get(obj.name), same), self._surface(obj))
+                    for obj in touchable
+                    if obj.name not in own
                 ]
             )
         self._gaps = [{} for _ in actors]  # per actor: {name: {frame: (gap, tolerance)}}
@@ -157,22 +159,22 @@ class Contacts:
     def _own_surfaces(self, actor):
         if actor.measured in {"particles", "origin"}:
             return []
-        return [self._surface(thing) for thing in actor.objects if thing.type == "MESH"]
+        return [self._surface(obj) for obj in actor.objects if obj.type == "MESH"]
 
-    def _surface(self, thing):
-        return self._surfaces.setdefault(thing.name, Surface(thing))
+    def _surface(self, obj):
+        return self._surfaces.setdefault(obj.name, TrackedSurface(obj))
 
     def look(self, frame, graph, tracks):
-        """Measures the gaps at a frame, which the ``tracks`` have taken in already."""
+        """Measures the gaps at a frame that the ``tracks`` have measured already."""
         for surface in self._surfaces.values():
-            surface.at(graph)
+            surface.update(graph)
         for track, own, others, gaps in zip(tracks, self._own, self._others, self._gaps, strict=True):
-            moment = track.last
-            if moment is None:
+            state = track.last
+            if state is None:
                 continue
-            small = math.dist(moment.low, moment.high)
+            small = math.dist(state.low, state.high)
             for name, other in others:
-                if not other.there:
+                if not other.exists:
                     continue
                 size = (
                     min(small, math.dist(other.low, other.high))
@@ -181,20 +183,20 @@ class Contacts:
                 )
                 reach = min(max(0.002, 0.005 * size), 0.01) + other.slack
                 reach += max([surface.slack for surface in own], default=0.0)
-                if not other.is_near(moment.low, moment.high, reach + track.moved):
+                if not other.is_near(state.low, state.high, reach + track.moved):
                     continue
-                gap = _gap(own, other, moment, reach + track.moved)
+                gap = _gap(own, other, state, reach + track.moved)
                 if gap < gaps.setdefault(name, {}).get(frame, (math.inf, 0))[0]:
                     gaps[name][frame] = gap, reach
 
-    def over(self, number, track, start, end):
+    def summary(self, number, track, start, end):
         """What actor ``number`` touches from frame ``start`` to ``end``.
 
         A list of ``with`` (a name), ``frames`` ([first, last] of each time) and ``gap`` (metres, at the first frame).
-        It touches what is nearer than the tolerance (2 mm to 1 cm by size, and what collisions keep apart), or what
-        is nearest when its motion changes as by a blow: then it hit between this frame and the next.
+        It touches what is nearer than the tolerance (2 mm to 1 cm by size, plus collision margins), or what is nearest
+        when its velocity changes as by a blow: then it was hit between this frame and the next.
         """
-        found = []
+        contacts = []
         for name, frames in self._gaps[number].items():
             touching = [
                 frame
@@ -203,8 +205,10 @@ class Contacts:
             ]
             if touching:
                 gap = round_to(frames[touching[0]][0])
-                found.append({"with": name, "frames": _times(touching, track.frames)[:_TIMES], "gap": gap})
-        return sorted(found, key=lambda contact: (contact["frames"], contact["gap"]))
+                contacts.append(
+                    {"with": name, "frames": _frame_runs(touching, track.frames)[:_TIMES], "gap": gap}
+                )
+        return sorted(contacts, key=lambda contact: (contact["frames"], contact["gap"]))
 
     def _hits(self, number, track, name, frame):
         if track.changes_by(frame) < self._blow:
@@ -213,8 +217,8 @@ class Contacts:
         return min(near, key=near.get) == name
 
 
-def _times(touching, measured):
-    """[first, last] of each run of frames without a break, among those that were measured."""
+def _frame_runs(touching, measured):
+    """[first, last] of each unbroken run of frames, among those that were measured."""
     times, following = [], dict(itertools.pairwise(measured))
     for frame in touching:
         if times and following[times[-1][1]] == frame:
@@ -224,58 +228,58 @@ def _times(touching, measured):
     return times
 
 
-def _gap(own, other, moment, reach):
+def _gap(own, other, state, reach):
     """The distance of an actor to a surface if it is within ``reach``, or infinite."""
-    own = [surface for surface in own if surface.there]
+    own = [surface for surface in own if surface.exists]
     if not own:
-        places = [(point, other.nearest(point, reach)) for point in moment.some(_POINTS)]
+        places = [(point, other.nearest(point, reach)) for point in state.sample(_POINTS)]
         return min(((place - point).length for point, place in places if place is not None), default=math.inf)
     near = [surface for surface in own if other.is_near(surface.low, surface.high, reach)]
-    nearest = min((between(surface, other, reach) for surface in near), default=math.inf)
+    nearest = min((surface_distance(surface, other, reach) for surface in near), default=math.inf)
     return nearest if nearest <= reach else math.inf
 
 
-def between(a, b, reach):
-    """The distance of two surfaces, if it is within ``reach``: from the nearest points of a few, the way is felt along
-    both surfaces to where they are nearest."""
+def surface_distance(a, b, reach):
+    """The distance of two surfaces if it is within ``reach``, else infinite: the nearest of some points are projected
+    to and fro between the surfaces until they settle."""
     seeds = []
-    for one, other in ((a, b), (b, a)):
-        points, step = one.points()
+    for surface, other in ((a, b), (b, a)):
+        points, step = surface.points()
         for point in points:
             place = other.nearest(point, reach + step)
             if place is not None:
-                seeds.append(((place - point).length, place, one, other))
+                seeds.append(((place - point).length, place, surface, other))
     seeds.sort(key=lambda seed: seed[0])
-    return min((_felt(*seed) for seed in seeds[:_SEEDS]), default=math.inf)
+    return min((_settled_gap(*seed) for seed in seeds[:_SEEDS]), default=math.inf)
 
 
-def _felt(gap, place, one, other):
-    """What the distance ``gap``, of ``place`` on ``other`` from its foot on ``one``, shrinks to by and by: to the foot
-    of the foot, or to that of a corner nearby."""
+def _settled_gap(gap, place, surface, other):
+    """The distance ``gap``, from ``place`` on ``other`` to ``surface``, shortened by going to and fro between them: to
+    the nearest place, or to that of a vertex nearby."""
     for _ in range(_ROUNDS):
         within = gap * 1.001 + 1e-5
-        feet = [one.nearest(place, within), *one.corners_near(place, within)]
+        feet = [surface.nearest(place, within), *surface.corners_near(place, within)]
         pairs = [(foot, other.nearest(foot, within)) for foot in feet if foot is not None]
-        shorter, found = min(
+        shorter, nearest = min(
             (((there - foot).length, there) for foot, there in pairs if there is not None),
             default=(gap, None),
             key=lambda pair: pair[0],
         )
         if gap - shorter < 1e-5:
             return min(gap, shorter)
-        gap, place = shorter, found
+        gap, place = shorter, nearest
     return gap
 
 
-def _told_name(thing, owner, same):
-    """The object collection that a thing is of, or itself if that is the actor's too, or there is none."""
-    return thing.name if owner is None or owner in same else owner
+def _name_to_report(obj, owner, same):
+    """The object collection that an object is in; its own name if there is none, or it is the actor's."""
+    return obj.name if owner is None or owner in same else owner
 
 
-def _is_touchable(thing):
-    """Whether something can be seen, or takes part in collisions, that has a mesh."""
-    if thing.type != "MESH" or not thing.visible_get():
+def _is_touchable(obj):
+    """Whether an object has a mesh that is visible or takes part in collisions."""
+    if obj.type != "MESH" or not obj.visible_get():
         return False
-    collides = thing.rigid_body is not None or any(one.type == "COLLISION" for one in thing.modifiers)
-    domain = domain_of(thing)
-    return (collides or not thing.hide_render) and (domain is None or domain.domain_type == "LIQUID")
+    collides = obj.rigid_body is not None or any(modifier.type == "COLLISION" for modifier in obj.modifiers)
+    domain = domain_of(obj)
+    return (collides or not obj.hide_render) and (domain is None or domain.domain_type == "LIQUID")

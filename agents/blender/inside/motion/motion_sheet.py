@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a motion sheet is made of: the motion of actors in numbers, pictures of it, and how far it can be trusted."""
+"""The content of a motion sheet: actors' motion in numbers and pictures, and notes on how reliable it is."""
 
 import os
 
@@ -8,24 +8,25 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..physics.caches import of_objects
-from ..preview.frame_pictures import Films, Job
+from ..preview.frame_pictures import FramePictures, PictureJob
 from .actors import resolve
 from .contacts import Contacts
 from .keyed_frames import keyed_frames
 from .reliability_notes import notes_on
-from .trajectories import Playing, Track
-from .viewpoints import close_by, wants_close_views, whole_path
+from .timeline import FrameStepper
+from .trajectories import Track
+from .viewpoints import close_view, path_view, wants_close_views
 
 _FEWEST, _MOST = 6, 12  # pictures of an actor
-_USUAL = 7  # where no phases are given
+_USUAL = 7  # pictures without phases
 _IN_A_ROW, _WIDEST = 8, 300  # pictures, and pixels of one
-_MEASURED = 600  # frames of a longer range are measured at a stride
+_MEASURED = 600  # frames; longer ranges are measured at a stride
 _LONGEST = 20_000
-_RAYS = 16  # from an actor to the viewer, that tell whether it is hidden
+_RAYS = 16  # from an actor to the viewer, to see whether it is hidden
 
 
 def motion_sheet(arguments, report):
-    """Follows ``actors`` over ``phases``, draws them at ``frames``; pictures go to ``folder``, ``width`` wide in a row.
+    """Follows ``actors`` over ``phases``, and draws them at ``frames`` in ``folder``, in rows of ``width`` pixels.
 
     Returns the range, the sampled frames, and for each actor its caches, keyframes, curves, numbers and pictures.
     """
@@ -36,25 +37,25 @@ def motion_sheet(arguments, report):
     stride = -(-(last - first + 1) // _MEASURED)
     ends = {frame for phase in phases for frame in (phase["start"], phase["end"])}
     measured = sorted({*range(first, last + 1, stride), *sampled, *ends})
-    caches = [_caches(actor, scene) for actor in actors]  # as they are before they are stepped
-    playing = Playing(scene, first)
+    caches = [_caches(actor, scene) for actor in actors]  # their state before frames are stepped
+    stepper = FrameStepper(scene, first)
     tracks = [Track(actor, scene.render.fps / scene.render.fps_base) for actor in actors]
     contacts = Contacts(scene, actors)
-    films = Films(scene)
-    strips = _Strips(tracks, sampled, arguments)
-    steps = playing.count(measured)
+    pictures = FramePictures(scene)
+    strips = _PictureStrips(tracks, sampled, arguments)
+    steps = stepper.count(measured)
     if steps > _LONGEST:
-        waiting = f" Not baked: {', '.join(playing.stepped_for[:3])}." if playing.stepped_for else ""
-        raise Refused(f"{steps} frames would have to be visited; {_LONGEST} at most.{waiting}")
-    meter = _Meter(report, steps + playing.count(sampled))
-    with playing:
-        for frame, graph in playing.through(measured, meter.step):
+        hint = f" Bake first: {', '.join(stepper.stepped_for[:3])}." if stepper.stepped_for else ""
+        raise Refused(f"{steps} frames would have to be visited; {_LONGEST} at most.{hint}")
+    progress = _Progress(report, steps + stepper.count(sampled))
+    with stepper:
+        for frame, graph in stepper.through(measured, progress.step):
             for track in tracks:
-                track.add(frame, track.actor.moment(graph))
+                track.add(frame, track.actor.state_at(graph))
             contacts.look(frame, graph, tracks)
         strips.plan()
-        for frame, graph in playing.through(sampled if strips.any else [], meter.step):
-            strips.draw(frame, graph, films, meter)
+        for frame, graph in stepper.through(sampled if strips.any else [], progress.step):
+            strips.draw(frame, graph, pictures, progress)
     return {
         "start": first,
         "end": last,
@@ -62,15 +63,15 @@ def motion_sheet(arguments, report):
         "stride": stride,
         "sampled": sampled,
         "phases": phases,
-        "stepped_from": playing.stepped_from,
-        "stepped_for": playing.stepped_for,
-        "notes": films.notes,
+        "stepped_from": stepper.stepped_from,
+        "stepped_for": stepper.stepped_for,
+        "notes": pictures.notes,
         "actors": [
             {
-                **_told(track, (first, last)),
-                "phases": [_phase(track, number, phase, contacts) for phase in phases],
+                **_actor_entry(track, (first, last)),
+                "phases": [_phase_entry(track, number, phase, contacts) for phase in phases],
                 "caches": [state for _, state in caches[number]],
-                "notes": notes_on(track, caches[number], films.missing, scene),
+                "notes": notes_on(track, caches[number], pictures.missing, scene),
                 "columns": strips.columns,
                 "views": strips.views[number],
             }
@@ -79,23 +80,23 @@ def motion_sheet(arguments, report):
     }
 
 
-class _Meter:
-    """Tells how far things are, of ``total`` frames that are visited."""
+class _Progress:
+    """Reports progress over ``total`` frames."""
 
     def __init__(self, report, total):
         self._report, self._total, self._done = report, total, 0
 
     def step(self, frame):
-        """A frame is visited."""
+        """Reports that a frame is visited."""
         self._done += 1
         self._report(self._done - 1, self._total, f"frame {frame}")
 
     def part(self, share, text):
-        """So much of what is to be done at this frame is done."""
+        """Reports the ``share`` of the work at this frame that is done."""
         self._report(self._done - 1 + share, self._total, text)
 
 
-# What is asked for
+# The plan
 
 
 def _plan(arguments, scene):
@@ -116,13 +117,13 @@ def _plan(arguments, scene):
 
 
 def _sampled(phases):
-    """Frames that show the phases: where they begin and end, and evenly between."""
+    """Frames that show the phases: their starts and ends, and some evenly between."""
     if len(phases) == 1:
         return _evenly(phases[0]["start"], phases[0]["end"], _USUAL)
     frames = set()
     for phase in phases:
         frames.update(_evenly(phase["start"], phase["end"], 3 if 2 * len(phases) + 1 >= _FEWEST else 4))
-    # Where one phase ends and the next begins in neighbouring frames, one picture shows both.
+    # If a phase starts in the frame after the end of the one before, one picture shows both.
     frames -= {
         phase["start"] for phase in phases if phase["start"] - 1 in frames and phase["start"] != phase["end"]
     }
@@ -142,8 +143,8 @@ def _evenly(first, last, count):
 # Pictures
 
 
-class _Strips:
-    """The pictures of all actors: the whole path of each and, of what is small in it, itself close by."""
+class _PictureStrips:
+    """The pictures of all actors: the whole path of each and, if the actor is small in it, close views."""
 
     def __init__(self, tracks, sampled, arguments):
         self._tracks, self._sampled, self._folder = tracks, sampled, arguments["folder"]
@@ -155,17 +156,17 @@ class _Strips:
         self._jobs = {frame: [] for frame in sampled}
 
     def plan(self):
-        """Chooses the views, from tracks that are complete."""
+        """Chooses the views, once the tracks are complete."""
         for number, track in enumerate(self._tracks):
-            view = whole_path(track, self._tile)
+            view = path_view(track, self._tile)
             if view is None:
                 continue
             self._add(number, "path", dict.fromkeys(self._sampled, view))
             if wants_close_views(track, view):
-                self._add(number, "close", {frame: close_by(track, view, frame) for frame in self._sampled})
+                self._add(number, "close", {frame: close_view(track, view, frame) for frame in self._sampled})
 
     def _add(self, number, kind, views):
-        pictures = [{"frame": frame, "view": view and view.told()} for frame, view in views.items()]
+        pictures = [{"frame": frame, "view": view and view.as_dict()} for frame, view in views.items()]
         self.views[number].append({"kind": kind, "pictures": pictures})
         for frame, view in views.items():
             if view is not None:
@@ -173,26 +174,26 @@ class _Strips:
                 self._jobs[frame].append((number, view, path))
                 self.any = True
 
-    def draw(self, frame, graph, films, meter):
-        """Takes the pictures of a frame, at which the scene stands."""
-        moments = [track.actor.moment(graph) for track in self._tracks]
-        for track, moment in zip(self._tracks, moments, strict=True):
-            track.check(frame, moment)
+    def draw(self, frame, graph, pictures, progress):
+        """Renders the pictures of the current frame."""
+        states = [track.actor.state_at(graph) for track in self._tracks]
+        for track, state in zip(self._tracks, states, strict=True):
+            track.check(frame, state)
         jobs = []
         for number, view, path in self._jobs[frame]:
-            names = {thing.name for thing in self._tracks[number].actor.objects}
-            moment = moments[number]
-            jobs.append(Job(names, moment.some(_RAYS) if moment is not None else [], view, path))
-        for number, _ in enumerate(films.shoot(jobs), 1):
-            meter.part(number / len(jobs), f"drawing frame {frame}")
+            names = {obj.name for obj in self._tracks[number].actor.objects}
+            state = states[number]
+            jobs.append(PictureJob(names, state.sample(_RAYS) if state is not None else [], view, path))
+        for number, _ in enumerate(pictures.render(jobs), 1):
+            progress.part(number / len(jobs), f"drawing frame {frame}")
 
 
-# What is told
+# Entries
 
 
-def _told(track, span):
+def _actor_entry(track, span):
     actor = track.actor
-    names = [thing.name for thing in actor.objects]
+    names = [obj.name for obj in actor.objects]
     return {
         "name": actor.name,
         "kind": actor.kind,
@@ -205,23 +206,23 @@ def _told(track, span):
         "frames": track.frames,
         "centres": [centre and [round(part, 5) for part in centre] for centre in track.centres],
         "displacements": track.displacements(),
-        "speeds": track.told_speeds,
+        "speeds": track.main_speeds,
     }
 
 
-def _phase(track, number, phase, contacts):
-    told = {"phase": phase["name"], "start": phase["start"], "end": phase["end"]}
-    told.update(track.over(phase["start"], phase["end"]))
-    told["contacts"] = contacts.over(number, track, phase["start"], phase["end"])
-    return told
+def _phase_entry(track, number, phase, contacts):
+    entry = {"phase": phase["name"], "start": phase["start"], "end": phase["end"]}
+    entry.update(track.summary(phase["start"], phase["end"]))
+    entry["contacts"] = contacts.summary(number, track, phase["start"], phase["end"])
+    return entry
 
 
 def _caches(actor, scene):
-    """(cache, its state as data) for all that the actor takes part in."""
-    found = []
-    for cache in of_objects(scene, [thing.name for thing in actor.objects]):
+    """(cache, its state as data) of all caches that the actor takes part in."""
+    entries = []
+    for cache in of_objects(scene, [obj.name for obj in actor.objects]):
         state = "unbaked" if not cache.baked else "baked, outdated" if cache.outdated else "baked"
         start, end = cache.range
-        told = {"label": cache.label, "state": state, "start": start, "end": end, "on": cache.simulated}
-        found.append((cache, told))
-    return found
+        entry = {"label": cache.label, "state": state, "start": start, "end": end, "on": cache.simulated}
+        entries.append((cache, entry))
+    return entries

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a reader of a motion sheet must know beyond its numbers: what they cannot be trusted for, and why."""
+"""Notes on how far a motion sheet can be trusted: what it does not show, and why."""
 
 from ..physics.caches import PARTICLES
 from ..physics.stillness_causes import likely_causes
 
-_STILL = 0.002  # of its size that an actor must move not to be called still
+_STILL = 0.002  # share of its size; an actor that moves less counts as still
 _LISTED = 4
 
 
@@ -16,41 +16,41 @@ def notes_on(track, caches, missing, scene):
         notes += _on_cache(cache, state, track)
     there = [frame for frame, centre in zip(track.frames, track.centres, strict=True) if centre is not None]
     if not there:
-        notes.append(f"There is nothing of it at any frame from {first} to {last}.")
+        notes.append(f"It does not exist at any frame from {first} to {last}.")
     elif _is_still(track):
         causes = [cause for cache, _ in caches for cause in likely_causes(cache, scene)]
-        because = f" Likely because {'; or '.join(causes[:2])}." if causes else ""
+        because = f" Likely cause: {'; or '.join(causes[:2])}." if causes else ""
         notes.append(f"It does not move from frame {first} to {last}.{because}")
     for name, why in _missing_of(track.actor, missing):
         notes.append(f"Not in the pictures: {name!r}: {why}.")
     if track.strays:
         frames = ", ".join(str(frame) for frame in list(track.strays)[:_LISTED])
         notes.append(
-            f"Its motion does not repeat: when frame {frames} was drawn, it was not where it had been measured."
+            f"Its motion is not repeatable: when frame {frames} was drawn, it was elsewhere than when it was measured."
         )
     if track.actor.measured == "origin":
-        what = "its bones are" if track.actor.objects[0].pose is not None else "its origin is"
-        notes.append(f"It has no geometry: {what} measured.")
+        what = "bones are" if track.actor.objects[0].pose is not None else "origin is"
+        notes.append(f"It has no geometry, so its {what} measured.")
     return notes
 
 
 def _on_cache(cache, state, track):
     first, last = track.frames[0], track.frames[-1]
     if not state["on"]:
-        yield f"Switched off in the viewport, so not simulated here: {cache.label}."
+        yield f"Disabled in the viewport, so not simulated here: {cache.label}."
         return
     if "outdated" in state["state"]:
-        yield f"The bake of {cache.label} is outdated: what is shown is its old result."
+        yield f"The bake of {cache.label} is outdated: this shows its old result."
     if cache.domain is not None and state["state"] == "unbaked" and cache.domain.cache_type != "REPLAY":
         kind = cache.domain.cache_type
         yield (
-            f"Not baked: {cache.label}. With cache_type {kind!r} stepping does not simulate it; what is seen of it, if "
-            "anything, lies in its folder from before."
+            f"Not baked: {cache.label}. With cache_type {kind!r}, stepping does not simulate it; anything that is "
+            "visible comes from old files in its folder."
         )
     elif state["end"] < last and cache.kind != PARTICLES:
-        yield f"Simulated up to frame {state['end']} only: {cache.label}."
+        yield f"Simulated only up to frame {state['end']}: {cache.label}."
     elif state["start"] > first and cache.kind != PARTICLES:
-        yield f"Simulated from frame {state['start']} on only: {cache.label}."
+        yield f"Simulated only from frame {state['start']} on: {cache.label}."
 
 
 def _is_still(track):
@@ -63,5 +63,5 @@ def _is_still(track):
 
 
 def _missing_of(actor, missing):
-    found = [(thing.name, missing[thing.name]) for thing in actor.objects if thing.name in missing]
-    return found[:_LISTED]
+    reasons = [(obj.name, missing[obj.name]) for obj in actor.objects if obj.name in missing]
+    return reasons[:_LISTED]

@@ -1,29 +1,77 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Taking the open scene to a frame, in a way that leaves simulations right."""
+"""Takes the open scene to frames without spoiling its simulations: what is not baked is stepped, never jumped."""
 
 import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..physics.caches import renew, unbaked
+from ..blend.simulation_zones import objects_with_zones
+from ..physics.caches import restart_unbaked, unbaked
 
 _MOST_FRAMES = 5000
 
 
-def stand_at(arguments, report):
-    """Takes the scene to ``frame`` (None: it stays): by one jump, or step by step where a simulation is not baked.
+def go_to_frame(arguments, report):
+    """Takes the scene to ``frame`` (None: it stays): in one jump, or step by step if a simulation is not baked.
 
-    Returns the ``scene``'s name and the ``frame`` that it stands at. Raises Refused where the way is too long.
+    Returns the ``scene``'s name and its current ``frame``. Raises Refused if that needs too many frames.
     """
     scene, frame = bpy.context.scene, arguments["frame"]
     if frame is not None and frame != scene.frame_current:
         starts = [cache["start"] for cache in unbaked(scene) if cache["start"] < frame]
         first = min(starts, default=frame)
         if frame - first > _MOST_FRAMES:
-            raise Refused(f"To frame {frame} {frame - first} frames would have to be simulated: bake first.")
+            raise Refused(
+                f"Going to frame {frame} would simulate {frame - first} frames, more than {_MOST_FRAMES}: bake first."
+            )
         if starts:
-            renew(scene)
+            restart_unbaked(scene)
         for at in range(first, frame + 1):
             report(at - first, frame - first, f"frame {at}")
             scene.frame_set(at)
     return {"scene": scene.name, "frame": scene.frame_current}
+
+
+class FrameStepper:
+    """Visits frames of a scene in order, and goes back to the frame before at the end of ``with``.
+
+    No simulated frame is skipped: if a cache of the scene is not baked, every frame from its start, ``stepped_from``,
+    is visited; ``stepped_for`` names such caches.
+    """
+
+    def __init__(self, scene, first):
+        self._scene = scene
+        waiting = [(cache["label"], cache["start"]) for cache in unbaked(scene)]
+        waiting += [
+            (f"simulation nodes of {obj.name!r}", scene.frame_start) for obj in objects_with_zones(scene)
+        ]
+        self.stepped_for = [label for label, _ in waiting]
+        self.stepped_from = min([first, *(start for _, start in waiting)]) if waiting else None
+
+    def __enter__(self):
+        self._frame, self._subframe = self._scene.frame_current, self._scene.frame_subframe
+        return self
+
+    def __exit__(self, *error):
+        self._scene.frame_set(self._frame, subframe=self._subframe)
+
+    def count(self, frames):
+        """How many frames must be visited to measure ``frames``."""
+        return len(self._steps(frames))
+
+    def _steps(self, frames):
+        if self.stepped_from is None or not frames:
+            return frames
+        return range(self.stepped_from, frames[-1] + 1)
+
+    def through(self, frames, visiting):
+        """Yields (frame, evaluated dependency graph) for each of the sorted ``frames``.
+
+        Calls ``visiting(frame)`` before each frame that it visits.
+        """
+        wanted = set(frames)
+        for frame in self._steps(frames):
+            visiting(frame)
+            self._scene.frame_set(frame)
+            if frame in wanted:
+                yield frame, bpy.context.evaluated_depsgraph_get()

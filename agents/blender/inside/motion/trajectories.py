@@ -1,30 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How actors move: their evaluated geometry frame by frame, and what that comes to over a stretch of frames.
+"""How actors move: measured frame by frame, and summed up over ranges of frames.
 
-Speeds are those between two measured frames: the one at frame f is the way since the frame measured before it, over
-the time since then.
+A speed is between two measured frames: at frame f, the distance since the frame measured before, over the time between.
 """
 
 import math
 
-import bpy
 import numpy
 from mathutils import Vector
 
-from ..physics.caches import unbaked
 from .actors import round_to
 
-DEFORMED = 2e-3  # of its size that points of an actor must move against each other to be told of
-REPEATS = 0.01  # of its size that an actor may be off when a frame is seen once more
-LINE = 1e-6  # how much worse, in parts, another rotation must fit for the best one to be told
+DEFORMED = 2e-3  # share of its size that an actor's points must move against each other for it to deform
+REPEATS = 0.01  # share of its size that an actor may be off when a frame is visited again
+LINE = 1e-6  # how much worse, relatively, any other rotation must fit for the best one to count
 
 
 class Track:
     """The measured motion of one actor: lists with an entry for each of ``frames``.
 
-    ``centres`` (None where there is nothing of it), ``lows`` and ``highs`` are places in metres; ``speeds`` (of the
+    ``centres`` (None where it does not exist), ``lows`` and ``highs`` are places in metres; ``speeds`` (of the
     centre) and ``point_speeds`` (mean over the points followed) are in m/s, ``rotations`` are axes as long as the angle
-    in radians; each since the frame before, None where unknown. ``deforms``: its points move against each other.
+    in radians; each since the frame before, None if unknown. ``deforms``: its points move against each other.
     """
 
     def __init__(self, actor, fps):
@@ -35,48 +32,48 @@ class Track:
         self.strays = {}
         self.last = self._first = None
 
-    def add(self, frame, moment):
-        """Takes in where the actor is at a frame, the next one in time."""
+    def add(self, frame, state):
+        """Adds the actor's state at the next frame."""
         last = self.last
         seconds = (frame - self.frames[-1]) / self.fps if self.frames else 0.0
         speed = point_speed = rotation = None
-        if moment is not None and last is not None:
-            speed = (moment.centre - last.centre).length / seconds
-            if moment.is_followed and len(moment.places) == len(last.places):
-                both = moment.alive & last.alive
-                before, after = last.places[both], moment.places[both]
+        if state is not None and last is not None:
+            speed = (state.centre - last.centre).length / seconds
+            if state.is_followed and len(state.places) == len(last.places):
+                both = state.alive & last.alive
+                before, after = last.places[both], state.places[both]
                 if len(before):
                     point_speed = float(numpy.linalg.norm(after - before, axis=1).mean()) / seconds
                 if self.actor.measured != "particles":
-                    rotation = rotated(before, after)
-                    self.deforms = self.deforms or self._is_deformed(moment)
+                    rotation = best_rotation(before, after)
+                    self.deforms = self.deforms or self._is_deformed(state)
         self.frames.append(frame)
-        self.centres.append(moment and moment.centre)
-        self.lows.append(moment and moment.low)
-        self.highs.append(moment and moment.high)
+        self.centres.append(state and state.centre)
+        self.lows.append(state and state.low)
+        self.highs.append(state and state.high)
         self.speeds.append(speed)
         self.point_speeds.append(point_speed)
         self.rotations.append(rotation)
-        self.last, self._first = moment, self._first or moment
+        self.last, self._first = state, self._first or state
 
-    def check(self, frame, moment):
-        """Takes in where the actor is when a frame is seen once more: ``strays`` tells of where that is elsewhere."""
+    def check(self, frame, state):
+        """Compares the actor's state when a frame is visited again; ``strays`` gets the distance if it is elsewhere."""
         at = self.frames.index(frame)
         centre = self.centres[at]
-        if (centre is None) != (moment is None):
+        if (centre is None) != (state is None):
             self.strays[frame] = None
         elif centre is not None:
-            off = (moment.centre - centre).length
-            if off > REPEATS * max((moment.high - moment.low).length, 1e-3):
+            off = (state.centre - centre).length
+            if off > REPEATS * max((state.high - state.low).length, 1e-3):
                 self.strays[frame] = off
 
-    def _is_deformed(self, moment):
-        first, half = self._first.places, len(moment.places) // 2
-        if len(first) != len(moment.places) or not half:
+    def _is_deformed(self, state):
+        first, half = self._first.places, len(state.places) // 2
+        if len(first) != len(state.places) or not half:
             return False
         before, after = (
             numpy.linalg.norm(places[:half] - places[half : 2 * half], axis=1)
-            for places in (first, moment.places)
+            for places in (first, state.places)
         )
         size = (self._first.high - self._first.low).length
         return bool((abs(after - before) > DEFORMED * size).any())
@@ -88,14 +85,14 @@ class Track:
 
     @property
     def speed_name(self):
-        """Which speed tells most of it: that of its ``centre``, or the mean of its ``vertices`` or ``particles``."""
+        """Which speed describes it best: that of its ``centre``, or the mean of its ``vertices`` or ``particles``."""
         if self.actor.measured == "particles":
             return "particles"
         return "vertices" if self.deforms else "centre"
 
     @property
-    def told_speeds(self):
-        """The speeds of ``speed_name``; where points cannot be followed, those of the centre."""
+    def main_speeds(self):
+        """The speeds that ``speed_name`` names; where points cannot be followed, those of the centre."""
         if self.speed_name == "centre":
             return self.speeds
         return [
@@ -105,28 +102,28 @@ class Track:
 
     @property
     def moved(self):
-        """How far the centre went since the frame measured before the last one, in metres."""
-        return self._way(len(self.frames) - 1) if len(self.frames) > 1 else 0.0
+        """How far the centre moved up to the last measured frame, from the one before, in metres."""
+        return self._distance(len(self.frames) - 1) if len(self.frames) > 1 else 0.0
 
     def changes_by(self, frame):
-        """How much the centre's velocity after a frame differs from that before it, in m/s; 0 where unknown."""
+        """How much the centre's velocity after a frame differs from that before it, in m/s; 0 if unknown."""
         at = self.frames.index(frame)
         around = self.centres[at - 1 : at + 2] if at else []
         if len(around) < 3 or None in around:
             return 0.0
         before, after = (
-            (around[one + 1] - around[one]) / (self.frames[at + one] - self.frames[at + one - 1])
-            for one in (0, 1)
+            (around[step + 1] - around[step]) / (self.frames[at + step] - self.frames[at + step - 1])
+            for step in (0, 1)
         )
         return (after - before).length * self.fps
 
     def displacements(self):
-        """How far the centre is from where it was first, in metres, at each frame."""
+        """The distance of the centre from its first place, in metres, at each frame."""
         first = next((centre for centre in self.centres if centre is not None), None)
         return [None if centre is None else (centre - first).length for centre in self.centres]
 
-    def over(self, start, end):
-        """What the motion comes to from frame ``start`` to ``end``, as data (metres, m/s, degrees)."""
+    def summary(self, start, end):
+        """A summary of the motion from frame ``start`` to ``end``, as data (metres, m/s, degrees)."""
         inside = [at for at, frame in enumerate(self.frames) if start <= frame <= end]
         there = [at for at in inside if self.centres[at] is not None]
         if not there:
@@ -134,14 +131,14 @@ class Track:
         first, last = there[0], there[-1]
         way = self.centres[last] - self.centres[first]
         steps = [at for at in there if at > first]
-        speeds = [(self.told_speeds[at], self.frames[at]) for at in steps if self.told_speeds[at] is not None]
+        speeds = [(self.main_speeds[at], self.frames[at]) for at in steps if self.main_speeds[at] is not None]
         peak, peak_frame = max(speeds, default=(None, None), key=lambda pair: pair[0])
         turns = [self.turns[at] for at in steps if self.turns[at] is not None]
-        told = {
+        result = {
             "present": True,
             "displacement": round_to(way.length),
             "displacement_vector": [round_to(part) for part in way],
-            "path_length": round_to(sum(self._way(at) for at in steps)),
+            "path_length": round_to(sum(self._distance(at) for at in steps)),
             "peak_speed": round_to(peak),
             "peak_frame": peak_frame,
             "final_speed": round_to(speeds[-1][0]) if speeds else None,
@@ -151,18 +148,18 @@ class Track:
             "end_position": [round_to(part) for part in self.centres[last]],
         }
         if first != inside[0] or last != inside[-1]:
-            told["there"] = [self.frames[first], self.frames[last]]
-        return told
+            result["there"] = [self.frames[first], self.frames[last]]
+        return result
 
-    def _way(self, at):
+    def _distance(self, at):
         before, after = self.centres[at - 1], self.centres[at]
         return (after - before).length if before is not None and after is not None else 0.0
 
 
-def rotated(before, after):
-    """The rotation that best carries places (n × 3) to other ones: its axis, as long as the angle in radians.
+def best_rotation(before, after):
+    """The rotation that best maps places (n × 3) to other ones: its axis, as long as the angle in radians.
 
-    None where the places do not tell.
+    None if the places do not determine it.
 
     Horn's solution: that rotation, as a quaternion, is the largest eigenvector of a matrix of the products' sums.
     """
@@ -178,68 +175,7 @@ def rotated(before, after):
         ]
     )
     if values[-1] - values[-2] <= LINE * max(values[-1], 1e-18):
-        return None  # another rotation does as well: the points lie on a line
+        return None  # another rotation fits as well: the points are on a line
     half, axis = float(vectors[0, -1]), Vector(vectors[1:, -1])
     angle = 2 * math.atan2(axis.length, abs(half))
     return axis.normalized() * math.copysign(angle, half)
-
-
-class Playing:
-    """Goes through frames of a scene in order, and at the end of ``with`` back to where it stood.
-
-    Nothing that is simulated is jumped: where a cache of the scene is not baked, every frame is visited from its
-    start on, which is then ``stepped_from``; ``stepped_for`` names such caches.
-    """
-
-    def __init__(self, scene, first):
-        self._scene = scene
-        waiting = [(cache["label"], cache["start"]) for cache in unbaked(scene)]
-        for thing in scene.objects:
-            for modifier in thing.modifiers:
-                if (
-                    modifier.type == "NODES"
-                    and modifier.show_viewport
-                    and _simulates(modifier.node_group, set())
-                ):
-                    waiting.append((f"simulation nodes of {thing.name!r}", scene.frame_start))
-        self.stepped_for = [label for label, _ in waiting]
-        self.stepped_from = min([first, *(start for _, start in waiting)]) if waiting else None
-
-    def __enter__(self):
-        self._frame, self._subframe = self._scene.frame_current, self._scene.frame_subframe
-        return self
-
-    def __exit__(self, *error):
-        self._scene.frame_set(self._frame, subframe=self._subframe)
-
-    def count(self, frames):
-        """How many frames are visited for the sake of these."""
-        return len(self._steps(frames))
-
-    def _steps(self, frames):
-        if self.stepped_from is None or not frames:
-            return frames
-        return range(self.stepped_from, frames[-1] + 1)
-
-    def through(self, frames, visiting):
-        """(frame, evaluated dependency graph) of each of the ``frames``, which are sorted.
-
-        Calls ``visiting(frame)`` before each that is visited.
-        """
-        wanted = set(frames)
-        for frame in self._steps(frames):
-            visiting(frame)
-            self._scene.frame_set(frame)
-            if frame in wanted:
-                yield frame, bpy.context.evaluated_depsgraph_get()
-
-
-def _simulates(tree, seen):
-    """Whether a node tree, or one that it calls, has a simulation zone."""
-    if tree is None or tree in seen:
-        return False
-    seen.add(tree)
-    return any(
-        node.bl_idname == "GeometryNodeSimulationOutput" or _simulates(getattr(node, "node_tree", None), seen)
-        for node in tree.nodes
-    )

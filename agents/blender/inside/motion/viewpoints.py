@@ -1,25 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From where a motion is seen: one fixed view of an actor's whole path, and close ones that follow it."""
+"""Viewpoints for a motion: one fixed view of an actor's whole path, and close ones that follow it."""
 
 import math
 
 from mathutils import Matrix, Vector
 
-from ..preview.framing import Box, turned_to
+from ..preview.framing import BoundingBox, camera_rotation
 
-# (azimuth, elevation) in degrees, best liked first; azimuth 0 looks along +Y, 90 along -X.
+# (azimuth, elevation) in degrees, preferred first; azimuth 0 looks along +Y, 90 along -X.
 _ANGLES = ((30, 24), (-30, 24), (60, 24), (-60, 24), (0, 24), (90, 24), (30, 45), (-30, 45), (0, 65))
-_WORTH = 1.06  # how much more of the motion a less liked angle must show
-_AROUND = 1.22  # what is seen, in sizes of what must be seen
+_WORTH = 1.06  # how much more of the motion a less preferred angle must show
+_AROUND = 1.22  # size of the view, in sizes of what must be visible
 _CLOSE_AROUND = 1.5
 _FLATTEST, _TALLEST = 0.62, 1.25  # height of a picture, in widths
 _CLOSE_HEIGHT = 0.72
-_SMALL = 0.2  # an actor that takes less of the picture's width is shown close as well
+_SMALL = 0.2  # an actor that takes less of the picture's width gets close views as well
 
 
-class View:
-    """An orthographic camera: ``centre`` of the picture, ``width`` in metres, ``size`` in pixels; it sees all behind
-    ``depth``, metres from the centre towards the viewer, and nothing before it."""
+class OrthographicView:
+    """An orthographic camera: ``centre`` of the picture, ``width`` in metres, ``size`` in pixels; it sees everything
+    behind ``depth``, metres from the centre towards the viewer, and nothing in front of that."""
 
     def __init__(self, angle, centre, width, size, depth):
         self.angle, self.centre, self.width, self.size, self.depth = angle, centre, width, size, depth
@@ -33,9 +33,9 @@ class View:
     def box(self):
         """A box around what it frames."""
         half = Vector((1, 1, 1)) * (self.width * max(1.0, self.size[1] / self.size[0]) / 2)
-        return Box(self.centre - half, self.centre + half)
+        return BoundingBox(self.centre - half, self.centre + half)
 
-    def told(self):
+    def as_dict(self):
         """The view as data for drawing on its pictures."""
         return {
             "axes": [list(axis) for axis in self.axes],
@@ -46,8 +46,8 @@ class View:
         }
 
 
-def whole_path(track, tile):
-    """The view of everything that a track covers, in pictures ``tile`` pixels wide. None if there is nothing of it."""
+def path_view(track, tile):
+    """The view of everything that a track covers, in pictures ``tile`` pixels wide; None if it never exists."""
     boxes = [(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
     if not boxes:
         return None
@@ -58,17 +58,17 @@ def whole_path(track, tile):
     upward = upward * _AROUND
     height = min(max(upward / across, _FLATTEST), _TALLEST)
     width = max(across, upward / height)
-    return View(angle, centre, width, (tile, round(tile * height)), depth + 0.02 * width)
+    return OrthographicView(angle, centre, width, (tile, round(tile * height)), depth + 0.02 * width)
 
 
 def wants_close_views(track, view):
-    """Whether the actor is too small in that view to be made out."""
+    """Whether the actor is too small to be seen well in that view."""
     sizes = [_size(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
     return track.actor.measured == "vertices" and 1e-4 * view.width < max(sizes) < _SMALL * view.width
 
 
-def close_by(track, view, frame):
-    """A view of the actor alone at a frame, of the same scale at every frame. None if it is not there."""
+def close_view(track, view, frame):
+    """A view of the actor alone at a frame, at the same scale for every frame; None if it does not exist there."""
     at = track.frames.index(frame)
     if track.lows[at] is None:
         return None
@@ -78,7 +78,9 @@ def close_by(track, view, frame):
     centre, _, _, depth = _fit(view.angle, [(track.lows[at], track.highs[at])])
     tile = view.size[0]
     width = largest * _CLOSE_AROUND
-    return View(view.angle, centre, width, (tile, round(tile * _CLOSE_HEIGHT)), depth + 0.02 * width)
+    return OrthographicView(
+        view.angle, centre, width, (tile, round(tile * _CLOSE_HEIGHT)), depth + 0.02 * width
+    )
 
 
 def _size(low, high):
@@ -92,25 +94,25 @@ def _axes(angle):
         -math.cos(azimuth) * math.cos(elevation),
         math.sin(elevation),
     )
-    return tuple(axis.copy() for axis in turned_to(towards, (0, 0, 1)).col)
+    return tuple(axis.copy() for axis in camera_rotation(towards, (0, 0, 1)).col)
 
 
 def _best_angle(places):
-    """The angle from which the most of a path is seen across the line of sight."""
+    """The angle from which the most of a path is visible."""
     mean = sum(places, Vector()) / len(places)
-    best, shown = _ANGLES[0], -1.0
+    best, best_spread = _ANGLES[0], -1.0
     for angle in _ANGLES:
         towards = _axes(angle)[2]
-        seen = math.sqrt(
+        spread = math.sqrt(
             sum((place - mean).length_squared - (place - mean).dot(towards) ** 2 for place in places)
         )
-        if seen > shown * _WORTH + 1e-6:
-            best, shown = angle, seen
+        if spread > best_spread * _WORTH + 1e-6:
+            best, best_spread = angle, spread
     return best
 
 
 def _fit(angle, boxes):
-    """(centre, width, height, half the depth) of what holds all of the boxes, seen from an angle."""
+    """(centre, width, height, half the depth) of the view that holds all boxes, from an angle."""
     turn = Matrix(_axes(angle))
     corners = [
         turn @ Vector((x, y, z))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bakes physics, and looks afterwards whether it is baked and whether anything moved."""
+"""Bakes physics, then checks whether it is baked and whether anything moved."""
 
-import difflib
 import os
 import re
 import shutil
@@ -12,11 +11,13 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..files.blend_files import SCENE_FILE, make_own, reason
+from ..blend.file_io import SCENE_FILE, make_own, reason
+from ..blend.names import nearest
+from ..blend.temporary import temporary_settings
 from . import caches, simulated_movement, stillness_causes
 
 CACHE_FOLDER = "cache"  # below the workspace, for fluids
-_SAMPLES = 5  # frames at which is looked whether something moved
+_SAMPLES = 5  # frames at which movement is measured
 _KEPT = 3  # bakes of a domain that stay on disk: earlier checkpoints still show theirs
 _NAMED = 12
 _FLUID_PARTS = ("data", "noise", "mesh", "particles", "guide")
@@ -26,33 +27,34 @@ def bake(arguments, report):
     """Bakes the caches of ``objects`` (None: all) over ``frame_start`` to ``frame_end`` (None: the scene's).
 
     ``folder`` is the workspace. Returns {"range", "seconds", "caches": one entry for each, "notes"}; an entry has
-    what Cache.describe() and movement.compare() tell, ``label``, ``seconds`` (of the pass over the frames, which
-    several caches may share), ``fault`` (what is wrong with the bake) and ``warning`` (nothing moved, and why).
+    what PhysicsCache.describe() and simulated_movement.compare() return, ``label``, ``seconds`` (of the pass over the
+    frames, which several caches may share), ``fault`` (what is wrong with the bake) and ``warning`` (nothing moved, and
+    why).
     """
     started = time.perf_counter()
     scene = bpy.context.scene
     every = caches.find_caches(scene)
     chosen = _chosen(scene, every, arguments["objects"])
     frames = _frames(scene, arguments["frame_start"], arguments["frame_end"])
-    notes = _settle(arguments["folder"], chosen)
-    standing = scene.frame_current
+    notes = _prepare_file(arguments["folder"], chosen)
+    frame_before = scene.frame_current
     jobs = [_Job(cache) for cache in chosen]
     progress = _Progress(report)
     try:
         for job in jobs:
             job.prepare(frames)
-        with _Frames(scene, frames):
+        with _BakeRange(scene, frames):
             _run(scene, jobs, every, progress)
-        with _Resting(_unchosen_fluids(every, jobs)):
-            _look(scene, jobs, progress)
+        with _domains_off(_unchosen_fluids(every, jobs)):
+            _check_result(scene, jobs, progress)
     finally:
-        scene.frame_set(standing)
+        scene.frame_set(frame_before)
     for job in jobs:
-        job.tidy(every)
+        job.remove_old_bakes(every)
     return {
         "range": list(frames),
         "seconds": time.perf_counter() - started,
-        "caches": [job.told(scene) for job in jobs],
+        "caches": [job.entry(scene) for job in jobs],
         "notes": notes,
     }
 
@@ -65,15 +67,15 @@ def _chosen(scene, every, names):
         )
     if names is None:
         return every
-    there = [thing.name for thing in scene.objects]
+    there = [obj.name for obj in scene.objects]
     for name in names:
         if name not in there:
-            near = ", ".join(repr(one) for one in difflib.get_close_matches(name, there, 3))
-            raise Refused(f"There is no object {name!r} in the scene{f'; there is {near}' if near else ''}.")
+            near = ", ".join(map(repr, nearest(name, there)))
+            raise Refused(f"There is no object {name!r} in the scene.{f' Nearest: {near}.' if near else ''}")
         if not caches.of_objects(scene, [name]):
             have = sorted({cache.object or "the rigid bodies" for cache in every})
             raise Refused(
-                f"{name!r} has no simulation of its own to bake. These have: {', '.join(have[:_NAMED])}"
+                f"{name!r} has no simulation of its own to bake. Objects that have one: {', '.join(have[:_NAMED])}"
                 f"{' …' if len(have) > _NAMED else ''}."
             )
     return caches.of_objects(scene, names)
@@ -83,16 +85,16 @@ def _frames(scene, first, last):
     first = scene.frame_start if first is None else first
     last = scene.frame_end if last is None else last
     if last <= first:
-        raise Refused(f"Frames {first} to {last} are no range: frame_end must be larger than frame_start.")
+        raise Refused(f"Frames {first} to {last} are not a range: frame_end must be larger than frame_start.")
     return first, last
 
 
-def _settle(folder, chosen):
-    """Sees to it that files of caches lie in the workspace; returns what had to be changed, in words."""
+def _prepare_file(folder, chosen):
+    """Makes sure that cache files go into the workspace; returns notes on what had to be changed."""
     notes = []
     active = bpy.context.view_layer.objects.active
     if active is not None and active.mode != "OBJECT":
-        notes.append(f"{active.name!r} was in {active.mode} mode; it was put into OBJECT mode.")
+        notes.append(f"{active.name!r} was in {active.mode} mode; it was switched to OBJECT mode.")
         bpy.ops.object.mode_set(mode="OBJECT")
     path = os.path.join(folder, SCENE_FILE)
     if os.path.realpath(bpy.data.filepath or "/") != os.path.realpath(path):
@@ -100,13 +102,13 @@ def _settle(folder, chosen):
     for cache in chosen:
         if cache.points is not None and cache.points.use_external:
             raise Refused(
-                f"The cache of {cache.label} is read from other files (use_external). Switch that off to bake it."
+                f"The cache of {cache.label} is read from external files. Set its use_external to False to bake it."
             )
     return notes
 
 
-class _Frames:
-    """While it bakes particles, Blender takes the scene's range for theirs."""
+class _BakeRange:
+    """Sets the scene's frame range for the bake: Blender bakes particles over that one. Puts it back at the end."""
 
     def __init__(self, scene, frames):
         self._scene = scene
@@ -127,22 +129,22 @@ class _Frames:
 
 
 class _Job:
-    """One cache on its way."""
+    """One cache to bake: its fault, its seconds, and where its points were at some frames."""
 
     def __init__(self, cache):
         self.cache = cache
         self.fault = None
         self.seconds = 0.0
         self.expected = None
-        self.snapshots = []
+        self.samples = []
 
     def prepare(self, frames):
         """Frees it, and sets its range and folder."""
         cache = self.cache
         if cache.domain is not None:
-            # A folder of its own for every bake: should this one be broken off, the last one's files are still there.
+            # A folder of its own for every bake: if this one is interrupted, the files of the last one remain.
             cache.domain.cache_directory = f"//{self._new_folder()}"
-            _free(cache.domain)
+            _forget_bake(cache.domain)
             cache.domain.cache_type = "ALL"
         else:
             with bpy.context.temp_override(point_cache=cache.points):
@@ -150,34 +152,34 @@ class _Job:
         cache.range = frames
         self.expected = cache.expected
 
-    def _place(self):
+    def _base_folder(self):
         name = self.cache.owner.name
         plain = re.sub(r"[^\w-]+", "_", name, flags=re.ASCII)[:40]
         return (
             f"{CACHE_FOLDER}/fluid/{plain if plain == name else f'{plain}-{zlib.crc32(name.encode()):08x}'}"
         )
 
-    def _folders(self):
+    def _bake_numbers(self):
         """The numbers of the bakes that lie on disk."""
-        place = bpy.path.abspath(f"//{self._place()}")
-        names = os.listdir(place) if os.path.isdir(place) else []
+        folder = bpy.path.abspath(f"//{self._base_folder()}")
+        names = os.listdir(folder) if os.path.isdir(folder) else []
         return sorted(int(name) for name in names if name.isdigit())
 
     def _new_folder(self):
-        return f"{self._place()}/{max(self._folders(), default=0) + 1:04d}"
+        return f"{self._base_folder()}/{max(self._bake_numbers(), default=0) + 1:04d}"
 
-    def tidy(self, every):
-        """Removes bakes of long ago."""
+    def remove_old_bakes(self, every):
+        """Removes old bakes."""
         if self.cache.domain is None or self.fault:
             return
         used = {os.path.realpath(cache.folder) for cache in every if cache.domain is not None}
-        for number in self._folders()[:-_KEPT]:
-            folder = bpy.path.abspath(f"//{self._place()}/{number:04d}")
+        for number in self._bake_numbers()[:-_KEPT]:
+            folder = bpy.path.abspath(f"//{self._base_folder()}/{number:04d}")
             if os.path.realpath(folder) not in used:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def check(self):
-        """Finds out what is wrong with the bake, if anything is."""
+        """Sets ``fault`` if something is wrong with the bake."""
         cache = self.cache
         (first, last), (wanted_first, wanted_last) = cache.range, self.expected
         if self.fault:
@@ -185,47 +187,37 @@ class _Job:
         if not cache.baked:
             self.fault = "Blender did not bake it"
         elif cache.outdated:
-            self.fault = "it is outdated already: something that it depends on changed while it was baked"
+            self.fault = "it is already outdated: something that it depends on changed during the bake"
         elif wanted_first <= wanted_last and (first > wanted_first or last < wanted_last):
             self.fault = f"it covers frames {first}–{last}, not {wanted_first}–{wanted_last}"
         elif missing := cache.missing:
             self.fault = f"{missing} of its frames are missing"
 
-    def told(self, scene):
-        """The entry of the answer."""
+    def entry(self, scene):
+        """The cache's entry in the result."""
         entry = self.cache.describe()
         entry.update(label=self.cache.label, seconds=self.seconds, fault=self.fault, warning=None)
-        entry.update(simulated_movement.compare(self.cache, self.snapshots))
+        entry.update(simulated_movement.compare(self.cache, self.samples))
         if self.fault or entry["still"]:
             causes = "; ".join(stillness_causes.likely_causes(self.cache, scene))
             because = f": {causes}" if causes else ""
             if self.fault:
                 entry["fault"] = self.fault + because
             else:
-                entry["warning"] = ("nothing moved" if entry["seen"] else "there is nothing in it") + because
+                entry["warning"] = ("nothing moved" if entry["seen"] else "it is empty") + because
         return entry
 
 
-def _free(domain):
+def _forget_bake(domain):
     """Makes Blender forget what is baked. Its own operator goes on in a thread after it has returned, and crashes."""
     for part in _FLUID_PARTS:
         setattr(domain, f"has_cache_baked_{part}", False)
         setattr(domain, f"cache_frame_pause_{part}", 0)  # where a bake would go on
 
 
-class _Resting:
-    """Domains that are switched off for a while: one that replays simulates whenever a frame is gone to."""
-
-    def __init__(self, fluids):
-        self._shown = [cache.modifier for cache in fluids if cache.modifier.show_viewport]
-
-    def __enter__(self):
-        for modifier in self._shown:
-            modifier.show_viewport = False
-
-    def __exit__(self, *error):
-        for modifier in self._shown:
-            modifier.show_viewport = True
+def _domains_off(fluids):
+    """A context in which domains are switched off: one of type REPLAY simulates at every change of frame."""
+    return temporary_settings([(cache.modifier, "show_viewport", False) for cache in fluids])
 
 
 def _unchosen_fluids(every, jobs):
@@ -234,11 +226,11 @@ def _unchosen_fluids(every, jobs):
 
 
 def _run(scene, jobs, every, progress):
-    """Bakes, in an order in which each finds baked what it depends on, with as few passes over the frames as can be."""
+    """Bakes, what others depend on first, with as few passes over the frames as possible."""
     carriers = {
-        thing.field.source_object
-        for thing in scene.objects
-        if thing.field is not None and thing.field.type == "FLUID_FLOW"
+        obj.field.source_object
+        for obj in scene.objects
+        if obj.field is not None and obj.field.type == "FLUID_FLOW"
     }
     early = [job for job in jobs if job.cache.domain is not None and job.cache.owner in carriers]
     late = [job for job in jobs if job.cache.domain is not None and job not in early]
@@ -247,7 +239,7 @@ def _run(scene, jobs, every, progress):
     progress.expect([*([job] for job in early), *groups, *([job] for job in late)])
     for job in early:
         _bake([job], progress)
-    with _Resting([cache for cache in every if cache.domain is not None and cache.owner not in carriers]):
+    with _domains_off([cache for cache in every if cache.domain is not None and cache.owner not in carriers]):
         for group in groups:
             _bake(group, progress)
     for job in late:
@@ -255,9 +247,9 @@ def _run(scene, jobs, every, progress):
 
 
 def _groups(points, every):
-    """Which caches to bake in one pass: Blender has an operator for one, and one for all of the scene but hair.
+    """Which caches to bake in one pass: Blender has an operator for one cache, and one for all in the scene but hair.
 
-    The latter takes a domain for a cache of 250 frames, whatever its range.
+    The latter bakes 250 frames of a domain, whatever its range.
     """
     chosen = {job.cache.points for job in points}
     others = [
@@ -300,30 +292,30 @@ def _length(group):
 
 
 class _Progress:
-    """Tells of every frame that Blender goes to, while it bakes and while the result is looked at."""
+    """Reports every frame that Blender goes to, while it bakes and while the result is checked."""
 
     def __init__(self, report):
         self._report = report
-        self._before = 0  # what the passes that are over come to
+        self._before = 0  # frames of the passes that are finished
         self._done = 0
         self._total = 0
 
     def expect(self, groups):
-        """These will be baked."""
+        """Sets the total from the groups that will be baked."""
         self._total = sum(map(_length, groups)) + _SAMPLES
 
     def over(self, group):
-        """To be held while a group is baked."""
+        """The context in which a group is baked."""
         self._first = min(job.expected[0] for job in group)
         self._length = _length(group)
         self._what = group[0].cache.label if len(group) == 1 else f"{len(group)} caches"
         return self
 
-    def looking(self, frame):
-        """At a frame of the result."""
-        self._tell(self._done + 1, f"looking at frame {frame}")
+    def checking(self, frame):
+        """Reports that a frame of the result is being checked."""
+        self._report_progress(self._done + 1, f"checking frame {frame}")
 
-    def _tell(self, done, text):
+    def _report_progress(self, done, text):
         if self._done < done <= self._total:  # at the end Blender goes back to where it was
             self._done = done
             self._report(done, self._total, text)
@@ -331,7 +323,7 @@ class _Progress:
     def _at_frame(self, scene, _graph=None):
         number, last = scene.frame_current - self._first + 1, self._first + self._length - 1
         if 0 < number <= self._length:
-            self._tell(
+            self._report_progress(
                 self._before + number, f"{self._what}: frame {scene.frame_current} of {self._first}–{last}"
             )
 
@@ -345,8 +337,8 @@ class _Progress:
         self._done = self._before
 
 
-def _look(scene, jobs, progress):
-    """Goes to some frames of what was baked, and checks it."""
+def _check_result(scene, jobs, progress):
+    """Checks the bakes, and records where points are at some of their frames."""
     for job in jobs:
         job.check()
     at = {}
@@ -359,8 +351,8 @@ def _look(scene, jobs, progress):
         ):
             at.setdefault(frame, []).append(job)
     for frame in sorted(at):
-        progress.looking(frame)
+        progress.checking(frame)
         scene.frame_set(frame)
         graph = bpy.context.evaluated_depsgraph_get()
         for job in at[frame]:
-            job.snapshots.append(simulated_movement.snapshot(job.cache, scene, graph))
+            job.samples.append(simulated_movement.sample(job.cache, scene, graph))

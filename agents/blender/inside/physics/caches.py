@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every physics cache of a scene: whose it is, which frames it is for, and whether they are there."""
+"""The physics caches of a scene: what each belongs to, its frame range, and whether its frames exist."""
 
 import os
 import re
@@ -15,7 +15,7 @@ _OF_MODIFIER = {"CLOTH": CLOTH, "SOFT_BODY": SOFT_BODY}
 _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024**2, "GiB": 1024**3, "TiB": 1024**4}
 
 
-class Cache:
+class PhysicsCache:
     """One cache. ``owner`` is an object, or the scene for its rigid-body world; ``holder`` has the settings:
     a modifier, a particle system, a dynamic-paint surface, the rigid-body world.
 
@@ -37,7 +37,7 @@ class Cache:
 
     @property
     def label(self):
-        """In words."""
+        """A description, such as ``cloth of 'Flag'``."""
         if self.kind == RIGID_BODY:
             return "the rigid-body world"
         kind = self.kind.replace("_", " ")
@@ -78,14 +78,14 @@ class Cache:
 
     @property
     def simulated(self):
-        """Whether it is switched on."""
+        """Whether the simulation is switched on."""
         if self.kind == RIGID_BODY:
             return self.holder.enabled
         return self.modifier.show_viewport
 
     @property
     def baked(self):
-        """Whether Blender takes it for baked."""
+        """Whether Blender considers it baked."""
         domain = self.domain
         if domain is None:
             return self.points.is_baked
@@ -104,7 +104,7 @@ class Cache:
 
     @property
     def folder(self):
-        """Where its frames lie as files (absolute path); None for one that is kept in the .blend."""
+        """The folder of its frames (absolute path); None if they are kept in memory and in the .blend."""
         if self.domain is not None:
             return os.path.normpath(bpy.path.abspath(self.domain.cache_directory))
         if self.points.use_external:
@@ -116,32 +116,31 @@ class Cache:
 
     @property
     def frames(self):
-        """How many frames of its range are there."""
+        """How many frames of its range exist."""
         if self.domain is not None:
             first, last = self.range
             return sum(first <= frame <= last for frame in self._frames_on_disk())
-        found = re.match(r"\s*([\d,.\s]*\d)\s+(?:frames?|points?)", self.points.info)
-        return int(re.sub(r"\D", "", found[1])) if found else 0
+        match = re.match(r"\s*([\d,.\s]*\d)\s+(?:frames?|points?)", self.points.info)
+        return int(re.sub(r"\D", "", match[1])) if match else 0
 
     @property
     def bytes(self):
-        """How much it holds, in memory and in the .blend, or on disk."""
+        """Its size, in memory or on disk."""
         if self.domain is not None:
             return sum(os.path.getsize(path) for path in _files(self.folder))
         if self.folder:
-            # One file a frame, named like the cache or after the object in hexadecimal; others' lie beside them.
-            start = self.points.name or self.owner.name.encode(errors="surrogateescape").hex().upper()
+            # One file for each frame; those of other caches are beside them.
+            start = file_prefix(self.points, self.owner)
             return sum(
                 os.path.getsize(path)
                 for path in _files(self.folder)
-                if os.path.basename(path).startswith(f"{start}_")
+                if os.path.basename(path).startswith(start)
             )
-        found = re.search(r"\(([\d.,]+)\s*([KMGT]?i?B)\)", self.points.info)
-        return int(float(found[1].replace(",", "")) * _UNITS.get(found[2], 1)) if found else 0
+        return bytes_in_memory(self.points) or 0
 
     @property
     def missing(self):
-        """How many frames that a bake over the range fills are not there."""
+        """How many frames that a bake over the range would fill do not exist."""
         first, last = self.expected
         if self.domain is not None:
             return len(set(range(first, last + 1)) - self._frames_on_disk())
@@ -149,17 +148,17 @@ class Cache:
         return max(0, max(0, last - first) // step + 1 - self.frames) if last >= first else 0
 
     def _frames_on_disk(self):
-        """The frames of a fluid for which all that its settings ask for lies on disk."""
+        """The frames of a fluid for which every part that its settings need is on disk."""
         wanted = ["data"]
         if self.domain.domain_type == "LIQUID" and self.domain.use_mesh:
             wanted.append("mesh")
         if self.domain.domain_type == "GAS" and self.domain.use_noise:
             wanted.append("noise")
-        found = [_numbers(os.path.join(self.folder, name)) for name in wanted]
-        return set.intersection(*found)
+        by_part = [_numbers(os.path.join(self.folder, name)) for name in wanted]
+        return set.intersection(*by_part)
 
     def describe(self):
-        """As JSON can say it."""
+        """The cache as JSON data."""
         first, last = self.range
         return {
             "kind": self.kind,
@@ -177,72 +176,80 @@ class Cache:
 
 def find_caches(scene):
     """The caches of a scene: the rigid-body world's, then object by object."""
-    found = []
+    caches = []
     world = scene.rigidbody_world
     if world is not None and world.point_cache is not None:
-        found.append(Cache(RIGID_BODY, scene, world))
-    for thing in scene.objects:
-        for modifier in thing.modifiers:
-            found += _of_modifier(thing, modifier)
-    return found
+        caches.append(PhysicsCache(RIGID_BODY, scene, world))
+    for obj in scene.objects:
+        for modifier in obj.modifiers:
+            caches += _of_modifier(obj, modifier)
+    return caches
+
+
+def file_prefix(points, owner):
+    """How the files of a point cache are named: after the cache, or after its object or scene in hexadecimal."""
+    return f"{points.name or owner.name.encode(errors='surrogateescape').hex().upper()}_"
+
+
+def bytes_in_memory(points):
+    """The size of a point cache in memory, as Blender says it; None if it does not say."""
+    match = re.search(r"\(([\d.,]+)\s*(bytes|[KMGT]?i?B)\)", points.info)
+    return round(float(match[1].replace(",", "")) * _UNITS.get(match[2], 1)) if match else None
 
 
 def of_objects(scene, names):
     """Those caches of a scene that the named objects take part in: their own, and that of the rigid-body world."""
     names = set(names)
-    rigid_body_inputs = any(thing.name in names and thing.rigid_body is not None for thing in scene.objects)
+    takes_part = any(obj.name in names and obj.rigid_body is not None for obj in scene.objects)
     return [
         cache
         for cache in find_caches(scene)
-        if (rigid_body_inputs if cache.kind == RIGID_BODY else cache.owner.name in names)
+        if (takes_part if cache.kind == RIGID_BODY else cache.owner.name in names)
     ]
 
 
-def unbaked(scene, objects=None):
-    """The caches (all, or those that ``objects`` take part in) for whose sake frames must not be jumped.
+def unbaked(scene):
+    """The caches that do not allow skipping frames.
 
     ``start`` is the frame from which to step. What is switched off in the viewport is not simulated.
     """
-    found = find_caches(scene) if objects is None else of_objects(scene, [thing.name for thing in objects])
     return [
         {"kind": cache.kind, "object": cache.object, "label": cache.label, "start": cache.range[0]}
-        for cache in found
+        for cache in find_caches(scene)
         if cache.simulated and not (cache.baked and not cache.outdated)
     ]
 
 
-def renew(scene):
-    """Has the simulations that are not baked begin afresh at their first frame.
+def restart_unbaked(scene):
+    """Makes simulations that are not baked start again at their first frame.
 
-    When a frame was jumped to, Blender keeps what stood there then, and takes it for a result when it is stepped
-    through later.
+    After a jump to a frame, Blender keeps the state there and would use it as a result when it steps through later.
     """
     for cache in find_caches(scene):
         if cache.simulated and cache.points is not None and not cache.baked:
-            cache.points.frame_step = (
-                cache.points.frame_step
-            )  # setting it, to whatever, marks what is kept as outdated
+            points = cache.points
+            points.frame_step = points.frame_step  # setting it, to any value, marks the cache as outdated
 
 
-def _of_modifier(thing, modifier):
+def _of_modifier(obj, modifier):
     if modifier.type in _OF_MODIFIER:
-        yield Cache(_OF_MODIFIER[modifier.type], thing, modifier, modifier)
+        yield PhysicsCache(_OF_MODIFIER[modifier.type], obj, modifier, modifier)
     elif modifier.type == "PARTICLE_SYSTEM":
         # Hair that does not move has no cache, and a fluid's particles are kept in the fluid's.
         system = modifier.particle_system
         settings = system.settings if system is not None else None
         if settings is not None and settings.type == "EMITTER":
-            yield Cache(PARTICLES, thing, system, modifier)
+            yield PhysicsCache(PARTICLES, obj, system, modifier)
         elif settings is not None and settings.type == "HAIR" and system.use_hair_dynamics:
-            yield Cache(HAIR, thing, system, modifier)
+            yield PhysicsCache(HAIR, obj, system, modifier)
     elif modifier.type == "DYNAMIC_PAINT" and modifier.canvas_settings is not None:
         for surface in modifier.canvas_settings.canvas_surfaces:
             if surface.is_cache_user:
-                yield Cache(DYNAMIC_PAINT, thing, surface, modifier)
+                yield PhysicsCache(DYNAMIC_PAINT, obj, surface, modifier)
     elif (
         modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" and modifier.domain_settings is not None
     ):
-        yield Cache(FLUID, thing, modifier, modifier)
+        yield PhysicsCache(FLUID, obj, modifier, modifier)
 
 
 def _files(folder):
@@ -259,4 +266,4 @@ def _numbers(folder):
         names = os.listdir(folder)
     except OSError:
         return set()
-    return {int(found[1]) for name in names if (found := re.search(r"_(-?\d{4,})\.", name))}
+    return {int(match[1]) for name in names if (match := re.search(r"_(-?\d{4,})\.", name))}

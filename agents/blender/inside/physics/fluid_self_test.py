@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether this Blender simulates fluids, found by baking a drop of liquid."""
+"""Checks whether this Blender can simulate fluids, by baking a drop of liquid."""
 
 import os
 import shutil
@@ -11,10 +11,10 @@ from simworlds.sandbox.inside import mantaflow
 
 
 def self_test(arguments, report):
-    """Bakes a drop of liquid in the open file, which is spoilt by it; for a process that has had no fluid yet.
+    """Bakes a drop of liquid in the open file, which it replaces; for a process that has simulated no fluid yet.
 
-    ``remedy``: whether the hook may do its work. Without it, a bpy that needs it aborts. Returns the ``version``,
-    whether this Blender is one that gets the remedy (``hooked``), and whether liquid came of it (``works``).
+    ``remedy``: whether the fix for Mantaflow may be applied; without it, a bpy that needs it aborts. Returns the
+    ``version``, whether this Blender gets the fix (``hooked``), and whether liquid was simulated (``works``).
     """
     mantaflow.withhold(not arguments["remedy"])
     folder = tempfile.mkdtemp(prefix="fluid-")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a simulation moves: places of its points at some frames, and how far these are from each other.
+"""How far a simulation moves its points between some frames.
 
-A snapshot is a dict from a key (a vertex, a particle, a corner of a body, the middle of a fluid) to a place in metres.
+A sample is a dict from a key (a vertex, a particle, a corner of a body, the middle of a fluid) to a place in metres.
 """
 
 from array import array
@@ -10,14 +10,14 @@ from mathutils import Vector
 
 from . import caches
 
-_POINTS = 2000  # of one object that are looked at
+_POINTS = 2000  # of one object that are sampled
 _CORNERS = 8
-_NOTHING = 1e-6  # of a gas, in all cells together
-_STILL = 0.005  # of its size that something must go to have moved
+_NO_GAS = 1e-6  # density in all cells together
+_STILL = 0.005  # of its size that something must move to count as moving
 
 
-def snapshot(cache, scene, graph):
-    """Places at the frame that ``graph`` is evaluated at; {} where there is nothing."""
+def sample(cache, scene, graph):
+    """The sample at the frame that ``graph`` is evaluated at; {} where nothing exists yet."""
     if cache.kind == caches.RIGID_BODY:
         return _bodies(scene, graph)
     owner = cache.owner.evaluated_get(graph)
@@ -36,45 +36,48 @@ def snapshot(cache, scene, graph):
     return _vertices(owner)
 
 
-def compare(cache, snapshots):
-    """What came of it: ``seen`` (something was there), ``moved`` (the longest way from where a point was first),
-    ``unit`` ("m"; for paint "of 1"), ``who`` (the body that went farthest), ``still`` ([count, of how many bodies]).
+def compare(cache, samples):
+    """How much moved over some samples, as data.
+
+    ``seen``: there were points at all; ``moved``: the farthest that a point got from where it was first, in ``unit``
+    ("m"; for paint "of 1"); ``still``: nothing moved. Of rigid bodies also ``who`` (the one that moved farthest),
+    ``bodies`` and ``bodies_moved`` (counts).
     """
-    first, ways = {}, {}
-    for places in snapshots:
+    first, distances = {}, {}
+    for places in samples:
         for key, place in places.items():
             start = first.setdefault(key, place)
-            ways[key] = max(ways.get(key, 0.0), (place - start).length)
-    found = {
-        "seen": bool(ways),
-        "moved": max(ways.values(), default=0.0),
+            distances[key] = max(distances.get(key, 0.0), (place - start).length)
+    result = {
+        "seen": bool(distances),
+        "moved": max(distances.values(), default=0.0),
         "unit": "m",
         "who": None,
         "still": None,
     }
     if cache.kind == caches.DYNAMIC_PAINT and cache.holder.surface_type in {"PAINT", "WEIGHT"}:
-        found["unit"] = "of 1"
-        found["still"] = found["moved"] < _STILL
+        result["unit"] = "of 1"
+        result["still"] = result["moved"] < _STILL
     elif cache.kind == caches.RIGID_BODY:
-        _tell_bodies(found, first, ways)
+        _add_bodies(result, first, distances)
     else:
-        found["still"] = found["moved"] < _STILL * max(cache.owner.dimensions.length, 1e-6)
-    return found
+        result["still"] = result["moved"] < _STILL * max(cache.owner.dimensions.length, 1e-6)
+    return result
 
 
-def _tell_bodies(found, first, ways):
+def _add_bodies(result, first, distances):
     farthest, size = {}, {}
-    for name, _ in ways:
-        farthest[name] = max(ways[name, corner] for corner in range(_CORNERS))
+    for name, _ in distances:
+        farthest[name] = max(distances[name, corner] for corner in range(_CORNERS))
         size[name] = (first[name, 6] - first[name, 0]).length
-    calm = [name for name, way in farthest.items() if way < _STILL * max(size[name], 1e-6)]
-    found["still"] = len(calm) == len(farthest)
-    found["bodies"], found["bodies_moved"] = len(farthest), len(farthest) - len(calm)
+    still = [name for name, distance in farthest.items() if distance < _STILL * max(size[name], 1e-6)]
+    result["still"] = len(still) == len(farthest)
+    result["bodies"], result["bodies_moved"] = len(farthest), len(farthest) - len(still)
     if farthest:
-        found["who"] = max(farthest, key=farthest.get)
+        result["who"] = max(farthest, key=farthest.get)
 
 
-def _every(count):
+def _stride(count):
     return max(1, count // _POINTS)
 
 
@@ -82,13 +85,13 @@ def _bodies(scene, graph):
     """The corners of the bodies that physics is to move."""
     places = {}
     collection = scene.rigidbody_world.collection
-    for thing in collection.objects if collection is not None else ():
-        body = thing.rigid_body
+    for obj in collection.objects if collection is not None else ():
+        body = obj.rigid_body
         if body is None or body.type != "ACTIVE" or body.kinematic:
             continue
-        matrix = thing.evaluated_get(graph).matrix_world
-        for number, corner in enumerate(thing.bound_box):
-            places[thing.name, number] = matrix @ Vector(corner)
+        matrix = obj.evaluated_get(graph).matrix_world
+        for number, corner in enumerate(obj.bound_box):
+            places[obj.name, number] = matrix @ Vector(corner)
     return places
 
 
@@ -106,7 +109,7 @@ def _vertices(owner):
         return {}
     places = {
         number: turned @ mesh.vertices[number].co
-        for number in range(0, len(mesh.vertices), _every(len(mesh.vertices)))
+        for number in range(0, len(mesh.vertices), _stride(len(mesh.vertices)))
     }
     if mesh is not data:
         owner.to_mesh_clear()
@@ -120,7 +123,7 @@ def _system(owner, cache):
 def _particles(system):
     return {
         number: system.particles[number].location.copy()
-        for number in range(0, len(system.particles), _every(len(system.particles)))
+        for number in range(0, len(system.particles), _stride(len(system.particles)))
         if system.particles[number].alive_state == "ALIVE"
     }
 
@@ -130,7 +133,7 @@ def _hair(owner, system):
     step = 2**system.settings.display_step
     return {
         number: system.co_hair(owner, particle_no=number, step=step)
-        for number in range(0, len(system.particles), _every(len(system.particles)))
+        for number in range(0, len(system.particles), _stride(len(system.particles)))
     }
 
 
@@ -144,7 +147,7 @@ def _paint(owner, surface):
         return places
     for name in (surface.output_name_a, surface.output_name_b):
         layer = owner.data.attributes.get(name)
-        for number in range(0, len(layer.data), _every(len(layer.data))) if layer is not None else ():
+        for number in range(0, len(layer.data), _stride(len(layer.data))) if layer is not None else ():
             red, green, blue, alpha = layer.data[number].color
             places[name, number] = Vector((red, green, blue)) * alpha
     return places
@@ -156,13 +159,13 @@ def _liquid(owner, domain, cache):
         return {}
     matrix = owner.matrix_world
     if cache.domain.use_mesh:
-        points = _all(owner.data.vertices, "co")
+        points = _flat_vectors(owner.data.vertices, "co")
     else:
         matrix = matrix.Identity(4)  # a particle's place is in the world
         points = array("f")
         for system in owner.particle_systems:
             if system.settings.type == "FLIP":
-                points += _all(system.particles, "location")
+                points += _flat_vectors(system.particles, "location")
     if len(points) <= 3 * _CORNERS:
         return {}  # without liquid Blender shows the domain itself
     axes = [points[axis::3] for axis in range(3)]
@@ -174,10 +177,10 @@ def _liquid(owner, domain, cache):
     }
 
 
-def _all(things, name):
-    """A vector of every one of ``things``, as one flat array."""
-    values = array("f", bytes(4 * 3 * len(things)))
-    things.foreach_get(name, values)
+def _flat_vectors(items, name):
+    """A vector property of all ``items``, as one flat array."""
+    values = array("f", bytes(4 * 3 * len(items)))
+    items.foreach_get(name, values)
     return values
 
 
@@ -189,7 +192,7 @@ def _gas(owner, domain):
             continue
         grid.foreach_get(amounts)
         total = sum(amounts)
-        if total > _NOTHING:
+        if total > _NO_GAS:
             return {"middle": owner.matrix_world @ _middle(domain, amounts, total)}
     return {}
 

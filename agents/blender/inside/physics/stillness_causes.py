@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why a simulation in which nothing moved may have stood still: what is usual, and is so in this scene."""
+"""Likely causes why nothing moved in a simulation: the usual mistakes that this scene shows."""
 
 import bpy
 from mathutils import Vector
@@ -7,11 +7,11 @@ from mathutils import Vector
 from . import caches
 
 _GAS_FLOWS = {"SMOKE", "FIRE", "BOTH"}
-_HELD = 0.999  # weight from which a vertex does not move
+_PINNED = 0.999  # weight from which a vertex does not move
 
 
 def likely_causes(cache, scene):
-    """Sentences, the likeliest first; [] where nothing strikes."""
+    """Half sentences, the likeliest first; [] if none is found."""
     of_kind = {
         caches.CLOTH: _cloth,
         caches.SOFT_BODY: _soft_body,
@@ -33,7 +33,7 @@ def _switched_off(cache):
             yield "the rigid-body world is switched off (enabled is False)"
         return
     if not cache.modifier.show_viewport:
-        yield f"the modifier {cache.modifier.name!r} is switched off in the viewport, which is where it is simulated"
+        yield f"the modifier {cache.modifier.name!r} is switched off in the viewport, so it is not simulated"
     if cache.owner.name not in bpy.context.view_layer.objects:
         yield f"{cache.owner.name!r} is not in the view layer, so it is not simulated"
     elif not cache.owner.visible_get():
@@ -53,20 +53,20 @@ def _no_gravity(cache, scene):
         yield "its effector_weights.gravity is 0"
 
 
-def _all_held(thing, group_name):
-    group = thing.vertex_groups.get(group_name) if group_name else None
-    if group is None or thing.type != "MESH":
+def _all_pinned(obj, group_name):
+    group = obj.vertex_groups.get(group_name) if group_name else None
+    if group is None or obj.type != "MESH":
         return False
     return all(
-        any(entry.group == group.index and entry.weight >= _HELD for entry in vertex.groups)
-        for vertex in thing.data.vertices
+        any(entry.group == group.index and entry.weight >= _PINNED for entry in vertex.groups)
+        for vertex in obj.data.vertices
     )
 
 
 def _cloth(cache, scene):
     del scene
     settings = cache.holder.settings
-    if _all_held(cache.owner, settings.vertex_group_mass):
+    if _all_pinned(cache.owner, settings.vertex_group_mass):
         yield f"every vertex is pinned by the vertex group {settings.vertex_group_mass!r}"
     if cache.owner.type == "MESH" and not cache.owner.data.vertices:
         yield "the mesh has no vertices"
@@ -76,8 +76,8 @@ def _soft_body(cache, scene):
     del scene
     settings = cache.holder.settings
     if settings.use_goal and not settings.vertex_group_goal:
-        yield f"goal_default={settings.goal_default:.2f} holds every vertex at its place (use_goal is on)"
-    elif settings.use_goal and _all_held(cache.owner, settings.vertex_group_goal):
+        yield f"goal_default={settings.goal_default:.2f} holds every vertex in place (use_goal is on)"
+    elif settings.use_goal and _all_pinned(cache.owner, settings.vertex_group_goal):
         yield f"every vertex is held by the vertex group {settings.vertex_group_goal!r}"
 
 
@@ -87,28 +87,28 @@ def _particles(cache, scene):
     if settings.count == 0:
         yield "its count is 0"
     if settings.frame_start > last or settings.frame_end < first:
-        yield f"it emits over frames {settings.frame_start:g}–{settings.frame_end:g}, outside the range"
+        yield f"it emits only in frames {settings.frame_start:g}–{settings.frame_end:g}, outside the range"
     if settings.physics_type == "NO":
-        yield "its physics_type is NO"
+        yield "its physics_type is NO, so particles do not move"
     if cache.owner.type == "MESH" and settings.emit_from == "FACE" and not cache.owner.data.polygons:
-        yield "it emits from faces, and the mesh has none"
+        yield "it emits from faces, but the mesh has none"
 
 
 def _bodies(cache, scene):
     del scene
     collection = cache.holder.collection
-    bodies = [thing for thing in collection.objects if thing.rigid_body] if collection is not None else []
-    active = [thing for thing in bodies if thing.rigid_body.type == "ACTIVE"]
+    bodies = [obj for obj in collection.objects if obj.rigid_body] if collection is not None else []
+    active = [obj for obj in bodies if obj.rigid_body.type == "ACTIVE"]
     if not bodies:
-        yield "no object is in the rigid-body world's collection"
+        yield "the rigid-body world's collection is empty"
     elif not active:
         yield "every body is PASSIVE"
-    elif all(thing.rigid_body.kinematic for thing in active):
+    elif all(obj.rigid_body.kinematic for obj in active):
         yield "every active body is Animated (kinematic)"
-    elif all(thing.rigid_body.use_start_deactivated for thing in active):
+    elif all(obj.rigid_body.use_start_deactivated for obj in active):
         yield "every active body starts deactivated, and nothing hits it"
     else:
-        yield "all bodies rest where they stand (which is right for a stable stack)"
+        yield "all bodies rest where they are (correct for a stable stack)"
     if cache.holder.time_scale == 0:
         yield "the world's time_scale is 0"
 
@@ -117,54 +117,54 @@ def _paint(cache, scene):
     brushes = cache.holder.brush_collection.all_objects if cache.holder.brush_collection else scene.objects
     if not any(
         modifier.type == "DYNAMIC_PAINT" and modifier.brush_settings is not None
-        for thing in brushes
-        for modifier in thing.modifiers
+        for obj in brushes
+        for modifier in obj.modifiers
     ):
-        yield "there is no brush"
+        yield "the scene has no dynamic-paint brush"
     else:
         yield "no brush touches the canvas"
     surface = cache.holder
     if surface.surface_type == "PAINT" and surface.output_name_a not in getattr(
         cache.owner.data, "attributes", {}
     ):
-        yield f"the mesh has no attribute {surface.output_name_a!r} (bpy.ops.dpaint.output_toggle makes it)"
+        yield f"the mesh has no attribute {surface.output_name_a!r} (add it with bpy.ops.dpaint.output_toggle)"
 
 
 def _fluid(cache, scene):
     domain = cache.domain
     gas = domain.domain_type == "GAS"
     inside, fitting = [], []
-    for thing in domain.fluid_group.all_objects if domain.fluid_group else scene.objects:
-        for modifier in thing.modifiers:
+    for obj in domain.fluid_group.all_objects if domain.fluid_group else scene.objects:
+        for modifier in obj.modifiers:
             if modifier.type != "FLUID" or modifier.fluid_type != "FLOW" or modifier.flow_settings is None:
                 continue
-            if not _touch(cache.owner, thing):
+            if not _boxes_overlap(cache.owner, obj):
                 continue
-            inside.append(thing)
+            inside.append(obj)
             if (modifier.flow_settings.flow_type in _GAS_FLOWS) == gas:
                 fitting.append(modifier.flow_settings)
     kind = "smoke or fire" if gas else "liquid"
     if not inside:
         yield "no flow object lies inside the domain" + (" or its fluid_group" if domain.fluid_group else "")
     elif not fitting:
-        yield f"the domain is for {kind}, and no flow object inside it gives that (flow_type)"
+        yield f"the domain is for {kind}, but no flow object inside it emits that (flow_type)"
     elif not any(flow.use_inflow for flow in fitting if flow.flow_behavior == "INFLOW") and all(
         flow.flow_behavior in {"INFLOW", "OUTFLOW"} for flow in fitting
     ):
-        yield "no flow object gives anything (use_inflow, flow_behavior)"
+        yield "no flow object emits anything (use_inflow, flow_behavior)"
     else:
-        yield "the flow may be smaller than a cell: raise resolution_max, or its volume_density for a thin mesh"
+        yield "the flow may be smaller than a cell: raise resolution_max, or volume_density for a thin mesh"
     if domain.time_scale == 0:
         yield "the domain's time_scale is 0"
     if not gas and (not scene.use_gravity or Vector(scene.gravity).length == 0):
         yield "the scene has no gravity"
 
 
-def _touch(one, other):
+def _boxes_overlap(obj, other):
     """Whether the boxes of two objects overlap."""
     lows, highs = [], []
-    for thing in (one, other):
-        corners = [thing.matrix_world @ Vector(corner) for corner in thing.bound_box]
+    for each in (obj, other):
+        corners = [each.matrix_world @ Vector(corner) for corner in each.bound_box]
         lows.append([min(axis) for axis in zip(*corners, strict=True)])
         highs.append([max(axis) for axis in zip(*corners, strict=True)])
     return all(lows[0][axis] <= highs[1][axis] and lows[1][axis] <= highs[0][axis] for axis in range(3))

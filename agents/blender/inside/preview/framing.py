@@ -1,24 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From where a picture is taken, and how much of the world it takes in."""
+"""Camera directions and framing: what of the world a picture shows."""
 
 import statistics
 
 from mathutils import Matrix, Vector
 
-# Name, where the camera stands as seen from what it looks at, and what is up in the picture.
+# Name, direction from the subject to the camera, up direction of the picture.
 VIEWS = (
     ("front", (0, -1, 0), (0, 0, 1)),
     ("right", (1, 0, 0), (0, 0, 1)),
     ("top", (0, 0, 1), (0, 1, 0)),
     ("three-quarter", (0.62, -1.0, 0.68), (0, 0, 1)),
 )
-CLOSE, LOOSE, WIDE = 1.06, 1.25, 1.7  # how much larger the picture is than what is framed
+CLOSE, LOOSE, WIDE = 1.06, 1.25, 1.7  # size of the picture in sizes of what is framed
 _FOOT = 0.09  # of the picture's height: kept free for the scale bar
 _GROUND_TIMES, _SKY_TIMES, _FAR_TIMES = 1.7, 8.0, 6.0  # against what is framed
 _FLAT = 0.05
 
 
-class Box:
+class BoundingBox:
     """A box along the world's axes."""
 
     def __init__(self, low, high):
@@ -26,7 +26,7 @@ class Box:
 
     @classmethod
     def around(cls, boxes):
-        """The smallest that holds all of them."""
+        """The smallest box that holds all of them."""
         boxes = list(boxes)
         return cls(
             [min(box.low[axis] for box in boxes) for axis in range(3)],
@@ -35,12 +35,12 @@ class Box:
 
     @property
     def size(self):
-        """Its edges."""
+        """The lengths of its edges."""
         return self.high - self.low
 
     @property
     def diagonal(self):
-        """From corner to corner."""
+        """The length of its diagonal."""
         return self.size.length
 
     @property
@@ -50,7 +50,7 @@ class Box:
 
     def grown(self, by):
         """The box, larger by so much on every side."""
-        return Box(self.low - Vector((by,) * 3), self.high + Vector((by,) * 3))
+        return BoundingBox(self.low - Vector((by,) * 3), self.high + Vector((by,) * 3))
 
     def meets(self, other):
         """Whether they have a point in common."""
@@ -59,7 +59,7 @@ class Box:
         )
 
     def holds(self, other):
-        """Whether the other's middle is inside, and no more than one of its sides reaches out."""
+        """Whether the other's centre is inside, and at most one of its sides is outside."""
         inside = sum(self.low[axis] <= other.low[axis] for axis in range(3))
         inside += sum(self.high[axis] >= other.high[axis] for axis in range(3))
         return inside >= 5 and self.distance(other.centre) == 0
@@ -72,23 +72,23 @@ class Box:
 
 
 def boxes_of(pieces):
-    """The box of every owner, by name."""
+    """The box of each owner, by name."""
     grouped = {}
     for piece in pieces:
         grouped.setdefault(piece.owner, []).append(piece)
-    return {owner: Box.around(found) for owner, found in grouped.items()}
+    return {owner: BoundingBox.around(group) for owner, group in grouped.items()}
 
 
-def focus(boxes, templates=()):
-    """(names to frame, names that reach beyond the picture, names that lie outside of it), of boxes by name.
+def choose_framed(boxes, templates=()):
+    """(names to frame, names that are larger than the picture, names that are outside it), of boxes by name.
 
-    Grounds, skies, what has flown far away, and ``templates`` that stand somewhere aside for their copies would make
-    everything else a dot.
+    Framing grounds, skies, what is far away, and ``templates`` for instances that are aside would make everything else
+    a dot.
     """
-    outside = _stand_aside(boxes, templates)
+    outside = _templates_aside(boxes, templates)
     outside = sorted({*outside, *_far_away({name: boxes[name] for name in boxes if name not in outside})})
     beyond, core = [], None
-    for name in sorted(boxes.keys() - set(outside), key=lambda one: boxes[one].diagonal):
+    for name in sorted(boxes.keys() - set(outside), key=lambda name: boxes[name].diagonal):
         box = boxes[name]
         if core is not None and core.diagonal > 0:
             times = box.diagonal / core.diagonal
@@ -98,39 +98,39 @@ def focus(boxes, templates=()):
             ):
                 beyond.append(name)
                 continue
-        core = box if core is None else Box.around((core, box))
+        core = box if core is None else BoundingBox.around((core, box))
     return sorted(boxes.keys() - {*outside, *beyond}), sorted(beyond), outside
 
 
-def _stand_aside(boxes, templates):
-    """Names of the templates that lie farther from all else than that is large."""
+def _templates_aside(boxes, templates):
+    """Names of the templates that are farther from everything else than its diagonal."""
     rest = [box for name, box in boxes.items() if name not in templates]
     if not rest:
         return []
-    middle = Box.around(rest)
+    middle = BoundingBox.around(rest)
     near = middle.grown(middle.diagonal)
     return [name for name in boxes if name in templates and not near.meets(boxes[name])]
 
 
 def _far_away(boxes):
-    """Names of the few boxes that lie far from where nearly all are."""
+    """Names of the few boxes that are far from nearly all others."""
     if len(boxes) < 4:
         return []
     middle = Vector(statistics.median(box.centre[axis] for box in boxes.values()) for axis in range(3))
     away = {name: box.distance(middle) for name, box in boxes.items()}
     reach = statistics.median(away[name] + boxes[name].diagonal for name in boxes)
-    found = sorted(name for name in boxes if away[name] > _FAR_TIMES * reach)
-    return found if len(found) <= max(1, len(boxes) // 10) else []
+    far = sorted(name for name in boxes if away[name] > _FAR_TIMES * reach)
+    return far if len(far) <= max(1, len(boxes) // 10) else []
 
 
-def turned_to(towards, up):
-    """A camera's rotation for a view, as a matrix: its columns are right, up and towards the viewer."""
+def camera_rotation(towards, up):
+    """A camera's rotation matrix; its columns are right, up and towards the viewer."""
     z = Vector(towards).normalized()
     x = Vector(up).cross(z).normalized()
     return Matrix((x, z.cross(x), z)).transposed()
 
 
-def fitted(points, rotation, margin):
+def fit(points, rotation, margin):
     """(place in the world, width in metres) of a square orthographic picture that holds the points."""
     flat = [rotation.transposed() @ point for point in points]
     low, high = (Vector(f(point[axis] for point in flat) for axis in range(3)) for f in (min, max))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opens a room for a view: takes off what of its shell is between the camera and the inside.
+"""Opens a room for a view: removes what of its shell is between the camera and the inside.
 
-That is each face that lies in front of the inside and has it on its far side. A part of a mesh goes face by face if it
-is around the inside, as a box that is the room; else whole if much of it does, as a wall, or not at all.
+These are the faces in front of the inside that have it on their far side. A connected part of a mesh loses single faces
+if it is around the inside, like a box that is the room; else it goes whole if most of it hides the inside, like a wall.
 """
 
 import contextlib
@@ -19,56 +19,56 @@ except ImportError:  # some systems' Blenders lack it: rooms stay closed there
 
 _CELLS = 12  # of the map of the inside, on each axis of the picture
 _NEAR = (-2, -1, 0, 1, 2)
-_SLACK = 0.02 * REACH  # that what is taken off may lie behind the foremost place inside
+_SLACK = 0.02 * REACH  # how far behind the nearest point inside a removed face may be
 _EDGE_ON = 0.05
-_MUCH = 0.4  # of a part's area: then it goes whole
-_SOME = 0.1  # of the inside: then a part is around it
-_AT_ONCE = 20_000  # faces whose distances to the inside are reckoned together
+_MUCH = 0.4  # share of a part's area that hides the inside, from which it goes whole
+_SOME = 0.1  # share of the inside in a part's box, from which the part is around it
+_AT_ONCE = 20_000  # faces whose distances to the inside are computed together
 
 
-class Opening:
-    """Opens ``room`` (None: nothing to do) for one view after the other; ``fault`` is why it cannot be, or ""."""
+class RoomCutaway:
+    """Opens ``room`` (None: nothing to do) for one view at a time; ``fault`` is the reason if it cannot, else ""."""
 
-    def __init__(self, stage, room):
-        self._stage = stage
+    def __init__(self, studio, room):
+        self._studio = studio
         self.fault = "this Blender's Python has no numpy" if room and numpy is None else ""
         room = None if self.fault else room
         self._inside = numpy.array(room.inside) if room else None
-        self._walls = [_Wall(thing, self._inside) for thing in room.shell] if room else []
+        self._walls = [_Wall(obj, self._inside) for obj in room.shell] if room else []
 
     @contextlib.contextmanager
     def towards(self, rotation):
-        """Opens it for a camera of that rotation; gives the objects that were cut."""
+        """A context in which it is open for a camera's rotation; yields the objects that were cut."""
         changed = []
         try:
             front = _Front(self._inside, rotation) if self._walls else None
             for wall in self._walls:
-                thing, faces = wall.thing, wall.faces_before(front)
+                obj, faces = wall.obj, wall.faces_before(front)
                 if len(faces):
-                    changed.append((thing, thing.data))
-                if len(faces) == len(thing.data.polygons):
-                    thing.hide_render = True
+                    changed.append((obj, obj.data))
+                if len(faces) == len(obj.data.polygons):
+                    obj.hide_render = True
                 elif len(faces):
-                    thing.data = self._stage.owned(_without(thing.data, faces))
-            yield [thing for thing, _ in changed]
+                    obj.data = self._studio.owned(_without(obj.data, faces))
+            yield [obj for obj, _ in changed]
         finally:
-            for thing, data in changed:
-                thing.hide_render = False
-                thing.data = data
+            for obj, data in changed:
+                obj.hide_render = False
+                obj.data = data
 
 
 class _Front:
-    """What lies in front of the inside, as a camera sees it."""
+    """Which faces are in front of the inside, as a camera sees it."""
 
     def __init__(self, inside, rotation):
-        self._turn = numpy.array(rotation)  # rows of places times this are places as the camera has them
+        self._turn = numpy.array(rotation)  # turns rows of points into camera space
         self._towards = self._turn[:, 2]
         seen = inside @ self._turn
         self._low = seen[:, :2].min(axis=0)
         self._cell = (seen[:, :2].max(axis=0) - self._low) / (_CELLS - 1)
         self._cell[self._cell == 0] = 1.0
         nearest = {}  # to the camera, of the places in a cell
-        for cell, depth in zip(self._cells_of(seen).tolist(), seen[:, 2].tolist()):  # noqa: B905 - Python 3.9
+        for cell, depth in zip(self._cells_of(seen).tolist(), seen[:, 2].tolist(), strict=True):
             nearest[tuple(cell)] = max(nearest.get(tuple(cell), -math.inf), depth)
         self._nearest = nearest
 
@@ -76,15 +76,19 @@ class _Front:
         return numpy.rint((seen[:, :2] - self._low) / self._cell).astype(int)
 
     def _inside_at(self, cell):
-        """How near to the camera the inside comes in a cell; infinitely where there is no inside."""
+        """The depth of the inside's nearest point in a cell; infinite if there is no inside."""
         x, y = cell
         if cell in self._nearest:
             return self._nearest[cell]
         known = [(x + i, y + j) for i in _NEAR for j in _NEAR if (x + i, y + j) in self._nearest]
-        return self._nearest[min(known, key=lambda one: math.dist(one, cell))] if known else math.inf
+        return (
+            self._nearest[min(known, key=lambda known_cell: math.dist(known_cell, cell))]
+            if known
+            else math.inf
+        )
 
     def hides(self, wall):
-        """Of each face of a wall, whether it lies in front of the inside and has it on its far side."""
+        """A mask of the faces of a wall that are in front of the inside and have it on their far side."""
         facing = wall.normals @ self._towards
         seen = wall.centres @ self._turn
         cells, where = numpy.unique(self._cells_of(seen), axis=0, return_inverse=True)
@@ -94,15 +98,15 @@ class _Front:
 
 
 class _Wall:
-    """A thing of the shell, ``thing``; of its faces, in the stage's world: ``centres``, ``normals``, and whether these
-    point to the inside, ``is_turned_in``."""
+    """An object ``obj`` of the shell; of its faces, in world space: ``centres``, ``normals``, and ``is_turned_in``,
+    whether normals point to the inside."""
 
-    def __init__(self, thing, inside):
-        self.thing = thing
-        mesh, matrix = thing.data, numpy.array(thing.matrix_world)
+    def __init__(self, obj, inside):
+        self.obj = obj
+        mesh, matrix = obj.data, numpy.array(obj.matrix_world)
         linear = matrix[:3, :3]
         self.centres = _read(mesh.polygons, "center", 3) @ linear.T + matrix[:3, 3]
-        # A normal of length 1 becomes one of the world, as long as areas grow.
+        # Transforms unit normals to world space, with the factor of their areas as length.
         turn = numpy.linalg.pinv(linear) * abs(numpy.linalg.det(linear))
         normals = _read(mesh.polygons, "normal", 3) @ turn
         lengths = numpy.linalg.norm(normals, axis=1)
@@ -118,7 +122,7 @@ class _Wall:
         self._parts = [(part, _is_around(mesh, part, own)) for part in map(numpy.array, _parts(mesh))]
 
     def _points_in(self, faces, inside):
-        """Whether the normals of faces point to the places inside that are nearest to them."""
+        """Whether the normals of faces point to the nearest points inside."""
         centres = self.centres[faces]
         away = ((centres[:, None] - inside[None]) ** 2).sum(axis=2)
         most = min(4, len(inside))
@@ -127,7 +131,7 @@ class _Wall:
         return numpy.einsum("ij,ij->i", self.normals[faces], middles - centres) > 0
 
     def faces_before(self, front):
-        """The numbers of the faces to be taken off."""
+        """The numbers of the faces to remove."""
         hides, off = front.hides(self), []
         for part, is_around in self._parts:
             hiding = part[hides[part]]
@@ -139,7 +143,7 @@ class _Wall:
 
 
 def _is_around(mesh, part, inside):
-    """Whether much of the inside, as the mesh has it, lies in the box around a part, along the mesh's own axes."""
+    """Whether much of the inside, in the mesh's own space, is in the bounding box of a part."""
     vertices = sorted({at for number in part.tolist() for at in mesh.polygons[number].vertices})
     corners = numpy.array([mesh.vertices[at].co for at in vertices])
     within = ((corners.min(axis=0) < inside) & (inside < corners.max(axis=0))).all(axis=1)
@@ -174,11 +178,11 @@ def _parts(mesh):
 
 
 def _without(mesh, faces):
-    """A copy of a mesh that lacks some faces."""
-    made, work = mesh.copy(), bmesh.new()
-    work.from_mesh(made)
+    """A copy of a mesh without some faces."""
+    copy, work = mesh.copy(), bmesh.new()
+    work.from_mesh(copy)
     work.faces.ensure_lookup_table()
     bmesh.ops.delete(work, geom=[work.faces[number] for number in faces.tolist()], context="FACES")
-    work.to_mesh(made)
+    work.to_mesh(copy)
     work.free()
-    return made
+    return copy

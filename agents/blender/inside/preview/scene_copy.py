@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A copy of what is to be seen of a scene at this frame: modifiers, simulations, instances, hair and particles done."""
+"""A copy of a scene's visible geometry at this frame: with modifiers, simulations, instances, hair and particles."""
 
 import copy
+import itertools
 import math
 from array import array
 
@@ -10,25 +11,27 @@ from mathutils import Matrix, Vector
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from .line_geometry import beads, blocks, tubes
-from .material_colours import Surface, surface_of
+from ..blend.fluids import domain_of
+from ..blend.visibility import rendered_objects
+from .material_colours import PreviewMaterial, surface_of
+from .proxy_meshes import gas_cells, octahedra, tubes
 
-INSTANCES = 6000  # copies that are shown; of more, every second, third, …
+INSTANCES = 6000  # that are shown; of more, only every second, third, …
 _TO_MESH = {"CURVE", "SURFACE", "FONT", "META"}
 _AS_THEY_ARE = {"CURVES", "POINTCLOUD", "VOLUME"}
-_INK = "GREASEPENCIL"
-DRAWABLE = {"MESH", _INK, *_TO_MESH, *_AS_THEY_ARE}
+_GREASE_PENCIL = "GREASEPENCIL"
+DRAWABLE = {"MESH", _GREASE_PENCIL, *_TO_MESH, *_AS_THEY_ARE}
 _MOST_PIECES = 12_000
-_BEYOND = 1e12  # metres; not a number is no less
-_STROKE = 0.004  # thickness of a thread, against the size of its object
+_BEYOND = 1e12  # metres; NaN counts as beyond, too
+_STROKE = 0.004  # thickness of a strand, in sizes of its object
 _STRANDS = 2000  # hairs of a system that are shown
 
 
 class Piece:
-    """A drawn thing: ``owner`` is the name of the object that it belongs to, ``data`` is a data-block of the stage's,
-    ``low`` and ``high`` are the ends of its box along the world's axes, ``corners`` those of a box around it."""
+    """A drawn object or instance: ``owner`` is the name of its object, ``data`` belongs to the studio scene, ``low``
+    and ``high`` are the ends of its box along the world's axes, ``corners`` those of a box around it."""
 
-    is_solid = True  # or smoke, threads, dots
+    is_solid = True  # False for smoke, strands, dots
     is_liquid = False
 
     def __init__(self, owner, data, matrix, corners, *, exactly=True):
@@ -44,7 +47,7 @@ class Piece:
         self.high = Vector(max(end[axis] for end in ends) for axis in range(3))
 
     def outline(self, most):
-        """Points in the world that reach about as far as it does: at most so many of its vertices, or its corners."""
+        """Points in the world that outline it: about ``most`` of its vertices, or its corners."""
         if not isinstance(self.data, bpy.types.Mesh) or len(self.data.vertices) < 4:
             return self.corners
         flat = _coordinates(self.data)
@@ -52,46 +55,46 @@ class Piece:
         return [self.matrix @ Vector(flat[at : at + 3]) for at in range(0, len(flat), 3 * step)]
 
 
-class Likeness:
+class SceneCopy:
     """``pieces``, and the names of what is missing: ``broken`` (with why), ``hidden`` in the viewport, ``unrendered``,
-    ``empty``; ``left_out`` counts instances, of the objects ``templates``. All data-blocks belong to ``stage``."""
+    ``empty``; ``left_out`` counts instances, of the objects ``templates``. ``studio`` owns all data-blocks."""
 
-    def __init__(self, stage, graph, objects, *, unrendered=False):
-        """Of ``objects`` of the scene (None: of all), with ``unrendered`` also of what renders do not show."""
-        self._stage, self._graph = stage, graph
+    def __init__(self, studio, graph, objects, *, unrendered=False):
+        """Copies ``objects`` of the scene (None: all), with ``unrendered`` also those that renders do not show."""
+        self._studio, self._graph = studio, graph
         self._copies, self._surfaces, self._averages = {}, {}, {}
         self.pieces, self.broken, self.left_out, self.templates = [], {}, 0, set()
-        names = None if objects is None else {thing.name for thing in objects}
+        names = None if objects is None else {obj.name for obj in objects}
         layer = graph.view_layer
-        rendered = None if unrendered else _rendered(layer)
-        met, not_rendered = self._take_all(names, rendered)
+        rendered = None if unrendered else {obj.name for obj in rendered_objects(layer.layer_collection)}
+        met, not_rendered = self._copy_instances(names, rendered)
         candidates = {
-            thing.name
-            for thing in (layer.objects if objects is None else objects)
-            if thing.type in DRAWABLE and thing.name in (rendered or layer.objects)
+            obj.name
+            for obj in (layer.objects if objects is None else objects)
+            if obj.type in DRAWABLE and obj.name in (rendered or layer.objects)
         }
         self.unrendered = sorted(not_rendered)
         self.hidden = sorted(candidates - met)
         drawn = {piece.owner for piece in self.pieces}
-        self.empty = sorted((candidates & met) - drawn - set(self.broken) - _balls(layer))
+        self.empty = sorted((candidates & met) - drawn - set(self.broken) - _metaballs(layer))
 
-    def take_unevaluated(self, thing):
-        """Takes in an object that Blender has not evaluated, because it is hidden: as it is without modifiers."""
-        data = self._stage.owned(bpy.data.meshes.new_from_object(thing))
-        self._finish(thing.name, data, thing, thing.matrix_world.copy())
+    def copy_unevaluated(self, obj):
+        """Copies an object that is hidden, and so not evaluated: without its modifiers."""
+        data = self._studio.owned(bpy.data.meshes.new_from_object(obj))
+        self._colour_and_add(obj.name, data, obj, obj.matrix_world.copy())
 
-    def _take_all(self, names, rendered):
-        """The names of the objects that Blender shows, and of those among them that renders do not."""
+    def _copy_instances(self, names, rendered):
+        """Copies the instances; returns the names of the visible objects, and of those that renders do not show."""
         met, not_rendered, placed, count = set(), set(), set(), 0
         instances = self._graph.object_instances
         step = max(1, math.ceil(len(instances) / INSTANCES))
         for instance in instances:
             if len(self.pieces) > _MOST_PIECES:
                 raise Refused(
-                    f"More than {_MOST_PIECES} objects are too many for one picture: show a part of them."
+                    f"More than {_MOST_PIECES} objects are too many for one picture: preview a part of them."
                 )
-            thing = instance.object
-            owner = (instance.parent if instance.is_instance else thing).original
+            obj = instance.object
+            owner = (instance.parent if instance.is_instance else obj).original
             if names is not None and owner.name not in names:
                 continue
             met.add(owner.name)
@@ -100,194 +103,183 @@ class Likeness:
                 continue
             matrix = instance.matrix_world.copy()
             if not _is_finite(matrix):
-                self.broken[owner.name] = "its transform is not finite, or beyond all measure"
+                self.broken[owner.name] = "its transform is not finite, or far too large"
                 continue
             if instance.is_instance:
-                self.templates.add(thing.original.name)
-                if rendered is not None and thing.original.hide_render:
+                self.templates.add(obj.original.name)
+                if rendered is not None and obj.original.hide_render:
                     continue
                 count += 1
                 if count % step:
                     self.left_out += 1
                     continue
             else:
-                self._take_systems(thing, matrix)
-                if not instance.show_self or _gas_of(thing):
+                self._copy_particles_and_gas(obj, matrix)
+                if not instance.show_self or _gas_of(obj):
                     continue
-            # Text, curves and metaballs come twice: as themselves, and as an instance of the mesh that they make.
-            is_made = instance.is_instance and thing.type == "MESH" and owner.type in _TO_MESH
+            # Text, curves and metaballs come twice: as themselves, and as an instance of their mesh.
+            is_made = instance.is_instance and obj.type == "MESH" and owner.type in _TO_MESH
             place = (owner.name, tuple(map(tuple, matrix)))
-            if is_made and (place, len(thing.data.vertices)) in placed:
+            if is_made and (place, len(obj.data.vertices)) in placed:
                 continue
-            placed.add((place, self._take(owner.name, thing, matrix)))
+            placed.add((place, self._copy_instance(owner.name, obj, matrix)))
         return met, not_rendered
 
-    def _take(self, owner, thing, matrix):
-        """How many vertices the geometry of the object has that was taken in; None for what is no mesh."""
-        if thing.data is None or thing.type not in DRAWABLE:
+    def _copy_instance(self, owner, obj, matrix):
+        """Copies an object's geometry; returns its number of vertices, None if it is not a mesh."""
+        if obj.data is None or obj.type not in DRAWABLE:
             return None
         key = (
-            thing.data.as_pointer(),
-            thing.as_pointer() if thing.type in _TO_MESH else 0,
+            obj.data.as_pointer(),
+            obj.as_pointer() if obj.type in _TO_MESH else 0,
             tuple(
                 slot.material.name_full
-                for slot in thing.material_slots
+                for slot in obj.material_slots
                 if slot.link == "OBJECT" and slot.material
             ),
-            tuple(thing.color),
+            tuple(obj.color),
         )
         if key not in self._copies:
-            copied = self._copied(thing)
+            copied = self._copy_data(obj)
             vertices = len(copied.vertices) if isinstance(copied, bpy.types.Mesh) else None
-            self._copies[key] = (*self._finish(owner, copied, thing, matrix), vertices)
+            self._copies[key] = (*self._colour_and_add(owner, copied, obj, matrix), vertices)
             return vertices
         data, corners, vertices = self._copies[key]
         if data is not None:
-            self._take_in(Piece(owner, data, matrix, corners, exactly=False), thing)
+            self._add(Piece(owner, data, matrix, corners, exactly=False), obj)
         return vertices
 
-    def _take_in(self, piece, thing):
-        piece.is_liquid = _shows_liquid(thing)
+    def _add(self, piece, obj):
+        piece.is_liquid = _shows_liquid(obj)
         self.pieces.append(piece)
 
-    def _copied(self, thing):
-        """The geometry of an evaluated object; None if it cannot be had."""
-        if thing.type == _INK:  # Workbench can draw it, but takes seconds to get ready for that
-            made = tubes(_ink_of(thing.data), max(2 * _pen_of(thing.data), thing.dimensions.length * _STROKE))
-            return self._stage.owned(made) if made else None
-        if thing.type not in _TO_MESH and getattr(thing.data, "shape_keys", None) is None:
-            data = self._stage.owned(thing.data.copy())
-            if thing.type != "MESH" or data.vertices:
+    def _copy_data(self, obj):
+        """A copy of an evaluated object's geometry; None if there is none."""
+        if obj.type == _GREASE_PENCIL:  # Workbench can draw it, but needs seconds to prepare for it
+            mesh = tubes(
+                _stroke_segments(obj.data),
+                max(2 * _largest_radius(obj.data), obj.dimensions.length * _STROKE),
+            )
+            return self._studio.owned(mesh) if mesh else None
+        if obj.type not in _TO_MESH and getattr(obj.data, "shape_keys", None) is None:
+            data = self._studio.owned(obj.data.copy())
+            if obj.type != "MESH" or data.vertices:
                 return data
-        # Keys would be copied too, and stay; and a mesh that is being edited shows its copies nothing.
+        # A plain copy would leave shape keys behind, and be empty for a mesh in edit mode.
         try:
-            return self._stage.owned(bpy.data.meshes.new_from_object(thing))
+            return self._studio.owned(bpy.data.meshes.new_from_object(obj))
         except RuntimeError:
             return None
 
-    def _finish(self, owner, data, thing, matrix):
-        """Colours a copy and takes it in: (the data-block, its corners), twice None if there is nothing to be seen."""
+    def _colour_and_add(self, owner, data, obj, matrix):
+        """Colours a copy and adds it: (data-block, corners of its box), (None, None) if there is nothing visible."""
         nothing = (None, None)
         if data is None:
             return nothing
         is_mesh = isinstance(data, bpy.types.Mesh)
-        corners = _corners_of(data) if is_mesh else [Vector(corner) for corner in thing.bound_box]
+        corners = _corners_of(data) if is_mesh else [Vector(corner) for corner in obj.bound_box]
         if not corners or (not is_mesh and corners[0] == corners[6]):
             return nothing
         if not _is_finite(corners):
-            self.broken[owner] = "its geometry has coordinates that are not finite, or beyond all measure"
+            self.broken[owner] = "its geometry has coordinates that are not finite, or far too large"
             return nothing
         if is_mesh and not data.polygons:
             data = self._thread(data, (corners[-1] - corners[0]).length)
             if data is None:
                 return nothing
         if is_mesh:
-            self._colour(data, thing)
-        self._take_in(Piece(owner, data, matrix, corners), thing)
+            self._colour(data, obj)
+        self._add(Piece(owner, data, matrix, corners), obj)
         return data, corners
 
     def _thread(self, mesh, size):
-        """A mesh of edges alone as one with surfaces."""
-        edges = ((mesh.vertices[one].co, mesh.vertices[two].co) for one, two in mesh.edge_keys)
-        made = tubes(edges, size * _STROKE)
-        if made is not None:
-            self._stage.owned(made)
+        """A mesh of edges alone as tubes."""
+        edges = ((mesh.vertices[start].co, mesh.vertices[end].co) for start, end in mesh.edge_keys)
+        thread = tubes(edges, size * _STROKE)
+        if thread is not None:
+            self._studio.owned(thread)
             for material in mesh.materials[:1]:
-                made.materials.append(material)
-        return made
+                thread.materials.append(material)
+        return thread
 
-    def _surface(self, material, thing):
-        """A surface of one's own, of what was read once."""
-        key = (material.name_full if material else None, tuple(thing.color))
+    def _surface(self, material, obj):
+        """A PreviewMaterial for a material on an object, which the caller may change."""
+        key = (material.name_full if material else None, tuple(obj.color))
         if key not in self._surfaces:
-            self._surfaces[key] = surface_of(material, thing.color, self._averages)
+            self._surfaces[key] = surface_of(material, obj.color, self._averages)
         return copy.copy(self._surfaces[key])
 
-    def _colour(self, mesh, thing):
-        slots = thing.material_slots
+    def _colour(self, mesh, obj):
+        slots = obj.material_slots
         for at in range(max(1, len(mesh.materials))):
             material = mesh.materials[at] if at < len(mesh.materials) else None
             if at < len(slots) and slots[at].link == "OBJECT":
                 material = slots[at].material
-            if thing.type == _INK and slots:
+            if obj.type == _GREASE_PENCIL and slots:
                 material = slots[0].material
-            surface = self._surface(material, thing)
+            surface = self._surface(material, obj)
             if surface.attribute is not None:
                 surface.rgb = _average_of(mesh, surface.attribute) or surface.rgb
-            if surface.image is not None and not _lay_on(mesh, at, surface):
+            if surface.image is not None and not _use_uv_map(mesh, at, surface):
                 surface.image = None
-            made = self._stage.material(surface)
+            preview_material = self._studio.material(surface)
             if at < len(mesh.materials):
-                mesh.materials[at] = made
+                mesh.materials[at] = preview_material
             else:
-                mesh.materials.append(made)
+                mesh.materials.append(preview_material)
 
-    # What has no mesh of its own
+    # What has no mesh
 
-    def _take_systems(self, thing, matrix):
-        """Hair, particles that are drawn as dots, smoke."""
-        size = max(thing.dimensions.length, 1e-9) * _STROKE
-        has_surface = _shows_liquid(thing)
-        for system in thing.particle_systems:
+    def _copy_particles_and_gas(self, obj, matrix):
+        """Adds hair, particles as dots, and smoke."""
+        size = max(obj.dimensions.length, 1e-9) * _STROKE
+        has_surface = _shows_liquid(obj)
+        for system in obj.particle_systems:
             settings = system.settings
             if settings.type == "FLIP" and has_surface:
-                continue  # it is made of them, and stands for them
+                continue  # the liquid's surface stands for them
             if settings.type == "HAIR" and settings.render_type == "PATH":
-                made = tubes(_strands(thing, system), size / 2)
+                mesh = tubes(_strands(obj, system), size / 2)
             elif settings.type != "HAIR" and settings.render_type in {"HALO", "LINE", "PATH"}:
-                made = beads(
+                mesh = octahedra(
                     [
-                        (one.location, max(one.size / 2, size))
-                        for one in system.particles
-                        if one.alive_state == "ALIVE"
+                        (particle.location, max(particle.size / 2, size))
+                        for particle in system.particles
+                        if particle.alive_state == "ALIVE"
                     ]
                 )
             else:
                 continue
-            slots = thing.material_slots
+            slots = obj.material_slots
             number = min(settings.material, len(slots)) - 1
-            self._take_made(
-                thing, made, [self._surface(slots[number].material if slots else None, thing)], Matrix()
+            self._add_proxy(
+                obj, mesh, [self._surface(slots[number].material if slots else None, obj)], Matrix()
             )
-        domain = _gas_of(thing)
+        domain = _gas_of(obj)
         if domain is not None:
             grids = domain.density_grid, domain.flame_grid, tuple(domain.domain_resolution)
-            self._take_made(
-                thing,
-                blocks(*grids, thing.bound_box),
-                [Surface((0.3,) * 3, 0.5), Surface((1, 0.3, 0.03), 0.8)],
+            self._add_proxy(
+                obj,
+                gas_cells(*grids, obj.bound_box),
+                [PreviewMaterial((0.3,) * 3, 0.5), PreviewMaterial((1, 0.3, 0.03), 0.8)],
                 matrix,
             )
 
-    def _take_made(self, thing, mesh, surfaces, matrix):
+    def _add_proxy(self, obj, mesh, surfaces, matrix):
         if mesh is None:
             return
-        self._stage.owned(mesh)
+        self._studio.owned(mesh)
         for surface in surfaces:
-            mesh.materials.append(self._stage.material(surface))
+            mesh.materials.append(self._studio.material(surface))
         corners = _corners_of(mesh)
         if _is_finite(corners):
-            self.pieces.append(Piece(thing.original.name, mesh, matrix, corners))
+            self.pieces.append(Piece(obj.original.name, mesh, matrix, corners))
             self.pieces[-1].is_solid = False
 
 
-def _balls(layer):
-    """Names of metaballs: only one of a family is drawn, for all."""
-    return {thing.name for thing in layer.objects if thing.type == "META"}
-
-
-def _rendered(layer):
-    """Names of the objects of a view layer that a render shows."""
-    found = set()
-
-    def walk(branch):
-        if not branch.exclude and not branch.collection.hide_render:
-            found.update(thing.name for thing in branch.collection.objects if not thing.hide_render)
-            for child in branch.children:
-                walk(child)
-
-    walk(layer.layer_collection)
-    return found
+def _metaballs(layer):
+    """Names of metaballs: only one of each family is drawn."""
+    return {obj.name for obj in layer.objects if obj.type == "META"}
 
 
 def _is_finite(vectors):
@@ -295,7 +287,7 @@ def _is_finite(vectors):
 
 
 def _corners_of(mesh):
-    """The eight corners of a mesh's box, not a number if a coordinate is none; None for a mesh without vertices."""
+    """The eight corners of a mesh's box, one NaN if a coordinate is not finite; None without vertices."""
     if not mesh.vertices:
         return None
     flat = _coordinates(mesh)
@@ -313,22 +305,22 @@ def _coordinates(mesh):
 
 
 def _keeps_axes(matrix):
-    """Whether a box along the axes is still one when moved by the matrix."""
+    """Whether the matrix keeps boxes along the axes."""
     return all(sum(abs(part) > 1e-7 * max(map(abs, row[:3])) for part in row[:3]) <= 1 for row in matrix[:3])
 
 
 def _average_of(mesh, name):
     """The average of a colour attribute ("": the active one); None if the mesh has none of that name."""
-    found = mesh.color_attributes.get(name) if name else mesh.color_attributes.active_color
-    if found is None or not len(found.data):
+    attribute = mesh.color_attributes.get(name) if name else mesh.color_attributes.active_color
+    if attribute is None or not len(attribute.data):
         return None
-    values = array("f", bytes(16 * len(found.data)))
-    found.data.foreach_get("color", values)
-    return tuple(sum(values[at::4]) / len(found.data) for at in range(3))
+    values = array("f", bytes(16 * len(attribute.data)))
+    attribute.data.foreach_get("color", values)
+    return tuple(sum(values[at::4]) / len(attribute.data) for at in range(3))
 
 
-def _lay_on(mesh, slot, surface):
-    """Makes the UV map of a picture the active one, moved as its mapping says; False if there is no such map."""
+def _use_uv_map(mesh, slot, surface):
+    """Activates the UV map of an image, with its mapping applied; False if there is no such map."""
     layers = mesh.uv_layers
     layer = layers.get(surface.uv_map) if surface.uv_map else layers.active
     if layer is None:
@@ -343,53 +335,45 @@ def _lay_on(mesh, slot, surface):
     return True
 
 
-def _strands(thing, system):
+def _strands(obj, system):
     """Line segments of a hair system, in the world."""
     steps = 2**system.settings.display_step
     count = len(system.particles) + len(system.child_particles)
     for number in range(0, count, max(1, count // _STRANDS)):
-        points = [system.co_hair(thing, particle_no=number, step=step) for step in range(steps + 1)]
+        points = [system.co_hair(obj, particle_no=number, step=step) for step in range(steps + 1)]
         points = [point for point in points if point.length_squared > 0]
-        yield from zip(points, points[1:])  # noqa: B905, RUF007 - not in Python 3.9
+        yield from itertools.pairwise(points)
 
 
 def _strokes(data):
-    """(layer, stroke) of a drawing, as far as they are shown."""
+    """(layer, stroke) of a drawing, that are visible."""
     for layer in data.layers:
         frame = None if layer.hide else layer.current_frame()
         for stroke in frame.drawing.strokes if frame else ():
             yield layer, stroke
 
 
-def _pen_of(data):
+def _largest_radius(data):
     """The largest radius of its strokes."""
     return max((point.radius for _, stroke in _strokes(data) for point in stroke.points), default=0.0)
 
 
-def _ink_of(data):
+def _stroke_segments(data):
     """Line segments of a drawing."""
     for layer, stroke in _strokes(data):
         points = [layer.matrix_local @ point.position for point in stroke.points]
-        yield from zip(points, points[1:])  # noqa: B905, RUF007 - not in Python 3.9
+        yield from itertools.pairwise(points)
 
 
-def _gas_of(thing):
-    """The settings of the gas domain that an object is; None if it is none."""
-    domain = _domain_of(thing)
+def _gas_of(obj):
+    """The fluid domain settings of an object; None if it is not a domain of gas."""
+    domain = domain_of(obj, shown_only=True)
     return domain if domain is not None and domain.domain_type == "GAS" else None
 
 
-def _shows_liquid(thing):
-    """Whether an object is a domain with the surface of its liquid for a mesh; without, it shows its own."""
-    domain = _domain_of(thing)
+def _shows_liquid(obj):
+    """Whether an object is a domain that shows the surface of its liquid, not its own mesh."""
+    domain = domain_of(obj, shown_only=True)
     if domain is None or domain.domain_type != "LIQUID" or not domain.use_mesh:
         return False
-    return len(thing.data.vertices) != len(thing.original.data.vertices)
-
-
-def _domain_of(thing):
-    """The settings of the fluid domain that an object is; None if it is none."""
-    for modifier in thing.modifiers:
-        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" and modifier.show_viewport:
-            return modifier.domain_settings
-    return None
+    return len(obj.data.vertices) != len(obj.original.data.vertices)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What colour or number arrives at a socket of a shader tree, where a texture counts as its average.
+"""The colour or number that arrives at a socket of a shader tree; a texture counts as its average.
 
 Colours are scene-linear RGB.
 """
@@ -11,48 +11,48 @@ import bpy
 from mathutils import Color
 
 GREY = (0.5, 0.5, 0.5)
-_DEEPEST = 40  # nodes on one way: trees may be long, and broken ones may run in circles
-_SMALL = 1024  # pixels a side of a picture that is read as a whole;
-_THUMB = 8  # a larger one is shrunk to so many
+_DEEPEST = 40  # nodes in a chain: broken trees may have circles
+_SMALL = 1024  # pixels; an image of up to this size squared is read as a whole,
+_THUMB = 8  # a larger one is shrunk to this size
 
 
-class Reader:
-    """Reads one tree. ``averages`` of pictures, by name, are kept for the next one.
+class ShaderReader:
+    """Reads one tree. ``averages``: of images, by name, a cache shared between trees.
 
-    ``attribute``: the name of the colour attribute that was met last, None if there was none.
+    ``attribute``: the name of the colour attribute that was read last, or None.
     """
 
     def __init__(self, object_colour, averages):
         self.object_colour = tuple(object_colour)[:3]
         self.averages = averages
         self.attribute = None
-        self._groups = ()  # the group nodes that lead to where it reads, innermost last
+        self._groups = ()  # the group nodes around the current node, innermost last
         self._depth = 0
 
     def colour(self, socket):
-        """The colour that an input takes."""
+        """The colour at an input."""
         if link_into(socket) is None:
             return _rgb(getattr(socket, "default_value", GREY))
         return self.follow(socket, self._colour_of, _rgb) or GREY
 
     def number(self, socket, otherwise=0.5):
-        """The number that an input takes; ``otherwise`` if there is no such input."""
+        """The number at an input; ``otherwise`` if there is none."""
         if socket is None:
             return otherwise
         return sum(self.colour(socket)) / 3
 
     def named(self, node, name, otherwise=0.5):
-        """The number that a node's input of that name takes."""
+        """The number at a node's input of that name."""
         return self.number(node.inputs.get(name), otherwise)
 
     def source(self, socket):
-        """The node that an input hangs on."""
+        """The node that an input is linked to."""
         return self.follow(socket, lambda node, _out: node)
 
     def follow(self, socket, read, value=None):
-        """What ``read`` (node, output) makes of what an input hangs on, seen through reroutes, groups and muted nodes.
+        """The result of ``read(node, output)`` for what feeds an input, through reroutes, groups and muted nodes.
 
-        ``value`` reads an input that hangs on nothing, at a group's border.
+        ``value`` reads the default of an unlinked input of a group node.
         """
         link = link_into(socket)
         if link is None:
@@ -73,20 +73,20 @@ class Reader:
             self._groups, self._depth = groups, self._depth - 1
 
     def _through(self, node, out):
-        """(the input that an output only hands on, the groups around that); the output itself if it makes a value."""
+        """(the input that an output only passes on, the groups around it); the output itself if it is computed."""
         groups = self._groups
         if node.bl_idname == "NodeReroute":
             return node.inputs[0], groups
         if node.mute:
             return next(
-                (one.from_socket for one in node.internal_links if one.to_socket == out), None
+                (entry.from_socket for entry in node.internal_links if entry.to_socket == out), None
             ), groups
         if node.bl_idname == "ShaderNodeGroup" and node.node_tree is not None:
-            ends = [one for one in node.node_tree.nodes if one.bl_idname == "NodeGroupOutput"]
-            ends.sort(key=lambda one: not one.is_active_output)
-            return (_same(ends[0].inputs, out) if ends else None), (*groups, node)
+            ends = [entry for entry in node.node_tree.nodes if entry.bl_idname == "NodeGroupOutput"]
+            ends.sort(key=lambda entry: not entry.is_active_output)
+            return (_matching_socket(ends[0].inputs, out) if ends else None), (*groups, node)
         if node.bl_idname == "NodeGroupInput" and groups:
-            return _same(groups[-1].inputs, out), groups[:-1]
+            return _matching_socket(groups[-1].inputs, out), groups[:-1]
         return out, groups
 
     def _colour_of(self, node, out):
@@ -99,9 +99,9 @@ class Reader:
             return _KNOWN[kind](self, node)
         if kind.startswith("Tex"):
             ends = [node.inputs.get(name) for name in ("Color1", "Color2")]
-            return between(*map(self.colour, ends), 0.5) if all(ends) and out.name == "Color" else GREY
-        # What is not known is taken to let its colour through.
-        through = next((one for one in node.inputs if one.type == "RGBA" and one.enabled), None)
+            return interpolated(*map(self.colour, ends), 0.5) if all(ends) and out.name == "Color" else GREY
+        # An unknown node is assumed to pass its colour on.
+        through = next((entry for entry in node.inputs if entry.type == "RGBA" and entry.enabled), None)
         return self.colour(through) if through is not None else None
 
     def _average(self, image):
@@ -111,22 +111,22 @@ class Reader:
 
 
 def link_into(socket):
-    """The link that gives an input its value; None where there is none that holds."""
+    """The valid link into an input; None if there is none."""
     return next((link for link in socket.links if link.is_valid and not link.is_muted), None)
 
 
-def bounded(value):
+def clamped(value):
     """Between 0 and 1."""
     return min(1.0, max(0.0, value)) if math.isfinite(value) else 0.0
 
 
-def between(one, two, share):
+def interpolated(first, second, share):
     """From one colour (0) to another (1)."""
-    return tuple(a + (b - a) * share for a, b in zip(one, two))  # noqa: B905 - Python 3.9 has no strict
+    return tuple(a + (b - a) * share for a, b in zip(first, second, strict=True))
 
 
-def _same(sockets, socket):
-    return next((one for one in sockets if one.identifier == socket.identifier), None)
+def _matching_socket(sockets, socket):
+    return next((other for other in sockets if other.identifier == socket.identifier), None)
 
 
 def _rgb(value):
@@ -140,7 +140,7 @@ def _rgb(value):
 
 
 def _average_of(image):
-    """The average colour of a picture; None if it cannot be read."""
+    """The average colour of an image; None if it cannot be read."""
     values = _values_of(image)
     channels = image.channels
     if not values or not channels:
@@ -153,7 +153,7 @@ def _average_of(image):
 
 
 def _values_of(image):
-    """All values of a picture, or of a small copy if it is large; none if it cannot be read."""
+    """All values of an image, or of a small copy if it is large; () if it cannot be read."""
     if image.size[0] * image.size[1] <= _SMALL**2 or image.is_dirty:
         values = array("f", bytes(4 * len(image.pixels)))
         if values:
@@ -179,12 +179,12 @@ def _attribute(reader, node):
 
 
 def _mix(reader, node):
-    factor, one, two = [entry for entry in node.inputs if entry.enabled][:3]
+    factor, first, second = [entry for entry in node.inputs if entry.enabled][:3]
     blend = node.blend_type if getattr(node, "data_type", "RGBA") == "RGBA" else "MIX"
-    return _blended(blend, bounded(reader.number(factor)), reader.colour(one), reader.colour(two))
+    return _blended(blend, clamped(reader.number(factor)), reader.colour(first), reader.colour(second))
 
 
-def _blended(blend, share, one, two):
+def _blended(blend, share, first, second):
     mixes = {
         "MULTIPLY": lambda a, b: a * b,
         "ADD": lambda a, b: a + b,
@@ -197,13 +197,13 @@ def _blended(blend, share, one, two):
         "DIVIDE": lambda a, b: a / b if b else a,
     }
     mix = mixes.get(blend)
-    return between(one, tuple(map(mix, one, two)) if mix else two, share)
+    return interpolated(first, tuple(map(mix, first, second)) if mix else second, share)
 
 
 def _ramp(reader, node):
     source = reader.source(node.inputs[0])
     if source is None or not source.bl_idname.startswith("ShaderNodeTex"):
-        return tuple(node.color_ramp.evaluate(bounded(reader.number(node.inputs[0])))[:3])
+        return tuple(node.color_ramp.evaluate(clamped(reader.number(node.inputs[0])))[:3])
     # Noise keeps to the middle of its range.
     first, last = (0.3, 0.7) if "Noise" in source.bl_idname else (0.0, 1.0)
     samples = [node.color_ramp.evaluate(first + (last - first) * (at + 0.5) / 16) for at in range(16)]
@@ -212,16 +212,18 @@ def _ramp(reader, node):
 
 def _hue_saturation(reader, node):
     before = reader.colour(node.inputs["Color"])
-    colour = Color(map(bounded, before))
+    colour = Color(map(clamped, before))
     hue = (colour.h + reader.named(node, "Hue") + 0.5) % 1.0
-    colour.hsv = hue, bounded(colour.s * reader.named(node, "Saturation", 1.0)), colour.v
+    colour.hsv = hue, clamped(colour.s * reader.named(node, "Saturation", 1.0)), colour.v
     share = reader.number(node.inputs.get("Factor") or node.inputs.get("Fac"), 1.0)
-    return between(before, tuple(part * reader.named(node, "Value", 1.0) for part in colour), bounded(share))
+    return interpolated(
+        before, tuple(part * reader.named(node, "Value", 1.0) for part in colour), clamped(share)
+    )
 
 
 def _invert(reader, node):
     before = reader.colour(node.inputs[1])
-    return between(before, tuple(1 - part for part in before), bounded(reader.number(node.inputs[0])))
+    return interpolated(before, tuple(1 - part for part in before), clamped(reader.number(node.inputs[0])))
 
 
 def _gamma(reader, node):
@@ -245,32 +247,32 @@ def _combined(reader, node):
     if mode == "rgb":
         return parts
     colour = Color()
-    setattr(colour, mode, tuple(map(bounded, parts)))
+    setattr(colour, mode, tuple(map(clamped, parts)))
     return tuple(colour)
 
 
 def _blackbody(reader, node):
     """Roughly: red at 1,000 K, white at 6,500 K, bluish above."""
     kelvin = reader.number(node.inputs[0])
-    warm, cold = bounded((kelvin - 1000) / 5500), bounded((kelvin - 6500) / 10000)
+    warm, cold = clamped((kelvin - 1000) / 5500), clamped((kelvin - 6500) / 10000)
     return (1.0 - 0.5 * cold, 0.25 + 0.75 * warm**0.7 - 0.25 * cold, warm**1.8)
 
 
 def _math(reader, node):
-    one, two = (reader.number(entry) for entry in node.inputs[:2])
-    known = {"ADD": one + two, "SUBTRACT": one - two, "MULTIPLY": one * two}
-    known.update(MAXIMUM=max(one, two), MINIMUM=min(one, two))
+    first, second = (reader.number(entry) for entry in node.inputs[:2])
+    known = {"ADD": first + second, "SUBTRACT": first - second, "MULTIPLY": first * second}
+    known.update(MAXIMUM=max(first, second), MINIMUM=min(first, second))
     return (known.get(node.operation, 0.5),) * 3
 
 
-def _put_out(reader, node):
+def _output_value(reader, node):
     del reader
     return _rgb(node.outputs[0].default_value)
 
 
 _KNOWN = {
-    "RGB": _put_out,
-    "Value": _put_out,
+    "RGB": _output_value,
+    "Value": _output_value,
     "VertexColor": _attribute,
     "Attribute": _attribute,
     "Mix": _mix,
@@ -285,7 +287,7 @@ _KNOWN = {
     "CombineRGB": _combined,
     "Blackbody": _blackbody,
     "Math": _math,
-    # Weights of what is seen at a glancing angle: over a whole body, little.
+    # Weights of glancing angles: small on average.
     "Fresnel": lambda _reader, _node: (0.1,) * 3,
     "LayerWeight": lambda _reader, _node: (0.2,) * 3,
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scene beside the open one, to take pictures of copied geometry in; it goes without a trace."""
+"""A temporary scene in which pictures of copied geometry are rendered; it is removed without a trace."""
 
 import contextlib
 import os
@@ -9,111 +9,117 @@ from mathutils import Matrix, Vector
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..render.graphics import CYCLES, WORKBENCH
+from ..blend.temporary import without_handlers, without_render_result
+from ..render.engines import CYCLES, WORKBENCH, best_engine
 
 REACH = (
-    10.0  # what is looked at is scaled to this diameter: clipping and shading are then alike for all sizes
+    10.0  # the diagonal that the subject is scaled to, so that clipping and shading do not depend on its size
 )
 _NAME = ".preview"
-_SOFTER = (
-    2  # pictures are rendered so many times as large, for the caller to shrink: cheaper than more samples
+_SUPERSAMPLING = (
+    2  # pictures are this many times as large as asked; shrinking them is cheaper than more samples
 )
 
 
-class Stage:
-    """The scene. Use it in ``with``: whatever happens, what was made for it is removed at the end."""
+def drawing_engine(notes):
+    """The engine for pictures; ``notes`` gets a sentence if it is not Workbench."""
+    engine, fault = best_engine()
+    if fault:
+        notes.append(f"Drawn with Cycles, in lower quality: Workbench cannot draw on this machine ({fault}).")
+    return engine
+
+
+class StudioScene:
+    """The temporary scene, used in ``with``: everything made for it is removed at the end, also after errors."""
 
     def __init__(self, engine):
         self.engine = engine
-        self.finer = _SOFTER if engine == WORKBENCH else 1
-        self._made = []
+        self.supersampling = _SUPERSAMPLING if engine == WORKBENCH else 1
+        self._owned = []
         self._materials = {}
         self._here = Matrix()
 
     def __enter__(self):
-        self._handlers = _muted_handlers()
-        self._had_result = "Render Result" in bpy.data.images
-        try:
+        with contextlib.ExitStack() as undo:
+            undo.enter_context(without_handlers())
+            undo.enter_context(without_render_result())
+            undo.callback(self._remove)
             self.scene = self.owned(bpy.data.scenes.new(_NAME))
             self._set_up()
-        except BaseException:
-            self.__exit__()
-            raise
+            self._undo = undo.pop_all()
         return self
 
     def __exit__(self, *_error):
-        # Objects before what they use, so that no user count is left above zero.
-        bpy.data.batch_remove(self._made[::-1])
-        self._made.clear()
-        result = bpy.data.images.get("Render Result")
-        if result is not None and not self._had_result:
-            bpy.data.images.remove(result)
-        for handlers, kept in self._handlers:
-            handlers[:] = kept
+        self._undo.close()
+
+    def _remove(self):
+        # Objects before what they use, so that no user count stays above zero.
+        bpy.data.batch_remove(self._owned[::-1])
+        self._owned.clear()
 
     def owned(self, block):
-        """Takes a data-block in, to be removed with the stage."""
-        self._made.append(block)
+        """Registers a data-block to be removed with the scene; returns it."""
+        self._owned.append(block)
         return block
 
-    # What stands on it
+    # Content
 
     @property
     def scale(self):
-        """Units of the stage for a metre."""
+        """Units of this scene for a metre of the open one."""
         return self._here.median_scale
 
     def aim(self, centre, diameter):
-        """Puts a ball of the open scene's world (metres) into the middle of the stage; before anything is added."""
+        """Maps a sphere of the open scene's world (metres) to the middle; call it before adding anything."""
         self._here = Matrix.Scale(REACH / diameter, 4) @ Matrix.Translation(-Vector(centre))
 
     def placed(self, matrix):
-        """A matrix of the open scene's world, on the stage."""
+        """A matrix of the open scene's world as one of this scene."""
         return self._here @ matrix
 
     def add(self, data, matrix):
-        """An object on the stage, of a data-block that belongs to it, where ``matrix`` has it in the open scene."""
-        thing = self.owned(bpy.data.objects.new(_NAME, data))
-        thing.matrix_world = self._here @ matrix
-        self.scene.collection.objects.link(thing)
-        return thing
+        """Adds an object for a registered data-block, at ``matrix`` of the open scene's world."""
+        obj = self.owned(bpy.data.objects.new(_NAME, data))
+        obj.matrix_world = self._here @ matrix
+        self.scene.collection.objects.link(obj)
+        return obj
 
     def material(self, surface):
-        """A material that looks like a surface; the same for the same."""
+        """The material for a PreviewMaterial; cached."""
         texture = (surface.image.name_full, surface.uv_map) if surface.image else None
         rgba = (*surface.rgb, surface.alpha)
         key = (*(round(part, 4) for part in rgba), round(surface.roughness, 2), texture)
         if key not in self._materials:
-            made = self.owned(bpy.data.materials.new(_NAME))
-            made.diffuse_color = rgba
-            made.roughness = surface.roughness
-            picture = _lay_on(made, surface) if surface.image else None
+            material = self.owned(bpy.data.materials.new(_NAME))
+            material.diffuse_color = rgba
+            material.roughness = surface.roughness
+            picture = _add_image(material, surface) if surface.image else None
             if self.engine == CYCLES:
-                _shine(made, surface, picture)
-            self._materials[key] = made
+                _make_emissive(material, surface, picture)
+            self._materials[key] = material
         return self._materials[key]
 
     def update(self):
-        """Lets what was added be found by rays; returns the dependency graph."""
+        """Updates the scene for ray casts; returns the dependency graph."""
         layer = self.scene.view_layers[0]
         layer.update()
         return layer.depsgraph
 
     # Pictures
 
-    def shoot(self, camera, size, path, *, slant=1.0):
-        """Renders what ``camera`` (an object of the stage) sees, ``size`` pixels. Raises Refused.
+    def render(self, camera, size, path, *, slant=1.0):
+        """Renders the view of ``camera`` (an object of this scene) in ``size`` pixels. Raises Refused.
 
-        ``slant``: how far the light comes from aside, 0 for no shadows at all.
+        ``slant``: how far the light comes from the side; 0 for no shadows.
         """
         render = self.scene.render
         turn = camera.matrix_world.to_3x3().normalized()
-        # From over the viewer's left shoulder; the setting counts up as its second part, and backwards as its third.
+        # From over the viewer's left shoulder; in the setting, up is the second component, and backwards the third.
         x, y, z = (turn @ Vector((-0.2 * slant, 0.32 * slant, 1))).normalized()
         self.scene.display.light_direction = x, z, -y
         self.scene.camera = camera
         self.scene.display.shading.show_shadows = slant > 0
-        render.resolution_x, render.resolution_y = (side * self.finer for side in size)
+        render.resolution_x, render.resolution_y = (side * self.supersampling for side in size)
         render.filepath = path
         try:
             if os.path.lexists(path):
@@ -122,16 +128,16 @@ class Stage:
         except (OSError, RuntimeError) as error:
             raise Refused(f"The picture could not be rendered: {str(error).strip()[:300]}") from None
         if not os.path.isfile(path):
-            raise Refused("The picture could not be rendered: the engine left no file.")
+            raise Refused("The picture could not be rendered: the engine wrote no file.")
 
     def camera(self, data=None, matrix=None):
-        """A camera on the stage; of its own unless ``data`` is given, which then belongs to the stage."""
+        """Adds a camera, of new or given camera ``data``."""
         data = data or bpy.data.cameras.new(_NAME)
-        thing = self.owned(bpy.data.objects.new(_NAME, self.owned(data)))
-        self.scene.collection.objects.link(thing)
+        obj = self.owned(bpy.data.objects.new(_NAME, self.owned(data)))
+        self.scene.collection.objects.link(obj)
         if matrix is not None:
-            thing.matrix_world = (self._here @ matrix).normalized()
-        return thing
+            obj.matrix_world = (self._here @ matrix).normalized()
+        return obj
 
     def _set_up(self):
         scene = self.scene
@@ -146,7 +152,7 @@ class Stage:
         render.image_settings.color_depth = "8"
         render.image_settings.compression = 10
         for name, value in (("view_transform", "Standard"), ("look", "None")):
-            with contextlib.suppress(TypeError):  # the user's colour configuration may not know it
+            with contextlib.suppress(TypeError):  # the user's colour configuration may lack it
                 setattr(scene.view_settings, name, value)
         if self.engine == WORKBENCH:
             _light_workbench(scene)
@@ -155,7 +161,7 @@ class Stage:
 
 
 def _light_cycles(scene):
-    """No light at all: materials shine by themselves, see ``_shine``."""
+    """Uses no lights: materials emit light themselves, see ``_make_emissive``."""
     scene.cycles.samples = 8
     scene.cycles.use_adaptive_sampling = False
     scene.cycles.use_denoising = False
@@ -191,8 +197,8 @@ def _tree_of(material):
     return material.node_tree
 
 
-def _lay_on(material, surface):
-    """Gives a material its picture; returns that node."""
+def _add_image(material, surface):
+    """Adds the image of a PreviewMaterial to a material; returns the node."""
     tree = _tree_of(material)
     picture = tree.nodes.new("ShaderNodeTexImage")
     picture.image = surface.image
@@ -204,9 +210,8 @@ def _lay_on(material, surface):
     return picture
 
 
-def _shine(material, surface, picture):
-    """Nodes for an engine that runs them: the bare colour, darker where the surface turns away. It needs no light,
-    and few samples."""
+def _make_emissive(material, surface, picture):
+    """Makes a material emit its colour, darker where the surface turns away: it needs no light and few samples."""
     tree = _tree_of(material)
     output = tree.get_output_node("ALL")
     light, clear, mix = (
@@ -224,14 +229,3 @@ def _shine(material, surface, picture):
         links.append((picture.outputs["Color"], light.inputs["Color"]))
     for out, into in links:
         tree.links.new(out, into)
-
-
-def _muted_handlers():
-    """Takes the file's own handlers off, so that a picture runs none of them; returns what to put back."""
-    found = []
-    for name in dir(bpy.app.handlers):
-        handlers = getattr(bpy.app.handlers, name)
-        if isinstance(handlers, list) and handlers:
-            found.append((handlers, list(handlers)))
-            handlers.clear()
-    return found

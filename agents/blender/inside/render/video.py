@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts pictures together to a film with Blender's own FFmpeg: H.264 in MP4."""
+"""Makes a video of pictures with Blender's own FFmpeg: H.264 in MP4."""
 
 import os
 import sys
@@ -9,43 +9,42 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from .frame_render import drop_result
-from .shot_settings import literal
+from ..blend.temporary import without_render_result
+from .shot_settings import escaped_path
 
-_SCENE = ".film"
+_SCENE = ".video"
 
 
 def assemble(arguments, report):
-    """Makes ``path`` of ``pictures`` (file names in ``folder``, one a frame, repeated where one is held).
+    """Makes the video ``path`` of ``pictures``: file names in ``folder``, one for each frame.
 
-    ``width`` and ``height`` are the pictures' own and even; ``fps`` / ``fps_base`` frames a second. Returns what is
-    read back from the film: {"frames", "width", "height", "fps", "bytes", "seconds"}.
+    ``width`` and ``height`` are those of the pictures, and even; the rate is ``fps`` / ``fps_base``. Returns what is
+    read back from the video: {"frames", "width", "height", "fps", "bytes", "seconds"}.
     """
     path = arguments["path"]
     started = time.perf_counter()
-    had_result = "Render Result" in bpy.data.images
     scene = bpy.data.scenes.new(_SCENE)
-    told = _Told(scene.name, len(arguments["pictures"]), report)
+    progress = _Progress(scene.name, len(arguments["pictures"]), report)
     try:
-        _cut(scene, arguments)
+        _add_strip(scene, arguments)
         _set_up(scene, arguments)
-        bpy.app.handlers.render_post.append(told)
-        bpy.ops.render.render(animation=True, scene=scene.name)
+        bpy.app.handlers.render_post.append(progress)
+        with without_render_result():
+            bpy.ops.render.render(animation=True, scene=scene.name)
     except RuntimeError as error:
         raise Refused(f"The video could not be made: {str(error).strip()[:600]}") from None
     finally:
-        if told in bpy.app.handlers.render_post:
-            bpy.app.handlers.render_post.remove(told)
+        if progress in bpy.app.handlers.render_post:
+            bpy.app.handlers.render_post.remove(progress)
         bpy.data.scenes.remove(scene)
-        drop_result(had_result)
     sys.stdout.flush()
     if not os.path.isfile(path):
-        raise Refused("The video could not be made: FFmpeg left no file.")
+        raise Refused("The video could not be made: FFmpeg wrote no file.")
     return {**_read_back(path), "bytes": os.path.getsize(path), "seconds": time.perf_counter() - started}
 
 
-def _cut(scene, arguments):
-    """One strip of all the pictures."""
+def _add_strip(scene, arguments):
+    """Adds one strip with all the pictures."""
     pictures = arguments["pictures"]
     editor = scene.sequence_editor_create()
     strips = editor.strips if hasattr(editor, "strips") else editor.sequences  # the second before 4.4
@@ -62,7 +61,7 @@ def _set_up(scene, arguments):
     render.resolution_percentage = 100
     render.fps, render.fps_base = arguments["fps"], arguments["fps_base"]
     render.use_file_extension, render.use_overwrite, render.use_placeholder = False, True, False
-    render.filepath = literal(arguments["path"])
+    render.filepath = escaped_path(arguments["path"])
     if hasattr(image, "media_type"):
         image.media_type = "VIDEO"
     image.file_format = "FFMPEG"
@@ -71,7 +70,7 @@ def _set_up(scene, arguments):
     film.constant_rate_factor, film.ffmpeg_preset = "HIGH", "GOOD"
     film.gopsize = max(1, round(arguments["fps"] / arguments["fps_base"]))
     film.use_autosplit = False
-    # The pictures carry their look already.
+    # Colour management is already in the pictures.
     view = scene.view_settings
     view.view_transform, view.look, view.exposure, view.gamma = "Standard", "None", 0.0, 1.0
 
@@ -80,7 +79,7 @@ def _read_back(path):
     try:
         clip = bpy.data.movieclips.load(path)
     except RuntimeError as error:
-        raise Refused(f"The video that was made cannot be read: {str(error).strip()[:300]}") from None
+        raise Refused(f"The video was made, but cannot be read: {str(error).strip()[:300]}") from None
     try:
         width, height = clip.size
         return {"frames": clip.frame_duration, "width": width, "height": height, "fps": clip.fps}
@@ -88,8 +87,8 @@ def _read_back(path):
         bpy.data.movieclips.remove(clip)
 
 
-class _Told:
-    """Counts the frames that were written."""
+class _Progress:
+    """Reports the number of frames written."""
 
     def __init__(self, scene, total, report):
         self._scene, self._total, self._report = scene, total, report

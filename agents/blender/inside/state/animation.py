@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves by itself: actions with their channels, NLA, drivers, shape keys."""
+"""Animation in a readout: actions with their channels, NLA tracks, drivers, shape keys."""
 
 from array import array
 
 import bpy
 
+from ..blend.fcurves import action_curves
 from .rna_values import number, numbers, text
 
-MOST_KEYS = 500_000  # of one readout whose values are looked at
+MOST_KEYS = 500_000  # of one readout whose values are read
 MOST_LISTED = (
     4_000  # drivers, tracks, shape keys or channels of one data-block; ``unlisted`` counts the others
 )
@@ -45,17 +46,17 @@ _INTERPOLATIONS = {}
 
 
 class _Keys:
-    """How many keys may still be looked at one by one."""
+    """How many keys of this readout may still be read."""
 
     left = MOST_KEYS
 
 
 def animation_facts(everything, chosen, detail):
-    """One entry for each animated data-block, called as the object that it belongs to.
+    """Yields entries for each animated data-block, named after the object that it belongs to.
 
-    ``everything``: the scene's objects; ``chosen``: those that are asked for, None for all and what is not theirs.
+    ``everything``: the scene's objects; ``chosen``: those to read, None for all and for what belongs to no object.
     """
-    wanted = None if chosen is None else _belonging(chosen)
+    wanted = None if chosen is None else _pointers_of(chosen)
     owners = _owners(everything)
     keys = _Keys()
     for attribute, kind in _KINDS.items():
@@ -65,26 +66,26 @@ def animation_facts(everything, chosen, detail):
             name = owners.get(block.as_pointer(), block.name)
             if attribute == "shape_keys":
                 yield _shape_keys(block, name)
-            yield from _of_block(block, name, kind, keys, detail)
+            yield from _block_entries(block, name, kind, keys, detail)
             if attribute in _WITH_NODES and (tree := _nodes_of(block)) is not None:
-                yield from _of_block(tree, name, f"{kind} nodes", keys, detail)
+                yield from _block_entries(tree, name, f"{kind} nodes", keys, detail)
 
 
 def _owners(everything):
     """{pointer of data or shape keys: name of the first object that uses them}."""
-    found = {}
-    for thing in everything:
-        data = thing.data
+    owners = {}
+    for obj in everything:
+        data = obj.data
         if data is not None:
-            found.setdefault(data.as_pointer(), thing.name)
+            owners.setdefault(data.as_pointer(), obj.name)
             keys = getattr(data, "shape_keys", None)
             if keys is not None:
-                found.setdefault(keys.as_pointer(), thing.name)
-    return found
+                owners.setdefault(keys.as_pointer(), obj.name)
+    return owners
 
 
 def unused_actions():
-    """Names of actions that nothing plays."""
+    """Names of actions without users."""
     return [action.name for action in bpy.data.actions if action.users - action.use_fake_user < 1]
 
 
@@ -94,118 +95,103 @@ def _nodes_of(block):
     return tree if tree is not None and tree.is_embedded_data else None
 
 
-def _belonging(chosen):
+def _pointers_of(chosen):
     """Pointers of the objects, their data, shape keys, materials and particle settings."""
-    found = set()
-    for thing in chosen:
-        data = thing.data
-        blocks = [thing, data, getattr(data, "shape_keys", None)]
-        blocks += [slot.material for slot in thing.material_slots]
-        blocks += [system.settings for system in thing.particle_systems]
-        found.update(block.as_pointer() for block in blocks if block is not None)
-    return found
+    pointers = set()
+    for obj in chosen:
+        data = obj.data
+        blocks = [obj, data, getattr(data, "shape_keys", None)]
+        blocks += [slot.material for slot in obj.material_slots]
+        blocks += [system.settings for system in obj.particle_systems]
+        pointers.update(block.as_pointer() for block in blocks if block is not None)
+    return pointers
 
 
-def _of_block(block, name, kind, keys, detail):
+def _block_entries(block, name, kind, keys, detail):
     animated = getattr(block, "animation_data", None)
     if animated is None:
         return
-    told = {"name": text(name)}
+    entry = {"name": text(name)}
     if kind:
-        told["of"] = kind
+        entry["of"] = kind
     if animated.action is not None:
-        yield {**told, **_action(animated, keys, detail)}
+        yield {**entry, **_action(animated, keys, detail)}
     if tracks := _listed("nla", animated.nla_tracks, _track):
-        yield told | tracks
+        yield entry | tracks
     if drivers := _listed("drivers", animated.drivers, _driver):
-        yield told | drivers
+        yield entry | drivers
 
 
 def _listed(key, items, read):
-    """{key: what ``read`` tells of each}, of so many as are told; {} where there are none."""
+    """{key: entries that ``read`` makes of the items}, ``unlisted``: how many more there are; {} for no items."""
     items = list(items)
-    found = {key: [read(item) for item in items[:MOST_LISTED]]} if items else {}
+    entry = {key: [read(item) for item in items[:MOST_LISTED]]} if items else {}
     if len(items) > MOST_LISTED:
-        found["unlisted"] = len(items) - MOST_LISTED
-    return found
+        entry["unlisted"] = len(items) - MOST_LISTED
+    return entry
 
 
 def _action(animated, keys, detail):
     action = animated.action
-    told = {"action": text(action.name)}
+    entry = {"action": text(action.name)}
     slot = getattr(animated, "action_slot", None)
     if slot is not None:
-        told["slot"] = text(slot.identifier)
+        entry["slot"] = text(slot.identifier)
     elif getattr(action, "slots", None):
-        told["slot"] = None
-    curves = curves_of(action, slot)
+        entry["slot"] = None
+    curves = action_curves(animated)
     groups = {}
     for curve in curves:
         groups.setdefault(curve.data_path, []).append(curve)
-    told["curves"] = len(curves)
-    told["keys"] = sum(len(curve.keyframe_points) for curve in curves)
+    entry["curves"] = len(curves)
+    entry["keys"] = sum(len(curve.keyframe_points) for curve in curves)
     ranges = [curve.range() for curve in curves if not curve.is_empty]
     if ranges:
-        told["range"] = numbers((min(low for low, _ in ranges), max(high for _, high in ranges)))
-    told.update(_listed("channels", groups.items(), lambda item: _channel(*item, keys, detail)))
+        entry["range"] = numbers((min(low for low, _ in ranges), max(high for _, high in ranges)))
+    entry.update(_listed("channels", groups.items(), lambda item: _channel(*item, keys, detail)))
     if animated.action_influence != 1.0:
-        told["influence"] = number(animated.action_influence)
-    return told
-
-
-def curves_of(action, slot):
-    """The f-curves that an action has for a slot: of its layers (4.4 and later), or its own."""
-    if not hasattr(action, "layers"):
-        return list(action.fcurves)
-    if slot is None:
-        return []
-    found = []
-    for layer in action.layers:
-        for strip in layer.strips:
-            bag = strip.channelbag(slot) if strip.type == "KEYFRAME" else None
-            if bag is not None:
-                found.extend(bag.fcurves)
-    return found
+        entry["influence"] = number(animated.action_influence)
+    return entry
 
 
 def _channel(path, curves, keys, detail):
     """The curves of one property: ``axes`` (array indices), ``keys`` in all, ``frames`` and ``values`` from–to."""
     counts = [len(curve.keyframe_points) for curve in curves]
-    told = {"path": text(path), "keys": sum(counts)}
+    entry = {"path": text(path), "keys": sum(counts)}
     axes = [curve.array_index for curve in curves]
     if axes != [0]:
-        told["axes"] = axes[:16]
+        entry["axes"] = axes[:16]
     held = [curve for curve, count in zip(curves, counts, strict=True) if count]
     if held:
         ends = [curve.range() for curve in held]
-        told["frames"] = [number(min(end[0] for end in ends)), number(max(end[1] for end in ends))]
-        told.update(_values(held, keys))
+        entry["frames"] = [number(min(end[0] for end in ends)), number(max(end[1] for end in ends))]
+        entry.update(_values(held, keys))
     sampled = sum(len(curve.sampled_points) for curve in curves)
     if sampled:
-        told["samples"] = sampled
-    if any(_dense(curve, count) for curve, count in zip(curves, counts, strict=True)):
-        told["every_frame"] = True
-    for word, curves_so in (
+        entry["samples"] = sampled
+    if any(_is_keyed_on_every_frame(curve, count) for curve, count in zip(curves, counts, strict=True)):
+        entry["every_frame"] = True
+    for word, affected in (
         ("muted", [curve for curve in curves if curve.mute]),
         ("broken", [curve for curve in curves if not curve.is_valid]),
     ):
-        if curves_so:
-            told[word] = (
-                True if len(curves_so) == len(curves) else [curve.array_index for curve in curves_so][:16]
+        if affected:
+            entry[word] = (
+                True if len(affected) == len(curves) else [curve.array_index for curve in affected][:16]
             )
     modifiers = sorted(
         {modifier.type for curve in curves for modifier in curve.modifiers if not modifier.mute}
     )
     if modifiers:
-        told["modifiers"] = modifiers
+        entry["modifiers"] = modifiers
     if any(curve.extrapolation == "LINEAR" for curve in curves):
-        told["extrapolation"] = "LINEAR"
+        entry["extrapolation"] = "LINEAR"
     if detail != "summary":
-        told.update(_interpolation(held))
-    return told
+        entry.update(_interpolation(held))
+    return entry
 
 
-def _dense(curve, count):
+def _is_keyed_on_every_frame(curve, count):
     """Whether it has a key on each frame of its range."""
     if count < 3:
         return False
@@ -225,14 +211,14 @@ def _values(curves, keys):
         points.foreach_get("co", places)
         low.append(min(places[1::2]))
         high.append(max(places[1::2]))
-    # A range for each axis tells which way it goes; more than a few are one range.
+    # Few curves have a range each, which shows the direction; many have one range together.
     if 1 < len(curves) <= 4:
         return {"values": [numbers(pair) for pair in zip(low, high, strict=True)]}
     return {"values": numbers((min(low), max(high)))}
 
 
 def _interpolation(curves):
-    """{"interpolation": …} where it is one and not Blender's usual one."""
+    """{"interpolation": …}; {} for Blender's default."""
     if not _INTERPOLATIONS:
         items = bpy.types.Keyframe.bl_rna.properties["interpolation"].enum_items
         _INTERPOLATIONS.update({item.value: item.identifier for item in items})
@@ -258,29 +244,29 @@ def _track(track):
         }
         for strip in list(track.strips)[:16]
     ]
-    told = {"name": text(track.name), "strips": strips}
+    entry = {"name": text(track.name), "strips": strips}
     if len(track.strips) > len(strips):
-        told["left_out"] = len(track.strips) - len(strips)
+        entry["left_out"] = len(track.strips) - len(strips)
     if track.mute:
-        told["muted"] = True
-    return told
+        entry["muted"] = True
+    return entry
 
 
 def _driver(curve):
     driver = curve.driver
-    told = {"path": text(curve.data_path), "type": driver.type}
+    entry = {"path": text(curve.data_path), "type": driver.type}
     if curve.array_index:
-        told["axis"] = curve.array_index
+        entry["axis"] = curve.array_index
     if driver.type == "SCRIPTED":
-        told["expression"] = text(driver.expression)
+        entry["expression"] = text(driver.expression)
     variables = [_variable(variable) for variable in list(driver.variables)[:8]]
     if variables:
-        told["variables"] = variables
+        entry["variables"] = variables
     if not driver.is_valid or not curve.is_valid:
-        told["broken"] = True
+        entry["broken"] = True
     if curve.mute:
-        told["muted"] = True
-    return told
+        entry["muted"] = True
+    return entry
 
 
 def _variable(variable):
@@ -296,30 +282,30 @@ def _variable(variable):
             targets.append(f"{owner}{bone}.{target.transform_type} ({target.transform_space})")
         else:
             targets.append(owner)
-    told = {"name": text(variable.name), "targets": targets}
+    entry = {"name": text(variable.name), "targets": targets}
     if variable.type != "SINGLE_PROP":
-        told["type"] = variable.type
-    return told
+        entry["type"] = variable.type
+    return entry
 
 
 def _shape_keys(keys, name):
-    told = {"name": text(name), "of": "shape keys"}
-    told.update(_listed("blocks", keys.key_blocks, _block))
+    entry = {"name": text(name), "of": "shape keys"}
+    entry.update(_listed("blocks", keys.key_blocks, _block))
     if not keys.use_relative:
-        told["absolute"] = number(keys.eval_time)
-    return told
+        entry["absolute"] = number(keys.eval_time)
+    return entry
 
 
 def _block(block):
-    told = {"name": text(block.name), "value": number(block.value)}
-    if _widened(block):
-        told["range"] = numbers((block.slider_min, block.slider_max))
+    entry = {"name": text(block.name), "value": number(block.value)}
+    if _has_own_range(block):
+        entry["range"] = numbers((block.slider_min, block.slider_max))
     if block.mute:
-        told["muted"] = True
+        entry["muted"] = True
     if block.vertex_group:
-        told["vertex_group"] = text(block.vertex_group)
-    return told
+        entry["vertex_group"] = text(block.vertex_group)
+    return entry
 
 
-def _widened(block):
+def _has_own_range(block):
     return (block.slider_min, block.slider_max) != (0.0, 1.0)

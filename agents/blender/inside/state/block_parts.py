@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which properties of a data-block are its own content, and to what part of it each belongs."""
+"""Which properties of a data-block are its content, and which part of it each belongs to."""
 
 import bpy
 
@@ -11,7 +11,7 @@ def _words(text):
     return frozenset(text.split())
 
 
-# Settings of the user interface, values that Blender derives from others, and what another part stands for.
+# User interface settings, values that Blender derives from others, and what other properties cover.
 _NEVER = _words(
     """rna_type original preview asset_data library override_library library_weak_reference session_uid tag
     use_fake_user use_extra_user is_runtime_data depsgraph particles child_particles edit_bones selection_sets exporters
@@ -52,7 +52,7 @@ _NEVER_OF = {
         select_end_character filepath"""
     ),
 }
-# What no picture depends on, but for which frame it is of, and how it is written.
+# What renders of a frame do not depend on.
 _NEVER_OF_PICTURES = {
     "Scene": _words(
         """frame_start frame_end frame_step frame_preview_start frame_preview_end use_preview_range
@@ -139,62 +139,62 @@ _REST_OF = {
 
 
 def rest_of(block):
-    """The part of a data-block that is none of those with a name of their own."""
-    return next((part for kind in _kinds(block) if (part := _REST_OF.get(kind.identifier))), _REST)
+    """The part for properties that belong to no other part."""
+    return next((part for kind in _rna_lineage(block) if (part := _REST_OF.get(kind.identifier))), _REST)
 
 
 def part_of(block, name):
     """The part that a property belongs to."""
-    for kind in _kinds(block):
+    for kind in _rna_lineage(block):
         if part := _PARTS_BY_PROPERTY.get(kind.identifier, {}).get(name):
             return part
     return _PARTS.get(name) or rest_of(block)
 
 
-def specials_of(block):
-    """{part: what no property of the data-block tells}."""
+def extra_parts_of(block):
+    """{part: content that no property of the data-block holds}."""
     if block.bl_rna.identifier != "Object":
         return {}
-    found = {}
+    parts = {}
     if len(block.vertex_groups):
         vertices = getattr(block.data, "vertices", ())
-        found["weights"] = [(one.group, one.weight) for vertex in vertices for one in vertex.groups]
+        parts["weights"] = [(group.group, group.weight) for vertex in vertices for group in vertex.groups]
     if hidden := _hidden(block):
-        found["visibility in view layers"] = hidden
-    return found
+        parts["visibility in view layers"] = hidden
+    return parts
 
 
-def _hidden(thing):
+def _hidden(obj):
     """The view layers in which the eye in the outliner hides it."""
     return [
         (scene.name, layer.name)
         for scene in bpy.data.scenes
         for layer in scene.view_layers
-        if thing.hide_get(view_layer=layer)
+        if obj.hide_get(view_layer=layer)
     ]
 
 
-def settings_of(thing, *, pictures):
-    """How to read each property: (name, VALUE | ARRAY | FLAGS | PATH | POINTER | COLLECTION, whether of a cache)."""
+def reading_plan_of(struct, *, pictures):
+    """How to read each property: (name, VALUE | ARRAY | FLAGS | PATH | POINTER | COLLECTION, is part of a cache)."""
     never, also, only = set(_NEVER), set(_ALSO), None
-    for kind in _kinds(thing):
+    for kind in _rna_lineage(struct):
         never |= _NEVER_OF.get(kind.identifier, set())
         if pictures:
             never |= _NEVER_OF_PICTURES.get(kind.identifier, set())
         also |= set(_ALSO_OF.get(kind.identifier, ()))
         only = only or _ONLY_OF.get(kind.identifier)
     plan = []
-    for prop in thing.bl_rna.properties:
+    for prop in struct.bl_rna.properties:
         name = prop.identifier
         if name not in also and (name in never or name.startswith("active") or (only and name not in only)):
             continue
-        how = _how(prop, name in also)
+        how = _access(prop, name in also)
         if how is not None:
-            plan.append((name, how, _is_cache(thing, prop)))
+            plan.append((name, how, _is_cache(struct, prop)))
     return plan
 
 
-def _how(prop, wanted):
+def _access(prop, wanted):
     if prop.type in {"POINTER", "COLLECTION"} and not wanted:
         return prop.type
     if prop.is_readonly and not wanted:
@@ -208,16 +208,16 @@ def _how(prop, wanted):
     return "ARRAY" if getattr(prop, "is_array", False) else "VALUE"
 
 
-def _is_cache(thing, prop):
-    """Whether it changes when a simulation is baked, and not when it is set up."""
+def _is_cache(struct, prop):
+    """Whether a bake sets it, rather than the user."""
     if prop.type == "POINTER":
         return prop.fixed_type.identifier == "PointCache"
-    return thing.bl_rna.identifier == "FluidDomainSettings" and prop.identifier.startswith(_CACHE_SETTINGS)
+    return struct.bl_rna.identifier == "FluidDomainSettings" and prop.identifier.startswith(_CACHE_SETTINGS)
 
 
-def _kinds(thing):
-    """Its type, and those that this is a kind of."""
-    kind = thing.bl_rna
+def _rna_lineage(struct):
+    """Its RNA type and the types that this one inherits from."""
+    kind = struct.bl_rna
     while kind is not None:
         yield kind
         kind = kind.base

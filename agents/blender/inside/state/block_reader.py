@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads one data-block with everything in it, part by part, into digests."""
+"""Reads a data-block with everything in it, part by part, into digests."""
 
 import functools
 import hashlib
@@ -8,14 +8,14 @@ from array import array
 
 import bpy
 
-from ..measure.scene_facts import curves_of
-from .block_parts import CACHES, CUSTOM, part_of, rest_of, settings_of, specials_of
+from ..blend.fcurves import played_curves
+from .block_parts import CACHES, CUSTOM, extra_parts_of, part_of, reading_plan_of, rest_of
 from .file_contents import contents_of_image, contents_of_path
 
-_MANY = 64  # elements; from here on, arrays are read at once
-_ELEMENTS = 8  # from here on, if the elements are plain
+_MANY = 64  # elements; from here on, they are read property by property
+_ELEMENTS = 8  # from here on, if they have no pointers
 _VALUES = frozenset({"VALUE", "ARRAY", "FLAGS"})
-_BY_NAME = frozenset({"objects", "children", "nodes", "attributes"})  # their order is the file's business
+_BY_NAME = frozenset({"objects", "children", "nodes", "attributes"})  # their order has no meaning
 _PROPERTY = re.compile(r"(?:(.*)\.)?(\w+)", re.DOTALL)
 _CUSTOM_PROPERTY = re.compile(r'(.*)\["((?:[^"\\]|\\.)*)"\]', re.DOTALL)
 _ANIMATED = "animated"
@@ -28,9 +28,9 @@ _MESH = (
 )
 
 
-def is_id(thing):
+def is_id(value):
     """Whether it is a data-block."""
-    return isinstance(thing, bpy.types.ID)
+    return isinstance(value, bpy.types.ID)
 
 
 def key_of(block):
@@ -46,82 +46,82 @@ def _kind_of(kind):
     return rna.identifier
 
 
-class Reader:
-    """Reads one data-block. Within a part, a struct is told by the number under which it was met first."""
+class BlockReader:
+    """Reads one data-block. Within a part, a struct is referred to by the number that it got when it was met first."""
 
     def __init__(self, block, plans, *, pictures):
-        """``plans`` is kept between readers. ``pictures``: only what these depend on."""
+        """``plans`` is shared between readers. ``pictures``: read only what renders depend on."""
         self._block = block
         self._plans = plans
         self._pictures = pictures
-        self._moving = {}
-        self._moving_kinds = set()
-        self._later = []
+        self._animated = {}
+        self._animated_types = set()
+        self._cache_properties = []
         self._begin()
 
     def read(self):
         """{part: (digest, the data-blocks that this part points to)}."""
-        block, found = self._block, {}
-        self._animate(block)
-        rest, members = self._members(block)
+        block, digests = self._block, {}
+        self._note_animation(block)
+        rest, members = self._plans_by_part(block)
         for part, plan in members.items():
             self._begin()
             self._feed(*self._values(block, plan))
             if part == rest:
                 self._feed(type(block).__name__)
-                self._special(block)
-            found[part] = self._drained()
-        for part, told in specials_of(block).items():
+                self._feed_special(block)
+            digests[part] = self._finish_part()
+        for part, content in extra_parts_of(block).items():
             self._begin()
-            self._feed(told)
-            found[part] = self._drained()
+            self._feed(content)
+            digests[part] = self._finish_part()
         self._begin()
         if custom := list(self._custom(block)):
             self._feed(*custom)
-            found[CUSTOM] = self._drained()
-        if self._later:
+            digests[CUSTOM] = self._finish_part()
+        if self._cache_properties:
             self._begin()
-            for thing, entry in self._later:
-                self._feed(*self._values(thing, (entry,), late=True))
-            found[CACHES] = self._drained()
-        return found
+            for struct, entry in self._cache_properties:
+                self._feed(*self._values(struct, (entry,), late=True))
+            digests[CACHES] = self._finish_part()
+        return digests
 
     def _begin(self):
         self._hash = hashlib.blake2b(digest_size=12)
         self._numbers = {(type(self._block), self._block.as_pointer()): 0}
-        self._waiting = []
+        self._unread = []
         self._reached = []
 
-    def _drained(self):
-        while self._waiting:
-            thing = self._waiting.pop()
-            self._animate(thing)
-            self._feed(type(thing).__name__)
-            self._feed(*self._values(thing, self._plan(thing)))
-            if hasattr(thing, "keys"):
-                self._feed(*self._custom(thing))
-            self._special(thing)
+    def _finish_part(self):
+        while self._unread:
+            struct = self._unread.pop()
+            self._note_animation(struct)
+            self._feed(type(struct).__name__)
+            self._feed(*self._values(struct, self._plan(struct)))
+            if hasattr(struct, "keys"):
+                self._feed(*self._custom(struct))
+            self._feed_special(struct)
         return self._hash.hexdigest(), self._reached
 
     def _feed(self, *parts):
         self._hash.update(repr(parts).encode("utf-8", "replace"))
 
-    def _number(self, thing):
-        key = (type(thing), thing.as_pointer())
+    def _number(self, struct):
+        key = (type(struct), struct.as_pointer())
         number = self._numbers.get(key)
         if number is None:
             number = self._numbers[key] = len(self._numbers)
-            self._waiting.append(thing)
+            self._unread.append(struct)
         return number
 
-    def _plan(self, thing):
-        kind = type(thing)
+    def _plan(self, struct):
+        kind = type(struct)
         plan = self._plans.get(kind)
         if plan is None:
-            plan = self._plans[kind] = settings_of(thing, pictures=self._pictures)
+            plan = self._plans[kind] = reading_plan_of(struct, pictures=self._pictures)
         return plan
 
-    def _members(self, block):
+    def _plans_by_part(self, block):
         """The part for all that has none of its own, and {part: how to read its properties}."""
         known = self._plans.get((type(block), "parts"))
         if known is None:
@@ -131,35 +131,33 @@ class Reader:
             known = self._plans[type(block), "parts"] = rest_of(block), members
         return known
 
-    # What keyframes and drivers set depends on the frame
+    # What keyframes and drivers set, which depends on the frame
 
-    def _animate(self, thing):
-        """Remembers what is not to be read of ``thing``, because its animation sets it."""
-        animation = getattr(thing, "animation_data", None)
+    def _note_animation(self, struct):
+        """Remembers the properties of ``struct`` that animation sets: they are not read."""
+        animation = getattr(struct, "animation_data", None)
         if animation is not None:
-            strips = [strip for track in animation.nla_tracks if not track.mute for strip in track.strips]
-            holders = [thing, *(_Holder(strip) for strip in strips if not strip.mute)]
-            for curve in (*(one for holder in holders for one in curves_of(holder)), *animation.drivers):
+            for curve in (*played_curves(struct), *animation.drivers):
                 if not curve.mute:
-                    self._note_moving(thing, curve.data_path, curve.array_index)
-        if isinstance(thing, bpy.types.Scene) and any(marker.camera for marker in thing.timeline_markers):
-            self._note_moving(thing, "camera", 0)
+                    self._note_animated_property(struct, curve.data_path, curve.array_index)
+        if isinstance(struct, bpy.types.Scene) and any(marker.camera for marker in struct.timeline_markers):
+            self._note_animated_property(struct, "camera", 0)
 
-    def _note_moving(self, thing, path, index):
-        found = _PROPERTY.fullmatch(path) or _CUSTOM_PROPERTY.fullmatch(path)
-        if found is None:
+    def _note_animated_property(self, struct, path, index):
+        match = _PROPERTY.fullmatch(path) or _CUSTOM_PROPERTY.fullmatch(path)
+        if match is None:
             return
         try:
-            owner = thing.path_resolve(found[1]) if found[1] else thing
-            key = (owner.as_pointer(), found[2])
+            owner = struct.path_resolve(match[1]) if match[1] else struct
+            key = (owner.as_pointer(), match[2])
         except (ValueError, AttributeError):
             return
-        self._moving.setdefault(key, set()).add(index)
-        self._moving_kinds.add(type(owner).__name__)
+        self._animated.setdefault(key, set()).add(index)
+        self._animated_types.add(type(owner).__name__)
 
-    def _without_moving(self, thing, name, value):
-        """The value, or of an array those of its items, that no animation sets."""
-        indices = self._moving.get((thing.as_pointer(), name)) if self._moving else None
+    def _without_animated(self, struct, name, value):
+        """The value, with a placeholder for it, or for items of an array, that animation sets."""
+        indices = self._animated.get((struct.as_pointer(), name)) if self._animated else None
         if indices is None:
             return value
         if isinstance(value, list):
@@ -168,14 +166,14 @@ class Reader:
 
     # Properties
 
-    def _values(self, thing, plan, *, late=False):
+    def _values(self, struct, plan, *, late=False):
         for entry in plan:
             name, how, is_cache = entry
             if is_cache and not late:
-                self._later.append((thing, entry))
+                self._cache_properties.append((struct, entry))
                 continue
             try:
-                value = getattr(thing, name)
+                value = getattr(struct, name)
             except (AttributeError, RuntimeError, UnicodeDecodeError):
                 continue
             if how == "COLLECTION":
@@ -183,12 +181,12 @@ class Reader:
             elif how == "PATH":
                 yield contents_of_path(value, self._block)
             elif how == "POINTER":
-                yield self._without_moving(thing, name, self._pointed(value))
+                yield self._without_animated(struct, name, self._reference(value))
             else:
-                made = _flat(value) if how == "ARRAY" else sorted(value) if how == "FLAGS" else value
-                yield self._without_moving(thing, name, made)
+                content = _flat(value) if how == "ARRAY" else sorted(value) if how == "FLAGS" else value
+                yield self._without_animated(struct, name, content)
 
-    def _pointed(self, value):
+    def _reference(self, value):
         if value is None:
             return None
         if is_id(value) and not getattr(value, "is_embedded_data", False):
@@ -203,17 +201,17 @@ class Reader:
             return
         listed = list(items)
         if name in _BY_NAME and listed and hasattr(listed[0], "name"):
-            listed.sort(key=lambda one: one.name_full if is_id(one) else one.name)
-        if name == "attributes":  # those with a dot are Blender's own: selections, and what is read otherwise
-            listed = [one for one in listed if not one.name.startswith(".")]
+            listed.sort(key=lambda item: item.name_full if is_id(item) else item.name)
+        if name == "attributes":  # those with a dot are Blender's own: selections, and what is read elsewhere
+            listed = [item for item in listed if not item.name.startswith(".")]
         yield len(listed)
         for item in listed:
-            yield self._pointed(item)
+            yield self._reference(item)
 
     def _columns(self, items, count):
-        """Feeds many plain elements property by property; whether they are such."""
+        """Feeds many simple elements property by property; returns whether they were simple."""
         first = items[0]
-        if first is None or is_id(first) or type(first).__name__ in self._moving_kinds:
+        if first is None or is_id(first) or type(first).__name__ in self._animated_types:
             return False
         plan = self._plan(first)
         plain = (count >= _MANY or _plain(first)) and all(how in _VALUES for _, how, _ in plan)
@@ -222,47 +220,40 @@ class Reader:
         self._feed(count, *(_column(items, first, name, how) for name, how, _ in plan))
         return True
 
-    def _custom(self, thing):
+    def _custom(self, struct):
         try:
-            items = sorted(thing.items())
+            items = sorted(struct.items())
         except (TypeError, AttributeError):
             return
         for key, value in items:
             yield key
             if is_id(value):
-                made = self._pointed(value)
+                content = self._reference(value)
             elif hasattr(value, "to_dict"):
-                made = value.to_dict()
+                content = value.to_dict()
             else:
-                made = value.to_list() if hasattr(value, "to_list") else value
-            yield self._without_moving(thing, key, made)
+                content = value.to_list() if hasattr(value, "to_list") else value
+            yield self._without_animated(struct, key, content)
 
-    def _special(self, thing):
-        """What no property tells."""
-        if isinstance(thing, bpy.types.Mesh):
+    def _feed_special(self, struct):
+        """Feeds content that no property holds."""
+        if isinstance(struct, bpy.types.Mesh):
             for name, member, code, wide in _MESH:
-                items = getattr(thing, name)
+                items = getattr(struct, name)
                 self._hash.update(_numbers(items.foreach_get, (member,), code, len(items) * wide))
-            self._feed([(layer.name, layer.active_render) for layer in thing.uv_layers])
-        elif isinstance(thing, bpy.types.Image):
-            self._feed(contents_of_image(thing))
-            if thing.is_dirty:
-                self._hash.update(_numbers(thing.pixels.foreach_get, (), "f", len(thing.pixels)))
-        elif getattr(thing, "packed_file", None) is not None:  # a sound, a font, a volume
-            self._feed(hashlib.blake2b(thing.packed_file.data).digest())
+            self._feed([(layer.name, layer.active_render) for layer in struct.uv_layers])
+        elif isinstance(struct, bpy.types.Image):
+            self._feed(contents_of_image(struct))
+            if struct.is_dirty:
+                self._hash.update(_numbers(struct.pixels.foreach_get, (), "f", len(struct.pixels)))
+        elif getattr(struct, "packed_file", None) is not None:  # a sound, a font, a volume
+            self._feed(hashlib.blake2b(struct.packed_file.data).digest())
 
 
-class _Holder:
-    """An NLA strip, as ``curves_of`` takes whatever has an action."""
-
-    def __init__(self, strip):
-        self.animation_data = strip
-
-
-def _plain(thing):
+def _plain(struct):
     return not any(
         prop.type in {"POINTER", "COLLECTION"} and prop.identifier != "rna_type"
-        for prop in thing.bl_rna.properties
+        for prop in struct.bl_rna.properties
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Caches of physics: which frames they hold, whether baked or outdated, where, and how large."""
+"""Physics caches in a readout: their frames, whether they are baked or outdated, where they are, how large."""
 
 import os
 import re
@@ -7,58 +7,57 @@ import re
 import bpy
 
 from ..physics import rigid_body_inputs
+from ..physics.caches import bytes_in_memory, file_prefix
 from .rna_values import text
 
-MOST_FILES = 50_000  # of one folder of caches that are looked at
-_UNITS = {"bytes": 1, "B": 1, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30, "TiB": 1 << 40}
+MOST_FILES = 50_000  # of one cache folder that are read
 _FRAMES = re.compile(r"([\d,]+) frames? (?:found|on disk|in memory)")
-_SIZE = re.compile(r"\(([\d.,]+) (bytes|B|KiB|MiB|GiB|TiB)\)")
 _FRAME_NUMBER = re.compile(r"_(-?\d{4,})\.")
 
 
 def point_cache_facts(cache, owner):
     """A point cache: ``state`` (baked, unbaked, baking), ``outdated``, ``range``, ``frames`` that it holds, ``bytes``.
 
-    ``owner``: the object or scene whose name is in that of its files.
+    ``owner``: the object or scene that its files are named after.
     """
-    told = {
+    facts = {
         "state": "baking" if cache.is_baking else "baked" if cache.is_baked else "unbaked",
         "range": [cache.frame_start, cache.frame_end],
     }
     if cache.frame_step != 1:
-        told["step"] = cache.frame_step
+        facts["step"] = cache.frame_step
     if cache.name:
-        told["name"] = text(cache.name)
+        facts["name"] = text(cache.name)
     held = _FRAMES.search(cache.info)
-    told["frames"] = int(held[1].replace(",", "")) if held else 0
+    facts["frames"] = int(held[1].replace(",", "")) if held else 0
     of_bodies = cache.is_baked and isinstance(owner, bpy.types.Scene)
     outdated = rigid_body_inputs.is_outdated(owner) if of_bodies else cache.is_outdated
-    # A cache that holds nothing cannot be out of date, whatever Blender has marked.
-    if outdated and (told["frames"] or cache.is_baked):
-        told["outdated"] = True
+    # An empty cache cannot be outdated, whatever Blender says.
+    if outdated and (facts["frames"] or cache.is_baked):
+        facts["outdated"] = True
     if cache.use_external:
-        told["external"] = text(cache.filepath)
+        facts["external"] = text(cache.filepath)
     elif cache.use_disk_cache:
-        told["on_disk"] = True
-        told.update(_files_of(owner, cache))
-    elif size := _SIZE.search(cache.info):
-        told["bytes"] = round(float(size[1].replace(",", "")) * _UNITS[size[2]])
-    return told
+        facts["on_disk"] = True
+        facts.update(_files_of(owner, cache))
+    elif (size := bytes_in_memory(cache)) is not None:
+        facts["bytes"] = size
+    return facts
 
 
 def _files_of(owner, cache):
-    """The bytes of a cache's files beside the .blend; {} where there are none."""
+    """The size of a cache's files beside the .blend; {} if there are none."""
     if not bpy.data.filepath:
         return {}
     stem = os.path.splitext(os.path.basename(bpy.data.filepath))[0]
     folder = os.path.join(os.path.dirname(bpy.data.filepath), f"blendcache_{stem}")
-    start = cache.name or owner.name.encode(errors="surrogateescape").hex().upper()
-    total = sum(size for name, size in _entries(folder) if name.startswith(f"{start}_"))
+    start = file_prefix(cache, owner)
+    total = sum(size for name, size in _entries(folder) if name.startswith(start))
     return {"bytes": total} if total else {}
 
 
 def _is_used(domain, part):
-    """Whether a domain has such a part at all: a bake of all calls every part baked."""
+    """Whether a domain uses this part: a bake of type ALL marks every part as baked."""
     if part in {"mesh", "particles", "noise"} and (part == "noise") != (domain.domain_type == "GAS"):
         return False
     kinds = ("spray_particles", "foam_particles", "bubble_particles", "tracer_particles")
@@ -67,9 +66,9 @@ def _is_used(domain, part):
 
 
 def fluid_cache_facts(domain):
-    """The cache of a fluid domain: which parts are baked, and the frames of each that lie on disk."""
+    """The cache of a fluid domain: which parts are baked, and the frames of each on disk."""
     parts = ("data", "noise", "mesh", "particles", "guide")
-    told = {
+    facts = {
         "type": domain.cache_type,
         "range": [domain.cache_frame_start, domain.cache_frame_end],
         "directory": text(domain.cache_directory),
@@ -79,10 +78,10 @@ def fluid_cache_facts(domain):
             if getattr(domain, f"has_cache_baked_{part}", False) and _is_used(domain, part)
         ],
     }
-    told["state"] = "baked" if "data" in told["baked"] else "unbaked"
+    facts["state"] = "baked" if "data" in facts["baked"] else "unbaked"
     baking = [part for part in parts if getattr(domain, f"is_cache_baking_{part}", False)]
     if baking:
-        told["state"] = "baking"
+        facts["state"] = "baking"
     folder = bpy.path.abspath(domain.cache_directory)
     held, total = {}, 0
     for part in (*parts[:-1], "guiding"):
@@ -94,8 +93,8 @@ def fluid_cache_facts(domain):
         if frames:
             held[part] = _span(frames)
     if held:
-        told["on_disk"], told["bytes"] = held, total
-    return told
+        facts["on_disk"], facts["bytes"] = held, total
+    return facts
 
 
 def nodes_cache_facts(modifier, bake):
@@ -104,9 +103,9 @@ def nodes_cache_facts(modifier, bake):
     Frames that are packed into the .blend cannot be seen from Python.
     """
     target = modifier.bake_target if bake.bake_target == "INHERIT" else bake.bake_target
-    told = {"node": text(bake.node.name) if bake.node is not None else None, "target": target}
+    facts = {"node": text(bake.node.name) if bake.node is not None else None, "target": target}
     if bake.use_custom_simulation_frame_range:
-        told["range"] = [bake.frame_start, bake.frame_end]
+        facts["range"] = [bake.frame_start, bake.frame_end]
     folder = bpy.path.abspath(bake.directory if bake.use_custom_path else modifier.bake_directory)
     if not bake.use_custom_path:
         folder = os.path.join(folder, str(bake.bake_id))
@@ -114,12 +113,12 @@ def nodes_cache_facts(modifier, bake):
         int(name.split("_")[0]) for name, _ in _entries(os.path.join(folder, "meta")) if name[:1].isdigit()
     }
     if frames:
-        told["on_disk"] = _span(frames)
-        told["bytes"] = sum(
+        facts["on_disk"] = _span(frames)
+        facts["bytes"] = sum(
             size for part in ("meta", "blobs") for _, size in _entries(os.path.join(folder, part))
         )
-    told["state"] = "baked" if frames else "unbaked" if target == "DISK" else "unbaked or packed"
-    return told
+    facts["state"] = "baked" if frames else "unbaked" if target == "DISK" else "unbaked or packed"
+    return facts
 
 
 def _span(frames):
@@ -127,10 +126,10 @@ def _span(frames):
 
 
 def _entries(folder):
-    """(name, size) of the files in a folder, of which only so many are looked at."""
+    """(name, size) of the files in a folder, of MOST_FILES at most."""
     try:
-        with os.scandir(folder) as found:
-            for count, entry in enumerate(found):
+        with os.scandir(folder) as entries:
+            for count, entry in enumerate(entries):
                 if count == MOST_FILES:
                     return
                 try:

@@ -1,68 +1,68 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What about a scene is likely to be a mistake, each in a sentence."""
+"""Likely mistakes in a scene, a sentence for each."""
 
 import math
 import os
 
 import bpy
 
+from ..blend.names import listed
 from .rna_values import text
 
 MOST_NAMES = 6
 
 
 def notes_of(scene, view_layer, objects, facts):
-    """Sentences about these objects and what they use."""
-    found = [
-        *_unfinished(scene, objects),
-        *_missing(),
-        *_shapeless(facts),
-        *_stale(facts),
-        *_broken(facts),
+    """Sentences about likely mistakes in these objects and what they use; ``facts`` is the readout so far."""
+    notes = [
+        *_invalid_setup(scene, objects),
+        *_missing_files(),
+        *_not_finite(facts),
+        *_outdated_caches(facts),
+        *_broken_animation(facts),
     ]
     if view_layer is not None and bpy.context.mode != "OBJECT":
         active = view_layer.objects.active
         name = f" ({text(active.name)})" if active is not None else ""
-        found.append(f"Blender is in {bpy.context.mode} mode{name}: edits show after it is left.")
-    return found
+        notes.append(f"Blender is in {bpy.context.mode} mode{name}: edits show only after leaving it.")
+    return notes
 
 
-def _unfinished(scene, objects):
-    odd = [thing for thing in objects if not _finite(thing.matrix_world)]
+def _invalid_setup(scene, objects):
+    odd = [obj for obj in objects if not _is_finite(obj.matrix_world)]
     if odd:
-        yield f"Transforms that are not finite: {_names(odd)}."
+        yield f"Transforms with values that are not finite: {_names(odd)}."
     world = scene.rigidbody_world
-    bodies = [thing for thing in objects if thing.rigid_body is not None]
+    bodies = [obj for obj in objects if obj.rigid_body is not None]
     if bodies and world is None:
-        yield f"Rigid bodies without a rigid-body world in this scene: {_names(bodies)}."
+        yield f"Rigid bodies, but the scene has no rigid-body world to simulate them: {_names(bodies)}."
     elif bodies:
         held = world.collection
-        inside = {thing.name_full for thing in held.objects} if held is not None else set()
-        out = [thing for thing in bodies if thing.name_full not in inside]
+        inside = {obj.name_full for obj in held.objects} if held is not None else set()
+        out = [obj for obj in bodies if obj.name_full not in inside]
         if out:
-            yield f"Rigid bodies that are not in the rigid-body world's collection: {_names(out)}."
-    if scene.camera is None and any(thing.type == "CAMERA" for thing in objects):
-        yield "No camera of the scene is the active one."
-    ranged = scene.frame_start > scene.frame_end
-    if ranged:
+            yield f"Rigid bodies outside the rigid-body world's collection, so not simulated: {_names(out)}."
+    if scene.camera is None and any(obj.type == "CAMERA" for obj in objects):
+        yield "The scene has cameras, but none is active (scene.camera)."
+    if scene.frame_start > scene.frame_end:
         yield f"The frame range is empty: {scene.frame_start} to {scene.frame_end}."
 
 
-def _missing():
+def _missing_files():
     lost = [library for library in bpy.data.libraries if getattr(library, "is_missing", False)]
-    lost += [library for library in bpy.data.libraries if library not in lost and not _there(library)]
+    lost += [library for library in bpy.data.libraries if library not in lost and not _file_exists(library)]
     for library in lost[:MOST_NAMES]:
         yield f"A linked library is missing: {text(library.filepath)}."
     pictures = [
         image
         for image in bpy.data.images
-        if image.source == "FILE" and image.packed_file is None and image.filepath and not _there(image)
+        if image.source == "FILE" and image.packed_file is None and image.filepath and not _file_exists(image)
     ]
     if pictures:
         yield f"Images whose files are missing: {_names(pictures)}."
 
 
-def _there(block):
+def _file_exists(block):
     if getattr(block, "packed_file", None) is not None:
         return True
     try:
@@ -71,23 +71,23 @@ def _there(block):
         return False
 
 
-def _shapeless(facts):
+def _not_finite(facts):
     odd = [
         entry["name"]
         for entry in facts.get("objects", ())
         if any(isinstance(end, str) for end in entry.get("extent", {}).get("min", ()))
     ]
     if odd:
-        yield f"Geometry that is not finite, where it stands: {_listed(odd)}."
+        yield f"Geometry with coordinates that are not finite: {listed(odd, MOST_NAMES)}."
 
 
-def _stale(facts):
+def _outdated_caches(facts):
     stale = [entry["name"] for entry in facts.get("physics", ()) if entry.get("cache", {}).get("outdated")]
     if stale:
-        yield f"Caches that are outdated (bake again): {_listed(stale)}."
+        yield f"Outdated caches (bake again): {listed(stale, MOST_NAMES)}."
 
 
-def _broken(facts):
+def _broken_animation(facts):
     broken, unslotted = [], []
     for entry in facts.get("animation", ()):
         for part in (*entry.get("drivers", ()), *entry.get("channels", ())):
@@ -96,19 +96,14 @@ def _broken(facts):
         if "action" in entry and entry.get("slot", "") is None:
             unslotted.append(entry["name"])
     if broken:
-        yield f"Drivers or channels that do not work: {_listed(broken)}."
+        yield f"Broken drivers or animation channels: {listed(broken, MOST_NAMES)}."
     if unslotted:
-        yield f"An action is assigned, but no slot of it, so that nothing plays: {_listed(unslotted)}."
+        yield f"An action is assigned without a slot, so nothing plays: {listed(unslotted, MOST_NAMES)}."
 
 
-def _finite(matrix):
+def _is_finite(matrix):
     return all(math.isfinite(value) for row in matrix for value in row)
 
 
 def _names(blocks):
-    return _listed([text(block.name) for block in blocks])
-
-
-def _listed(names):
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return ", ".join(names[:MOST_NAMES]) + more
+    return listed((text(block.name) for block in blocks), MOST_NAMES)

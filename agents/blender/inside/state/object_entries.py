@@ -1,62 +1,53 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Collections as a tree, and objects: where they are, how far they reach, what they are made of."""
+"""Collections and objects in a readout: the tree, transforms, extents, data, tags."""
 
 import math
 
+from ..blend.protocol_tags import TAGS
 from .modifier_stacks import constraints_of, modifiers_of
-from .rna_values import custom, number, numbers, plain, text
+from .rna_values import custom_properties, number, numbers, text, to_json
 
-# What the scene protocol writes on collections and objects.
-TAGS = (
-    "protocol_role",
-    "is_object_root",
-    "contact_with",
-    "deformation_kind",
-    "motion_kind",
-    "allows_disconnected",
-    "strict_grounding",
-)
 _FULL = "full"
 _DEEPEST = 60  # collections within collections
 
 
-def tags_of(thing):
-    """The protocol's properties of a scene, collection or object, as they are written on it."""
-    keys = set(thing.keys())
-    return {tag: plain(thing[tag]) for tag in TAGS if tag in keys} if keys else {}
+def tags_of(block):
+    """The protocol's properties of a scene, collection or object, as data."""
+    keys = set(block.keys())
+    return {tag: to_json(block[tag]) for tag in TAGS if tag in keys} if keys else {}
 
 
-class Census:
-    """Every object of a scene once, by collection as the outliner has them, and which collections each is in."""
+class SceneObjects:
+    """Every object of a scene once, in the outliner's order, and the names of its collections."""
 
     def __init__(self, scene):
         self.collections = {}
-        found, seen, waiting = {}, set(), [scene.collection]
+        objects, seen, waiting = {}, set(), [scene.collection]
         while waiting:
             collection = waiting.pop()
             if collection.name_full in seen:
                 continue
             seen.add(collection.name_full)
-            for thing in collection.objects:
-                found.setdefault(thing.name_full, thing)
-                self.collections.setdefault(thing.name_full, []).append(text(collection.name))
+            for obj in collection.objects:
+                objects.setdefault(obj.name_full, obj)
+                self.collections.setdefault(obj.name_full, []).append(text(collection.name))
             waiting.extend(reversed(collection.children))
-        self.objects = list(found.values())
+        self.objects = list(objects.values())
 
 
 def tree_of(scene, view_layer, chosen):
     """The collections of a scene in order: one entry a collection, with ``depth`` (0: the scene's own).
 
-    ``chosen``: the objects asked for; None for all. Collections without any of them are left out. A collection that
-    has been told before is marked ``again``, and what is below it is not repeated; what lies too deep is ``cut``.
+    ``chosen``: the objects to list; None for all. Collections without any of them are left out. A collection that was
+    listed before is marked ``again``, without its children; one that is too deep is marked ``cut``.
     """
-    tree = _Tree(None if chosen is None else {thing.name_full for thing in chosen})
+    tree = _Tree(None if chosen is None else {obj.name_full for obj in chosen})
     tree.grow(scene.collection, view_layer.layer_collection if view_layer is not None else None, 0)
     return tree.entries
 
 
 class _Tree:
-    """Collects the entries of ``tree_of``. ``names``: of the objects asked for; None for all."""
+    """Collects the entries of ``tree_of``. ``names``: of the objects to list; None for all."""
 
     def __init__(self, names):
         self.entries = []
@@ -64,14 +55,14 @@ class _Tree:
         self._seen = set()
 
     def grow(self, collection, layer, depth):
-        """Adds a collection and what is below it; returns whether any object asked for is in it."""
+        """Adds a collection and what is below it; returns whether any object to list is in it."""
         if collection.name_full in self._seen or depth > _DEEPEST:
             word = "again" if collection.name_full in self._seen else "cut"
             self.entries.append({"name": text(collection.name), "depth": depth, word: True})
             return self._names is None
         self._seen.add(collection.name_full)
         place = len(self.entries)
-        entry = self._told(collection, layer, depth)
+        entry = self._entry(collection, layer, depth)
         self.entries.append(entry)
         wanted = self._names is None or "objects" in entry
         layers = {} if layer is None else {below.collection.name_full: below for below in layer.children}
@@ -81,17 +72,17 @@ class _Tree:
             del self.entries[place:]
         return wanted
 
-    def _told(self, collection, layer, depth):
+    def _entry(self, collection, layer, depth):
         entry = {"name": text(collection.name), "depth": depth}
         if tags := tags_of(collection):
             entry["tags"] = tags
-        own = [thing for thing in collection.objects if self._names is None or thing.name_full in self._names]
+        own = [obj for obj in collection.objects if self._names is None or obj.name_full in self._names]
         if own:
             counts = {}
-            for thing in own:
-                counts[thing.type] = counts.get(thing.type, 0) + 1
+            for obj in own:
+                counts[obj.type] = counts.get(obj.type, 0) + 1
             entry["objects"] = counts
-            entry["names"] = [text(thing.name) for thing in own]
+            entry["names"] = [text(obj.name) for obj in own]
         hidden = [word for word in ("viewport", "render") if getattr(collection, f"hide_{word}")]
         if layer is not None and (layer.exclude or layer.hide_viewport):
             hidden.append("excluded" if layer.exclude else "layer")
@@ -102,139 +93,139 @@ class _Tree:
         return entry
 
 
-def object_facts(thing, collections, extents, visible, detail):
+def object_facts(obj, collections, extents, visible, detail):
     """An object as data; rotation in degrees (XYZ), lengths in units of the scene.
 
-    ``collections``: names of those that it is in; ``visible``: full names of what the view layer shows.
+    ``collections``: names of its collections; ``visible``: full names of what the view layer shows.
     """
-    told = {"name": text(thing.name), "type": thing.type, "in": collections[:4]}
-    if thing.parent is not None:
-        told["parent"] = text(thing.parent.name)
-        if thing.parent_type != "OBJECT":
-            told["parent_type"] = f"{thing.parent_type} {text(thing.parent_bone)}".strip()
-    evaluated = extents.evaluated(thing)
-    told.update(_transform((evaluated or thing).matrix_world))
-    box, instances = extents.measure(thing, evaluated)
+    entry = {"name": text(obj.name), "type": obj.type, "in": collections[:4]}
+    if obj.parent is not None:
+        entry["parent"] = text(obj.parent.name)
+        if obj.parent_type != "OBJECT":
+            entry["parent_type"] = f"{obj.parent_type} {text(obj.parent_bone)}".strip()
+    evaluated = extents.evaluated(obj)
+    entry.update(_transform((evaluated or obj).matrix_world))
+    box, instances = extents.measure(obj, evaluated)
     parts = {
-        "tags": tags_of(thing),
-        "extent": box.told() if box is not None else None,
+        "tags": tags_of(obj),
+        "extent": box.as_dict() if box is not None else None,
         "instances": instances,
-        "hidden": _hidden(thing, visible),
+        "hidden": _hidden(obj, visible),
     }
     if detail != "summary":
-        parts.update(_data(thing, evaluated, detail))
-        parts["materials"] = _materials(thing)
-        parts["modifiers"] = modifiers_of(thing)
-        parts["constraints"] = constraints_of(thing)
-    told.update({name: value for name, value in parts.items() if value})
+        parts.update(_data(obj, evaluated, detail))
+        parts["materials"] = _materials(obj)
+        parts["modifiers"] = modifiers_of(obj)
+        parts["constraints"] = constraints_of(obj)
+    entry.update({name: value for name, value in parts.items() if value})
     if detail != "summary":
-        told.update(_provenance(thing))
+        entry.update(_provenance(obj))
     if detail == _FULL:
-        told.update(_more(thing))
-    return told
+        entry.update(_more(obj))
+    return entry
 
 
-def _provenance(thing):
-    told = {}
-    if thing.instance_type != "NONE":
-        source = thing.instance_collection if thing.instance_type == "COLLECTION" else None
-        told["instancing"] = f"{thing.instance_type} {text(source.name)}" if source else thing.instance_type
-    if thing.library is not None:
-        told["linked"] = text(thing.library.filepath)
-    elif thing.override_library is not None:
-        told["overrides"] = text(getattr(thing.override_library.reference, "name", "?"))
-    return told
+def _provenance(obj):
+    entry = {}
+    if obj.instance_type != "NONE":
+        source = obj.instance_collection if obj.instance_type == "COLLECTION" else None
+        entry["instancing"] = f"{obj.instance_type} {text(source.name)}" if source else obj.instance_type
+    if obj.library is not None:
+        entry["linked"] = text(obj.library.filepath)
+    elif obj.override_library is not None:
+        entry["overrides"] = text(getattr(obj.override_library.reference, "name", "?"))
+    return entry
 
 
 def _transform(matrix):
     place, turn, scale = matrix.decompose()
-    told = {"location": numbers(place)}
+    entry = {"location": numbers(place)}
     angles = [math.degrees(angle) for angle in turn.to_euler()]
     if not all(abs(angle) < 1e-3 for angle in angles):
-        told["rotation"] = [_degrees(angle) for angle in angles]
+        entry["rotation"] = [_degrees(angle) for angle in angles]
     if not all(abs(factor - 1.0) < 1e-5 for factor in scale):
-        told["scale"] = numbers(scale)
-    return told
+        entry["scale"] = numbers(scale)
+    return entry
 
 
 def _degrees(angle):
     return number(round(angle, 2) if math.isfinite(angle) else angle)
 
 
-def _hidden(thing, visible):
-    words = [word for word in ("viewport", "render") if getattr(thing, f"hide_{word}")]
-    if thing.name_full not in visible and "viewport" not in words:
+def _hidden(obj, visible):
+    words = [word for word in ("viewport", "render") if getattr(obj, f"hide_{word}")]
+    if obj.name_full not in visible and "viewport" not in words:
         words.append("layer")
     return words
 
 
-def _data(thing, evaluated, detail):
-    data = thing.data
+def _data(obj, evaluated, detail):
+    data = obj.data
     if data is None:
         return {}
-    told = {}
+    entry = {}
     if data.users > 1:
-        told["shares"] = f"{text(data.name)} with {data.users - 1} more"
-    elif detail == _FULL and data.name != thing.name:
-        told["data"] = text(data.name)
-    if thing.type == "MESH":
-        told.update(_mesh(data, evaluated.data if evaluated is not None else data, detail))
-    elif thing.type == "ARMATURE":
-        told["bones"] = len(data.bones)
-    elif thing.type == "FONT":
-        told["text"] = text(data.body)
-    elif thing.type in {"CURVE", "SURFACE"}:
-        told["splines"] = len(data.splines)
-    if thing.type in {"MESH", "LATTICE"} and len(groups := thing.vertex_groups):
-        told["vertex_groups"] = [text(group.name) for group in groups] if len(groups) <= 8 else len(groups)
+        entry["shares"] = f"{text(data.name)} with {data.users - 1} more"
+    elif detail == _FULL and data.name != obj.name:
+        entry["data"] = text(data.name)
+    if obj.type == "MESH":
+        entry.update(_mesh(data, evaluated.data if evaluated is not None else data, detail))
+    elif obj.type == "ARMATURE":
+        entry["bones"] = len(data.bones)
+    elif obj.type == "FONT":
+        entry["text"] = text(data.body)
+    elif obj.type in {"CURVE", "SURFACE"}:
+        entry["splines"] = len(data.splines)
+    if obj.type in {"MESH", "LATTICE"} and len(groups := obj.vertex_groups):
+        entry["vertex_groups"] = [text(group.name) for group in groups] if len(groups) <= 8 else len(groups)
     keys = getattr(data, "shape_keys", None)
     if keys is not None:
-        told["shape_keys"] = len(keys.key_blocks)
-    return told
+        entry["shape_keys"] = len(keys.key_blocks)
+    return entry
 
 
 def _mesh(mesh, evaluated, detail):
-    told = {"vertices": len(mesh.vertices) or "no"}
+    entry = {"vertices": len(mesh.vertices) or "no"}
     if len(evaluated.vertices) != len(mesh.vertices):
-        told["evaluated_vertices"] = len(evaluated.vertices) or "none"
+        entry["evaluated_vertices"] = len(evaluated.vertices) or "none"
     if detail == _FULL:
-        told["faces"] = len(mesh.polygons)
-        told["uv_layers"] = [text(layer.name) for layer in mesh.uv_layers]
-    return told
+        entry["faces"] = len(mesh.polygons)
+        entry["uv_layers"] = [text(layer.name) for layer in mesh.uv_layers]
+    return entry
 
 
-def _materials(thing):
+def _materials(obj):
     names = []
-    for slot in thing.material_slots:
+    for slot in obj.material_slots:
         name = text(slot.material.name) if slot.material is not None else None
         if name not in names:
             names.append(name)
         if len(names) > 8:
-            names[8] = f"… ({len(thing.material_slots)} slots)"
+            names[8] = f"… ({len(obj.material_slots)} slots)"
             break
     return names
 
 
-def _more(thing):
-    """What only a full readout tells."""
-    told = {}
-    if thing.rotation_mode != "XYZ":
-        told["rotation_mode"] = thing.rotation_mode
-    if any(abs(one) > 1e-6 for one in (*thing.delta_location, *thing.delta_rotation_euler)):
-        told["delta"] = numbers((*thing.delta_location, *thing.delta_rotation_euler))
+def _more(obj):
+    """What only a full readout contains."""
+    entry = {}
+    if obj.rotation_mode != "XYZ":
+        entry["rotation_mode"] = obj.rotation_mode
+    if any(abs(part) > 1e-6 for part in (*obj.delta_location, *obj.delta_rotation_euler)):
+        entry["delta"] = numbers((*obj.delta_location, *obj.delta_rotation_euler))
     locks = [
         f"{word}.{axis}"
         for word in ("location", "rotation", "scale")
-        for axis, locked in zip("xyz", getattr(thing, f"lock_{word}"), strict=True)
+        for axis, locked in zip("xyz", getattr(obj, f"lock_{word}"), strict=True)
         if locked
     ]
     if locks:
-        told["locked"] = locks
-    if thing.display_type != "TEXTURED":
-        told["display_type"] = thing.display_type
-    if thing.pass_index:
-        told["pass_index"] = thing.pass_index
-    own = {name: value for name, value in custom(thing).items() if name not in TAGS}
+        entry["locked"] = locks
+    if obj.display_type != "TEXTURED":
+        entry["display_type"] = obj.display_type
+    if obj.pass_index:
+        entry["pass_index"] = obj.pass_index
+    own = {name: value for name, value in custom_properties(obj).items() if name not in TAGS}
     if own:
-        told["custom"] = plain(own)
-    return told
+        entry["custom"] = to_json(own)
+    return entry

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where RNA does not say what a setting is when Blender makes the struct, and settings that nobody asks for.
+"""Real defaults where RNA's are wrong, and settings that a readout leaves out.
 
-Nearly all defaults of RNA are right. The others stand here as a new modifier, constraint or effector has them;
-``*FLOAT`` is for all numbers of a struct, a name with a colon for one way of making it.
+Nearly all defaults of RNA are right. The others are here as a new modifier, constraint or effector has them; ``*FLOAT``
+is for all numbers of a struct, a name with a colon for one variant of it.
 """
 
 _IDENTITY = tuple(tuple(1.0 if row == column else 0.0 for column in range(4)) for row in range(4))
 _FIRST_OF_20 = (True,) + (False,) * 19
 
-BORN = {
+DEFAULTS = {
     "EffectorWeights": {"*FLOAT": 1.0},
     "CollisionSettings": {
         "use": True,
@@ -159,8 +159,8 @@ BORN = {
     "ColorManagedViewSettings": {"look": "None", "view_transform": "AgX"},
 }
 
-UNTOLD = {
-    # Told otherwise, or of the user interface.
+LEFT_OUT = {
+    # Listed elsewhere, or of the user interface.
     "*": (
         *(
             "rna_type",
@@ -208,7 +208,7 @@ UNTOLD = {
         "white_balance_tint",
         "white_balance_whitepoint",
     ),
-    # Told by name or with the cache; reading the two formats prints warnings.
+    # Listed by name or with the cache; reading the two formats prints warnings.
     "FluidDomainSettings": (
         *(f"has_cache_baked_{part}" for part in ("any", "data", "noise", "mesh", "particles", "guide")),
         *(f"cache_frame_pause_{part}" for part in ("data", "noise", "mesh", "particles", "guide")),

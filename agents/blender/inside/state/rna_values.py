@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's values as short JSON, and which settings of a struct are not as Blender makes them."""
+"""Blender's values as short JSON, and the settings of a struct that are not at their defaults."""
 
 import math
 
 import bpy
 
-from .rna_defaults import BORN, UNTOLD
+from .rna_defaults import DEFAULTS, LEFT_OUT
 
 LONGEST_TEXT = 120
 LONGEST_LIST = 16
@@ -17,7 +17,7 @@ _plans = {}
 
 
 def number(value):
-    """A number with the digits that matter, as JSON knows numbers: what is not finite is named ("nan", "inf")."""
+    """A number rounded to five significant digits; one that is not finite is a string ("nan", "inf")."""
     if not math.isfinite(value):
         return str(float(value))
     short = float(f"{value:.5g}")
@@ -30,21 +30,24 @@ def numbers(values):
 
 
 def text(value):
-    """A string in one line of bounded length."""
+    """A string of limited length in one line."""
     if len(value) > LONGEST_TEXT:
         value = f"{value[: LONGEST_TEXT - 1]}…"
     if value.isprintable():
         return value
-    return "".join(one if one.isprintable() else one.encode("unicode_escape").decode() for one in value)
+    return "".join(
+        character if character.isprintable() else character.encode("unicode_escape").decode()
+        for character in value
+    )
 
 
-def plain(value, depth=0):
-    """Any value of a property as bounded JSON; a data-block is its name."""
+def to_json(value, depth=0):
+    """Any value of a property as JSON of limited size; a data-block is its name."""
     if value is None or isinstance(value, bool):
         return value
-    for kind, told in _SHORT.items():
+    for kind, shorten in _SHORT.items():
         if isinstance(value, kind):
-            return told(value)
+            return shorten(value)
     if hasattr(value, "items"):
         return _plain_dict(value, depth)
     if hasattr(value, "__len__") and hasattr(value, "__getitem__"):
@@ -58,7 +61,7 @@ _SHORT = {
     float: number,
     int: lambda value: value if abs(value) < 1 << 63 else str(value)[:40],
     bytes: lambda value: f"bytes[{len(value)}]",
-    set: lambda value: sorted(str(one) for one in value)[:LONGEST_LIST],
+    set: lambda value: sorted(str(item) for item in value)[:LONGEST_LIST],
     bpy.types.ID: lambda block: text(block.name),
 }
 
@@ -66,16 +69,16 @@ _SHORT = {
 def _plain_dict(value, depth):
     if depth >= _DEEPEST:
         return f"{{{len(value)} entries}}"
-    told = {}
-    for key in value.keys():  # noqa: SIM118 - property groups are no mappings
-        if len(told) == LONGEST_DICT:
-            told["…"] = f"{len(value) - LONGEST_DICT} more"
+    entries = {}
+    for key in value.keys():  # noqa: SIM118 - property groups are not mappings
+        if len(entries) == LONGEST_DICT:
+            entries["…"] = f"{len(value) - LONGEST_DICT} more"
             break
-        told[text(str(key))] = plain(value[key], depth + 1)
-    return told
+        entries[text(str(key))] = to_json(value[key], depth + 1)
+    return entries
 
 
-def few(names, most=LONGEST_LIST):
+def shortened(names, most=LONGEST_LIST):
     """The first of many names, and how many more there are."""
     names = [text(name) for name in names]
     return [*names[:most], f"… {len(names) - most} more"] if len(names) > most else names
@@ -87,32 +90,32 @@ _KINDS = {"b": "bool", "i": "int", "f": "float", "d": "float"}
 def _plain_list(value, depth):
     count = len(value)
     if count > LONGEST_LIST and isinstance(value[0], str) and isinstance(value[-1], str):
-        return few([one for one in value if isinstance(one, str)])
+        return shortened([item for item in value if isinstance(item, str)])
     if count > LONGEST_LIST or depth >= _DEEPEST:
         return f"{_KINDS.get(getattr(value, 'typecode', ''), 'list')}[{count}]"
-    return [plain(value[index], depth + 1) for index in range(count)]
+    return [to_json(value[index], depth + 1) for index in range(count)]
 
 
-def custom(thing):
+def custom_properties(block):
     """The custom properties of a data-block as {name: value}."""
-    return {key: value for key, value in thing.items() if key not in {"_RNA_UI", "cycles"}}
+    return {key: value for key, value in block.items() if key not in {"_RNA_UI", "cycles"}}
 
 
-def differing(struct, *, leave=(), variant=""):
-    """The settings of a struct that are not as Blender makes them: {identifier: value}.
+def changed_settings(struct, *, leave=(), variant=""):
+    """The settings of a struct that are not at their defaults: {identifier: value}.
 
-    What cannot be set, what concerns the user interface alone and what is deprecated is not among them, nor is what
-    ``leave`` names. ``variant``: which of several ways of making such a struct counts ("LIQUID" of a fluid domain).
+    Without read-only, deprecated and user interface settings, and those that ``leave`` names. ``variant``: which of
+    several sets of defaults counts ("LIQUID" of a fluid domain).
     """
-    told = {}
+    settings = {}
     for identifier, default in _plan(struct.bl_rna, variant):
         if identifier in leave:
             continue
         value = getattr(struct, identifier, _MISSING)
         if value is _MISSING or _same(value, default):
             continue
-        told[identifier] = plain(value)
-    return told
+        settings[identifier] = to_json(value)
+    return settings
 
 
 def _same(value, default):
@@ -121,14 +124,14 @@ def _same(value, default):
     if isinstance(default, tuple):
         if len(value) != len(default):
             return False
-        return all(_same(one, other) for one, other in zip(value, default, strict=True))
+        return all(_same(item, default_item) for item, default_item in zip(value, default, strict=True))
     if default is None:
         return value is None
     return value == default
 
 
 def _plan(rna, variant):
-    """[(identifier, default)] of what is compared. The same for all structs of a type, so found out once."""
+    """[(identifier, default)] of the settings to compare; cached, as it is the same for all structs of a type."""
     key = (rna.identifier, variant)
     plan = _plans.get(key)
     if plan is None:
@@ -137,19 +140,19 @@ def _plan(rna, variant):
 
 
 def _make_plan(rna, variant):
-    born, untold = {}, set(UNTOLD["*"])
+    defaults, left_out = {}, set(LEFT_OUT["*"])
     lineage = [rna]
     while lineage[-1].base is not None:
         lineage.append(lineage[-1].base)
     for ancestor in reversed(lineage):
-        born.update(BORN.get(ancestor.identifier, {}))
-        untold.update(UNTOLD.get(ancestor.identifier, ()))
-    born.update(BORN.get(f"{rna.identifier}:{variant}", {}))
+        defaults.update(DEFAULTS.get(ancestor.identifier, {}))
+        left_out.update(LEFT_OUT.get(ancestor.identifier, ()))
+    defaults.update(DEFAULTS.get(f"{rna.identifier}:{variant}", {}))
     plan = []
     for prop in rna.properties:
         identifier = prop.identifier
         if (
-            identifier in untold
+            identifier in left_out
             or prop.is_readonly
             or prop.is_hidden
             or getattr(prop, "is_deprecated", False)
@@ -159,7 +162,7 @@ def _make_plan(rna, variant):
             if issubclass(_type_of(prop), bpy.types.ID):
                 plan.append((identifier, None))
         elif prop.type != "COLLECTION":
-            default = born.get(identifier, born.get(f"*{prop.type}", _MISSING))
+            default = defaults.get(identifier, defaults.get(f"*{prop.type}", _MISSING))
             plan.append((identifier, _default(prop) if default is _MISSING else default))
     return plan
 

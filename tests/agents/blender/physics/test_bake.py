@@ -191,10 +191,10 @@ def test_a_longer_bake_of_a_fluid_does_not_go_on_where_the_last_one_ended(sessio
     ("code", "arguments", "words"),
     [
         ("pass", {}, "nothing to bake"),
-        ("cloth()", {"objects": ["Flagg"]}, r"no object 'Flagg' in the scene; there is 'Flag'"),
+        ("cloth()", {"objects": ["Flagg"]}, r"no object 'Flagg' in the scene. Nearest: 'Flag'"),
         ("cloth()\nplane('Shelf', 3)", {"objects": ["Shelf"]}, r"no simulation of its own.*Flag"),
-        ("cloth()", {"frame_start": 9, "frame_end": 9}, "no range"),
-        ("cloth()", {"frame_start": 50}, "no range"),
+        ("cloth()", {"frame_start": 9, "frame_end": 9}, "not a range"),
+        ("cloth()", {"frame_start": 50}, "not a range"),
         (
             "cloth()\nbpy.data.objects['Flag'].modifiers[0].point_cache.use_external = True",
             {},

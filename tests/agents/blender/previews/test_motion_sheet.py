@@ -50,7 +50,7 @@ o.keyframe_insert('rotation_euler', frame=1)
 o.location.x, o.rotation_euler.z = 10, 6.283185307
 o.keyframe_insert('location', frame=49)
 o.keyframe_insert('rotation_euler', frame=49)
-from simworlds_worker.measure.scene_facts import curves_of
+from simworlds_worker.blend.fcurves import curves_of
 for curve in curves_of(o):
     for key in curve.keyframe_points:
         key.interpolation = 'LINEAR'
@@ -294,7 +294,7 @@ def test_what_is_in_a_closed_room_is_seen(session: LiveSession) -> None:
 def test_a_simulation_that_ends_early_or_stands_still_is_told_with_why(session: LiveSession) -> None:
     session.run(FALL + "s.rigidbody_world.point_cache.frame_end = 15\ns.use_gravity = False")
     notes = actor(session.use(TOOL, actors=["Crate"], frames=[1, 30]), "Crate")["notes"]
-    assert "Simulated up to frame 15 only: the rigid-body world." in notes
+    assert "Simulated only up to frame 15: the rigid-body world." in notes
     assert any("does not move" in note and "no gravity" in note for note in notes)
 
 
@@ -318,7 +318,7 @@ def test_motion_that_is_not_the_same_twice_is_told(session: LiveSession) -> None
         "bpy.app.handlers.frame_change_pre.append(wander)"
     )
     notes = actor(session.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")["notes"]
-    assert any("does not repeat" in note for note in notes)
+    assert any("not repeatable" in note for note in notes)
 
 
 def test_what_cannot_be_seen_is_told(session: LiveSession) -> None:
@@ -355,7 +355,7 @@ def test_progress_is_told_as_frames_go_by(session: LiveSession) -> None:
 @pytest.mark.parametrize(
     ("asked", "told"),
     [
-        ({"actors": ["Crait"]}, "Near: 'Crate'"),
+        ({"actors": ["Crait"]}, "Nearest: 'Crate'"),
         ({"actors": []}, "actors"),
         ({"actors": ["Crate"] * 2}, "twice"),
         ({"actors": [f"A{n}" for n in range(9)]}, "actors"),

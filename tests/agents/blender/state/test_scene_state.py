@@ -364,7 +364,7 @@ def test_a_cache_says_whether_it_is_baked_and_what_it_holds(session: LiveSession
     )
     cache = entry(stale, "physics", "Flag")["cache"]
     assert (cache["state"], cache["outdated"]) == ("unbaked", True)
-    assert "Caches that are outdated (bake again): Flag." in stale.data["notes"]
+    assert "Outdated caches (bake again): Flag." in stale.data["notes"]
 
 
 def test_a_cache_on_disk_is_counted_and_weighed(own_session: LiveSession) -> None:
@@ -505,7 +505,7 @@ def test_drivers_and_shape_keys_are_told(session: LiveSession) -> None:
     broken = read(
         session, "bpy.data.objects['Mover'].animation_data.drivers[0].driver.expression = 'nobody + 1'"
     )
-    assert broken.data["notes"] == ["Drivers or channels that do not work: Mover.rotation_euler."]
+    assert broken.data["notes"] == ["Broken drivers or animation channels: Mover.rotation_euler."]
 
 
 def test_an_action_without_a_slot_and_one_without_users_are_named(session: LiveSession) -> None:
@@ -515,7 +515,7 @@ def test_an_action_without_a_slot_and_one_without_users_are_named(session: LiveS
         "bpy.data.actions.new('Idle')",
     )
     assert entry(found, "animation", "Cube")["slot"] is None
-    assert found.data["notes"] == ["An action is assigned, but no slot of it, so that nothing plays: Cube."]
+    assert found.data["notes"] == ["An action is assigned without a slot, so nothing plays: Cube."]
     assert entry(found, "animation", "unused actions")["actions"] == ["Idle"]
 
 
@@ -781,8 +781,8 @@ m.strength = float('nan')
     )
     assert entry(found, "objects", "Lost")["location"] == ["nan", 0, 0]
     assert entry(found, "objects", "Cube")["custom"] == {"weight": "nan"}
-    assert found.data["notes"][0] == "Transforms that are not finite: Lost."
-    assert found.data["notes"][1].startswith("Geometry that is not finite")
+    assert found.data["notes"][0] == "Transforms with values that are not finite: Lost."
+    assert found.data["notes"][1].startswith("Geometry with coordinates that are not finite")
 
 
 def test_names_and_properties_of_any_kind_stay_in_their_line(session: LiveSession) -> None:
@@ -863,7 +863,7 @@ bpy.ops.object.mode_set(mode='EDIT')
     assert len(found.data["scene"]["counts"]) == 12
     assert entry(found, "objects", "Mesh")["vertices"] == "no"
     assert entry(found, "objects", "Text")["extent"]["size"][1] < 1e-3 + 0.7 * math.cos(1)
-    assert found.data["notes"] == ["Blender is in EDIT_MESH mode (Cube): edits show after it is left."]
+    assert found.data["notes"] == ["Blender is in EDIT_MESH mode (Cube): edits show only after leaving it."]
     session.run("bpy.ops.object.mode_set(mode='OBJECT')")
 
 

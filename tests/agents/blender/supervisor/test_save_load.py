@@ -124,7 +124,7 @@ def elsewhere(path: Path, room: Path, code: str) -> Any:
     launch = make_launch(room)
     process = BlenderProcess(launch)
     try:
-        process.call("look", {"path": str(room / path.name)}, timeout=60)
+        process.call("inspect", {"path": str(room / path.name)}, timeout=60)
         found = process.call("execute", {"code": code}, timeout=60).value
         assert found["error"] is None, found["error"]["traceback"]
         return ast.literal_eval(found["value"])

@@ -113,7 +113,7 @@ def test_quitting_blender_costs_nothing_but_at_most_itself(hardy: LiveSession) -
             "import _thread\ndef on():\n    while True: pass\nfor _ in range(3): _thread.start_new_thread(on, ())",
             "3 threads of its own",
         ),
-        ("import sys\nsys.addaudithook(lambda *_: None)", "an audit hook, which Python cannot take back"),
+        ("import sys\nsys.addaudithook(lambda *_: None)", "an audit hook, which Python cannot remove"),
         ("import sys\ndef hook(*_): raise ValueError('spoilt')\nsys.addaudithook(hook)", "spoilt"),
     ],
 )
@@ -516,7 +516,7 @@ def test_a_blender_without_numpy_still_shows_its_scenes_and_says_what_else_it_la
         "    bpy.ops.mesh.primitive_cube_add(size=size, location=place)\n"
         "    bpy.context.object.name = name"
     )
-    assert "Rooms are shown closed" in debians.use(SCENE_LAYOUT).text
+    assert "Rooms are shown with all their walls" in debians.use(SCENE_LAYOUT).text
     with pytest.raises(Refusal, match="python3-numpy"):
         debians.use(MOTION_SHEET, actors=["Chest"])
 

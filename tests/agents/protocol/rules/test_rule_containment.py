@@ -241,7 +241,7 @@ def test_a_round_stone_is_half_in_the_ground(session: LiveSession) -> None:
 @pytest.mark.parametrize(
     ("more", "reason"),
     [
-        ('bpy.data.objects["Rubber"].data.vertices[0].co.x = math.nan', "not numbers"),
+        ('bpy.data.objects["Rubber"].data.vertices[0].co.x = math.nan', "not finite"),
         ('bpy.data.objects["Rubber"].data.vertices.foreach_set("co", [0.0] * 1446)', "without an area"),
         ('bpy.data.objects["Rubber"].data.clear_geometry()', "nothing with a surface that is called 'Ball'"),
     ],

@@ -147,7 +147,7 @@ def test_something_that_is_there_twice_is_found(session: LiveSession, kind: str)
     assert set(found.objects) == {"A", "B"}
     if kind == "plane":
         assert found.outcome == "undecided"
-        assert "may be there twice" in found.message
+        assert "may be a duplicate" in found.message
     else:
         assert found.measured == pytest.approx(0.4, rel=0.02)
 

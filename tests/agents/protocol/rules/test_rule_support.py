@@ -243,7 +243,7 @@ def test_turned_and_scaled_meshes_rest_as_others_do(session: LiveSession, more: 
 @pytest.mark.parametrize(
     ("more", "reason"),
     [
-        ('bpy.data.objects["Planks"].data.vertices[0].co.x = math.nan', "not numbers"),
+        ('bpy.data.objects["Planks"].data.vertices[0].co.x = math.nan', "not finite"),
         ('bpy.data.objects["Planks"].data.clear_geometry()', "nothing with a surface that is called 'Crate'"),
         ('bpy.data.collections["Crate"].name = "Box"', "nothing with a surface that is called 'Crate'"),
     ],

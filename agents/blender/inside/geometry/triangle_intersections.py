@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the triangles of two solids cut each other."""
+"""The lines along which triangles of two solids intersect."""
 
 import copy
 
@@ -10,21 +10,21 @@ _FLAT = 1e-12
 _TURNS = (1, 2, 0)
 
 
-class Cuts:
-    """The lines along which triangles of ``one`` and ``other`` cut each other, a row for each.
+class IntersectionLines:
+    """The lines along which triangles of ``solid`` and ``other`` intersect, a row for each.
 
-    ``ours`` and ``theirs`` are the numbers of the triangles, ``ends`` the two ends of the line (n × 2 × 3). ``edges``,
-    ``shares`` and ``pierced`` tell where edges of ``one`` go through triangles of ``other``: the edge as a pair of its
-    places, and how far along it.
+    ``ours`` and ``theirs`` are the numbers of the triangles, ``ends`` the two ends of the line (n × 2 × 3). ``edges``
+    and ``shares`` tell where edges of ``solid`` go through triangles of ``other``: the edge as a pair of its places,
+    and how far along it.
     """
 
-    def __init__(self, one, other, pairs):
-        self.one, self.other = one, other
+    def __init__(self, solid, other, pairs):
+        self.solid, self.other = solid, other
         mine, others = (
-            solid.points[solid.triangles[pairs[:, side]]] for side, solid in enumerate((one, other))
+            solid.points[solid.triangles[pairs[:, side]]] for side, solid in enumerate((solid, other))
         )
-        shares, places, hit = _through(mine, others)
-        shares_back, places_back, hit_back = _through(others, mine)
+        shares, places, hit = _side_hits(mine, others)
+        shares_back, places_back, hit_back = _side_hits(others, mine)
         there = numpy.concatenate([places, places_back], axis=1)
         valid = numpy.concatenate([hit, hit_back], axis=1)
         along = cross(_normals(mine), _normals(others))
@@ -36,12 +36,11 @@ class Cuts:
         self.ours, self.theirs = pairs[kept, 0], pairs[kept, 1]
         self.ends = numpy.stack([there[rows, first], there[rows, last]], axis=1)[kept]
         self._pierced = (pairs, shares, hit), (pairs[:, ::-1], shares_back, hit_back)
-        self._edges_cut(*self._pierced[0])
+        self._find_pierced_edges(*self._pierced[0])
 
-    def _edges_cut(self, pairs, shares, hit):
-        _, same = self.one.welded
+    def _find_pierced_edges(self, pairs, shares, hit):
         row, side = numpy.nonzero(hit)
-        corners = same[self.one.triangles[pairs[row, 0]]]
+        corners = self.solid.corners[pairs[row, 0]]
         at = numpy.arange(len(row))
         first, last = corners[at, side], corners[at, numpy.array(_TURNS)[side]]
         turned = first > last
@@ -55,16 +54,16 @@ class Cuts:
 
     def swapped(self):
         """The same lines, the other way round."""
-        made = copy.copy(self)
-        made.one, made.other = self.other, self.one
-        made.ours, made.theirs = self.theirs, self.ours
-        made._pierced = self._pierced[::-1]
-        made._edges_cut(*made._pierced[0])
-        return made
+        swapped = copy.copy(self)
+        swapped.solid, swapped.other = self.other, self.solid
+        swapped.ours, swapped.theirs = self.theirs, self.ours
+        swapped._pierced = self._pierced[::-1]
+        swapped._find_pierced_edges(*swapped._pierced[0])
+        return swapped
 
 
-def _through(corners, others):
-    """(share, place, whether there is one) of where each side (n × 3) of triangles goes through others, row by row."""
+def _side_hits(corners, others):
+    """(share along the side, place, whether it hits) of each side (n × 3) of triangles against others, row by row."""
     sides = corners[:, _TURNS] - corners
     base = others[:, None, 0]
     u, v = others[:, 1] - others[:, 0], others[:, 2] - others[:, 0]
@@ -98,13 +97,13 @@ def _normals(corners):
 
 
 def cross(a, b):
-    """The cross products of vectors (… × 3); numpy's own takes several times as long for a few of them."""
+    """The cross products of vectors (… × 3), for few vectors several times faster than numpy's own."""
     a, b = numpy.broadcast_arrays(a, b)
-    found = numpy.empty(a.shape)
+    product = numpy.empty(a.shape)
     for axis in range(3):
-        one, other = (axis + 1) % 3, (axis + 2) % 3
-        found[..., axis] = a[..., one] * b[..., other] - a[..., other] * b[..., one]
-    return found
+        next_axis, last_axis = (axis + 1) % 3, (axis + 2) % 3
+        product[..., axis] = a[..., next_axis] * b[..., last_axis] - a[..., last_axis] * b[..., next_axis]
+    return product
 
 
 def normals_of(solid, triangles):
@@ -113,5 +112,5 @@ def normals_of(solid, triangles):
 
 
 def unit(vectors):
-    """Vectors as long as 1; those without a length as they are."""
+    """Unit vectors; zero vectors stay zero."""
     return vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=-1), 1e-30)[..., None]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether the things on a stage stand in a room, where in it there is space, and what encloses it.
+"""Finds out whether the objects of a studio scene are in a room, where it has space, and what encloses it.
 
-A place is *inside* if level rays from it run into large things nearly all around. What rays from inside meet last,
-on their way out, is the room's *shell*. Without walls, a roof over most of the things is one. Lengths are the stage's,
-on which what is framed is ``REACH`` across.
+A point is *inside* if level rays from it hit large objects nearly all around. What rays from inside hit last, on their
+way out, is the room's *shell*. A roof over most of the objects counts as a room without walls. Lengths are those of the
+studio scene, in which what is framed is ``REACH`` across.
 """
 
 import math
@@ -13,18 +13,18 @@ from mathutils import Matrix, Vector
 
 from .studio_scene import REACH
 
-_WALL = 0.3 * REACH  # a thing of this size can be a wall
+_WALL = 0.3 * REACH  # an object of this size can be a wall
 _PART = 0.12 * REACH  # and of this size, under a roof, a part of a wall
-_FURNITURE = 0.45 * REACH  # larger things can be a roof, and do not tell whether there is a room
-_ON_WALL = 0.04 * REACH  # what lies this flat against the shell belongs to it
+_FURNITURE = 0.45 * REACH  # larger objects can be a roof, and do not count as content of a room
+_ON_WALL = 0.04 * REACH  # what is this close to the shell belongs to it
 _ABOVE_TOP = 0.005 * REACH
 _STEP = 1e-4 * REACH
-_MOST_FACES = 200_000  # of a thing that rays are sent against
+_MOST_FACES = 200_000  # of an object that rays are cast against
 _MOST_THINGS = 60
 _MOST_TOPS = 60
 _MOST_HITS = 8
-_SENDERS = 40  # places from which the shell is looked for
-_SOME = 0.4  # share of the things, or of the space, that makes it a room
+_SENDERS = 40  # points from which the shell is searched for
+_SOME = 0.4  # share of the objects, or of the space, inside a room
 _GRID = (6, 6, 4)
 _AROUND = [
     Vector((math.cos(turn), math.sin(turn), math.tan(math.radians(rise)))).normalized()
@@ -37,35 +37,35 @@ _UP = [
 
 
 class Room:
-    """``inside``: places spread over its space; ``shell``: the objects of the stage that enclose it."""
+    """``inside``: points spread over its space; ``shell``: the objects that enclose it."""
 
     def __init__(self, inside, shell):
         self.inside, self.shell = inside, shell
 
 
-def large_pieces(stage, pieces):
-    """Those that may enclose something, the largest first."""
-    sized = [(_size(stage, piece), at) for at, piece in enumerate(pieces)]
+def large_pieces(studio, pieces):
+    """The pieces that may enclose something, the largest first."""
+    sized = [(_size(studio, piece), at) for at, piece in enumerate(pieces)]
     large = sorted((entry for entry in sized if entry[0] >= _PART), reverse=True)[:_MOST_THINGS]
     return [pieces[at] for _, at in large if _is_castable(pieces[at])]
 
 
-def find_room(stage, placed, boxes):
-    """The room around most of the things, or what lies over most of them like a roof; None if there is neither.
+def find_room(studio, placed, boxes):
+    """The room around most of the objects, or under a roof over most of them; None if there is neither.
 
-    ``placed`` are (piece, its object) for the large pieces, the only ones on the stage so far; ``boxes`` those of all
-    things, in the open scene.
+    ``placed``: (piece, its object) for the large pieces, the only ones in the studio scene so far; ``boxes``: those of
+    all objects, in the open scene.
     """
     if not placed:
         return None
-    rays = _Rays(stage, placed)
-    tops = [_top(stage, box) for box in boxes if box.diagonal * stage.scale <= _FURNITURE]
+    rays = _Rays(studio, placed)
+    tops = [_top(studio, box) for box in boxes if box.diagonal * studio.scale <= _FURNITURE]
     tops = tops[:: max(1, len(tops) // _MOST_TOPS)]
-    grid = _grid(stage, placed)
+    grid = _grid(studio, placed)
     within = [top for top in tops if rays.is_inside(top)]
     if tops and len(within) < _SOME * len(tops):
         return _under_roof(rays, tops, grid)
-    # A solid is no room: with nothing in it, only the fronts of faces are walls.
+    # A solid is not a room: if nothing is in it, only the fronts of faces count as walls.
     inside = [place for place in grid if rays.is_inside(place, fronts_only=not tops)]
     if not tops and len(inside) < _SOME * len(grid):
         return None
@@ -75,7 +75,7 @@ def find_room(stage, placed, boxes):
 
 
 def _under_roof(rays, tops, grid):
-    """A room without walls: what lies over most of the things, and the space below."""
+    """A room without walls: a roof over most of the objects, and the space below."""
     over = [rays.roof(top) for top in tops]
     roofs = [roof for roof in set(over) - {None} if over.count(roof) >= _SOME * len(tops)]
     inside = [place for place in grid if rays.roof(place) in roofs] if roofs else []
@@ -83,15 +83,15 @@ def _under_roof(rays, tops, grid):
 
 
 class _Rays:
-    """Rays against the large things on a stage."""
+    """Casts rays against the large objects of the studio scene."""
 
-    def __init__(self, stage, placed):
-        self._scene, self._graph = stage.scene, stage.update()
-        self._things = {thing.name: thing for _, thing in placed}
-        self._sizes = {thing.name: _size(stage, piece) for piece, thing in placed}
+    def __init__(self, studio, placed):
+        self._scene, self._graph = studio.scene, studio.update()
+        self._objects = {obj.name: obj for _, obj in placed}
+        self._sizes = {obj.name: _size(studio, piece) for piece, obj in placed}
 
     def is_inside(self, place, *, fronts_only=False):
-        """Whether large things are nearly all around, of smaller ones if there is a roof above them."""
+        """Whether large objects are nearly all around; under a roof, smaller ones count as well."""
 
         def meets(direction, size):
             hits = self._hits(place, direction)
@@ -102,7 +102,7 @@ class _Rays:
         return sum(meets(direction, _WALL) for direction in _AROUND) >= 9
 
     def outermost(self, inside):
-        """The things that rays from inside mostly meet last."""
+        """The objects that rays from inside mostly hit last."""
         met, last = {}, {}
         for place in inside[:: max(1, len(inside) // _SENDERS)]:
             is_roofed = self._is_roofed(place)
@@ -118,12 +118,12 @@ class _Rays:
                     last[name] = last.get(name, 0) + (
                         name == hits[-1][0] or distance > hits[-1][1] - _ON_WALL
                     )
-        return [self._things[name] for name in met if last[name] >= 0.5 * met[name]]
+        return [self._objects[name] for name in met if last[name] >= 0.5 * met[name]]
 
     def roof(self, place):
-        """The outermost thing straight above, if it is large."""
+        """The outermost object straight above, if it is large."""
         hits = self._hits(place, _UP[0])
-        return self._things[hits[-1][0]] if hits and self._sizes[hits[-1][0]] > _FURNITURE else None
+        return self._objects[hits[-1][0]] if hits and self._sizes[hits[-1][0]] > _FURNITURE else None
 
     def _is_roofed(self, place):
         return (
@@ -131,18 +131,18 @@ class _Rays:
         )
 
     def _hits(self, origin, direction):
-        """(name, distance, whether the front of a face was met) along a ray, nearest first."""
-        start, distance, found = origin, 0.0, []
+        """(name, distance, whether the front of a face was hit) along a ray, nearest first."""
+        start, distance, hits = origin, 0.0, []
         for _ in range(_MOST_HITS):
-            hit, place, normal, _, thing, _ = self._scene.ray_cast(
+            hit, place, normal, _, obj, _ = self._scene.ray_cast(
                 self._graph, start, direction, distance=4 * REACH
             )
             if not hit:
                 break
             distance += (place - start).length + _STEP
-            found.append((thing.name, distance, normal.dot(direction) < 0))
+            hits.append((obj.name, distance, normal.dot(direction) < 0))
             start = place + direction * _STEP
-        return found
+        return hits
 
 
 def _is_castable(piece):
@@ -152,22 +152,22 @@ def _is_castable(piece):
     return len(mesh.polygons) <= _MOST_FACES
 
 
-def _size(stage, piece):
-    return (piece.high - piece.low).length * stage.scale
+def _size(studio, piece):
+    return (piece.high - piece.low).length * studio.scale
 
 
-def _on(stage, place):
-    return stage.placed(Matrix.Translation(place)).translation
+def _in_studio(studio, place):
+    return studio.placed(Matrix.Translation(place)).translation
 
 
-def _top(stage, box):
-    """A place just above a thing."""
-    return _on(stage, Vector((*box.centre.xy, box.high.z))) + Vector((0, 0, _ABOVE_TOP))
+def _top(studio, box):
+    """A point just above a box."""
+    return _in_studio(studio, Vector((*box.centre.xy, box.high.z))) + Vector((0, 0, _ABOVE_TOP))
 
 
-def _grid(stage, placed):
-    """Places spread evenly over where the large things and what is framed are both."""
-    ends = [_on(stage, end) for piece, _ in placed for end in (piece.low, piece.high)]
+def _grid(studio, placed):
+    """Points spread evenly over the space of both the large objects and what is framed."""
+    ends = [_in_studio(studio, end) for piece, _ in placed for end in (piece.low, piece.high)]
     low = [max(-REACH / 2, min(end[axis] for end in ends)) for axis in range(3)]
     high = [min(REACH / 2, max(end[axis] for end in ends)) for axis in range(3)]
     counts = [range(count) for count in _GRID]

@@ -1,48 +1,46 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far sheets reach through each other. Metres."""
+"""How deep sheets, which have no inside, penetrate each other. Metres."""
 
 import numpy
 from mathutils import Vector
 
-from .closed_parts import thinned
-from .contact_regions import labels
-from .solids import meeting
-from .triangle_cuts import Cuts, cross, normals_of, unit
+from .closed_parts import thin_out
+from .solids import crossing_pairs
+from .topology import piece_labels
+from .triangle_intersections import IntersectionLines, cross, normals_of, unit
 
 _MOST_PAIRS = 200_000
 _MOST_LINES = 1_500
 _MOST_OF_PART = 500
-_UPRIGHT = 0.9  # least share of a way from a sheet that is along its normal, if its foot is not at its rim
+_UPRIGHT = 0.9  # least cosine to the normal at the nearest point of a sheet, unless that is on its rim
 
 
-def reach_through(a, b):
-    """(depth, place): how far one sheet reaches through another where they cross, by whichever way is shorter."""
-    pairs = meeting(a, b, _MOST_PAIRS)
-    cuts = Cuts(a, b, thinned(pairs, _MOST_LINES))
-    if not len(cuts.ours):
+def sheet_depth(a, b):
+    """(depth, place): how far one sheet reaches through another where they cross, on the shallower side."""
+    pairs = crossing_pairs(a, b, _MOST_PAIRS)
+    lines = IntersectionLines(a, b, thin_out(pairs, _MOST_LINES))
+    if not len(lines.ours):
         return 0.0, a.points[0]
-    ways = [_Side(cuts, pairs[:, 0]).reach(), _Side(cuts.swapped(), pairs[:, 1]).reach()]
+    ways = [_Side(lines, pairs[:, 0]).reach(), _Side(lines.swapped(), pairs[:, 1]).reach()]
     return min(ways, key=lambda way: way[0])
 
 
 class _Side:
-    """A sheet that is cut by another one: how far it reaches to either side of where they cross."""
+    """A sheet that another one cuts: how far it reaches to either side of the cut."""
 
-    def __init__(self, cuts, crossed):
-        self._cuts, self._sheet = cuts, cuts.other
-        one = cuts.one
-        self._places, same = one.welded
-        self._corners = same[one.triangles]
-        whole = numpy.ones(len(one.triangles), bool)
+    def __init__(self, lines, crossed):
+        self._lines, self._sheet = lines, lines.other
+        solid = lines.solid
+        self._places, self._corners = solid.welded[0], solid.corners
+        whole = numpy.ones(len(solid.triangles), bool)
         whole[crossed] = False
-        left = self._corners[whole]
-        self._part = labels(len(self._places), left[:, :2], left[:, 1:])
+        self._part = piece_labels(len(self._places), self._corners[whole])
         self._reaches, self._both = {}, {}
 
     def reach(self):
-        """(how far, a place there): of all places where they cross, that where it is most."""
+        """(depth, place) where it is deepest."""
         ends, parts = self._ends()
-        best = 0.0, self._cuts.middles[0]
+        best = 0.0, self._lines.middles[0]
         for places, (ahead, behind) in zip(ends.tolist(), parts.tolist(), strict=True):
             lengths = [self._sheet.nearest(place)[3] or 0.0 for place in places]
             if ahead != behind:
@@ -58,17 +56,17 @@ class _Side:
         return best
 
     def _ends(self):
-        """Across each line, as far as its triangle goes: (places n × 2 × 3, the parts n × 2 that go on from there)."""
-        cuts, places = self._cuts, self._places
-        corners = places[self._corners[cuts.ours]]
-        normals = normals_of(cuts.one, cuts.ours)
-        others = normals_of(cuts.other, cuts.theirs)
-        along = unit(cuts.ends[:, 1] - cuts.ends[:, 0])
+        """Across each cut to the triangle's border: (places n × 2 × 3, connected parts n × 2 behind them)."""
+        lines, places = self._lines, self._places
+        corners = places[self._corners[lines.ours]]
+        normals = normals_of(lines.solid, lines.ours)
+        others = normals_of(lines.other, lines.theirs)
+        along = unit(lines.ends[:, 1] - lines.ends[:, 0])
         short = ~along.any(axis=1)
         along[short] = unit(cross(normals, others))[short]
         way = cross(normals, along)
         way *= numpy.where((way * others).sum(axis=1) < 0, -1, 1)[:, None]
-        middles = cuts.middles
+        middles = lines.middles
         sides = corners[:, (1, 2, 0)] - corners
         outwards = cross(sides, normals[:, None])
         room = numpy.maximum(0.0, numpy.einsum("ijk,ijk->ij", corners - middles[:, None], outwards))
@@ -81,7 +79,7 @@ class _Side:
         ends = middles[:, None] + lengths[..., None] * way[:, None]
         heights = numpy.einsum("ijk,ik->ij", corners - middles[:, None], others)
         rows = numpy.arange(len(heights))
-        parts = self._part[self._corners[cuts.ours]]
+        parts = self._part[self._corners[lines.ours]]
         top, bottom = heights.argmax(axis=1), heights.argmin(axis=1)
         joined = numpy.stack(
             [
@@ -93,10 +91,10 @@ class _Side:
         return ends, joined
 
     def _places_of(self, part):
-        return thinned(self._places[self._part == part], _MOST_OF_PART).tolist()
+        return thin_out(self._places[self._part == part], _MOST_OF_PART).tolist()
 
     def _reach_of(self, part):
-        """How far a part is from the other sheet at most."""
+        """The largest distance of a part from the other sheet."""
         if part < 0:
             return 0.0
         if part not in self._reaches:
@@ -104,7 +102,7 @@ class _Side:
         return self._reaches[part]
 
     def _reach_around(self, part):
-        """Of a part that goes around the other sheet's rim: how far it is on both sides of that, beside its rim."""
+        """Of a part that goes around the other sheet's rim: how far it reaches on both of its sides."""
         if part not in self._both:
             sides = [0.0, 0.0]
             for place in self._places_of(part):

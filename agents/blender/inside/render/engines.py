@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which engine can draw here. Blender ends with SIGSEGV where Workbench finds no OpenGL, so that is asked before."""
+"""Which engine can draw on this machine. Workbench without OpenGL crashes Blender, so OpenGL is tested before."""
 
 import ctypes
 import functools
@@ -13,25 +13,25 @@ _MAJOR, _MINOR, _PROFILE, _CORE, _END = 0x3098, 0x30FB, 0x30FD, 0x1, 0x3038
 
 
 def best_engine():
-    """(Workbench, "") where it can draw, else (Cycles, why)."""
-    fault = _fault()
+    """(Workbench, "") if that can draw, else (Cycles, reason)."""
+    fault = _opengl_fault()
     return (WORKBENCH, "") if not fault else (CYCLES, fault)
 
 
 @functools.lru_cache(maxsize=1)
-def _fault():
-    """Why there is no drawing without a display; "" if there is. Only Linux has to be asked."""
+def _opengl_fault():
+    """Why OpenGL is not available without a display; "" if it is. Only Linux needs the test."""
     if sys.platform != "linux" or not bpy.app.background:
         return ""
     if bpy.app.version < (4, 0, 0):
-        return "this Blender draws on a display only"
+        return "this Blender can draw only on a display"
     try:
-        return _ask(_library())
+        return _test_opengl(_load_egl())
     except (OSError, AttributeError):
         return "there is no libEGL"
 
 
-def _ask(egl):
+def _test_opengl(egl):
     display = egl.eglGetPlatformDisplay(_SURFACELESS, None, None)
     if not display or not egl.eglInitialize(display, None, None) or not egl.eglBindAPI(_OPENGL_API):
         return "EGL finds no driver"
@@ -46,7 +46,7 @@ def _ask(egl):
     return ""
 
 
-def _library():
+def _load_egl():
     egl = ctypes.CDLL("libEGL.so.1")
     pointer, number = ctypes.c_void_p, ctypes.c_int
     egl.eglGetPlatformDisplay.restype = egl.eglCreateContext.restype = pointer

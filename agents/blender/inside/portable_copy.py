@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Copies of the whole state that open elsewhere, and opening such a copy as the run's own file.
+"""Saves the whole state as a copy that opens anywhere, and opens such a copy as the run's own file.
 
-What a .blend refers to is packed into the copy, or lies in one folder beside it, called as Blender calls the folder of
-point caches: ``blendcache_NAME``. Frames of point caches lie in it directly, those of each fluid and of each bake of
-geometry nodes in a folder of their own. The open file is as before when a copy has been written.
+What the .blend refers to is packed into the copy, or is in one folder beside it, named like Blender's folder for point
+caches: ``blendcache_NAME``. Frames of point caches are directly in it, those of each fluid and of each bake of geometry
+nodes in a folder of their own. Saving does not change the open file.
 """
 
 import contextlib
@@ -15,8 +15,8 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..physics.caches import find_caches
-from .blend_files import SCENE_FILE, make_own, read_file, reason
+from .blend.file_io import SCENE_FILE, make_own, read_file, reason
+from .physics.caches import file_prefix, find_caches
 
 _CACHES = "caches"  # in the workspace: where fluids are baked to
 _PACKED_SOURCES = {"FILE", "TILED"}
@@ -24,10 +24,10 @@ _FRAME = re.compile(r"_-?\d{5,}_\d\d\.bphys$")
 
 
 def save(arguments, report):
-    """Writes the state to ``path``, referring to ``beside`` (a folder's name) for what cannot be in it.
+    """Writes the state to ``path``, referring to ``beside`` (a folder's name) for what cannot be packed.
 
-    ``workspace``: the folder that files may be taken from. ``pack``: images, sounds and fonts go into the copy.
-    Returns ``bytes``, ``objects``, ``packed`` and ``rescued`` (names; the latter were pixels that no file held),
+    ``workspace``: the folder that files may be taken from. ``pack``: pack images, sounds and fonts.
+    Returns ``bytes``, ``objects``, ``packed`` and ``rescued`` (names; of the latter, no file had the pixels),
     ``files`` ([path in the workspace, path below ``beside``]), ``external`` and ``caches``.
     """
     path, beside, workspace = arguments["path"], arguments["beside"], arguments["workspace"]
@@ -39,7 +39,7 @@ def save(arguments, report):
         external = _make_absolute(undo, beside)
         report(0, None, "writing")
         try:
-            # Relative paths are as they are to be where the copy will lie.
+            # Relative paths are already right for where the copy will be.
             bpy.ops.wm.save_as_mainfile(filepath=path, copy=True, check_existing=False, relative_remap=False)
         except RuntimeError as error:
             raise Refused(reason(error)) from None
@@ -54,8 +54,8 @@ def save(arguments, report):
     }
 
 
-def look(arguments, report):
-    """Opens ``path``, for a process that is to end; returns ``objects`` and ``caches`` as they are found there."""
+def inspect(arguments, report):
+    """Opens ``path`` in a process that ends afterwards; returns ``objects`` and ``caches`` found in it."""
     del report
     read_file(arguments["path"])
     return {"objects": len(bpy.data.objects), "caches": kept_caches()}
@@ -65,20 +65,20 @@ def load(arguments, report):
     """Opens ``path`` with the caches beside it and makes it the run's own file in ``workspace``; no script runs.
 
     Files outside the workspace are copied, ``lent`` ones are moved. Returns ``objects``, ``version``, ``scripts``
-    (whether some were kept from running), ``external`` and ``caches``. Raises Refused; then the file that was open
-    before may be gone.
+    (whether it has scripts, which were not run), ``external`` and ``caches``. Raises Refused; the file that was open
+    before may be lost then.
     """
     path, workspace = arguments["path"], arguments["workspace"]
     read_file(path)
     version = tuple(bpy.data.version)
     if version[:2] > bpy.app.version[:2]:
         raise Refused(
-            f"{os.path.basename(path)} was saved by Blender {version[0]}.{version[1]}, and this is "
-            f"{bpy.app.version_string}, which would lose what the newer one added."
+            f"{os.path.basename(path)} was saved by Blender {version[0]}.{version[1]}. This is Blender "
+            f"{bpy.app.version_string}, which would lose what newer versions added."
         )
     scripts = bool(getattr(bpy.app, "autoexec_fail", False))
     folders = _folders()
-    report(0, None, "taking its caches over")
+    report(0, None, "taking over its caches")
     make_own(workspace)
     _bring_points(path, workspace)
     for folder in folders:
@@ -87,7 +87,7 @@ def load(arguments, report):
         "objects": len(bpy.data.objects),
         "version": ".".join(str(part) for part in version[:2]),
         "scripts": scripts,
-        "external": _outside(_folder_paths()),
+        "external": _external_files(_folder_paths()),
         "caches": kept_caches(),
     }
 
@@ -100,36 +100,36 @@ def caches_of_file(arguments, report):
 
 def kept_caches():
     """Each physics cache: ``label``, ``baked``, ``outdated``, ``range``, ``where``, ``frames``, ``missing`` ones."""
-    found = {}
+    entries = {}
     for scene in bpy.data.scenes:
         for cache in find_caches(scene):
-            label = cache.label if cache.label not in found else f"{cache.label} ({cache.holder.name})"
-            found[label] = {
+            label = cache.label if cache.label not in entries else f"{cache.label} ({cache.holder.name})"
+            entries[label] = {
                 "label": label,
                 "baked": cache.baked,
                 "outdated": cache.outdated,
                 "range": list(cache.range),
                 "where": "memory" if cache.folder is None else "disk",
-                **_held(cache),
+                **_frame_counts(cache),
             }
-    return list(found.values())
+    return list(entries.values())
 
 
-def _held(cache):
-    """How many frames are there, and how many that should be are not."""
+def _frame_counts(cache):
+    """``frames``: how many exist; ``missing``: how many more there should be."""
     frames, missing = cache.frames, cache.missing
     if cache.points is None or cache.folder is None:
         return {"frames": frames, "missing": missing}
-    # Of point caches on disk Blender tells what once was.
-    found = len({name.rsplit("_", 2)[1] for name in _names(cache.folder, cache)})
-    return {"frames": found, "missing": max(0, frames + missing - found)}
+    # For point caches on disk, Blender reports frames that may since have been deleted.
+    count = len({name.rsplit("_", 2)[1] for name in _cache_files(cache.folder, cache)})
+    return {"frames": count, "missing": max(0, frames + missing - count)}
 
 
 # Packing
 
 
 def _pack(undo, wanted):
-    """(names packed, names of images whose pixels are in no file). The latter stay packed in the open file, too."""
+    """(names packed, names of images whose pixels were in no file). The latter stay packed in the open file as well."""
     rescued = []
     for image in _local(bpy.data.images):
         if image.is_dirty and image.source != "VIEWER":
@@ -137,14 +137,14 @@ def _pack(undo, wanted):
                 image.pack()
                 rescued.append(image.name)
     packed = []
-    for thing in _packable() if wanted else ():
+    for block in _packable() if wanted else ():
         try:
-            thing.pack()
+            block.pack()
         except RuntimeError:
-            continue  # not there to be packed: it is listed with what is outside
-        if thing.packed_file is not None:
-            packed.append(thing.name)
-            undo.callback(_unpack, thing)
+            continue  # its file is missing: it is listed as external
+        if block.packed_file is not None:
+            packed.append(block.name)
+            undo.callback(_unpack, block)
     return packed, rescued
 
 
@@ -152,25 +152,25 @@ def _packable():
     for image in _local(bpy.data.images):
         if image.source in _PACKED_SOURCES and image.filepath and image.packed_file is None:
             yield image
-    for thing in (*_local(bpy.data.sounds), *_local(bpy.data.fonts)):
-        if thing.packed_file is None and thing.filepath not in {"", "<builtin>"}:
-            yield thing
+    for block in (*_local(bpy.data.sounds), *_local(bpy.data.fonts)):
+        if block.packed_file is None and block.filepath not in {"", "<builtin>"}:
+            yield block
 
 
-def _local(things):
-    return [thing for thing in things if thing.library is None]
+def _local(blocks):
+    return [block for block in blocks if block.library is None]
 
 
-def _unpack(thing):
+def _unpack(block):
     with contextlib.suppress(RuntimeError):
-        thing.unpack(method="REMOVE")
+        block.unpack(method="REMOVE")
 
 
 # Folders of caches
 
 
 class _Folder:
-    """The folder of one fluid, or of one bake of geometry nodes. ``name`` is its own among all in the file."""
+    """The folder of one fluid, or of one bake of geometry nodes. ``name`` is unique in the file."""
 
     def __init__(self, holder, attribute, name):
         self._holder = holder
@@ -180,7 +180,7 @@ class _Folder:
 
     @property
     def path(self):
-        """As Blender has it; setting it leaves what is baked valid."""
+        """The path as Blender stores it; setting it keeps the bake valid."""
         return getattr(self._holder, self._attribute)
 
     @path.setter
@@ -189,23 +189,23 @@ class _Folder:
 
 
 def _folders():
-    found, taken = [], set()
-    for thing in _local(bpy.data.objects):
-        stem = re.sub(r"[^\w.-]+", "_", thing.name).strip(".") or "cache"
-        for modifier in thing.modifiers:
+    folders, taken = [], set()
+    for obj in _local(bpy.data.objects):
+        stem = re.sub(r"[^\w.-]+", "_", obj.name).strip(".") or "cache"
+        for modifier in obj.modifiers:
             if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
                 holder, attribute = modifier.domain_settings, "cache_directory"
             elif modifier.type == "NODES" and getattr(modifier, "bake_directory", ""):
                 holder, attribute = modifier, "bake_directory"
             else:
                 continue
-            name = _free(stem, lambda one: one.lower() in taken)
+            name = _unused_name(stem, lambda name: name.lower() in taken)
             taken.add(name.lower())
-            found.append(_Folder(holder, attribute, name))
-    return found
+            folders.append(_Folder(holder, attribute, name))
+    return folders
 
 
-def _free(stem, is_taken):
+def _unused_name(stem, is_taken):
     name, number = stem, 1
     while is_taken(name):
         number += 1
@@ -214,26 +214,29 @@ def _free(stem, is_taken):
 
 
 def _redirect(undo, beside, workspace):
-    """Lets folders of the workspace be found below ``beside``; yields their files."""
+    """Makes folders of the workspace point below ``beside``; yields their files."""
     for folder in _folders():
-        if _below(folder.real, workspace) is None or not os.path.isdir(folder.real):
+        if _relative_to(folder.real, workspace) is None or not os.path.isdir(folder.real):
             continue
         undo.callback(setattr, folder, "path", folder.path)
         folder.path = f"//{beside}/{folder.name}"
         for place, _, names in os.walk(folder.real):
-            inside, below = _below(place, workspace), os.path.relpath(place, folder.real)
-            for one in names:
-                yield [os.path.join(inside, one), os.path.normpath(os.path.join(folder.name, below, one))]
+            inside, below = _relative_to(place, workspace), os.path.relpath(place, folder.real)
+            for file_name in names:
+                yield [
+                    os.path.join(inside, file_name),
+                    os.path.normpath(os.path.join(folder.name, below, file_name)),
+                ]
 
 
 def _bring_folder(folder, workspace, *, lent):
-    """Takes a folder of caches into the workspace, where it can be baked anew."""
-    inside = _below(folder.real, workspace)
+    """Brings a folder of caches into the workspace, where it can be baked again."""
+    inside = _relative_to(folder.real, workspace)
     if inside is not None and not lent:
         folder.path = f"//{inside}"
         return
     own = os.path.join(workspace, _CACHES)
-    name = _free(folder.name, lambda one: os.path.lexists(os.path.join(own, one)))
+    name = _unused_name(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
     if os.path.isdir(folder.real):
         os.makedirs(own, exist_ok=True)
         (shutil.move if lent else shutil.copytree)(folder.real, os.path.join(own, name))
@@ -241,10 +244,10 @@ def _bring_folder(folder, workspace, *, lent):
 
 
 def _point_files(workspace):
-    for cache in _on_disk():
-        inside = _below(cache.folder, workspace)
+    for cache in _disk_caches():
+        inside = _relative_to(cache.folder, workspace)
         if inside is not None:
-            for name in _names(cache.folder, cache):
+            for name in _cache_files(cache.folder, cache):
                 yield [os.path.join(inside, name), name]
 
 
@@ -254,37 +257,37 @@ def _bring_points(path, workspace):
     target = os.path.join(workspace, f"blendcache_{os.path.splitext(SCENE_FILE)[0]}")
     if source == target:
         return
-    for cache in _on_disk():
-        for name in _names(target, cache):
+    for cache in _disk_caches():
+        for name in _cache_files(target, cache):
             os.remove(os.path.join(target, name))
-        for name in _names(source, cache):
+        for name in _cache_files(source, cache):
             os.makedirs(target, exist_ok=True)
             shutil.copyfile(os.path.join(source, name), os.path.join(target, name))
 
 
-def _on_disk():
-    """The point caches that are files beside the .blend."""
+def _disk_caches():
+    """The point caches on disk, beside the .blend."""
     for scene in bpy.data.scenes:
         for cache in find_caches(scene):
             if cache.points is not None and cache.folder and not cache.points.use_external:
                 yield cache
 
 
-def _names(folder, cache):
-    """The files of a point cache: named by itself, or after its object in hexadecimal."""
-    start = (cache.points.name or cache.owner.name.encode(errors="surrogateescape").hex().upper()) + "_"
+def _cache_files(folder, cache):
+    """The names of a point cache's files in a folder."""
+    start = file_prefix(cache.points, cache.owner)
     try:
-        found = os.listdir(folder)
+        names = os.listdir(folder)
     except OSError:
         return []
-    return sorted(name for name in found if name.startswith(start) and _FRAME.match(name, len(start) - 1))
+    return sorted(name for name in names if name.startswith(start) and _FRAME.match(name, len(start) - 1))
 
 
 def _absolute(path):
     return os.path.normpath(bpy.path.abspath(path))
 
 
-def _below(path, workspace):
+def _relative_to(path, workspace):
     """The path within the workspace; None for one outside."""
     real, root = os.path.realpath(path), os.path.realpath(workspace)
     return os.path.relpath(real, root) if real == root or real.startswith(root + os.sep) else None
@@ -294,7 +297,7 @@ def _below(path, workspace):
 
 
 def _make_absolute(undo, beside):
-    """Lets what stays outside be found from anywhere on this machine; returns it, as ``_outside`` does."""
+    """Makes the paths of external files absolute; returns those files, as ``_external_files`` does."""
     before = {}
 
     def visit(owner, path):
@@ -304,12 +307,12 @@ def _make_absolute(undo, beside):
         return _absolute(path)
 
     apart = {path for path in _folder_paths() if path.startswith(f"//{beside}/")}
-    undo.callback(_outside, apart, lambda owner, path: before.get((owner, path)))
-    return _outside(apart, visit)
+    undo.callback(_external_files, apart, lambda owner, path: before.get((owner, path)))
+    return _external_files(apart, visit)
 
 
-def _outside(apart=(), visit=None):
-    """Files that are used and neither packed nor ``apart``: ``what`` uses it, its ``path``, whether it is ``missing``.
+def _external_files(apart=(), visit=None):
+    """The used files that are neither packed nor ``apart``: ``what`` uses it, its ``path``, whether it is ``missing``.
 
     ``visit`` gets (owner, path) and returns another path for it, or None.
     """
@@ -321,20 +324,20 @@ def _outside(apart=(), visit=None):
         return [
             {"what": libraries.get(path, "a file"), "path": path, "missing": not _is_readable(path)}
             for path in sorted(paths)
-            if path and not _is_own(path)
+            if path and not _is_cache_folder(path)
         ]
-    found = []
+    uses = []
 
     def at(owner, path, _meta):
         real = _absolute(path)
-        if owner.library is not None or path in {"", "<builtin>", *apart} or _is_own(real):
+        if owner.library is not None or path in {"", "<builtin>", *apart} or _is_cache_folder(real):
             return None
         what = f"{owner.bl_rna.name.lower()} {owner.name!r}"
-        found.append({"what": what, "path": real, "missing": not _is_readable(real)})
+        uses.append({"what": what, "path": real, "missing": not _is_readable(real)})
         return visit(owner, path) if visit is not None else None
 
     bpy.data.file_path_foreach(at, flags={"SKIP_PACKED"})
-    return found
+    return uses
 
 
 def _is_readable(path):
@@ -349,8 +352,8 @@ def _is_readable(path):
     return True
 
 
-def _is_own(path):
-    """Whether it is a folder that Blender names after the .blend, wherever that lies."""
+def _is_cache_folder(path):
+    """Whether it is the cache folder that Blender names after a .blend."""
     return os.path.basename(path).startswith("blendcache_")
 
 

@@ -1,24 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures what the scene's camera sees of something (see agents.protocol.measures.motion)."""
+"""Measures what the scene's camera sees of an object (see agents.protocol.measures.motion)."""
 
 import bpy
 import numpy
 from mathutils import Vector
 
+from ..blend.fluids import domain_of
+from ..blend.visibility import rendered_objects
 from ..geometry.solids import Unmeasurable
-from ..motion.actors import domain_of
-from ..motion.mesh_tracker import spread
+from ..motion.mesh_tracker import surface_points
 from .movement import actor_of
 
 _SAMPLES = 1000
-_MOST = 20_000  # places that an outline is drawn around
-_THROUGH = 64  # things that a ray may go through before it counts as stopped
-_CLEAR = 0.5  # from which transmission, or below which alpha, one can look through a surface
+_MOST_OUTLINE = 20_000  # places that an outline is drawn around
+_MOST_PASSED = 64  # transparent surfaces that a ray passes at most
+_CLEAR = 0.5  # a surface is see-through from this transmission up, or below this alpha
 _SEEN_THROUGH = {"BSDF_GLASS", "BSDF_TRANSPARENT", "BSDF_REFRACTION"}
 
 
-def view(request, solids):
-    """How much of something is in the picture, how large, and hidden by what."""
+def camera_view(request, solids):
+    """The share of objects inside the picture, how much of the picture they cover, and what hides them."""
     scene, graph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
     camera = scene.camera
     if camera is None:
@@ -31,35 +32,35 @@ def view(request, solids):
     projection = _projection(scene, camera, graph)
     flat = _projected(projection, samples)
     inside = (numpy.abs(flat[:, :3]) <= flat[:, 3:]).all(axis=1) & (flat[:, 3] > 0)
-    told = {"inside": float(inside.mean()), "cover": _cover(_projected(projection, outline))}
-    told["at"] = samples.mean(axis=0).tolist()
+    result = {"inside": float(inside.mean()), "cover": _covered_share(_projected(projection, outline))}
+    result["at"] = samples.mean(axis=0).tolist()
     if inside.any():
-        told.update(
+        result.update(
             _hidden(scene, graph, camera.evaluated_get(graph), samples[inside], (request["names"], solids))
         )
-    return told
+    return result
 
 
 def _places(names, solids, graph):
-    """(samples of its surfaces, particles and fluids; the places that its outline goes around); None for nothing."""
+    """(points on surfaces, particles and fluids; points for the outline); (None, None) if nothing exists."""
     samples, outline, surfaces = [], [], []
     for name in names:
         actor = actor_of((name,))
         if actor.measured in {"particles", "fluid"}:
-            moment = actor.moment(graph)
-            found = [] if moment is None else [tuple(place) for place in moment.some(_SAMPLES)]
-            samples.append(numpy.array(found).reshape(-1, 3))
+            state = actor.state_at(graph)
+            points = [] if state is None else [tuple(place) for place in state.sample(_SAMPLES)]
+            samples.append(numpy.array(points).reshape(-1, 3))
             outline.append(samples[-1])
         if actor.measured == "vertices" or (actor.measured == "particles" and _is_shown(actor.objects[0])):
             surfaces.append(name)
     if surfaces or not samples:
         solid = solids.joined(surfaces or names)
-        samples.append(spread(solid, _SAMPLES))
+        samples.append(surface_points(solid, _SAMPLES))
         outline.append(solid.points)
         if not len(samples[-1]):
             raise Unmeasurable("its faces have no area")
     samples, outline = numpy.concatenate(samples), numpy.concatenate(outline)
-    return (samples, outline[:: -(-len(outline) // _MOST)]) if len(samples) else (None, None)
+    return (samples, outline[:: -(-len(outline) // _MOST_OUTLINE)]) if len(samples) else (None, None)
 
 
 def _is_shown(emitter):
@@ -80,15 +81,15 @@ def _projection(scene, camera, graph):
 
 
 def _projected(projection, places):
-    """Places in the picture, homogeneous (n × 4): it reaches from −w to w."""
+    """Points in homogeneous picture coordinates (n × 4): the picture reaches from −w to w."""
     return places @ projection[:, :3].T + projection[:, 3]
 
 
-# How large
+# Size in the picture
 
 
-def _cover(flat):
-    """The share of the picture that the outline of some projected places fills."""
+def _covered_share(flat):
+    """The share of the picture inside the convex outline of projected points."""
     ahead = flat[flat[:, 3] > 1e-6]
     if len(ahead) < 3:
         return 0.0
@@ -106,19 +107,19 @@ def _hull(points):
     for line in (points, points[::-1]):
         half = []
         for point in line:
-            while len(half) > 1 and _left(half[-2], half[-1], point) <= 0:
+            while len(half) > 1 and _orientation(half[-2], half[-1], point) <= 0:
                 half.pop()
             half.append(point)
         halves += half[:-1]
     return halves
 
 
-def _left(a, b, c):
+def _orientation(a, b, c):
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def _clipped(outline):
-    """What of a convex outline is in the picture."""
+    """The part of a convex outline that is inside the picture."""
     for axis, side in ((0, -1), (0, 1), (1, -1), (1, 1)):
         kept = []
         for a, b in zip(outline, [*outline[1:], *outline[:1]], strict=True):
@@ -132,11 +133,11 @@ def _clipped(outline):
     return outline
 
 
-# What hides it
+# Occlusion
 
 
 def _hidden(scene, graph, camera, samples, subject):
-    """The share of samples that something else is in front of, and the names of that, most of all first."""
+    """The share of samples that other objects hide, and the names of up to three of these, the worst first."""
     matrix = camera.matrix_world.normalized()
     eye, towards = matrix.translation, -matrix.col[2].to_3d()
     count, by = 0, {}
@@ -151,50 +152,48 @@ def _hidden(scene, graph, camera, samples, subject):
 
 
 class _Rays:
-    """Looks along rays for what stops them: what is rendered, opaque, and not the subject itself."""
+    """Rays from the camera, which stop at what is rendered, opaque, and not the subject itself."""
 
     def __init__(self, scene, graph, subject):
         self._scene, self._graph = scene, graph
         self._names = set(subject[0])
         self._own = [solid for name in subject[0] if (solid := _solid(subject[1], name)) is not None]
-        self._rendered = _rendered(bpy.context.view_layer.layer_collection, set())
+        self._rendered = {obj.name for obj in rendered_objects(bpy.context.view_layer.layer_collection)}
         self._clear = {}
 
     def stopped_by(self, start, place):
-        """The name of the first thing between two places that hides the second; "" for nothing."""
+        """The name of the first object between two points that hides the second; "" for none."""
         way = place - start
         step = max(way.length * 1e-5, 1e-5)
-        for _ in range(_THROUGH):
+        for _ in range(_MOST_PASSED):
             left = (place - start).length - step
             if left <= 0:
                 break
-            hit, at, _, _, thing, _ = self._scene.ray_cast(
-                self._graph, start, way.normalized(), distance=left
-            )
+            hit, at, _, _, obj, _ = self._scene.ray_cast(self._graph, start, way.normalized(), distance=left)
             if not hit:
                 break
-            if self._stops(thing, at, step):
-                return thing.name
+            if self._stops(obj, at, step):
+                return obj.name
             start = at + way.normalized() * step
         return ""
 
-    def _stops(self, thing, at, step):
-        thing = thing.original
-        if thing.name in self._names or self._is_clear(thing):
+    def _stops(self, obj, at, step):
+        obj = obj.original
+        if obj.name in self._names or self._is_clear(obj):
             return False
-        # An instance goes by the name of what it is one of: it may be a part of the subject.
+        # An instance has the name of its original, so it may be a part of the subject.
         return not any(solid.tree.find_nearest(at, 2 * step)[0] is not None for solid in self._own)
 
-    def _is_clear(self, thing):
-        if thing.name not in self._clear:
-            slots = [slot.material for slot in thing.material_slots]
-            self._clear[thing.name] = (
-                (thing.name in bpy.context.view_layer.objects and thing.name not in self._rendered)
-                or not getattr(thing, "visible_camera", True)
-                or _is_gas(thing)
+    def _is_clear(self, obj):
+        if obj.name not in self._clear:
+            slots = [slot.material for slot in obj.material_slots]
+            self._clear[obj.name] = (
+                (obj.name in bpy.context.view_layer.objects and obj.name not in self._rendered)
+                or not getattr(obj, "visible_camera", True)
+                or _is_gas(obj)
                 or (bool(slots) and all(map(_is_see_through, slots)))
             )
-        return self._clear[thing.name]
+        return self._clear[obj.name]
 
 
 def _solid(solids, name):
@@ -204,22 +203,13 @@ def _solid(solids, name):
         return None
 
 
-def _is_gas(thing):
-    domain = domain_of(thing)
+def _is_gas(obj):
+    domain = domain_of(obj)
     return domain is not None and domain.domain_type == "GAS"
 
 
-def _rendered(branch, found):
-    """Names of the objects of a layer collection that are rendered."""
-    if not branch.exclude and not branch.collection.hide_render:
-        found.update(thing.name for thing in branch.collection.objects if not thing.hide_render)
-        for below in branch.children:
-            _rendered(below, found)
-    return found
-
-
 def _is_see_through(material):
-    """Whether one can look through a material: glass, or hardly any alpha, or but a volume."""
+    """Whether a material is see-through: glass, low alpha, or only a volume."""
     tree = material.node_tree if material is not None and getattr(material, "use_nodes", True) else None
     if tree is None:
         return False
@@ -233,20 +223,20 @@ def _is_see_through(material):
 
 
 def _shaders(socket, seen):
-    """The nodes of surfaces that lead to a socket."""
-    found = []
+    """The shader nodes that lead to a socket."""
+    nodes = []
     for link in socket.links:
         node = link.from_node
         if node.name in seen:
             continue
         seen.add(node.name)
         if node.type.startswith(("BSDF", "EMISSION")):
-            found.append(node)
+            nodes.append(node)
         else:
             for below in node.inputs:
                 if below.type == "SHADER":
-                    found += _shaders(below, seen)
-    return found
+                    nodes += _shaders(below, seen)
+    return nodes
 
 
 def _lets_through(node):
@@ -255,11 +245,11 @@ def _lets_through(node):
     if node.type != "BSDF_PRINCIPLED":
         return False
     values = {
-        one.name: one.default_value
-        for one in node.inputs
-        if one.name in {"Transmission Weight", "Transmission", "Alpha"}
+        socket.name: socket.default_value
+        for socket in node.inputs
+        if socket.name in {"Transmission Weight", "Transmission", "Alpha"}
     }
-    linked = {one.name for one in node.inputs if one.is_linked}
+    linked = {socket.name for socket in node.inputs if socket.is_linked}
     alpha = 1.0 if "Alpha" in linked else values.pop("Alpha", 1.0)
     values.pop("Alpha", None)
     return alpha < _CLEAR or any(value >= _CLEAR for value in values.values())

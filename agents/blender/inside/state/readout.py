@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads the open scene as data and leaves no trace in it: no frame is changed, nothing is simulated."""
+"""Reads the open scene as data, without changing it: the frame stays, nothing is simulated."""
 
-import difflib
 import fnmatch
 import re
 
@@ -9,29 +8,28 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..tag import ROLE
+from ..blend.names import nearest
+from ..blend.protocol_tags import ROLE
 from .animation import animation_facts, unused_actions
 from .appearance import camera_facts, light_facts, material_facts, render_facts, world_facts
 from .fingerprint import data_blocks
 from .likely_mistakes import notes_of
-from .object_entries import Census, object_facts, tags_of, tree_of
-from .physics_entries import physics_of
-from .physics_entries import world_facts as rigid_body_world_facts
-from .rna_values import few, number, numbers, text
-from .world_extents import MOST_INSTANCES, Extents, evaluated_graph
+from .object_entries import SceneObjects, object_facts, tags_of, tree_of
+from .physics_entries import physics_of, rigid_body_world_facts
+from .rna_values import number, numbers, shortened, text
+from .world_extents import MOST_INSTANCES, ExtentReader, evaluated_graph
 
-MOST_OBJECTS = 5_000  # of one readout that are told one by one
+MOST_OBJECTS = 5_000  # of one readout
 MOST_ENTRIES = 5_000  # of any other section
 SECTIONS = ("collections", "objects", "physics", "animation", "materials", "view")
 DATA_BLOCKS = "data_blocks"
-_NEAREST = 5
 
 
 def scene_state(arguments, report):
     """``detail`` (summary, normal, full), ``objects`` (names and patterns, or None), ``sections``.
 
     Returns {section: entries} with ``scene``, ``notes``, ``chosen`` (how many objects) and ``unread``: of each
-    section, how many entries were not looked at. ``data_blocks`` is as ``fingerprint.data_blocks`` returns it, and
+    section, how many entries were left out. ``data_blocks`` is as ``fingerprint.data_blocks`` returns it, and
     whether any collection is ``tagged`` by the scene protocol. Raises Refused for a name that the scene does not have.
     """
     reading = _Reading(arguments, report)
@@ -56,13 +54,13 @@ def scene_state(arguments, report):
 
 
 class _Reading:
-    """One readout: what was asked for, and a method for each section."""
+    """One readout: the request, and a method for each section."""
 
     def __init__(self, arguments, report):
         self.detail = arguments["detail"]
         self.scene, self.layer = bpy.context.scene, bpy.context.view_layer
-        self.census = Census(self.scene)
-        self.everything = self.census.objects
+        self.scene_objects = SceneObjects(self.scene)
+        self.everything = self.scene_objects.objects
         self.whole = arguments["objects"] is None
         self.chosen = self.everything if self.whole else _find(arguments["objects"], self.everything)
         self.graph = evaluated_graph()
@@ -73,44 +71,46 @@ class _Reading:
         return tree_of(self.scene, self.layer, None if self.whole else self.chosen)
 
     def objects(self):
-        extents = Extents(self.graph)
+        extents = ExtentReader(self.graph)
         visible = set()
         if self.layer is not None:
-            shown = (thing for thing in self.layer.objects if thing.visible_get(view_layer=self.layer))
-            visible = {thing.name_full for thing in shown}
-        for count, thing in enumerate(self.chosen[:MOST_OBJECTS]):
+            visible_objects = (obj for obj in self.layer.objects if obj.visible_get(view_layer=self.layer))
+            visible = {obj.name_full for obj in visible_objects}
+        for count, obj in enumerate(self.chosen[:MOST_OBJECTS]):
             if count % 500 == 499:
                 self._report(count, len(self.chosen), "reading objects")
-            yield object_facts(thing, self.census.collections[thing.name_full], extents, visible, self.detail)
+            yield object_facts(
+                obj, self.scene_objects.collections[obj.name_full], extents, visible, self.detail
+            )
         if extents.instances_cut:
-            self.remarks.append(f"Of the instances, only the first {MOST_INSTANCES:,} are in the extents.")
+            self.remarks.append(f"Extents include only the first {MOST_INSTANCES:,} instances.")
 
     def physics(self):
         world = rigid_body_world_facts(self.scene)
-        if world is not None and (self.whole or any(thing.rigid_body is not None for thing in self.chosen)):
+        if world is not None and (self.whole or any(obj.rigid_body is not None for obj in self.chosen)):
             yield world
-        for thing in self.chosen:
-            yield from physics_of(thing, self.graph)
+        for obj in self.chosen:
+            yield from physics_of(obj, self.graph)
 
     def animation(self):
         yield from animation_facts(self.everything, None if self.whole else self.chosen, self.detail)
-        if self.whole and (idle := unused_actions()):
-            yield {"name": "unused actions", "actions": few(idle), "count": len(idle)}
+        if self.whole and (unused := unused_actions()):
+            yield {"name": "unused actions", "actions": shortened(unused), "count": len(unused)}
 
     def materials(self):
-        slots = (slot for thing in self.chosen for slot in thing.material_slots)
+        slots = (slot for obj in self.chosen for slot in obj.material_slots)
         used = {slot.material.name_full: slot.material for slot in slots if slot.material is not None}
         for material in bpy.data.materials if self.whole else used.values():
             if material.name_full in used or not getattr(material, "is_grease_pencil", False):
                 yield material_facts(material, self.detail)
 
     def view(self):
-        for thing in self.chosen:
-            if thing.type == "CAMERA" and thing.data is not None:
-                yield camera_facts(thing, self.scene)
-        for thing in self.chosen:
-            if thing.type == "LIGHT" and thing.data is not None:
-                yield light_facts(thing)
+        for obj in self.chosen:
+            if obj.type == "CAMERA" and obj.data is not None:
+                yield camera_facts(obj, self.scene)
+        for obj in self.chosen:
+            if obj.type == "LIGHT" and obj.data is not None:
+                yield light_facts(obj)
         if self.whole:
             if self.scene.world is not None:
                 yield world_facts(self.scene.world, self.detail)
@@ -120,10 +120,10 @@ class _Reading:
 def _scene_facts(reading):
     scene, layer, everything = reading.scene, reading.layer, reading.everything
     counts = {}
-    for thing in everything:
-        counts[thing.type] = counts.get(thing.type, 0) + 1
+    for obj in everything:
+        counts[obj.type] = counts.get(obj.type, 0) + 1
     render, units = scene.render, scene.unit_settings
-    told = {
+    facts = {
         "name": text(scene.name),
         "file": text(bpy.path.basename(bpy.data.filepath)),
         "blender": bpy.app.version_string,
@@ -144,61 +144,62 @@ def _scene_facts(reading):
     samples = {"CYCLES": ("cycles", "samples")}.get(render.engine, ("eevee", "taa_render_samples"))
     settings = getattr(scene, samples[0], None)
     if settings is not None and hasattr(settings, samples[1]):
-        told["samples"] = getattr(settings, samples[1])
+        facts["samples"] = getattr(settings, samples[1])
     if scene.use_preview_range:
-        told["frame"]["preview"] = [scene.frame_preview_start, scene.frame_preview_end]
+        facts["frame"]["preview"] = [scene.frame_preview_start, scene.frame_preview_end]
     if tags := tags_of(scene):
-        told["tags"] = tags
+        facts["tags"] = tags
     if scene.timeline_markers:
-        told["markers"] = few([f"{one.name} {one.frame}" for one in scene.timeline_markers], 24)
+        facts["markers"] = shortened(
+            [f"{marker.name} {marker.frame}" for marker in scene.timeline_markers], 24
+        )
     if len(bpy.data.scenes) > 1:
-        told["other_scenes"] = few([one.name for one in bpy.data.scenes if one != scene], 8)
+        facts["other_scenes"] = shortened([other.name for other in bpy.data.scenes if other != scene], 8)
     if layer is not None and len(scene.view_layers) > 1:
-        told["view_layer"] = text(layer.name)
-    used = {thing.name_full for one in bpy.data.scenes for thing in one.objects}
+        facts["view_layer"] = text(layer.name)
+    used = {obj.name_full for every in bpy.data.scenes for obj in every.objects}
     if len(bpy.data.objects) > len(used):
-        told["outside"] = len(bpy.data.objects) - len(used)
+        facts["outside"] = len(bpy.data.objects) - len(used)
     if bpy.data.libraries:
-        told["libraries"] = few([one.filepath for one in bpy.data.libraries])
-    return told
+        facts["libraries"] = shortened([library.filepath for library in bpy.data.libraries])
+    return facts
 
 
-def _find(asked, everything):
+def _find(names, everything):
     """The objects of these names, patterns and collections, in the scene's order. Raises Refused."""
     wanted = set()
     by_name = {}
-    for thing in everything:
-        by_name.setdefault(thing.name, []).append(thing)
-    for words in asked:
-        found = by_name.get(words) or _matching(words, everything)
-        if not found:
-            raise Refused(_nobody(words, by_name))
-        wanted.update(thing.name_full for thing in found)
-    return [thing for thing in everything if thing.name_full in wanted]
+    for obj in everything:
+        by_name.setdefault(obj.name, []).append(obj)
+    for pattern in names:
+        matches = by_name.get(pattern) or _matching(pattern, everything)
+        if not matches:
+            raise Refused(_unknown(pattern, by_name))
+        wanted.update(obj.name_full for obj in matches)
+    return [obj for obj in everything if obj.name_full in wanted]
 
 
 def _matching(words, everything):
     collection = bpy.data.collections.get(words)
     if collection is not None:
-        inside = {thing.name_full for thing in collection.all_objects}
-        return [thing for thing in everything if thing.name_full in inside]
+        inside = {obj.name_full for obj in collection.all_objects}
+        return [obj for obj in everything if obj.name_full in inside]
     if not any(sign in words for sign in "*?["):
         return []
     fits = re.compile(fnmatch.translate(words)).match
-    return [thing for thing in everything if fits(thing.name)]
+    return [obj for obj in everything if fits(obj.name)]
 
 
-def _nobody(words, by_name):
-    shown = text(words)
+def _unknown(pattern, by_name):
+    """Why no object has this name or fits this pattern, with the nearest names."""
+    quoted = repr(text(pattern))
     if not by_name:
-        return f"There is no object {shown!r}: the scene has no objects."
-    plain = {name.lower(): name for name in by_name}
-    near = difflib.get_close_matches(words.lower().strip("*?"), plain, n=_NEAREST, cutoff=0.5)
-    names = [repr(text(plain[name])) for name in near]
-    if bpy.data.objects.get(words) is not None:
-        return f"The object {shown!r} is in the file, but not in the scene {text(bpy.context.scene.name)!r}."
-    kind = "object fits" if any(sign in words for sign in "*?[") else "object or collection is called"
+        return f"There is no object {quoted}: the scene has no objects."
+    if bpy.data.objects.get(pattern) is not None:
+        return f"The object {quoted} is in the file, but not in the scene {text(bpy.context.scene.name)!r}."
+    names = [repr(text(name)) for name in nearest(pattern.strip("*?"), by_name, 5)]
+    kind = "object fits" if any(sign in pattern for sign in "*?[") else "object or collection is called"
     hint = (
         f"Nearest: {', '.join(names)}." if names else f"The scene has {len(by_name)} objects of other names."
     )
-    return f"No {kind} {shown!r} in this scene. {hint}"
+    return f"No {kind} {quoted} in this scene. {hint}"

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Follows what moving things touch, and what they go through (see agents.protocol.measures.motion). Metres."""
+"""Follows what moving objects touch and pass through (see agents.protocol.measures.motion). Metres."""
 
 import numpy
 from mathutils import Vector
 
 from ..geometry.solids import Unmeasurable
-from ..motion.contacts import between
+from ..motion.contacts import surface_distance
 
-_PASSED = 0.25  # share of a thing's samples that must have been on both sides for it to have gone through
-_TESTED = 16  # of the places that seem to be deepest inside, which are looked at closely
+_PASSED = 0.25  # share of an object's samples that must change sides for it to count as having passed through
+_TESTED = 16  # of the points that seem deepest inside, how many are tested exactly
 _STILL = 1e-9
-_UPRIGHT = 0.9  # least share of a way from a surface that is along its normal
+_UPRIGHT = 0.9  # least cosine between the way from a surface and its normal
 
 
-class Touches:
-    """When things touch: the frames at which they are near enough, and those on the way to which they met."""
+class TouchFollower:
+    """The frames at which objects touch, or will have touched on the way from the frame before."""
 
     def __init__(self, request):
         self.start, self.end = request["start"], request["end"]
@@ -23,14 +23,14 @@ class Touches:
         self._places, self._boxes = {}, {}
         self._looked_at = set()
 
-    def look(self, frame, graph, cast):
-        """Takes in a frame."""
+    def look(self, frame, graph, tracker):
+        """Measures a frame."""
         del graph
         if self._request["once"] and self._frames:
             return
         for name in self._request["a"]:
-            own = cast.body(name)
-            places = own.placed(own.samples)
+            own = tracker.body(name)
+            places = own.to_world(own.samples)
             last = self._places.get(name)
             self._places[name] = places
             speed = 0.0
@@ -39,14 +39,14 @@ class Touches:
             else:
                 last = None
             for other in self._request["b"]:
-                self._pair(frame, cast, (own, places, last, speed), other)
+                self._pair(frame, tracker, (own, places, last, speed), other)
 
-    def _pair(self, frame, cast, mine, name):
+    def _pair(self, frame, tracker, mine, name):
         own, places, last, speed = mine
         if frame in self._frames or name in self._request["a"]:
             return
-        mine, other = cast.surface(own.name), cast.surface(name)
-        if not (mine.there and other.there):
+        mine, other = tracker.surface(own.name), tracker.surface(name)
+        if not (mine.exists and other.exists):
             return
         self._looked_at.add(name)
         box, self._boxes[name] = self._boxes.get(name), numpy.array([other.low, other.high])
@@ -54,102 +54,104 @@ class Touches:
         reach = self._request["within"] + mine.slack + other.slack
         if not other.is_near(mine.low, mine.high, reach + speed):
             return
-        if between(mine, other, reach) <= reach:
+        if surface_distance(mine, other, reach) <= reach:
             self._frames.add(frame)
-        elif last is not None and _will_meet(own, cast.body(name), places, last, reach):
+        elif last is not None and _will_meet(own, tracker.body(name), places, last, reach):
             self._frames.add(frame + 1)
 
-    def told(self):
-        """As data."""
+    def result(self):
+        """The result as data."""
         if not self._looked_at:
-            raise Unmeasurable("there are no polygons that could touch, or too many")
+            raise Unmeasurable("there are no polygons that could touch, or too many of them")
         return {"frames": sorted(frame for frame in self._frames if frame <= self.end)}
 
 
 def _will_meet(own, other, places, last, reach):
-    """Whether two things meet within a frame if both go on as they did in the last one."""
+    """Whether two objects meet within the next frame if both go on moving as in the last one."""
     ways = (
-        (other, other.seen(last, before=True), other.seen(places)),
+        (other, other.to_own_space(last, before=True), other.to_own_space(places)),
         (
             own,
-            own.seen(other.placed(other.samples, before=True), before=True),
-            own.seen(other.placed(other.samples)),
+            own.to_own_space(other.to_world(other.samples, before=True), before=True),
+            own.to_own_space(other.to_world(other.samples)),
         ),
     )
-    return any(_crossed(body, now, now + (now - before), reach=reach) for body, before, now in ways)
+    return any(_line_hits(body, now, now + (now - before), reach=reach) for body, before, now in ways)
 
 
-def _crossed(body, starts, ends, *, reach=0.0, least=_STILL):
-    """Which ways from starts to ends in a body's own space meet its surface, and where: [(number, place), …].
+def _line_hits(body, starts, ends, *, reach=0.0, least=_STILL):
+    """Which lines from starts to ends in a body's own space meet its surface, and where: [(number, place), …].
 
-    They go on for ``reach``; those that are shorter than ``least`` are passed over.
+    Each is extended by ``reach``; those shorter than ``least`` are ignored.
     """
     low, high = body.solid.low - reach, body.solid.high + reach
     near = ((numpy.minimum(starts, ends) <= high) & (numpy.maximum(starts, ends) >= low)).all(axis=1)
     near &= numpy.linalg.norm(ends - starts, axis=1) > least
-    found = []
+    hits = []
     for number in numpy.nonzero(near)[0].tolist():
         start, way = Vector(starts[number]), Vector(ends[number] - starts[number])
         place = body.solid.tree.ray_cast(start, way.normalized(), way.length + reach)[0]
         if place is not None:
-            found.append((number, place))
-    return found
+            hits.append((number, place))
+    return hits
 
 
-class Passage:
-    """How deep things get into colliders, or through them within a frame."""
+class PassageFollower:
+    """How deep objects get into colliders, or whether they pass through within a frame."""
 
     def __init__(self, request):
         self.start, self.end = request["start"], request["end"]
         self._request = request
         self._seen = {}
         self._passed = {}
-        self._told = {"depth": 0.0, "through": False, "frame": None, "at": None}
+        self._result = {"depth": 0.0, "through": False, "frame": None, "at": None}
 
-    def look(self, frame, graph, cast):
-        """Takes in a frame."""
+    def look(self, frame, graph, tracker):
+        """Measures a frame."""
         del graph
         for name in self._request["a"]:
-            own = cast.body(name)
-            places = own.placed(own.samples)
+            own = tracker.body(name)
+            places = own.to_world(own.samples)
             for other in self._request["b"]:
-                self._pair(frame, own, places, cast.body(other))
+                self._pair(frame, own, places, tracker.body(other))
 
     def _pair(self, frame, own, places, other):
         beyond = self._request["beyond"]
         pair = own.name, other.name
-        now, before = other.seen(places), self._seen.get(pair)
+        now, before = other.to_own_space(places), self._seen.get(pair)
         self._seen[pair] = now
         if before is None or len(before) != len(now):
             before = now
-        if not _reaches(other.solid, numpy.minimum(now, before), numpy.maximum(now, before), beyond):
+        if not _may_be_inside(other.solid, numpy.minimum(now, before), numpy.maximum(now, before), beyond):
             return
-        if _is_clear(other.solid, before, now, beyond):
+        if _stays_clear(other.solid, before, now, beyond):
             return
-        found = [_depth(other, now, beyond)]
+        depths = [_depth(other, now, beyond)]
         if own.solid.closed and other.solid.closed:
-            inside = _depth(own, own.seen(other.placed(other.samples)), beyond)
-            found.append(inside and (inside[0], other.seen(own.placed(numpy.array([inside[1]])))[0]))
-        deepest = max((one for one in found if one is not None), default=None, key=lambda one: one[0])
+            inside = _depth(own, own.to_own_space(other.to_world(other.samples)), beyond)
+            depths.append(
+                inside and (inside[0], other.to_own_space(own.to_world(numpy.array([inside[1]])))[0])
+            )
+        deepest = max((deep for deep in depths if deep is not None), default=None, key=lambda deep: deep[0])
         if deepest is not None:
             self._note(frame, other, deepest, through=False)
         self._sweep(frame, pair, other, (before, now))
 
     def _sweep(self, frame, pair, other, ways):
-        """Counts the samples that went from one side to the other since the frame before."""
+        """Counts the samples that changed sides since the frame before."""
         before, now = ways
         passed = self._passed.setdefault(pair, set())
         behind = []
-        for number, place in _crossed(other, before, now, least=self._request["beyond"]):
+        for number, place in _line_hits(other, before, now, least=self._request["beyond"]):
             if self._is_through(other.solid, Vector(before[number]), Vector(now[number]), place):
                 passed.add(number)
                 behind.append(((Vector(now[number]) - place).length, now[number]))
         if behind and len(passed) >= _PASSED * len(now):
-            self._note(frame, other, max(behind, key=lambda one: one[0]), through=True)
+            self._note(frame, other, max(behind, key=lambda hit: hit[0]), through=True)
             passed.clear()
 
     def _is_through(self, solid, start, end, place):
-        """Whether a way that meets a solid at a place ends behind it, and does not just cut one of its corners."""
+        """Whether a line that meets a solid ends behind it, rather than only cutting a corner."""
         beyond = self._request["beyond"]
         if solid.nearest(end)[3] <= beyond:
             return False
@@ -163,19 +165,19 @@ class Passage:
 
     def _note(self, frame, other, deepest, *, through):
         depth, place = deepest
-        if depth > self._told["depth"]:
-            at = other.placed(numpy.array([place]))[0].tolist()
-            self._told.update(depth=depth, through=through, frame=frame, at=at)
+        if depth > self._result["depth"]:
+            at = other.to_world(numpy.array([place]))[0].tolist()
+            self._result.update(depth=depth, through=through, frame=frame, at=at)
 
-    def told(self):
-        """As data."""
-        return self._told
+    def result(self):
+        """The result as data."""
+        return self._result
 
 
-def _reaches(solid, lows, highs, beyond):
-    """Whether what is between lows and highs may be so deep in a solid: deeper than that in its box.
+def _may_be_inside(solid, lows, highs, beyond):
+    """Whether points between lows and highs may be ``beyond`` deep in a solid, judging by its box.
 
-    Of a flat one, so far on both sides.
+    Of a flat one: that far on both sides.
     """
     low, high = lows.min(axis=0), highs.max(axis=0)
     flat = (solid.high - solid.low) <= 2 * beyond
@@ -184,10 +186,10 @@ def _reaches(solid, lows, highs, beyond):
     return bool(numpy.where(flat, on_both, deep).all())
 
 
-def _is_clear(solid, before, now, beyond):
-    """Whether a thing's middle keeps so far from a solid that nothing of the thing, nor its way, gets deeper into it.
+def _stays_clear(solid, before, now, beyond):
+    """Whether an object stays so far from a solid that no point of it, nor its path, can be ``beyond`` deep in it.
 
-    A ball that rolls needs no closer look.
+    For a rolling ball, say, this saves the exact test.
     """
     middles = before.mean(axis=0), now.mean(axis=0)
     reach = max(
@@ -204,22 +206,22 @@ def _is_clear(solid, before, now, beyond):
 def _depth(body, places, beyond):
     """The deepest of some places (own space) in a body, if deeper than ``beyond``: (depth, place), or None.
 
-    An open one has no inside: it is how far the places reach on that side of it where this is less.
+    For an open one, which has no inside, the depth is how far the places reach on its shallower side.
     """
     solid = body.solid
     if not solid.closed:
-        return _through(solid, places, beyond)
+        return _sheet_depth(solid, places, beyond)
     inside = ((places >= solid.low + beyond) & (places <= solid.high - beyond)).all(axis=1)
-    found = []
+    depths = []
     for place in places[inside].tolist():
         foot, normal, _, away = solid.nearest(place)
         if foot is not None and away > beyond and (Vector(place) - foot).dot(normal) * body.inwards > 0:
-            found.append((away, place))
-    found.sort(key=lambda one: one[0], reverse=True)
-    return next((one for one in found[:_TESTED] if solid.holds(one[1])), None)
+            depths.append((away, place))
+    depths.sort(key=lambda deep: deep[0], reverse=True)
+    return next((deep for deep in depths[:_TESTED] if solid.holds(deep[1])), None)
 
 
-def _through(sheet, places, beyond):
+def _sheet_depth(sheet, places, beyond):
     sides = {True: (0.0, None), False: (0.0, None)}
     for place in places.tolist():
         foot, normal, _, away = sheet.nearest(place)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes for what has no surface: threads, particles, smoke."""
+"""Proxy meshes for what has no surface: strands, particles, smoke."""
 
 import bpy
 from mathutils import Vector
 
-_MOST_STROKES = 40_000
+_MOST_SEGMENTS = 40_000
 _MOST_BEADS = 12_000
 _MOST_CELLS = 40  # along an axis of a gas, when drawn
 _THIN = 0.02  # density from which gas is drawn
@@ -28,7 +28,7 @@ def tubes(segments, thickness):
     points, faces = [], []
     for count, (start, end) in enumerate(segments):
         along = end - start
-        if count >= _MOST_STROKES or not along.length:
+        if count >= _MOST_SEGMENTS or not along.length:
             continue
         aside = along.orthogonal().normalized() * (thickness / 2)
         across = along.normalized().cross(aside)
@@ -40,7 +40,7 @@ def tubes(segments, thickness):
     return _mesh(points, faces)
 
 
-def beads(spots):
+def octahedra(spots):
     """An octahedron at each of the spots (place, radius); None if there are none."""
     points, faces = [], []
     for place, radius in spots[:: max(1, -(-len(spots) // _MOST_BEADS))]:
@@ -50,8 +50,8 @@ def beads(spots):
     return _mesh(points, faces)
 
 
-def blocks(density, flame, across, box):
-    """The outside of the cells of a gas that hold something, flames with material 1; None if none does.
+def gas_cells(density, flame, across, box):
+    """The surface of a gas's cells that are not empty, flames with material 1; None if all are empty.
 
     ``density`` and ``flame`` are flat grids of ``across`` cells in ``box`` (eight corners, as of an object).
     """

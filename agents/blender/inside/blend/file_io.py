@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Opening and writing .blend files, from the supervisor's side: checkpoints, saves, the run's own file."""
+"""Opens and writes .blend files for the supervisor: checkpoints, saves, the run's own file."""
 
-import contextlib
 import os
 import sys
 import time
@@ -10,18 +9,20 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from .temporary import temporary_settings, without_handlers
+
 SCENE_FILE = "scene.blend"
 _ON_SAVING = ("save_pre", "save_post", "save_post_fail")
 
 
 def ping(arguments, report):
-    """Blender's version; nothing is touched."""
+    """Returns Blender's version; changes nothing."""
     del arguments, report
     return {"version": bpy.app.version_string, "background": bpy.app.background}
 
 
 def open_file(arguments, report):
-    """Opens ``path`` (none: an empty scene), and makes it the run's own file in ``folder``, if it is not already.
+    """Opens ``path`` (None: an empty scene), and makes it the run's own file in ``folder`` if it is not yet.
 
     Scripts in the file do not run.
     """
@@ -46,11 +47,11 @@ def read_file(path):
 
 
 def make_own(folder):
-    """Makes the open file the run's own: relative paths and caches on disk begin in ``folder`` from here on."""
+    """Saves the open file as the run's own in ``folder``, which relative paths and caches on disk then start from."""
     try:
         bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, SCENE_FILE), check_existing=False)
     except RuntimeError as error:
-        raise Refused(f"{folder} cannot be written to: {reason(error)}") from None
+        raise Refused(f"The folder {folder} cannot be written: {reason(error)}") from None
     bpy.context.preferences.filepaths.save_version = 0
 
 
@@ -64,8 +65,10 @@ def write_file(arguments, report):
     # Relative paths are already as the run's own file wants them, unless code has made another file its own.
     elsewhere = os.path.dirname(bpy.data.filepath or path) not in {arguments["folder"], os.path.dirname(path)}
     started = time.perf_counter()
+    # No thumbnail, which takes as long as writing, and no handlers, which may never return: a checkpoint is not a save.
+    no_thumbnail = [(bpy.context.preferences.filepaths, "file_preview_type", "NONE")]
     try:
-        with _unheard(), _no_preview():
+        with without_handlers(_ON_SAVING), temporary_settings(no_thumbnail):
             bpy.ops.wm.save_as_mainfile(
                 filepath=path, copy=True, check_existing=False, relative_remap=elsewhere
             )
@@ -75,32 +78,6 @@ def write_file(arguments, report):
     return {"seconds": time.perf_counter() - started, "bytes": os.path.getsize(path)}
 
 
-@contextlib.contextmanager
-def _unheard():
-    """Runs none of the file's own handlers: a checkpoint is no event of the scene's, and they may never return."""
-    lists = [getattr(bpy.app.handlers, name, []) for name in _ON_SAVING]
-    kept = [list(handlers) for handlers in lists]
-    for handlers in lists:
-        handlers.clear()
-    try:
-        yield
-    finally:
-        for handlers, before in zip(lists, kept):  # noqa: B905 - not in Python 3.9
-            handlers[:] = before
-
-
-@contextlib.contextmanager
-def _no_preview():
-    """Draws no small picture of the scene: nobody browses checkpoints, and drawing it costs as much as writing."""
-    settings = bpy.context.preferences.filepaths
-    before = settings.file_preview_type
-    settings.file_preview_type = "NONE"
-    try:
-        yield
-    finally:
-        settings.file_preview_type = before
-
-
 def reason(error):
-    """What Blender says of an operator's failure, without its word for it."""
+    """Blender's message for an operator that failed, without the leading ``Error:``."""
     return str(error).strip().removeprefix("Error: ")

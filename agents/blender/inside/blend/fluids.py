@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which objects are fluid domains."""
+
+
+def domain_of(obj, *, shown_only=False):
+    """The fluid domain settings of an object; None if it is not a domain.
+
+    ``shown_only``: a domain whose modifier is switched off in the viewport does not count.
+    """
+    for modifier in obj.modifiers:
+        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
+            return modifier.domain_settings if modifier.show_viewport or not shown_only else None
+    return None
