@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from agents.loop.errors import RunError
 from agents.loop.journal import NAME as JOURNAL
-from agents.loop.reducer import read_history
+from agents.loop.reducer import read_run_state
 from agents.loop.stage import MAX_REPLANS_PER_STAGE, MAX_RETRIES_PER_STAGE
 from bench.blenderbench.errors import NotDone, NotReady
 from bench.blenderbench.making import Made, begun
@@ -20,7 +20,7 @@ from bench.sweep.systems.simworlds_runs import KEYS
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.loop.run_state import History
+    from agents.loop.run_state import RunState
     from bench.blenderbench.making import Tell
     from bench.blenderbench.results import Place
     from bench.blenderbench.task_set import Task
@@ -58,7 +58,7 @@ class SimWorlds:
 
     def make(self, task: Task, place: Place, tell: Tell) -> Made:
         """Edits, or goes on with an edit that was broken off; renders what came of it."""
-        before = _history(place)
+        before = _run_state(place)
         ended = before is not None and before.outcome in _ENDED
         if not ended and not any(os.environ.get(name) for name in KEYS):
             raise NotReady(f"'simworlds edit' asks a language model and needs a key: set {KEYS[0]}.")
@@ -66,18 +66,18 @@ class SimWorlds:
         if not ended:
             tell("editing")
             self._run(task, place)
-        history = _history(place)
-        if history is None:
+        run_state = _run_state(place)
+        if run_state is None:
             raise NotDone(f"the edit did not begin: {last_words(place.root / _LOG)}")
-        file, notes = _result(history, place)
+        file, notes = _result(run_state, place)
         tell("rendering the result")
         rendered = render(file, place.root / round_file(1), task.size, self.look)
         if rendered.camera != started.rendered.camera:
             notes += (f"seen by {rendered.camera!r}, not by {started.rendered.camera!r} as the start was",)
-        total = history.total
+        total = run_state.total
         cost = None if total.unpriced else total.cost
         notes = (*started.notes, *notes)
-        return Made((round_file(1),), loss, rendered, dict(history.models), cost, notes)
+        return Made((round_file(1),), loss, rendered, dict(run_state.models), cost, notes)
 
     def _run(self, task: Task, place: Place) -> None:
         given = task.visprompt if self.reference == "visprompt" and task.visprompt else task.goal
@@ -90,17 +90,17 @@ class SimWorlds:
         called(words, place.root / _LOG)
 
 
-def _history(place: Place) -> History | None:
+def _run_state(place: Place) -> RunState | None:
     """What the journal of the edit tells; None where none was begun."""
     try:
-        return read_history(place.edit)
+        return read_run_state(place.edit)
     except RunError:
         return None
 
 
-def _result(history: History, place: Place) -> tuple[Path, tuple[str, ...]]:
+def _result(run_state: RunState, place: Place) -> tuple[Path, tuple[str, ...]]:
     """The scene that counts, and what is to be said of it. Raises NotDone where there is none."""
-    ending = history.ending
+    ending = run_state.ending
     if ending is None:
         raise NotDone(f"the edit was broken off: {last_words(place.root / _LOG)}")
     file = place.edit / ending.file if ending.file else None
