@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from agents.loop.events import PlanMade, StageMoved
+from agents.loop.reducer import run_state_after
 from agents.loop.rendering import fixed, render, reviewed
 from agents.loop.run import START, plan_file
 from agents.loop.stage import StageLoop
@@ -33,7 +35,7 @@ def make(run: Run) -> Rendering:
     planner = Planner(run.desk)
     plan = planner.strategic(run.options.prompt)
     run.write("plan.json", plan_file(plan))
-    run.journal.note("plan", plan=plan.model_dump(mode="json"))
+    run.journal.note(PlanMade(plan=plan))
     staged = run.options.stages
     task = Task(told(plan) if staged else f"{_WITHOUT_STAGES}\n\n{told(plan)}", plan, _actors(plan))
     run.task = task
@@ -47,11 +49,12 @@ def build(run: Run, planner: Planner, task: Task, wanted: Sequence[Stage]) -> st
     last = START
     for stage in STAGES[:-1]:
         if stage not in wanted:
-            run.journal.note("stage.skipped", stage=stage)
+            run.journal.note(StageMoved(type="stage.skipped", stage=stage))
             continue
         attempts = StageLoop(run, planner, task, stage, last).build()
         file = run.save(stage, stage, run.checkpoints)
-        run.journal.note("stage.closed", stage=stage, attempts=attempts, file=f"checkpoints/{file.name}")
+        path = f"checkpoints/{file.name}"
+        run.journal.note(StageMoved(type="stage.closed", stage=stage, attempts=attempts, file=path))
         last = stage
     return last
 
@@ -68,7 +71,7 @@ def finish(run: Run, task: Task, plan: Render | None, last: str) -> Rendering:
 
 def result_so_far(run: Run) -> Path | None:
     """The file of the last stage that was closed."""
-    closed = [row["file"] for row in run.journal.rows if row["type"] == "stage.closed"]
+    closed = [stage.file for stage in run_state_after(run.journal.rows).stages if stage.state == "closed"]
     return run.root / closed[-1] if closed else None
 
 

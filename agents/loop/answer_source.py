@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from simworlds.llm.spending import Spending
 
 _MODEL = ("model.asked", "model.answered")
-SESSIONS = Path(str(files("agents") / "transcripts"))
+TRANSCRIPTS = Path(str(files("agents") / "transcripts"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ def answering(root: Path, options: Options, journal: Journal, line: Line) -> Mod
     source = _source(options, folders, skip, line)
     first = max((row["n"] for row in journal.rows if row["type"] in _MODEL), default=0) + 1
     return Recorded(
-        rows, folders=folders, then=Recording(source, journal.append, folders=folders, first=first)
+        rows, folders=folders, then=Recording(source, journal.append_row, folders=folders, first=first)
     )
 
 
@@ -79,7 +79,7 @@ def _source(
 ) -> Model:
     match options.origin:
         case "session":
-            return Recorded(SESSIONS / options.source, skip=skip)
+            return Recorded(TRANSCRIPTS / options.source, skip=skip)
         case "replay":
             other = Path(options.source)
             rows = _led_on(read_rows(other / NAME))
@@ -97,11 +97,11 @@ def _source(
 
 def sessions() -> list[str]:
     """The names of the sessions that come with the package."""
-    return sorted(path.parent.name for path in SESSIONS.glob("*/session.toml"))
+    return sorted(path.parent.name for path in TRANSCRIPTS.glob("*/session.toml"))
 
 
 def session_folder(name: str) -> Path:
     """The folder of one. Raises NoRun."""
     if name not in sessions():
         raise NoRun(f"There is no session {name!r}; there are {', '.join(sessions())}.")
-    return SESSIONS / name
+    return TRANSCRIPTS / name

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.answer_source import session_folder, sessions
 from agents.loop.errors import NoRun, RunError
-from agents.loop.journal import NAME, read_rows
+from agents.loop.reducer import read_run_state
 from agents.loop.toolbox import Toolbox
 from simworlds.sandbox.confined_command import best_sandbox
 
@@ -46,11 +46,10 @@ def demo_options(name: str, made: Path) -> dict[str, Any]:
 
 def replay_options(run: Path) -> dict[str, Any]:
     """The options of a run that plays the record of ``run``. Raises NoRun."""
-    rows = read_rows(run / NAME)
-    asked = next((row.get("options") for row in rows if row["type"] == "run.began"), None)
-    if not isinstance(asked, dict):
-        raise NoRun(f"{run} holds no record of a run.")
-    return {**asked, "origin": "replay", "source": str(run)}
+    options = read_run_state(run).options
+    if not options:
+        raise NoRun(f"{run} does not hold a record of a run.")
+    return {**options, "origin": "replay", "source": str(run)}
 
 
 def _told(name: str) -> Mapping[str, Any]:

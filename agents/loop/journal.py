@@ -12,9 +12,12 @@ import os
 import threading
 from contextlib import suppress
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
+
+from pydantic import ValidationError
 
 from agents.loop.errors import NoRun, RunError
+from agents.loop.events import Event, read_event
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -22,23 +25,23 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 Row = dict[str, Any]
+AnyEvent = TypeVar("AnyEvent", bound=Event)
 
 KEYS = ("role", "stage", "attempt", "round", "n")
 NAME = "journal.jsonl"
-_Key = tuple[Any, ...]
 
 
 class Journal:
     """The rows of a run, oldest first. Safe to use from several threads.
 
-    A last line that was torn when its writer was killed is cut off. Raises NoRun for a file that is no journal.
+    A last line that was torn when its writer was killed is cut off. Raises NoRun for a file that is not a journal.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.rows: list[Row] = []
-        self._known: dict[_Key, Row] = {}
-        self._listeners: list[Callable[[Mapping[str, Any]], object]] = []
+        self._by_key: dict[tuple[Any, ...], Row] = {}
+        self._listeners: list[Callable[[Event], object]] = []
         self._lock = threading.RLock()
         whole = 0
         for row, end in _read(path):
@@ -54,57 +57,64 @@ class Journal:
         """Nothing can be written afterwards."""
         self._file.close()
 
-    def listen(self, listener: Callable[[Mapping[str, Any]], object]) -> None:
-        """``listener`` gets every row from now on, once it is on the disk."""
+    def listen(self, listener: Callable[[Event], object]) -> None:
+        """``listener`` gets every event from now on, once it is on the disk."""
         self._listeners.append(listener)
 
-    def find(self, kind: str, /, **about: Any) -> Row | None:
-        """The row of that type about that, if there is one."""
+    def find(self, like: AnyEvent) -> AnyEvent | None:
+        """The event of the type of ``like`` about the same, if there is one. Raises NoRun where its row is broken."""
         with self._lock:
-            return self._known.get(_key(kind, about))
+            row = self._by_key.get(_key(like.as_row()))
+        try:
+            return None if row is None else type(like).model_validate(row)
+        except ValidationError as error:
+            raise NoRun(f"{self.path}, row {row and row.get('i')}: not a valid {like.type!r} row.") from error
 
     def last(self, field: str) -> Any:
         """The newest value of a field that is not null; None where no row has one."""
         with self._lock:
             return next((row[field] for row in reversed(self.rows) if row.get(field) is not None), None)
 
-    def note(self, kind: str, /, **fields: Any) -> Row:
-        """Writes a row, unless one of that type about the same is there: then that is returned."""
+    def note(self, event: Event) -> None:
+        """Writes an event, unless there is one of its type about the same."""
         with self._lock:
-            return self.find(kind, **_about(fields)) or self.append({"type": kind, **fields})
+            if _key(event.as_row()) not in self._by_key:
+                self.append(event)
 
-    def append(self, row: Mapping[str, Any]) -> Row:
-        """Writes a row in any case. It is on the disk when this returns. Raises RunError."""
+    def append(self, event: Event) -> None:
+        """Writes an event in any case. It is on the disk when this returns. Raises RunError."""
+        self.append_row(event.as_row())
+
+    def append_row(self, row: Mapping[str, Any]) -> None:
+        """As ``append``, for an event in the form that it has on the disk."""
         with self._lock:
             stamp = datetime.now(UTC).isoformat(timespec="milliseconds")
-            written = {"i": len(self.rows) + 1, "t": stamp, **row}
-            line = json.dumps(written, ensure_ascii=False, allow_nan=False, default=_plain)
+            line = json.dumps(
+                {"i": len(self.rows) + 1, "t": stamp, **row}, ensure_ascii=False, allow_nan=False
+            )
+            data = line.encode(errors="replace")
             start = os.fstat(self._file.fileno()).st_size
             try:
-                _write(self._file, line.encode(errors="replace") + b"\n")
+                _write(self._file, data + b"\n")
                 os.fsync(self._file.fileno())
             except OSError as error:
-                self._take_back(start)
+                with suppress(OSError):
+                    self._file.truncate(start)
                 raise RunError(
                     f"{self.path} cannot be written: {error.strerror or error}. Make room, then resume the run."
                 ) from error
+            written = json.loads(data)
             self._remember(written)
         for listener in self._listeners:
-            listener(written)
-        return written
-
-    def _take_back(self, start: int) -> None:
-        """Half a row is none."""
-        with suppress(OSError):
-            self._file.truncate(start)
+            listener(read_event(written))
 
     def _remember(self, row: Row) -> None:
         self.rows.append(row)
-        self._known[_key(row.get("type", ""), row)] = row
+        self._by_key[_key(row)] = row
 
 
 def read_rows(path: Path) -> list[Row]:
-    """The rows of a journal that somebody else may be writing. Raises NoRun."""
+    """The rows of a journal that another process may be writing. Raises NoRun."""
     return [row for row, _ in _read(path)]
 
 
@@ -113,22 +123,14 @@ def _write(file: RawIOBase, data: bytes) -> None:
         data = data[file.write(data) or 0 :]
 
 
-def _about(fields: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: fields[key] for key in KEYS if key in fields}
-
-
-def _key(kind: str, fields: Mapping[str, Any]) -> _Key:
-    return (kind, *(fields.get(key) for key in KEYS))
+def _key(row: Row) -> tuple[Any, ...]:
+    return (row["type"], *(row.get(key) for key in KEYS))
 
 
 def _is_row(value: Any) -> TypeGuard[Row]:
     if not isinstance(value, dict) or not isinstance(value.get("type"), str):
         return False
     return not any(isinstance(value.get(key), (dict, list)) for key in KEYS)
-
-
-def _plain(value: object) -> object:
-    raise TypeError(f"{value!r} is nothing for a journal")
 
 
 def _read(path: Path) -> Iterator[tuple[Row, int]]:
@@ -149,4 +151,4 @@ def _read(path: Path) -> Iterator[tuple[Row, int]]:
         if _is_row(row):
             yield row, end
         elif end < len(data):
-            raise NoRun(f"{path}, line {number}, is no row of a journal: {line[:80]!r}")
+            raise NoRun(f"{path}, line {number}: not a row of a journal: {line[:80]!r}")

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from agents.loop.edit.baseline import new_findings
 from agents.loop.edit.declared_mechanisms import undeclared
+from agents.loop.events import Reviewed, Verified
 from agents.loop.run import RUNNER, VERIFIER, VERIFY
 from agents.plan.part import STAGES
 from agents.plan.tactical import Review
@@ -126,20 +127,21 @@ def judged(
         review = reviewing()
         verdict = verified.result()
     note_verdict(run, stage, attempt, verdict)
-    run.journal.note("reviewed", stage=stage, attempt=attempt, review=review.model_dump(mode="json"))
+    run.journal.note(Reviewed(stage=stage, attempt=attempt, review=review))
     return verdict, review
 
 
 def note_verdict(run: Run, stage: Stage, attempt: int, verdict: Verdict) -> None:
     """Writes down what the verifier found."""
     run.journal.note(
-        "verified",
-        stage=stage,
-        attempt=attempt,
-        ok=verdict.ok,
-        hard=verdict.hard,
-        soft=len(verdict.findings) - verdict.hard,
-        findings=list(verdict.findings),
+        Verified(
+            stage=stage,
+            attempt=attempt,
+            ok=verdict.ok,
+            hard=verdict.hard,
+            soft=len(verdict.findings) - verdict.hard,
+            findings=cast("tuple[Any, ...]", verdict.findings),
+        )
     )
 
 

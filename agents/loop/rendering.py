@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.blender.render.image_checks import preview_png
 from agents.loop.errors import RunError
+from agents.loop.events import FinalReviewed, Rendered
 from agents.loop.judging import note_verdict, verify
 from agents.loop.run import RUNNER
 from agents.plan.tactical import FinalReview
@@ -59,14 +60,15 @@ def render(run: Run, plan: Render | None, number: int) -> Rendering:
     if made.is_file():
         _link(made, result)
     run.journal.note(
-        "rendered",
-        round=number,
-        kind=data["kind"],
-        path=result.name,
-        frames=len(frames),
-        samples=data.get("samples"),
-        seconds=data.get("seconds"),
-        pictures=[run.keep(Picture(preview_png(path))) for path in _spread(frames)],
+        Rendered(
+            round=number,
+            kind=data["kind"],
+            path=result.name,
+            frames=len(frames),
+            samples=data.get("samples"),
+            seconds=data.get("seconds"),
+            pictures=tuple(run.keep(Picture(preview_png(path))) for path in _spread(frames)),
+        )
     )
     return Rendering(result, frames, outcome.text)
 
@@ -80,7 +82,7 @@ def reviewed(run: Run, task: Task, rendering: Rendering, number: int) -> FinalRe
         review = final_review(run.desk, task.told, content, edit=task.edit)
     except (Refused, Misfit) as error:
         review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
-    run.journal.note("final.reviewed", round=number, review=review.model_dump(mode="json"))
+    run.journal.note(FinalReviewed(round=number, review=review))
     return review
 
 

@@ -17,6 +17,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.errors import NoRun, RunError, Stopping
+from agents.loop.events import (
+    AttemptBegan,
+    AttemptEnded,
+    PicturePart,
+    RolledBack,
+    SceneRestored,
+    ToolAnswered,
+    ToolCalled,
+)
 from agents.loop.toolbox import Outcome
 from agents.roles import coder, reviewer
 from agents.roles.base import Desk
@@ -27,7 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from agents.loop.journal import Journal, Row
+    from agents.loop.journal import Journal
     from agents.loop.options import Limits, Options
     from agents.loop.task import Task
     from agents.loop.toolbox import Toolbox
@@ -102,23 +111,24 @@ class Run:
         with self._door:
             self._calls[role, stage] += 1
             number = self._calls[role, stage]
-        about = {"role": role, "stage": stage, "attempt": self.attempt, "n": number}
-        if row := self.journal.find("tool.answered", **about):
-            return self._recalled(row)
+        about: dict[str, Any] = {"role": role, "stage": stage, "attempt": self.attempt, "n": number}
+        if answered := self.journal.find(ToolAnswered(**about)):
+            return self._recalled(answered)
         self.safe()
         self._align()
-        self.journal.note("tool.called", **about, name=name, input=dict(arguments))
+        self.journal.note(ToolCalled(**about, name=name, input=dict(arguments)))
         outcome = self._called(name, {**(known or {}), **arguments})
         kept = None if self.toolbox.only_looks(name) else self.toolbox.checkpoint()
         self.journal.note(
-            "tool.answered",
-            **about,
-            name=name,
-            content=[self._written(block) for block in outcome.content],
-            data=dict(outcome.data),
-            failed=outcome.failed,
-            seconds=round(outcome.seconds, 3),
-            checkpoint=kept,
+            ToolAnswered(
+                **about,
+                name=name,
+                content=tuple(self._written(block) for block in outcome.content),
+                data=dict(outcome.data),
+                failed=outcome.failed,
+                seconds=round(outcome.seconds, 3),
+                checkpoint=kept,
+            )
         )
         return outcome
 
@@ -137,15 +147,15 @@ class Run:
             if wanted is not None:
                 now = self.toolbox.stand_at(wanted)
                 if now != wanted:
-                    self.journal.append({"type": "scene.restored", "from": wanted, "checkpoint": now})
+                    self.journal.append(SceneRestored(**{"from": wanted}, checkpoint=now))
             self._aligned = True
 
     # Pictures: in the journal by name, on the disk by content
 
-    def _written(self, block: Text | Picture) -> Row:
+    def _written(self, block: Text | Picture) -> Text | PicturePart:
         if isinstance(block, Text):
-            return {"type": "text", "text": block.text}
-        return {"type": "picture", "path": self.keep(block), "media_type": block.media_type}
+            return block
+        return PicturePart(path=self.keep(block), media_type=block.media_type)
 
     def keep(self, picture: Picture) -> str:
         """Writes a picture down; its path in the run's folder."""
@@ -158,22 +168,22 @@ class Run:
             raise RunError(f"{path} cannot be written: {error.strerror or error}.") from error
         return name
 
-    def _recalled(self, row: Row) -> Outcome:
+    def _recalled(self, answered: ToolAnswered) -> Outcome:
         """What a call came to. Raises NoRun."""
+        if answered.content is None:
+            raise NoRun(f"{self.journal.path}, row {answered.i}: not a valid 'tool.answered' row.")
         try:
             content = tuple(
-                Text(one["text"])
-                if one["type"] == "text"
-                else Picture((self.root / one["path"]).read_bytes(), one["media_type"])
-                for one in row["content"]
+                part
+                if isinstance(part, Text)
+                else Picture((self.root / part.path).read_bytes(), part.media_type)
+                for part in answered.content
             )
-            return Outcome(content, row["data"], row["failed"], row["seconds"])
         except OSError as error:
             raise NoRun(
                 f"{error.filename}, which the run has seen, cannot be read: {error.strerror}."
             ) from error
-        except (KeyError, TypeError) as error:
-            raise NoRun(f"{self.journal.path}, row {row.get('i')}, is no answer of a tool.") from error
+        return Outcome(content, answered.data, answered.failed, answered.seconds or 0.0)
 
     # The scene
 
@@ -205,15 +215,15 @@ class Run:
     def roll_back(self, stage: Stage, attempt: int, to: str) -> None:
         """Puts the scene back to a closed stage, or to the START, which is written down."""
         self.load(stage, self.checkpoints / f"{to}.blend")
-        self.journal.note("rolled.back", stage=stage, attempt=attempt, to=to)
+        self.journal.note(RolledBack(stage=stage, attempt=attempt, to=to))
 
     def attempted(self, stage: Stage, attempt: int, code: Callable[[], Worked]) -> Worked:
         """Lets a coder work; that it began and how it ended is written down."""
         self.attempt = attempt
-        about = {"stage": stage, "attempt": attempt}
-        self.journal.note("attempt.began", **about)
+        about: dict[str, Any] = {"stage": stage, "attempt": attempt}
+        self.journal.note(AttemptBegan(**about))
         worked = code()
-        self.journal.note("attempt.ended", **about, report=worked.said, ended=worked.how, calls=worked.calls)
+        self.journal.note(AttemptEnded(**about, report=worked.said, ended=worked.how, calls=worked.calls))
         return worked
 
     # Files

@@ -1,6 +1,6 @@
 """What happened in a run, as a picture that never changes: stages, their attempts, and every step of those.
 
-It is made from the rows of a journal alone, see ``retelling``. What a journal does not say, or says in no sensible way,
+It is made from the rows of a journal alone, see ``reducer``. What a journal does not say, or says in no sensible way,
 is left out: None, or nothing. Times are in seconds of work; pauses between the sittings do not count.
 """
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from datetime import datetime
 
+    from agents.loop.events import Decided, Edited, RunEnded, Verified
     from agents.plan.edit import EditPlan
     from agents.plan.scene import ScenePlan
-    from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
-    from agents.protocol.findings import Finding
+    from agents.plan.tactical import FinalReview, Review, TacticalPlan
     from simworlds.llm.messages import Turn
 
 
@@ -52,7 +52,6 @@ class ToolCall:
     seconds: float | None = None
     texts: tuple[str, ...] = ()
     pictures: tuple[str, ...] = ()
-    data: Mapping[str, Any] = field(default_factory=dict[str, Any])
     failed: bool = False
     checkpoint: int | None = None
     is_answered: bool = False
@@ -68,27 +67,6 @@ Step = ModelCall | ToolCall
 
 
 @dataclass(frozen=True, slots=True)
-class Verification:
-    """What the verifier found. ``hard`` and ``soft`` are counts."""
-
-    ok: bool
-    hard: int
-    soft: int
-    seconds: float | None = None
-    findings: tuple[Finding, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Choice:
-    """What the planner decided, and what was ``taken``; the two differ where it was ``overruled``."""
-
-    decision: Decision | None
-    taken: str
-    overruled: bool = False
-    why: str = ""
-
-
-@dataclass(frozen=True, slots=True)
 class Attempt:
     """One attempt at a stage. ``tactic`` is there if a plan was made for this very one.
 
@@ -101,9 +79,9 @@ class Attempt:
     steps: tuple[Step, ...] = ()
     report: str = ""
     ended: str = ""
-    verification: Verification | None = None
+    verification: Verified | None = None
     review: Review | None = None
-    choice: Choice | None = None
+    choice: Decided | None = None
     rolled_back: str = ""
     seconds: float = 0.0
 
@@ -144,36 +122,7 @@ class Rendering:
 
 
 @dataclass(frozen=True, slots=True)
-class Changes:
-    """What an edit did to a file's data-blocks, by kind and name. ``outside`` are those that its plan did not ask for.
-
-    ``notes``: of a data-block, what of it differs and what it follows from, as far as that is known.
-    """
-
-    added: tuple[str, ...] = ()
-    removed: tuple[str, ...] = ()
-    changed: tuple[str, ...] = ()
-    unchanged: tuple[str, ...] = ()
-    outside: tuple[str, ...] = ()
-    notes: Mapping[str, str] = field(default_factory=dict[str, str])
-
-    def told(self, name: str) -> str:
-        """``Object Spoon (transform)``."""
-        return f"{name} ({self.notes[name]})" if self.notes.get(name) else name
-
-
-@dataclass(frozen=True, slots=True)
-class Ending:
-    """How the last sitting ended: "done", "aborted", "stopped" or "failed"."""
-
-    outcome: str
-    why: str = ""
-    file: str = ""
-    video: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class History:
+class RunState:
     """A run, as far as its rows tell. ``steps`` belong to no stage; ``pending`` are not answered
     yet, ``settled`` was answered by the last row.
 
@@ -188,20 +137,18 @@ class History:
     source: str = ""
     models: Mapping[str, str] = field(default_factory=dict[str, str])
     options: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    file: str = ""
-    reference: str = ""
     began: datetime | None = None
     latest: datetime | None = None
     seconds: float = 0.0
     rows: int = 0
-    sittings: int = 0
+    sessions: int = 0
     plan: ScenePlan | None = None
     edit: EditPlan | None = None
     steps: tuple[Step, ...] = ()
     stages: tuple[StageRun, ...] = ()
     renderings: tuple[Rendering, ...] = ()
-    changes: Changes | None = None
-    ending: Ending | None = None
+    changes: Edited | None = None
+    ending: RunEnded | None = None
     spending: tuple[Row, ...] = ()
     pending: tuple[Step, ...] = ()
     settled: Step | None = None

@@ -7,7 +7,7 @@ import os
 from contextlib import ExitStack
 from dataclasses import dataclass
 from importlib import metadata
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 from pydantic import ValidationError
 
@@ -17,8 +17,10 @@ from agents.loop.answer_source import Line, answering
 from agents.loop.edit.edit_mode import edit
 from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
-from agents.loop.journal import NAME, Journal, read_rows
+from agents.loop.events import RunBegan, RunEnded, SessionBegan
+from agents.loop.journal import NAME, Journal
 from agents.loop.options import ROLES, Limits, Options
+from agents.loop.reducer import read_run_state
 from agents.loop.run import Run
 from agents.loop.toolbox import Toolbox
 from simworlds.folder_lock import locked
@@ -30,9 +32,10 @@ from simworlds.sandbox.launch import find_blender
 
 if TYPE_CHECKING:
     import threading
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from pathlib import Path
 
+    from agents.loop.events import Event
     from simworlds.llm.retries import Retry
 
 _LOG = logging.getLogger(__name__)
@@ -42,8 +45,8 @@ How = Literal["done", "aborted", "stopped", "failed"]
 class Watcher(Protocol):
     """Somebody who looks on."""
 
-    def take(self, row: Mapping[str, Any]) -> None:
-        """A row of the journal was written."""
+    def take(self, event: Event) -> None:
+        """An event was written to the journal."""
         ...
 
     def saying(self, role: str, text: str) -> None:
@@ -110,10 +113,9 @@ def resume(root: Path, sitting: Sitting) -> Ended:
     """Goes on with the run in ``root``. Raises NoRun."""
     if not (root / NAME).is_file():
         raise NoRun(f"{root} is no run: it has no {NAME}.")
-    *_, last = [{}, *read_rows(root / NAME)]
-    if last.get("type") == "run.ended" and last.get("outcome") == "done":
-        file, shown = (root / str(last.get(name)) for name in ("file", "video"))
-        return Ended("done", "It was done already.", file, shown)
+    ending = read_run_state(root).ending
+    if ending and ending.outcome == "done":
+        return Ended("done", "It was done already.", root / (ending.file or ""), root / (ending.video or ""))
     return _sit(root, None, sitting)
 
 
@@ -131,9 +133,8 @@ def _sit(root: Path, options: Options | None, sitting: Sitting) -> Ended:
         journal.listen(sitting.watcher.take)
         asked = options or _options(journal)
         ended = _ended(lambda: _run(root, asked, journal, sitting))
-        told = {"outcome": ended.how, "why": ended.why}
-        files = {"file": _within(root, ended.file), "video": _within(root, ended.shown)}
-        journal.append({"type": "run.ended", **told, **files})
+        file, video = _within(root, ended.file), _within(root, ended.shown)
+        journal.append(RunEnded(outcome=ended.how, why=ended.why, file=file, video=video))
         return ended
 
 
@@ -156,16 +157,17 @@ def _ended(run: Callable[[], Ended]) -> Ended:
 def _run(root: Path, options: Options, journal: Journal, sitting: Sitting) -> Ended:
     stop = sitting.stop
     journal.note(
-        "run.began",
-        version=metadata.version("simworlds"),
-        mode=options.mode,
-        prompt=options.prompt,
-        source=options.told,
-        models={role: options.model_of(role) for role in ROLES},
-        blender=find_blender(options.blender, options.blender_exe).version,
-        options=options.model_dump(mode="json"),
+        RunBegan(
+            version=metadata.version("simworlds"),
+            mode=options.mode,
+            prompt=options.prompt,
+            source=options.told,
+            models={role: options.model_of(role) for role in ROLES},
+            blender=find_blender(options.blender, options.blender_exe).version,
+            options=options.model_dump(mode="json"),
+        )
     )
-    journal.append({"type": "sitting.began", "pid": os.getpid()})
+    journal.append(SessionBegan(pid=os.getpid()))
     (root / "checkpoints").mkdir(exist_ok=True)
     setup = SessionSetup(
         best_sandbox(options.sandbox),
@@ -193,13 +195,13 @@ def _run(root: Path, options: Options, journal: Journal, sitting: Sitting) -> En
 
 
 def _options(journal: Journal) -> Options:
-    began = journal.find("run.began")
+    began = journal.find(RunBegan())
     if began is None:
         raise NoRun(
             f"{journal.path} does not say what the run is: it was killed before it began. Start anew."
         )
     try:
-        return Options.model_validate(began.get("options"))
+        return Options.model_validate(began.options)
     except ValidationError as error:
         raise NoRun(f"{journal.path} does not say what the run is to do: {error}") from error
 

@@ -6,6 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from agents.loop.errors import Aborted
+from agents.loop.events import Decided, StageMoved, TacticMade
 from agents.loop.judging import in_words, judged, moves, overruled, review, verify
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
@@ -43,7 +44,7 @@ class StageLoop:
 
     def build(self) -> int:
         """How many attempts it took. Raises Aborted, with the scene as it was before the stage; ModelError."""
-        self._run.journal.note("stage.began", stage=self._stage)
+        self._run.journal.note(StageMoved(type="stage.began", stage=self._stage))
         attempt = 1
         tactic, worked = self._fresh(attempt, self._coder.begin)
         while True:
@@ -73,7 +74,7 @@ class StageLoop:
         run.attempt = attempt
         state = run.state(stage)
         tactic = self._planner.tactical(stage, state, why)
-        run.journal.note("tactic", stage=stage, attempt=attempt, plan=tactic.model_dump(mode="json"))
+        run.journal.note(TacticMade(stage=stage, attempt=attempt, plan=tactic))
         return tactic, run.attempted(stage, attempt, partial(code, tactic, state))
 
     def _judged(self, attempt: int, tactic: TacticalPlan) -> tuple[Verdict, Review]:
@@ -109,12 +110,13 @@ class StageLoop:
             taken = "abort"
         self._overruled = f"Your last decision was not followed: {why} " if why else ""
         self._run.journal.note(
-            "decided",
-            stage=self._stage,
-            attempt=attempt,
-            decision=decision.model_dump(mode="json"),
-            taken=taken,
-            overruled=taken != decision.transition,
-            why=why,
+            Decided(
+                stage=self._stage,
+                attempt=attempt,
+                decision=decision,
+                taken=taken,
+                overruled=taken != decision.transition,
+                why=why,
+            )
         )
         return decision, taken, why

@@ -1,9 +1,10 @@
-"""The rows of a journal as lines that one can follow; most rows are worth none."""
+"""Formats the events of a run as lines of a log; most events have none."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from agents.loop import events
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.protocol.report.folding import rows
 from agents.views.formatting import (
@@ -17,184 +18,114 @@ from agents.views.formatting import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from agents.loop.run_state import Attempt, History, StageRun, Verification
+    from agents.loop.run_state import RunState, StageRun, Step
 
 _WORDS = 140
 _FINDINGS = 3
-_WATCHED = ("coder", "runner")
 
 
-def told_event(row: Mapping[str, Any], history: History) -> list[str]:
-    """Lines for a row; ``history`` is the picture that has it already. They may hold anything: clean them."""
-    tell = _LINES.get(str(row.get("type")))
-    stage = history.stage(str(row.get("stage"))) if row.get("stage") else history.current
-    return tell(row, history, stage) if tell else []
+def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa: PLR0911 - a case for each type
+    """Lines for an event; ``run_state`` has it already. They may hold control characters: clean them."""
+    stage = run_state.stage(event.stage) if event.stage else run_state.current
+    match event:
+        case events.RunBegan():
+            source = told_source(run_state)
+            return [f"{event.mode or 'run'}: {event.prompt}", *([source] if source else [])]
+        case events.SessionBegan():
+            return [f"Resumed, session {run_state.sessions}."] if run_state.sessions > 1 else []
+        case events.PlanMade():
+            return _plan(run_state)
+        case events.ModelAnswered() | events.ToolAnswered():
+            return _step(run_state.settled)
+        case events.Verified():
+            return _verified(event)
+        case events.Reviewed(review=review) if review:
+            verdict = "blocks" if review.blocking else "does not block"
+            return [f"  reviewer {verdict}: {shortened(review.summary, _WORDS)}"]
+        case events.RolledBack():
+            return [f"  back to {event.to}"]
+        case events.Rendered():
+            frames = f", {counted(event.frames, 'frame')}" if event.frames and event.frames > 1 else ""
+            return [f"Rendered: {event.path}{frames}, {told_time(event.seconds)}"]
+        case events.FinalReviewed(review=review) if review:
+            verdict = "accepted" if review.verdict == "accept" else "needs a fix"
+            return [f"Final review: {verdict}: {shortened(review.summary, _WORDS)}"]
+        case events.Edited():
+            return _edited(event)
+        case events.RunEnded():
+            why = f": {event.why}" if event.why else ""
+            cost = told_cost(run_state.total)
+            return [f"Run {event.outcome}{why}", f"{told_time(run_state.seconds)} of work, cost: {cost}"]
+        case _:
+            return _stage_lines(event, stage) if stage else []
 
 
-def _named(stage: StageRun | None) -> str:
-    return stage_title(stage.name) if stage else ""
+def _stage_lines(event: events.Event, stage: StageRun) -> list[str]:
+    name, last = stage_title(stage.name), stage.last
+    match event:
+        case events.StageMoved(type="stage.began"):
+            return [f"{name} begins"]
+        case events.StageMoved(type="stage.skipped"):
+            return [f"{name}: skipped, the plan does not need it"]
+        case events.StageMoved():
+            attempts = counted(len(stage.attempts), "attempt")
+            return [f"{name} closed after {attempts}, {told_time(stage.seconds)}"]
+        case events.AttemptBegan() if last:
+            return [f"{name}, attempt {last.number}"]
+        case events.Decided(decision=decision) if last:
+            reason = decision.reason if decision else event.why
+            wanted = f" (it wanted to {decision.transition})" if decision and event.overruled else ""
+            return [
+                f"{name}, attempt {last.number} {told_attempt(last)}{wanted}: {shortened(reason, _WORDS)}"
+            ]
+        case _:
+            return []
 
 
-def _last(stage: StageRun | None) -> Attempt | None:
-    return stage.last if stage else None
-
-
-def _run_began(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    source = told_source(history)
-    return [f"{history.mode or 'run'}: {history.prompt}", *([source] if source else [])]
-
-
-def _sitting_began(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    return [f"Taken up again, sitting {history.sittings}."] if history.sittings > 1 else []
-
-
-def _plan(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    if history.plan:
-        objects, relations = len(history.plan.objects), len(history.plan.relations)
+def _plan(run_state: RunState) -> list[str]:
+    if run_state.plan:
+        objects, relations = len(run_state.plan.objects), len(run_state.plan.relations)
         what = f"{counted(objects, 'object')}, {counted(relations, 'relation')}"
-    elif history.edit:
-        what = counted(len(history.edit.tasks), "task")
+    elif run_state.edit:
+        what = counted(len(run_state.edit.tasks), "task")
     else:
         return []
-    return [f"Plan: {history.title} ({what})"]
+    return [f"Plan: {run_state.title} ({what})"]
 
 
-def _stage_began(_row: Mapping[str, Any], _history: History, stage: StageRun | None) -> list[str]:
-    return [f"{_named(stage)} begins"]
+def _step(step: Step | None) -> list[str]:
+    match step:
+        case ModelCall(role="coder", turn=turn) if turn and (words := turn.text.strip()):
+            return [f"  coder: {shortened(words, _WORDS)}"]
+        case ToolCall(role="coder" | "runner"):
+            why = f": {shortened(' '.join(step.texts), _WORDS)}" if step.failed else ""
+            return [f"  {step.name} {'failed' if step.failed else 'done'}, {told_time(step.seconds)}{why}"]
+        case _:
+            return []
 
 
-def _skipped(_row: Mapping[str, Any], _history: History, stage: StageRun | None) -> list[str]:
-    return [f"{_named(stage)}: skipped, the plan does without it"]
-
-
-def _attempt_began(_row: Mapping[str, Any], _history: History, stage: StageRun | None) -> list[str]:
-    last = _last(stage)
-    return [f"{_named(stage)}, attempt {last.number}"] if last else []
-
-
-def _model_answered(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    call = history.settled
-    if not isinstance(call, ModelCall) or call.turn is None or call.role != "coder":
-        return []
-    words = call.turn.text.strip()
-    return [f"  {call.role}: {shortened(words, _WORDS)}"] if words else []
-
-
-def _tool_answered(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    call = history.settled
-    if not isinstance(call, ToolCall) or call.role not in _WATCHED:
-        return []
-    why = f": {shortened(' '.join(call.texts), _WORDS)}" if call.failed else ""
-    return [f"  {call.name} {'failed' if call.failed else 'done'}, {told_time(call.seconds)}{why}"]
-
-
-def _verified(_row: Mapping[str, Any], _history: History, stage: StageRun | None) -> list[str]:
-    last = _last(stage)
-    found = last.verification if last else None
-    if found is None:
-        return []
+def _verified(event: events.Verified) -> list[str]:
     verdict = (
-        "no hard finding" if found.ok else counted(found.hard, "hard finding") if found.hard else "undecided"
+        "no hard finding" if event.ok else counted(event.hard, "hard finding") if event.hard else "undecided"
     )
-    soft = f", {counted(found.soft, 'soft finding')}" if found.soft else ""
-    return [f"  verifier: {verdict}{soft}", *(f"    {line}" for line in told_findings(found, _FINDINGS))]
+    soft = f", {counted(event.soft, 'soft finding')}" if event.soft else ""
+    return [f"  verifier: {verdict}{soft}", *(f"    {line}" for line in format_findings(event, _FINDINGS))]
 
 
-def told_findings(found: Verification, most: int) -> list[str]:
+def format_findings(verified: events.Verified, most: int) -> list[str]:
     """The worst findings, those that say the same in one line, and how many kinds there are more."""
-    folded = rows(found.findings)
+    folded = rows(verified.findings)
     lines: list[str] = []
     for row in folded[:most]:
         many = f" ×{len(row.findings)}" if len(row.findings) > 1 else ""
-        whom = " ".join(row.objects(2).split("\n"))
+        objects = " ".join(row.objects(2).split("\n"))
         measured = f" [{row.measured}]" if row.measured else ""
-        lines.append(f"{' '.join(filter(None, [row.worst.rule + many, whom]))}: {row.message}{measured}")
-    return [*lines, *([f"and {len(folded) - most} kinds more"] if len(folded) > most else [])]
+        lines.append(f"{' '.join(filter(None, [row.worst.rule + many, objects]))}: {row.message}{measured}")
+    return [*lines, *([f"and {len(folded) - most} more kinds"] if len(folded) > most else [])]
 
 
-def _reviewed(_row: Mapping[str, Any], _history: History, stage: StageRun | None) -> list[str]:
-    last = _last(stage)
-    review = last.review if last else None
-    if review is None:
-        return []
-    verdict = "blocks" if review.blocking else "does not block"
-    return [f"  reviewer {verdict}: {shortened(review.summary, _WORDS)}"]
-
-
-def _decided(_row: Mapping[str, Any], _history: History, stage: StageRun | None) -> list[str]:
-    last = _last(stage)
-    if last is None or last.choice is None:
-        return []
-    decision = last.choice.decision
-    reason = decision.reason if decision else last.choice.why
-    wanted = f" (it wanted to {decision.transition})" if decision and last.choice.overruled else ""
-    return [
-        f"{_named(stage)}, attempt {last.number} {told_attempt(last)}{wanted}: {shortened(reason, _WORDS)}"
-    ]
-
-
-def _rolled_back(row: Mapping[str, Any], _history: History, _stage: StageRun | None) -> list[str]:
-    return [f"  back to {row.get('to')}"]
-
-
-def _closed(_row: Mapping[str, Any], _history: History, stage: StageRun | None) -> list[str]:
-    attempts = counted(len(stage.attempts), "attempt") if stage else ""
-    return [f"{_named(stage)} closed after {attempts}, {told_time(stage.seconds)}"] if stage else []
-
-
-def _rendered(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    made = history.renderings[-1]
-    frames = f", {counted(made.frames, 'frame')}" if made.frames and made.frames > 1 else ""
-    return [f"Rendered: {made.path}{frames}, {told_time(made.seconds)}"]
-
-
-def _final_reviewed(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    review = next((one.review for one in reversed(history.renderings) if one.review), None)
-    if review is None:
-        return []
-    verdict = "accepted" if review.verdict == "accept" else "needs a fix"
-    return [f"Final review: {verdict}: {shortened(review.summary, _WORDS)}"]
-
-
-def _edited(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    if history.changes is None:
-        return []
-    found = history.changes
-    counts = [(len(getattr(found, name)), name) for name in ("added", "removed", "changed", "unchanged")]
+def _edited(event: events.Edited) -> list[str]:
+    counts = [(len(getattr(event, name)), name) for name in ("added", "removed", "changed", "unchanged")]
     lines = ["Data-blocks: " + ", ".join(f"{count} {name}" for count, name in counts)]
-    outside = f"Warning: changed outside the request: {', '.join(map(found.told, found.outside[:8]))}"
-    return [*lines, *([outside] if found.outside else [])]
-
-
-def _run_ended(_row: Mapping[str, Any], history: History, _stage: StageRun | None) -> list[str]:
-    ending = history.ending
-    if ending is None:
-        return []
-    why = f": {ending.why}" if ending.why else ""
-    return [
-        f"Run {ending.outcome}{why}",
-        f"{told_time(history.seconds)} of work, cost: {told_cost(history.total)}",
-    ]
-
-
-_LINES: dict[str, Callable[[Mapping[str, Any], History, StageRun | None], list[str]]] = {
-    "run.began": _run_began,
-    "sitting.began": _sitting_began,
-    "plan": _plan,
-    "stage.began": _stage_began,
-    "stage.skipped": _skipped,
-    "attempt.began": _attempt_began,
-    "model.answered": _model_answered,
-    "tool.answered": _tool_answered,
-    "verified": _verified,
-    "reviewed": _reviewed,
-    "decided": _decided,
-    "rolled.back": _rolled_back,
-    "stage.closed": _closed,
-    "rendered": _rendered,
-    "final.reviewed": _final_reviewed,
-    "edited": _edited,
-    "run.ended": _run_ended,
-}
+    outside = f"Warning: changed outside the request: {', '.join(map(event.describe, event.outside[:8]))}"
+    return [*lines, *([outside] if event.outside else [])]

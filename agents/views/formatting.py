@@ -9,7 +9,7 @@ from agents.protocol.report.folding import plain
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.loop.run_state import Attempt, History
+    from agents.loop.run_state import Attempt, RunState
     from simworlds.llm.messages import Usage
     from simworlds.llm.spending import Row
 
@@ -83,12 +83,12 @@ def _encoded(value: float) -> float:
 # Runs
 
 
-def told_source(history: History) -> str:
+def told_source(run_state: RunState) -> str:
     """Where the answers came from, in a sentence that nobody can misread; "" for a live run."""
-    source = plain(history.source)
-    calls = history.total.calls
-    recorded = history.total.recorded
-    match history.answers or ("" if source in ("", "live") else "recorded"):
+    source = plain(run_state.source)
+    calls = run_state.total.calls
+    recorded = run_state.total.recorded
+    match run_state.answers or ("" if source in ("", "live") else "recorded"):
         case "hand-written":
             return (
                 f"No model was asked in this run: its answers were written by hand ({source}). Blender, the "

@@ -13,16 +13,19 @@ from typing import TYPE_CHECKING, Any, Protocol, Self
 from rich.console import Console
 from rich.live import Live
 
+from agents.loop.events import ModelAsked, ToolAnswered, ToolCalled
 from agents.loop.reducer import after
-from agents.loop.run_state import History
-from agents.views.event_lines import told_event
+from agents.loop.run_state import RunState
+from agents.views.event_lines import format_event
 from agents.views.formatting import shortened, told_clock
 from agents.views.rich_views import Now, Progress, working
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from types import TracebackType
     from typing import TextIO
+
+    from agents.loop.events import Event
 
 _PER_SECOND = 8
 _LINE_SECONDS = 10.0  # between two lines on the progress of a tool
@@ -33,8 +36,8 @@ _LETTERS = 200  # of a line
 class View(Protocol):
     """Somebody who looks on. Everything may be called from any thread, between entering and leaving."""
 
-    def take(self, row: Mapping[str, Any]) -> None:
-        """A row of the journal was written."""
+    def take(self, event: Event) -> None:
+        """An event was written to the journal."""
         ...
 
     def saying(self, role: str, text: str) -> None:
@@ -52,7 +55,7 @@ class View(Protocol):
     ) -> None: ...
 
 
-def make_view(stream: TextIO, folder: str = "", before: History | None = None) -> View:
+def make_view(stream: TextIO, folder: str = "", before: RunState | None = None) -> View:
     """The view that fits where ``stream`` goes. ``folder`` is the run's, ``before`` what has been of it already."""
     console = Console(file=stream)
     if stream.isatty() and not console.is_dumb_terminal:
@@ -63,14 +66,14 @@ def make_view(stream: TextIO, folder: str = "", before: History | None = None) -
 class Quiet:
     """Shows nothing, and keeps the picture."""
 
-    def __init__(self, before: History | None = None) -> None:
-        self.history = before or History()
+    def __init__(self, before: RunState | None = None) -> None:
+        self.run_state = before or RunState()
         self._lock = threading.RLock()
 
-    def take(self, row: Mapping[str, Any]) -> None:
+    def take(self, event: Event) -> None:
         """See View."""
         with self._lock:
-            self.history = after(self.history, row)
+            self.run_state = after(self.run_state, event)
 
     def saying(self, role: str, text: str) -> None:
         """See View."""
@@ -91,18 +94,18 @@ class Lines(Quiet):
     """A line for each event, with the time that was worked; for logs."""
 
     def __init__(
-        self, stream: TextIO, before: History | None = None, clock: Callable[[], float] = time.monotonic
+        self, stream: TextIO, before: RunState | None = None, clock: Callable[[], float] = time.monotonic
     ) -> None:
         super().__init__(before)
         self._stream = stream
         self._clock = clock
         self._told: dict[str, float] = {}
 
-    def take(self, row: Mapping[str, Any]) -> None:
+    def take(self, event: Event) -> None:
         """See View."""
         with self._lock:
-            super().take(row)
-            for line in told_event(row, self.history):
+            super().take(event)
+            for line in format_event(event, self.run_state):
                 self._write(line)
 
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
@@ -117,7 +120,7 @@ class Lines(Quiet):
 
     def _write(self, line: str) -> None:
         """Whoever reads may be gone, or know no such letters: the run goes on."""
-        text = f"{told_clock(self.history.seconds)}  {_indented(line)}\n"
+        text = f"{told_clock(self.run_state.seconds)}  {_indented(line)}\n"
         encoding = getattr(self._stream, "encoding", None) or "utf-8"
         with suppress(OSError, ValueError):
             self._stream.write(text.encode(encoding, "replace").decode(encoding))
@@ -137,7 +140,7 @@ class Screen(Quiet):
         self,
         stream: TextIO,
         folder: str = "",
-        before: History | None = None,
+        before: RunState | None = None,
         console: Console | None = None,
     ) -> None:
         super().__init__(before)
@@ -155,16 +158,15 @@ class Screen(Quiet):
             redirect_stderr=False,
         )
 
-    def take(self, row: Mapping[str, Any]) -> None:
+    def take(self, event: Event) -> None:
         """See View."""
         with self._lock:
-            super().take(row)
+            super().take(event)
             self._taken = time.monotonic()
-            role, kind = row.get("role"), row.get("type")
-            if kind == "model.asked" and isinstance(role, str):
-                self._words.pop(role, None)
-            if kind in ("tool.called", "tool.answered"):
-                self._progress.pop(str(row.get("name")), None)
+            if isinstance(event, ModelAsked):
+                self._words.pop(event.role, None)
+            if isinstance(event, ToolCalled | ToolAnswered):
+                self._progress.pop(event.name, None)
 
     def saying(self, role: str, text: str) -> None:
         """See View."""
@@ -178,9 +180,9 @@ class Screen(Quiet):
 
     def _drawn(self) -> Any:
         with self._lock:
-            since = time.monotonic() - self._taken if self._is_open and not self.history.ending else 0.0
-            now = Now(self.history.seconds + since, dict(self._words), dict(self._progress), self._folder)
-            return working(self.history, now, self._console.height)
+            since = time.monotonic() - self._taken if self._is_open and not self.run_state.ending else 0.0
+            now = Now(self.run_state.seconds + since, dict(self._words), dict(self._progress), self._folder)
+            return working(self.run_state, now, self._console.height)
 
     def __enter__(self) -> Self:
         self._is_open = True

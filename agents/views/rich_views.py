@@ -17,7 +17,7 @@ from rich.text import Text
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.plan.part import STAGES
 from agents.protocol.report.folding import plain
-from agents.views.event_lines import told_findings
+from agents.views.event_lines import format_findings
 from agents.views.formatting import (
     counted,
     shortened,
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
 
-    from agents.loop.run_state import Attempt, History, Step
+    from agents.loop.run_state import Attempt, RunState, Step
 
 _MARKS = {
     "closed": ("✓", "green"),
@@ -74,49 +74,49 @@ class Now:
     folder: str = ""
 
 
-def working(history: History, now: Now, height: int) -> RenderableType:
+def working(run_state: RunState, now: Now, height: int) -> RenderableType:
     """The run, and what is being done in it, in at most about ``height`` lines."""
-    parts: list[RenderableType] = [_head(history), _stages(history)]
-    if history.ending is None:
-        parts += _doing(history, now)
-    stage = history.current
+    parts: list[RenderableType] = [_head(run_state), _stages(run_state)]
+    if run_state.ending is None:
+        parts += _doing(run_state, now)
+    stage = run_state.current
     judged = _last_judged(stage.attempts) if stage else None
     if judged and height >= _TALL:
         told = told_attempt(judged) or "is judged"
         parts += [_line(f"Attempt {judged.number}: {told}", "dim"), *_judged(judged, most=3, is_cut=True)]
-    if history.ending and history.ending.why:
-        parts.append(_line(history.ending.why, _OUTCOMES.get(history.outcome, "")))
-    parts += [Text(), _foot(history, now)]
+    if run_state.ending and run_state.ending.why:
+        parts.append(_line(run_state.ending.why, _OUTCOMES.get(run_state.outcome, "")))
+    parts += [Text(), _foot(run_state, now)]
     return Group(*parts)
 
 
-def show(history: History) -> RenderableType:
+def show(run_state: RunState) -> RenderableType:
     """Everything that is worth knowing of a run, for ``simworlds show``."""
-    parts: list[RenderableType] = [_head(history)]
-    if history.title != history.prompt:
-        parts.append(_line(history.prompt, "italic", most=_WIDEST * 4))
-    parts.append(_stages(history))
-    for stage in history.stages:
+    parts: list[RenderableType] = [_head(run_state)]
+    if run_state.title != run_state.prompt:
+        parts.append(_line(run_state.prompt, "italic", most=_WIDEST * 4))
+    parts.append(_stages(run_state))
+    for stage in run_state.stages:
         for attempt in stage.attempts:
             if attempt.choice and attempt.choice.taken != "advance":
                 parts.append(
                     _line(f"{stage_title(stage.name)}, attempt {attempt.number}: {told_attempt(attempt)}")
                 )
                 parts += _judged(attempt, most=5)
-    for rendering in history.renderings:
+    for rendering in run_state.renderings:
         if rendering.review:
             verdict = "accepted" if rendering.review.verdict == "accept" else "needs a fix"
             parts.append(_line(f"Final review {rendering.round}: {verdict}. {rendering.review.summary}"))
-    if history.changes and history.changes.outside:
-        names = ", ".join(history.changes.outside[:12])
+    if run_state.changes and run_state.changes.outside:
+        names = ", ".join(run_state.changes.outside[:12])
         parts.append(_line(f"Changed outside the request: {names}", "yellow"))
-    if history.ending and history.ending.why:
-        parts.append(_line(history.ending.why, _OUTCOMES.get(history.outcome, ""), most=_WIDEST * 4))
-    parts += [Text(), _foot(history, Now(history.seconds))]
+    if run_state.ending and run_state.ending.why:
+        parts.append(_line(run_state.ending.why, _OUTCOMES.get(run_state.outcome, ""), most=_WIDEST * 4))
+    parts += [Text(), _foot(run_state, Now(run_state.seconds))]
     return Group(*parts)
 
 
-def runs_table(runs: Iterable[tuple[str, History]]) -> Table:
+def runs_table(runs: Iterable[tuple[str, RunState]]) -> Table:
     """A row for each run: its name, what it is, how it stands, what it cost, when it was worked on last."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("Run", no_wrap=True)
@@ -125,31 +125,31 @@ def runs_table(runs: Iterable[tuple[str, History]]) -> Table:
     table.add_column("Stage", no_wrap=True)
     table.add_column("Cost", justify="right", no_wrap=True)
     table.add_column("When", no_wrap=True)
-    for name, history in runs:
-        table.add_row(*run_row(name, history))
+    for name, run_state in runs:
+        table.add_row(*run_row(name, run_state))
     return table
 
 
-def run_row(name: str, history: History) -> tuple[Text, ...]:
+def run_row(name: str, run_state: RunState) -> tuple[Text, ...]:
     """The row of ``runs_table``."""
-    stage = history.current
+    stage = run_state.current
     if stage:
         where = stage_title(stage.name)
     else:
         where = (
             ""
-            if history.outcome == "done"
-            else stage_title(history.stages[-1].name)
-            if history.stages
+            if run_state.outcome == "done"
+            else stage_title(run_state.stages[-1].name)
+            if run_state.stages
             else "plan"
         )
-    when = history.latest.astimezone().strftime("%Y-%m-%d %H:%M") if history.latest else ""
-    total = history.total
+    when = run_state.latest.astimezone().strftime("%Y-%m-%d %H:%M") if run_state.latest else ""
+    total = run_state.total
     cost = told_cost(total) if total.calls or total.cost else "recorded" if total.recorded else ""
     return (
         Text(shortened(name, 60)),
-        Text(shortened(history.title, _WIDEST)),
-        Text(shortened(history.outcome, 20), _OUTCOMES.get(history.outcome, "")),
+        Text(shortened(run_state.title, _WIDEST)),
+        Text(shortened(run_state.outcome, 20), _OUTCOMES.get(run_state.outcome, "")),
         Text(where),
         Text(cost),
         Text(when),
@@ -163,21 +163,21 @@ def _line(text: str, style: str = "", most: int = _WIDEST) -> Text:
     return Text(shortened(text, most), style)
 
 
-def _head(history: History) -> RenderableType:
-    title = Text(shortened(history.title or "A new run", 120), "bold")
-    if history.outcome != "unfinished":
-        title.append(f"  {plain(history.outcome)}", _OUTCOMES.get(history.outcome, ""))
-    source = told_source(history)
+def _head(run_state: RunState) -> RenderableType:
+    title = Text(shortened(run_state.title or "A new run", 120), "bold")
+    if run_state.outcome != "unfinished":
+        title.append(f"  {plain(run_state.outcome)}", _OUTCOMES.get(run_state.outcome, ""))
+    source = told_source(run_state)
     return Group(title, _line(source, "yellow")) if source else title
 
 
-def _stages(history: History) -> RenderableType:
+def _stages(run_state: RunState) -> RenderableType:
     """A line for each stage: its mark, name, attempts, time."""
     table = Table.grid(padding=(0, 2, 0, 0))
-    names = [*STAGES, *(one.name for one in history.stages if one.name not in STAGES)]
+    names = [*STAGES, *(one.name for one in run_state.stages if one.name not in STAGES)]
     for name in names:
-        stage, state = history.stage(name), history.state_of(name)
-        if state == "skipped" and history.mode == "edit":
+        stage, state = run_state.stage(name), run_state.state_of(name)
+        if state == "skipped" and run_state.mode == "edit":
             continue
         mark, style = _MARKS.get(state, ("?", ""))
         told = ""
@@ -193,14 +193,14 @@ def _stages(history: History) -> RenderableType:
     return Padding(table, (1, 0, 1, 0))
 
 
-def _doing(history: History, now: Now) -> list[RenderableType]:
+def _doing(run_state: RunState, now: Now) -> list[RenderableType]:
     """Who does what at this moment: a line for each that thinks, speaks or works, and the coder's last words."""
-    stage = history.current
+    stage = run_state.current
     attempt = stage.last if stage else None
-    is_heard = any(isinstance(step, ModelCall) and step.role == "coder" for step in history.pending)
+    is_heard = any(isinstance(step, ModelCall) and step.role == "coder" for step in run_state.pending)
     words = "" if is_heard or attempt is None else _last_words(attempt)
     lines: list[RenderableType] = [_spoken("coder", words, "dim")] if words else []
-    return [*lines, *(_step_line(step, now) for step in history.pending[-3:])]
+    return [*lines, *(_step_line(step, now) for step in run_state.pending[-3:])]
 
 
 def _last_words(attempt: Attempt) -> str:
@@ -244,7 +244,7 @@ def _last_judged(attempts: tuple[Attempt, ...]) -> Attempt | None:
 def _judged(attempt: Attempt, most: int, *, is_cut: bool = False) -> list[RenderableType]:
     """What was found of an attempt; lines that are too long for the terminal are cut, or wrapped."""
     found = attempt.verification
-    told = told_findings(found, most) if found else []
+    told = format_findings(found, most) if found else []
     lines = [_line(one, "red" if found and found.hard else "yellow") for one in told]
     if attempt.review:
         verdict = "blocks" if attempt.review.blocking else "does not block"
@@ -255,10 +255,10 @@ def _judged(attempt: Attempt, most: int, *, is_cut: bool = False) -> list[Render
     return [Padding(line, (0, 0, 0, 2)) for line in lines]
 
 
-def _foot(history: History, now: Now) -> Text:
-    total = history.total
+def _foot(run_state: RunState, now: Now) -> Text:
+    total = run_state.total
     words = [told_clock(now.seconds)]
-    if (left := seconds_left(history, now.seconds - history.seconds)) is not None:
+    if (left := seconds_left(run_state, now.seconds - run_state.seconds)) is not None:
         step = 60 if left >= 90 else 10  # it is no more exact than that
         words.append(f"about {told_time(max(1, round(left / step)) * step)} left")
     words.append(
@@ -271,15 +271,15 @@ def _foot(history: History, now: Now) -> Text:
     return Text(" · ".join(words), "dim", no_wrap=True, overflow="ellipsis")
 
 
-def seconds_left(history: History, since: float = 0.0) -> float | None:
+def seconds_left(run_state: RunState, since: float = 0.0) -> float | None:
     """How long the rest may take if its stages are like those that are done, ``since`` seconds after the last row.
 
     None while that would be no more than a guess.
     """
-    share, count = history.share_done, len(history.planned)
-    if history.ending or not _ENOUGH <= share < 1:
+    share, count = run_state.share_done, len(run_state.planned)
+    if run_state.ending or not _ENOUGH <= share < 1:
         return None
-    worked = sum(stage.seconds for stage in history.stages if stage.state == "closed")
+    worked = sum(stage.seconds for stage in run_state.stages if stage.state == "closed")
     each = worked / (share * count)
-    under_way = history.current.seconds if history.current else 0.0
+    under_way = run_state.current.seconds if run_state.current else 0.0
     return max(each * _AT_LEAST, each * (1 - share) * count - under_way - since)

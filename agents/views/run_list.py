@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 from agents.blender.launch import runs_folder
 from agents.blender.run_folder import roots
 from agents.loop.errors import NoRun
+from agents.loop.events import RunEnded
 from agents.loop.journal import NAME
-from agents.loop.reducer import read_history
-from agents.loop.run_state import Ending, History
+from agents.loop.reducer import read_run_state
+from agents.loop.run_state import RunState
 from agents.views.rich_views import runs_table, show
 
 if TYPE_CHECKING:
@@ -30,15 +31,15 @@ def table_of_runs() -> Table:
     return runs_table((path.parent.name, _known_of(path.parent)) for path in found)
 
 
-def _known_of(run: Path) -> History:
+def _known_of(run: Path) -> RunState:
     try:
-        return read_history(run)
+        return read_run_state(run)
     except NoRun:
-        return History(ending=Ending("unreadable"))
+        return RunState(ending=RunEnded(outcome="unreadable"))
 
 
 def shown(run: Path) -> RenderableType:
     """How a run stands. Raises NoRun."""
     if not (run / NAME).is_file():
         raise NoRun(f"{run} is no run: it has no {NAME}.")
-    return show(read_history(run))
+    return show(read_run_state(run))

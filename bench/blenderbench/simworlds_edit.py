@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from agents.loop.errors import RunError
 from agents.loop.journal import NAME as JOURNAL
-from agents.loop.reducer import read_history
+from agents.loop.reducer import read_run_state
 from agents.loop.stage import MAX_REPLANS_PER_STAGE, MAX_RETRIES_PER_STAGE
 from bench.blenderbench.edit_system import EditOutput, prepare_start
 from bench.blenderbench.errors import EditSystemNotReady, TaskFailed
@@ -20,7 +20,7 @@ from bench.sweep.systems.simworlds_runs import KEYS
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.loop.run_state import History
+    from agents.loop.run_state import RunState
     from bench.blenderbench.edit_system import Tell
     from bench.blenderbench.results import TaskFolder
     from bench.blenderbench.task_set import EditTask
@@ -98,15 +98,15 @@ class SimWorldsEdit:
         run_simworlds(words, place.root / _LOG)
 
 
-def _history(place: TaskFolder) -> History | None:
+def _history(place: TaskFolder) -> RunState | None:
     """The state of the edit's run by its journal; None if there is none."""
     try:
-        return read_history(place.edit)
+        return read_run_state(place.edit)
     except RunError:
         return None
 
 
-def _result(history: History, place: TaskFolder) -> tuple[Path, tuple[str, ...]]:
+def _result(history: RunState, place: TaskFolder) -> tuple[Path, tuple[str, ...]]:
     """The scene that counts, and notes on it. Raises TaskFailed where there is none."""
     ending = history.ending
     if ending is None:

@@ -9,6 +9,7 @@ from agents.loop.algorithm import ALL_AT_ONCE, build, finish
 from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared
 from agents.loop.errors import Unusable
+from agents.loop.events import PlanMade, ReferenceKept
 from agents.loop.judging import verify
 from agents.loop.run import RUNNER, START, plan_file
 from agents.loop.task import Task
@@ -35,12 +36,12 @@ def edit(run: Run) -> Rendering:
     planner = Planner(run.desk, edit=True)
     plan = planner.edit(options.prompt, state, before.names, seen.pictures, reference)
     run.write("plan.json", plan_file(plan))
-    run.journal.note("plan", edit=plan.model_dump(mode="json"))
+    run.journal.note(PlanMade(edit=plan))
     task = _task(run, plan, before)
     wanted = plan.stages if options.stages else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
     rendering = finish(run, task, plan.render, last)
-    run.journal.note("edited", **compared(before, blocks(run, "render"), plan))
+    run.journal.note(compared(before, blocks(run, "render"), plan))
     return rendering
 
 
@@ -59,11 +60,12 @@ def _reference(run: Run) -> Picture | None:
     """What the result should look like. It is kept with the run: its file may be gone when the run is taken up."""
     if run.options.reference is None:
         return None
-    kept = run.journal.find("reference")
+    kept = run.journal.find(ReferenceKept())
     if kept is None:
         given = picture(run.options.reference)
-        kept = run.journal.note("reference", path=run.keep(given), media_type=given.media_type)
-    return Picture((run.root / kept["path"]).read_bytes(), kept["media_type"])
+        kept = ReferenceKept(path=run.keep(given), media_type=given.media_type)
+        run.journal.note(kept)
+    return Picture((run.root / kept.path).read_bytes(), kept.media_type)
 
 
 def _task(run: Run, plan: EditPlan, before: Blocks) -> Task:

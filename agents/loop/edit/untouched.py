@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from agents.loop.edit.consequences import Consequences
 from agents.loop.errors import RunError
+from agents.loop.events import Edited
 from agents.loop.run import RUNNER
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def blocks(run: Run, stage: Stage) -> Blocks:
     )
 
 
-def compared(before: Blocks, after: Blocks, plan: EditPlan) -> dict[str, Any]:
+def compared(before: Blocks, after: Blocks, plan: EditPlan) -> Edited:
     """What was ``added``, ``removed``, ``changed`` and left ``unchanged``, and what of it is ``outside`` of the plan.
 
     ``parts`` has what of a changed one differs (its transform, modifiers, …) where that is known; ``why`` says, of all
@@ -60,16 +61,16 @@ def compared(before: Blocks, after: Blocks, plan: EditPlan) -> dict[str, Any]:
     parts = {name: _differing(before.parts.get(name, {}), after.parts.get(name, {})) for name in changed}
     found = Consequences(before.uses, after.uses, plan, added=added, removed=removed, changed=parts)
     touched = added | removed | changed
-    return {
-        "added": sorted(added),
-        "removed": sorted(removed),
-        "changed": sorted(changed),
-        "unchanged": sorted(both - changed),
-        "outside": sorted(touched - found.reasons.keys()),
-        "parts": {name: parts[name] for name in sorted(changed)},
-        "why": {name: found.told(name) for name in sorted(touched)},
-    }
+    return Edited(
+        added=tuple(sorted(added)),
+        removed=tuple(sorted(removed)),
+        changed=tuple(sorted(changed)),
+        unchanged=tuple(sorted(both - changed)),
+        outside=tuple(sorted(touched - found.reasons.keys())),
+        parts={name: parts[name] for name in sorted(changed)},
+        why={name: found.told(name) for name in sorted(touched)},
+    )
 
 
-def _differing(one: Mapping[str, str], other: Mapping[str, str]) -> list[str]:
-    return sorted(part for part in one.keys() | other.keys() if one.get(part) != other.get(part))
+def _differing(one: Mapping[str, str], other: Mapping[str, str]) -> tuple[str, ...]:
+    return tuple(sorted(part for part in one.keys() | other.keys() if one.get(part) != other.get(part)))

@@ -1,4 +1,4 @@
-"""The page: what the templates show, put together from a run's history and folder."""
+"""The page: what the templates show, put together from a run's run_state and folder."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from agents.loop.reducer import read_history
+from agents.loop.reducer import read_run_state
 from agents.loop.run_state import ModelCall, Step, ToolCall
 from agents.plan.part import STAGES
 from agents.protocol.report.folding import rows
@@ -32,7 +32,7 @@ from simworlds.llm.spending import Row as Spent
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.loop.run_state import Attempt, History, StageRun
+    from agents.loop.run_state import Attempt, RunState, StageRun
     from agents.protocol.report.folding import Row
 
 NAME = "report.html"
@@ -103,29 +103,29 @@ class ShownStage:
 
 def write_report(run: Path) -> Path:
     """Writes report.html into the run's folder, from its journal; the file. Raises NoRun, OSError."""
-    text = make_report(read_history(run), run)
+    text = make_report(read_run_state(run), run)
     write_whole(run / NAME, text, durable=False)
     return run / NAME
 
 
-def make_report(history: History, run: Path) -> str:
+def make_report(run_state: RunState, run: Path) -> str:
     """The page as HTML. ``run`` is the folder that its links start from, and has the pictures."""
     media = Media(run)
     gallery = _Gallery(media)
     script = _own("script.js")
     page = _environment().get_template("page.html.jinja")
     text = page.render(
-        history=history,
+        run_state=run_state,
         run=run.resolve().name,
-        source=formatting.told_source(history),
-        renderings=[_rendering(one, media) for one in history.renderings],
-        result=_result(history, media),
-        stages=_stages(history, gallery),
-        graph=draw_graph(history.plan) if history.plan else None,
-        timeline=draw_timeline(history.plan) if history.plan else None,
-        objects=objects_of(history.plan) if history.plan else (),
-        relations=relations_of(history.plan) if history.plan else (),
-        costs=_costs(history),
+        source=formatting.told_source(run_state),
+        renderings=[_rendering(one, media) for one in run_state.renderings],
+        result=_result(run_state, media),
+        stages=_stages(run_state, gallery),
+        graph=draw_graph(run_state.plan) if run_state.plan else None,
+        timeline=draw_timeline(run_state.plan) if run_state.plan else None,
+        objects=objects_of(run_state.plan) if run_state.plan else (),
+        relations=relations_of(run_state.plan) if run_state.plan else (),
+        costs=_costs(run_state),
         roles=_ROLES,
         counted=formatting.counted,
         categories=CATEGORIES,
@@ -179,15 +179,15 @@ def _rendering(rendering: Any, media: Media) -> dict[str, Any]:
     }
 
 
-def _result(history: History, media: Media) -> dict[str, Any]:
+def _result(run_state: RunState, media: Media) -> dict[str, Any]:
     """The video or picture that stands for the run; the last of each that is there."""
-    names = [history.ending.video] if history.ending else []
-    names += [one.path for one in reversed(history.renderings)]
+    names = [run_state.ending.video or ""] if run_state.ending else []
+    names += [one.path for one in reversed(run_state.renderings)]
     video = next((shown for name in names if (shown := media.video(name))), None)
-    stills = [*names, *(name for one in reversed(history.renderings) for name in one.pictures[-1:])]
+    stills = [*names, *(name for one in reversed(run_state.renderings) for name in one.pictures[-1:])]
     still = None if video else next((shown for name in stills if (shown := media.picture(name))), None)
-    poster = next((one.pictures[0] for one in reversed(history.renderings) if one.pictures), "")
-    file = history.ending.file if history.ending else ""
+    poster = next((one.pictures[0] for one in reversed(run_state.renderings) if one.pictures), "")
+    file = (run_state.ending and run_state.ending.file) or ""
     return {
         "video": video,
         "still": still,
@@ -241,15 +241,15 @@ def _about(call: ToolCall) -> str:
     return formatting.shortened(", ".join(given), _ABOUT)
 
 
-def _stages(history: History, gallery: _Gallery) -> list[ShownStage]:
-    names = [*STAGES, *(one.name for one in history.stages if one.name not in STAGES)]
-    if history.mode == "edit" and history.edit:
-        names = [name for name in names if name in history.planned or history.stage(name)]
+def _stages(run_state: RunState, gallery: _Gallery) -> list[ShownStage]:
+    names = [*STAGES, *(one.name for one in run_state.stages if one.name not in STAGES)]
+    if run_state.mode == "edit" and run_state.edit:
+        names = [name for name in names if name in run_state.planned or run_state.stage(name)]
     shown: list[ShownStage] = []
     for name in names:
-        run = history.stage(name)
-        spent = sum((row for row in history.spending if row.stage == name), Spent("", name))
-        state = history.state_of(name)
+        run = run_state.stage(name)
+        spent = sum((row for row in run_state.spending if row.stage == name), Spent("", name))
+        state = run_state.state_of(name)
         if run is None:
             shown.append(ShownStage(name, formatting.stage_title(name), state))
             continue
@@ -305,17 +305,17 @@ def _step(step: Step, numbers: dict[str, int]) -> ShownStep:
 # Costs
 
 
-def _costs(history: History) -> list[dict[str, Any]]:
+def _costs(run_state: RunState) -> list[dict[str, Any]]:
     """A row for each stage that used a model, and what is outside of any."""
-    by_key = {(row.role, row.stage): row for row in history.spending}
-    names = list(dict.fromkeys(row.stage for row in history.spending))
+    by_key = {(row.role, row.stage): row for row in run_state.spending}
+    names = list(dict.fromkeys(row.stage for row in run_state.spending))
     ordered = sorted(names, key=lambda name: (name in STAGES, STAGES.index(name) if name in STAGES else 0))
     return [
         {
             "title": formatting.stage_title(name) if name else "Scene plan",
             "roles": [by_key.get((role, name)) for role in _ROLES],
-            "total": sum((row for row in history.spending if row.stage == name), Spent("", name)),
-            "seconds": stage.seconds if (stage := history.stage(name)) else None,
+            "total": sum((row for row in run_state.spending if row.stage == name), Spent("", name)),
+            "seconds": stage.seconds if (stage := run_state.stage(name)) else None,
         }
         for name in ordered
     ]

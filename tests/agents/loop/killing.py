@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-    from agents.loop.journal import Row
 
 Event = tuple[Any, ...]
 _SECONDS = 240.0
@@ -79,24 +78,23 @@ def _sit(root: Path, home: Path, url: str, deaths: Path, options: dict[str, Any]
             file.write(json.dumps([event, where]) + "\n")
         os.kill(os.getpid(), signal.SIGKILL)
 
-    write = Journal.append
+    write = Journal.append_row
 
-    def append(journal: Journal, row: Mapping[str, Any]) -> Row:
+    def append(journal: Journal, row: Mapping[str, Any]) -> None:
         known = events(journal.rows)
         (*_, event) = events([*journal.rows, row])
         new = event not in known and event not in past
         if new and len(before) % 2:
             die(event, "before")
-        written = write(journal, row)
+        write(journal, row)
         if new:
             die(event, "behind")
-        return written
 
     with ExitStack() as stack:
         patch = stack.enter_context(at_home(home))
         patch.setenv("ANTHROPIC_API_KEY", "any")
         patch.setenv("ANTHROPIC_BASE_URL", url)
-        patch.setattr(Journal, "append", append)
+        patch.setattr(Journal, "append_row", append)
         began = (root / NAME).exists() and (root / NAME).stat().st_size
         if began:
             go_on(root)

@@ -24,6 +24,8 @@ from simworlds.sandbox.confined_command import best_sandbox
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from agents.loop.events import Event
+
 PROMPT = "A crate stands on a floor"
 MESSAGES = "POST /v1/messages"
 OnRow = Callable[[Mapping[str, Any]], object]
@@ -64,9 +66,9 @@ class Onlooker:
     rows: list[Row] = field(default_factory=list)
     heard: list[tuple[str, str]] = field(default_factory=list)
 
-    def take(self, row: Mapping[str, Any]) -> None:
-        self.rows.append(dict(row))
-        self.on_row(row)
+    def take(self, event: Event) -> None:
+        self.rows.append(event.as_row())
+        self.on_row(self.rows[-1])
 
     def saying(self, role: str, text: str) -> None:
         self.heard.append((role, text))

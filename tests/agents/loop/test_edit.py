@@ -14,9 +14,10 @@ from team import DONE, Team, reply, run, words_of
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.errors import Unusable
-from agents.loop.reducer import read_history
+from agents.loop.events import read_event
+from agents.loop.reducer import read_run_state
 from agents.loop.toolbox import Toolbox
-from agents.views.event_lines import told_event
+from agents.views.event_lines import format_event
 from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
@@ -192,8 +193,8 @@ def test_an_edit_changes_what_is_asked_for_and_reports_every_data_block(
 
 def test_what_an_edit_moves_beside_what_was_asked_for_is_named_in_a_warning(taller: Played) -> None:
     assert taller.the("edited")["outside"] == ["Object Spoon"]
-    history = read_history(taller.root)
-    told = "\n".join(told_event(taller.the("edited"), history))
+    history = read_run_state(taller.root)
+    told = "\n".join(format_event(read_event(taller.the("edited")), history))
     assert "Warning" in told
     assert "Object Spoon (transform)" in told
     assert "Object Mug" not in told.partition("Warning")[2]

@@ -62,7 +62,7 @@ def plan(*targets: str, kind: str = "modify", stage: str = "modeling", **more: A
 
 
 def outside(after: File, plan: EditPlan) -> list[str]:
-    return compared(blocks(kitchen()), blocks(after), plan)["outside"]
+    return list(compared(blocks(kitchen()), blocks(after), plan).outside)
 
 
 def edited(name: str, part: str, what: str = "anew", used: list[str] | None = None, **more: Any) -> File:
@@ -73,13 +73,13 @@ def edited(name: str, part: str, what: str = "anew", used: list[str] | None = No
 
 
 def test_a_file_that_was_not_changed_is_all_unchanged() -> None:
-    report = compared(blocks(kitchen()), blocks(kitchen()), plan("Mug"))
+    report = compared(blocks(kitchen()), blocks(kitchen()), plan("Mug")).as_row()
     assert report["unchanged"] == sorted(kitchen())
     assert not any(report[key] for key in ("added", "removed", "changed", "outside", "why"))
 
 
 def test_what_of_a_named_object_changed_is_told_part_by_part() -> None:
-    report = compared(blocks(kitchen()), blocks(edited("Object Mug", "transform")), plan("Mug"))
+    report = compared(blocks(kitchen()), blocks(edited("Object Mug", "transform")), plan("Mug")).as_row()
     assert (report["changed"], report["outside"]) == (["Object Mug"], [])
     assert report["parts"] == {"Object Mug": ["transform"]}
     assert report["why"] == {"Object Mug": "named by the plan"}
@@ -94,12 +94,12 @@ def test_what_of_a_named_object_changed_is_told_part_by_part() -> None:
     ],
 )
 def test_what_only_a_named_object_uses_may_change_with_it(name: str, part: str, why: str) -> None:
-    report = compared(blocks(kitchen()), blocks(edited(name, part)), plan("Mug"))
+    report = compared(blocks(kitchen()), blocks(edited(name, part)), plan("Mug")).as_row()
     assert (report["outside"], report["why"]) == ([], {name: why})
 
 
 def test_a_material_that_others_use_too_is_outside_and_they_are_named() -> None:
-    report = compared(blocks(kitchen()), blocks(edited("Material China", "nodes")), plan("Plate"))
+    report = compared(blocks(kitchen()), blocks(edited("Material China", "nodes")), plan("Plate")).as_row()
     assert report["outside"] == ["Material China"]
     assert "Spoon" in report["why"]["Material China"]
     assert "Plate" not in report["why"]["Material China"]
@@ -124,7 +124,7 @@ def with_added(name: str, **changes: Any) -> File:
 
 
 def test_a_planned_object_comes_with_its_data_into_a_collection() -> None:
-    report = compared(blocks(kitchen()), blocks(with_added("Jug")), plan("Jug", kind="add"))
+    report = compared(blocks(kitchen()), blocks(with_added("Jug")), plan("Jug", kind="add")).as_row()
     assert report["added"] == ["Material Jug", "Mesh Jug", "Object Jug"]
     assert report["changed"] == ["Collection Set"]
     assert report["outside"] == []
@@ -165,7 +165,7 @@ def test_what_goes_with_a_removed_object_is_not_outside() -> None:
         del file[name]
     file["Collection Set"] = {"objects": ("", ["Object Mug", "Object Spoon", "Object Camera"])}
     file["Object Spoon"] = file["Object Spoon"] | {"parent": ("gone", []), "transform": ("kept", [])}
-    report = compared(blocks(kitchen()), blocks(file), plan("Plate", kind="remove"))
+    report = compared(blocks(kitchen()), blocks(file), plan("Plate", kind="remove")).as_row()
     assert report["removed"] == ["Mesh Plate", "Object Plate"]
     assert report["outside"] == []
     assert report["why"]["Object Spoon"] == "used Plate"

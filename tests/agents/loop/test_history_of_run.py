@@ -9,8 +9,10 @@ import pytest
 from domino_run import dominoes, finding
 from sample_runs import Tape, write
 
-from agents.loop.reducer import after, history_of, read_history
-from agents.loop.run_state import History, ModelCall, ToolCall
+from agents.loop import events
+from agents.loop.events import read_event
+from agents.loop.reducer import after, read_run_state, run_state_after
+from agents.loop.run_state import ModelCall, RunState, ToolCall
 from agents.views.rich_views import run_row
 from simworlds.llm.messages import Usage
 
@@ -24,11 +26,11 @@ def rows() -> list[dict[str, Any]]:
 
 
 @pytest.fixture(scope="module")
-def whole(rows: list[dict[str, Any]]) -> History:
-    return history_of(rows)
+def whole(rows: list[dict[str, Any]]) -> RunState:
+    return run_state_after(rows)
 
 
-def test_stages_are_told_with_their_state_and_attempts(whole: History) -> None:
+def test_stages_are_told_with_their_state_and_attempts(whole: RunState) -> None:
     found = {stage.name: (stage.state, len(stage.attempts)) for stage in whole.stages}
     assert found == {
         "modeling": ("closed", 2),
@@ -42,7 +44,7 @@ def test_stages_are_told_with_their_state_and_attempts(whole: History) -> None:
     }
 
 
-def test_an_attempt_that_was_sent_back_has_all_that_led_to_it(whole: History) -> None:
+def test_an_attempt_that_was_sent_back_has_all_that_led_to_it(whole: RunState) -> None:
     stage = whole.stage("modeling")
     assert stage
     first, second = stage.attempts
@@ -60,7 +62,7 @@ def test_an_attempt_that_was_sent_back_has_all_that_led_to_it(whole: History) ->
     assert second.choice.taken == "advance"
 
 
-def test_a_replan_has_a_plan_of_its_own_and_what_was_gone_back_to(whole: History) -> None:
+def test_a_replan_has_a_plan_of_its_own_and_what_was_gone_back_to(whole: RunState) -> None:
     stage = whole.stage("motion")
     assert stage
     first, second = stage.attempts
@@ -69,7 +71,7 @@ def test_a_replan_has_a_plan_of_its_own_and_what_was_gone_back_to(whole: History
     assert second.tactic.goal.startswith("No keys")
 
 
-def test_steps_keep_their_order_and_belong_to_their_attempt(whole: History) -> None:
+def test_steps_keep_their_order_and_belong_to_their_attempt(whole: RunState) -> None:
     stage = whole.stage("modeling")
     assert stage
     assert stage.attempts[0].tactic
@@ -93,7 +95,7 @@ def test_steps_keep_their_order_and_belong_to_their_attempt(whole: History) -> N
     assert not whole.pending
 
 
-def test_costs_are_counted_by_role_and_stage(whole: History, rows: list[dict[str, Any]]) -> None:
+def test_costs_are_counted_by_role_and_stage(whole: RunState, rows: list[dict[str, Any]]) -> None:
     answers = [row["turn"] for row in rows if row["type"] == "model.answered"]
     assert whole.total.calls == len(answers)
     assert whole.total.cost == pytest.approx(sum(turn["cost"] for turn in answers))
@@ -108,13 +110,13 @@ def test_what_was_lost_on_the_way_to_an_answer_is_paid_for_too() -> None:
     tape.says("coder", "motion", "Hello")
     tape.rows[-1]["turn"]["lost"] = {"input": 5, "output": 7, "cache_read": 0, "cache_write": 0}
     tape.rows[-1]["turn"]["cost"] = None
-    total = history_of(tape.rows).total
+    total = run_state_after(tape.rows).total
     assert total.usage == Usage(825, 417, 15_200, 1_300)
     assert total.unpriced == 1
 
 
 def test_recorded_answers_cost_nothing_and_are_called_what_they_are() -> None:
-    history = history_of(dominoes(live=False).rows)
+    history = run_state_after(dominoes(live=False).rows)
     assert history.answers == "hand-written"
     assert history.total.cost == 0
     assert history.total.calls == 0
@@ -126,20 +128,20 @@ def test_a_run_that_is_live_only_in_part_is_called_mixed() -> None:
     tape.says("coder", "motion", "recorded")
     tape.live = True
     tape.says("coder", "motion", "live")
-    assert history_of(tape.rows).answers == "mixed"
-    assert history_of(tape.rows[:2]).answers == "hand-written"
-    assert history_of([]).answers == ""
+    assert run_state_after(tape.rows).answers == "mixed"
+    assert run_state_after(tape.rows[:2]).answers == "hand-written"
+    assert run_state_after([]).answers == ""
 
 
 def test_played_back_answers_of_a_model_are_recorded_ones() -> None:
     tape = Tape()
     tape.says("coder", "motion", "words")
     tape.rows[-1]["turn"]["live"] = False
-    assert history_of(tape.rows).answers == "recorded"
+    assert run_state_after(tape.rows).answers == "recorded"
 
 
-def test_the_pause_between_two_sittings_is_no_work(whole: History) -> None:
-    assert whole.sittings == 2
+def test_the_pause_between_two_sittings_is_no_work(whole: RunState) -> None:
+    assert whole.sessions == 2
     assert whole.began
     assert whole.latest
     assert (whole.latest - whole.began).total_seconds() - whole.seconds == pytest.approx(3600.0)
@@ -155,8 +157,8 @@ def test_a_call_that_is_answered_in_the_next_sitting_is_one_call() -> None:
     answered = tape.rows.pop()
     tape.pause(1000)
     tape.sitting()
-    assert len(history_of(tape.rows).pending) == 1
-    history = history_of([*tape.rows, answered])
+    assert len(run_state_after(tape.rows).pending) == 1
+    history = run_state_after([*tape.rows, answered])
     assert not history.pending
     calls = [step for step in history.all_steps() if isinstance(step, ModelCall)]
     assert len(calls) == 1
@@ -170,7 +172,7 @@ def test_two_calls_at_a_time_get_their_own_answers() -> None:
     for role in ("reviewer", "verifier"):
         content = [{"type": "text", "text": f"for the {role}"}]
         tape.add("tool.answered", n=1, role=role, stage="uv", attempt=1, name="x", content=content)
-    stage = history_of(tape.rows).stage("uv")
+    stage = run_state_after(tape.rows).stage("uv")
     assert stage
     assert {step.role: step.texts for step in stage.attempts[0].tools()} == {
         "reviewer": ("for the reviewer",),
@@ -183,14 +185,14 @@ def test_a_run_that_goes_on_has_not_ended() -> None:
     tape.began()
     tape.add("stage.began", stage="modeling")
     tape.ended("stopped", "The limit of $1.00 is reached.")
-    stopped = history_of(tape.rows)
+    stopped = run_state_after(tape.rows)
     assert stopped.outcome == "stopped"
     assert stopped.state_of("modeling") == "stopped"
-    failed = after(stopped, {"type": "run.ended", "outcome": "failed"})
+    failed = after(stopped, read_event({"type": "run.ended", "outcome": "failed"}))
     assert failed.state_of("modeling") == "failed"
     tape.sitting()
-    assert history_of(tape.rows).outcome == "unfinished"
-    assert history_of(tape.rows).state_of("modeling") == "running"
+    assert run_state_after(tape.rows).outcome == "unfinished"
+    assert run_state_after(tape.rows).state_of("modeling") == "running"
 
 
 def test_a_given_up_stage_is_aborted_and_the_closed_ones_stand() -> None:
@@ -201,7 +203,7 @@ def test_a_given_up_stage_is_aborted_and_the_closed_ones_stand() -> None:
     tape.add("attempt.began", stage="uv", attempt=1)
     tape.judged("uv", 1, "abort")
     tape.ended("aborted", "The stage uv could not be closed.")
-    history = history_of(tape.rows)
+    history = run_state_after(tape.rows)
     assert [history.state_of(name) for name in ("modeling", "uv", "texture")] == [
         "closed",
         "aborted",
@@ -211,13 +213,13 @@ def test_a_given_up_stage_is_aborted_and_the_closed_ones_stand() -> None:
 
 def test_the_share_of_stages_that_are_done_leaves_out_those_not_planned(rows: list[dict[str, Any]]) -> None:
     ends = [place for place, row in enumerate(rows) if row["type"] == "stage.closed"]
-    shares = [history_of(rows[: end + 1]).share_done for end in ends]
+    shares = [run_state_after(rows[: end + 1]).share_done for end in ends]
     assert shares == pytest.approx([1 / 6, 2 / 6, 3 / 6, 4 / 6, 5 / 6])
-    assert history_of(rows).share_done == 1
-    assert history_of(rows[:3]).share_done == 0
+    assert run_state_after(rows).share_done == 1
+    assert run_state_after(rows[:3]).share_done == 0
 
 
-def test_both_renders_have_their_review(whole: History) -> None:
+def test_both_renders_have_their_review(whole: RunState) -> None:
     verdicts = [(one.round, one.review.verdict if one.review else "") for one in whole.renderings]
     assert verdicts == [(1, "needs_fix"), (2, "accept")]
     assert whole.renderings[1].path == "video.mp4"
@@ -229,7 +231,7 @@ def test_an_edit_tells_what_it_changed() -> None:
     task = {"kind": "modify", "stage": "light", "targets": ["Key"], "instruction": "Dim it."}
     tape.add("plan", edit={"title": "Dimmer", "tasks": [task], "render": {"kind": "still"}})
     tape.add("edited", added=[], removed=[], changed=["Light Key", 7], unchanged=["Mesh Cube"], outside=[])
-    history = history_of(tape.rows)
+    history = run_state_after(tape.rows)
     assert history.title == "Dimmer"
     assert history.planned == ("light", "render")
     assert history.state_of("modeling") == "skipped"
@@ -240,11 +242,11 @@ def test_an_edit_tells_what_it_changed() -> None:
 # Whatever is in it
 
 
-def test_fed_row_by_row_it_is_the_same(rows: list[dict[str, Any]], whole: History) -> None:
-    history = History()
+def test_fed_row_by_row_it_is_the_same(rows: list[dict[str, Any]], whole: RunState) -> None:
+    history = RunState()
     for row in rows:
         before = history
-        history = after(before, row)
+        history = after(before, read_event(row))
         assert before.rows + 1 == history.rows, "the picture before is as it was"
     assert history == whole
 
@@ -255,7 +257,7 @@ def test_any_row_may_be_missing() -> None:
     tape.simple_stage("texture")
     rows = tape.rows
     for place in range(len(rows)):
-        assert history_of(rows[:place] + rows[place + 1 :]).rows == len(rows) - 1
+        assert run_state_after(rows[:place] + rows[place + 1 :]).rows == len(rows) - 1
 
 
 JUNK: tuple[Any, ...] = (
@@ -267,11 +269,11 @@ JUNK: tuple[Any, ...] = (
 @pytest.mark.parametrize("junk", JUNK, ids=lambda junk: repr(junk)[:20])
 def test_no_field_is_trusted(rows: list[dict[str, Any]], junk: Any) -> None:
     kinds: dict[str, dict[str, Any]] = {row["type"]: row for row in rows}
-    before = history_of(rows[:60])
+    before = run_state_after(rows[:60])
     for row in kinds.values():
         for name in row:
             if name != "type":
-                assert history_of([row | {name: junk}, row], before).rows == 62
+                assert run_state_after([row | {name: junk}, row], before).rows == 62
 
 
 @pytest.mark.parametrize(
@@ -280,27 +282,27 @@ def test_no_field_is_trusted(rows: list[dict[str, Any]], junk: Any) -> None:
 def test_times_that_are_none_do_not_count(time: str) -> None:
     tape = Tape()
     tape.began()
-    history = history_of([{"type": "x", "t": time}, *tape.rows, {"type": "x", "t": time}])
+    history = run_state_after([{"type": "x", "t": time}, *tape.rows, {"type": "x", "t": time}])
     assert history.began == history.latest
     assert history.seconds == 0
     assert len(run_row("run", history)) == 6
 
 
-def test_rows_of_other_types_are_passed_over(rows: list[dict[str, Any]], whole: History) -> None:
+def test_rows_of_other_types_are_passed_over(rows: list[dict[str, Any]], whole: RunState) -> None:
     others: list[dict[str, Any]] = [{"type": "scene.restored", "from": 3}, {"type": ["x"]}, {}]
-    mixed = history_of([row for one in rows for row in (one, *others)])
+    mixed = run_state_after([row for one in rows for row in (one, *others)])
     assert mixed.stages == whole.stages
 
 
-def test_a_torn_last_line_is_left_out(tmp_path: Path, whole: History) -> None:
+def test_a_torn_last_line_is_left_out(tmp_path: Path, whole: RunState) -> None:
     path = write(dominoes(), tmp_path)
     with path.open("a") as file:
         file.write('{"i": 999, "type": "stage.beg')
-    assert read_history(tmp_path) == whole
+    assert read_run_state(tmp_path) == whole
 
 
 def test_a_folder_without_a_journal_is_an_empty_run(tmp_path: Path) -> None:
-    assert read_history(tmp_path) == History()
+    assert read_run_state(tmp_path) == RunState()
 
 
 def test_a_finding_that_is_none_is_left_out() -> None:
@@ -308,9 +310,35 @@ def test_a_finding_that_is_none_is_left_out() -> None:
     tape.add("stage.began", stage="uv")
     good = finding("V1", "A", "It floats.")
     tape.add("verified", stage="uv", attempt=1, ok=False, findings=[good, {"rule": 3}, "V2", None])
-    stage = history_of(json.loads(json.dumps(tape.rows))).stage("uv")
+    stage = run_state_after(json.loads(json.dumps(tape.rows))).stage("uv")
     assert stage
     assert stage.last
     assert stage.last.verification
     assert [one.rule for one in stage.last.verification.findings] == ["V1"]
     assert stage.last.verification.hard == 1
+
+
+# Rows and events
+
+
+def test_every_row_survives_being_read_and_written(rows: list[dict[str, Any]]) -> None:
+    for row in rows:
+        written = json.loads(json.dumps(read_event(row).as_row()))
+        assert written.keys() <= row.keys()
+        if row["type"] not in (
+            "model.asked",
+            "model.answered",
+            "verified",
+            "plan",
+        ):  # their parts get defaults
+            assert written == {key: row[key] for key in written}
+
+
+def test_an_event_without_a_field_has_its_default() -> None:
+    assert read_event({"type": "verified", "stage": "uv"}) == events.Verified(stage="uv")
+    assert read_event({"type": "run.began", "models": 3}).as_row() == {"type": "run.began"}
+
+
+def test_an_event_of_a_newer_type_keeps_what_it_is_about() -> None:
+    event = read_event({"type": "stage.paused", "stage": "uv", "colour": "red"})
+    assert (type(event), event.type, event.stage) == (events.Event, "stage.paused", "uv")

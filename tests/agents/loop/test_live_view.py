@@ -13,8 +13,9 @@ from domino_run import domino_plan, dominoes, finding
 from rich.console import Console
 from sample_runs import Tape
 
-from agents.loop.reducer import history_of
-from agents.loop.run_state import History
+from agents.loop.events import read_event
+from agents.loop.reducer import run_state_after
+from agents.loop.run_state import RunState
 from agents.views.live_view import Lines, Quiet, Screen, make_view
 from agents.views.rich_views import Now, Progress, run_row, runs_table, seconds_left, show, working
 
@@ -34,18 +35,18 @@ def drawn(what: RenderableType, width: int = 120) -> str:
     return console.file.getvalue()
 
 
-def until(kind: str, nth: int = 1) -> History:
+def until(kind: str, nth: int = 1) -> RunState:
     """The dominoes' run, up to the row of that type."""
     rows = dominoes().rows
     places = [place for place, row in enumerate(rows) if row["type"] == kind]
-    return history_of(rows[: places[nth - 1] + 1])
+    return run_state_after(rows[: places[nth - 1] + 1])
 
 
 def lines_of(tape: Tape) -> list[str]:
     stream = io.StringIO()
     with Lines(stream) as view:
         for row in tape.rows:
-            view.take(row)
+            view.take(read_event(row))
     return stream.getvalue().splitlines()
 
 
@@ -66,7 +67,7 @@ def test_lines_tell_the_run_in_order() -> None:
         "Modeling closed after 2 attempts, 1 min 20 s",
         "UV: skipped",
         "back to checkpoints/texture.blend",
-        "Taken up again, sitting 2.",
+        "Resumed, session 2.",
         "Final review: needs a fix: The last domino is cut off.",
         "Run done",
         "cost: $1.48",
@@ -94,7 +95,7 @@ def test_progress_is_told_now_and_then() -> None:
 def test_lines_go_on_where_a_run_was_left() -> None:
     stream = io.StringIO()
     with Lines(stream, until("stage.closed")) as view:
-        view.take({"type": "stage.began", "stage": "texture"})
+        view.take(read_event({"type": "stage.began", "stage": "texture"}))
     assert stream.getvalue() == "01:41  Texture begins\n"
 
 
@@ -105,14 +106,14 @@ class _Gone(io.StringIO):
 
 def test_a_reader_that_has_gone_does_not_end_the_run() -> None:
     with Lines(_Gone()) as view:
-        view.take(dominoes().rows[0])
+        view.take(read_event(dominoes().rows[0]))
 
 
 def test_letters_that_the_stream_has_no_word_for_are_replaced() -> None:
     raw = io.BytesIO()
     with Lines(io.TextIOWrapper(raw, "ascii", write_through=True)) as view:
         for row in dominoes().rows:
-            view.take(row)
+            view.take(read_event(row))
     assert b"Domino.01 ? Domino.12" in raw.getvalue()
 
 
@@ -129,7 +130,7 @@ def test_the_stages_stand_with_their_state() -> None:
 def test_what_the_coder_does_now_is_shown_with_how_far_it_is() -> None:
     tape = dominoes()
     place = next(n for n, row in enumerate(tape.rows) if row.get("name") == "blender_bake")
-    history = history_of(tape.rows[: place + 1])
+    history = run_state_after(tape.rows[: place + 1])
     now = Now(history.seconds, {}, {"blender_bake": Progress(48, 96, "frame 48 of 96")})
     told = drawn(working(history, now, 40))
     assert "coder A rigid body world." in told
@@ -137,7 +138,7 @@ def test_what_the_coder_does_now_is_shown_with_how_far_it_is() -> None:
 
 
 def test_streamed_words_are_shown_by_their_end() -> None:
-    history = history_of([{"type": "model.asked", "n": 1, "role": "coder", "stage": "uv"}])
+    history = run_state_after([{"type": "model.asked", "n": 1, "role": "coder", "stage": "uv"}])
     told = drawn(working(history, Now(3.0, {"coder": "beginning " + "and on " * 80 + "to the end"}), 40))
     assert "to the end" in told
     assert "beginning" not in told
@@ -153,7 +154,7 @@ def test_findings_of_the_last_attempt_stay_until_the_next_is_judged() -> None:
 @pytest.mark.parametrize("height", [10, 24, 40])
 def test_it_fits_a_terminal(height: int) -> None:
     for place in (40, 60, 95, 140):
-        history = history_of(dominoes().rows[:place])
+        history = run_state_after(dominoes().rows[:place])
         told = drawn(working(history, Now(history.seconds, folder="/a/long/folder"), height), width=80)
         assert len(told.splitlines()) <= max(height, 18)
 
@@ -172,7 +173,7 @@ def test_time_left_is_told_once_enough_is_done() -> None:
 
 def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
     assert "$1.48 · 640.8k in, 15.2k out" in drawn(working(until("run.ended"), Now(377.0), 40))
-    recorded = drawn(working(history_of(dominoes(live=False).rows), Now(377.0), 40))
+    recorded = drawn(working(run_state_after(dominoes(live=False).rows), Now(377.0), 40))
     assert "recorded answers, nothing to pay" in recorded
     assert "No model was asked" in recorded
 
@@ -181,7 +182,7 @@ def test_a_screen_shows_the_last_state_when_it_is_left() -> None:
     console = Console(width=100, height=40, file=io.StringIO(), force_terminal=True, color_system=None)
     with Screen(io.StringIO(), "/tmp/run", console=console) as view:
         for row in dominoes().rows:
-            view.take(row)
+            view.take(read_event(row))
             view.saying("coder", "words")
             view.progress("blender_bake", 1, None, "")
     assert isinstance(console.file, io.StringIO)
@@ -202,16 +203,16 @@ def test_rows_words_and_progress_may_come_from_several_threads() -> None:
                 view.saying(role, "more ")
                 view.progress("blender_bake", n, 50, "frame")
             for row in tape.rows:
-                view.take(row)
+                view.take(read_event(row))
 
         threads = [threading.Thread(target=play, args=(tape, f"role{n}")) for n, tape in enumerate(tapes)]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-    assert view.history.rows == sum(len(tape.rows) for tape in tapes)
-    assert view.history.total.calls == 200
-    assert not view.history.pending
+    assert view.run_state.rows == sum(len(tape.rows) for tape in tapes)
+    assert view.run_state.total.calls == 200
+    assert not view.run_state.pending
 
 
 @pytest.fixture
@@ -237,10 +238,10 @@ def test_a_terminal_gets_a_screen_and_a_pipe_gets_lines(
 def test_a_quiet_view_keeps_the_picture() -> None:
     with Quiet() as view:
         for row in dominoes().rows:
-            view.take(row)
+            view.take(read_event(row))
         view.saying("coder", "words")
         view.progress("tool", 1, 2, "")
-    assert view.history == history_of(dominoes().rows)
+    assert view.run_state == run_state_after(dominoes().rows)
 
 
 # Runs
@@ -259,7 +260,7 @@ def test_runs_are_listed_with_how_they_stand() -> None:
     stopped.add("stage.began", stage="motion")
     stopped.ended("stopped")
     table = runs_table(
-        [("first", until("run.ended")), ("second", history_of(stopped.rows)), ("third", History())]
+        [("first", until("run.ended")), ("second", run_state_after(stopped.rows)), ("third", RunState())]
     )
     told = [re.split(r"  +", line.strip()) for line in drawn(table).splitlines() if line.strip()]
     assert told[0] == ["Run", "What", "Outcome", "Stage", "Cost", "When"]
@@ -296,10 +297,10 @@ def test_no_control_character_of_theirs_gets_out() -> None:
     tape = hostile()
     now = Now(1.0, {EVIL: EVIL, "coder": EVIL}, {EVIL: Progress(float("nan"), 3, EVIL)}, EVIL)
     told = ["\n".join(lines_of(tape))]
-    told += [drawn(working(history_of(tape.rows), now, 40)), drawn(show(history_of(tape.rows)))]
+    told += [drawn(working(run_state_after(tape.rows), now, 40)), drawn(show(run_state_after(tape.rows)))]
     tape.ended(EVIL, EVIL)
-    told += ["\n".join(lines_of(tape)), drawn(show(history_of(tape.rows)))]
-    told.append(drawn(runs_table([(EVIL, history_of(tape.rows))])))
+    told += ["\n".join(lines_of(tape)), drawn(show(run_state_after(tape.rows)))]
+    told.append(drawn(runs_table([(EVIL, run_state_after(tape.rows))])))
     for text in told:
         assert not _STEERING.search(text), _STEERING.findall(text)
         assert "owned" in text, "what they say is shown, but does nothing"
@@ -307,7 +308,7 @@ def test_no_control_character_of_theirs_gets_out() -> None:
 
 def test_progress_of_any_numbers_is_drawn() -> None:
     call = {"type": "tool.called", "n": 1, "role": "coder", "stage": "uv", "name": "bake", "input": {}}
-    history = history_of([call])
+    history = run_state_after([call])
     for done, total in (
         (float("nan"), 3.0),
         (5.0, 3.0),
@@ -326,4 +327,4 @@ def test_progress_of_any_numbers_is_drawn() -> None:
 
 
 def test_the_row_of_a_run_that_never_began_is_empty() -> None:
-    assert [str(cell) for cell in run_row("x", History())] == ["x", "", "unfinished", "plan", "", ""]
+    assert [str(cell) for cell in run_row("x", RunState())] == ["x", "", "unfinished", "plan", "", ""]

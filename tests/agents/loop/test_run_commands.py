@@ -89,7 +89,7 @@ def test_a_limit_that_is_reached_is_exit_code_3(
         (("make", "A crate", "--max-minutes", "0"), "--max-minutes"),
         (("demo", "no-such"), "There is no session 'no-such'"),
         (("resume", "/nowhere/at/all"), "is no run"),
-        (("replay", "/nowhere/at/all"), "holds no record"),
+        (("replay", "/nowhere/at/all"), "does not hold a record"),
         (("show", "/nowhere/at/all"), "is no run"),
         (("make", "A crate", "--run", "/proc/nothing"), "cannot be the folder of a run"),
     ],

@@ -100,10 +100,10 @@ def test_where_blender_answers_otherwise_the_replay_says_so_and_stops(
 @pytest.mark.parametrize(
     ("spoil", "says"),
     [
-        (lambda root: shutil.rmtree(root), "holds no record"),
-        (lambda root: (root / NAME).write_text(""), "holds no record"),
-        (lambda root: (root / NAME).write_text("nonsense\n{}\n"), "is no row of a journal"),
-        (lambda root: (root / NAME).write_text('{"type": "run.began"}\n'), "holds no record"),
+        (lambda root: shutil.rmtree(root), "does not hold a record"),
+        (lambda root: (root / NAME).write_text(""), "does not hold a record"),
+        (lambda root: (root / NAME).write_text("nonsense\n{}\n"), "not a row of a journal"),
+        (lambda root: (root / NAME).write_text('{"type": "run.began"}\n'), "does not hold a record"),
     ],
 )
 def test_what_is_no_record_is_told_before_anything_is_begun(

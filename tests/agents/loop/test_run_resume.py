@@ -156,14 +156,14 @@ def test_a_torn_last_line_is_cut_off(api: FakeMessagesAPI, copy: Path) -> None:
     ("text", "says"),
     [
         ("", "does not say what the run is"),
-        ("nonsense\n{}\n", "line 1, is no row of a journal"),
-        ('{"type": "run.began"}\n[1, 2]\n{}\n', "line 2, is no row"),
-        ('{"no": "type"}\n{"type": "plan"}\n', "line 1, is no row"),
-        ('{"type": "run.began", "stage": []}\n{"type": "plan"}\n', "line 1, is no row"),
+        ("nonsense\n{}\n", "line 1: not a row of a journal"),
+        ('{"type": "run.began"}\n[1, 2]\n{}\n', "line 2: not a row"),
+        ('{"no": "type"}\n{"type": "plan"}\n', "line 1: not a row"),
+        ('{"type": "run.began", "stage": []}\n{"type": "plan"}\n', "line 1: not a row"),
         ('{"type": "plan"}\n', "does not say what the run is"),
         ('{"type": "run.began"}\n', "does not say what the run is to do"),
         ('{"type": "run.began", "options": {"prompt": ""}}\n', "does not say what the run is to do"),
-        ("\x00" * 40 + "\n{}\n", "line 1, is no row"),
+        ("\x00" * 40 + "\n{}\n", "line 1: not a row"),
     ],
 )
 def test_a_journal_of_nonsense_is_told_and_left_alone(tmp_path: Path, text: str, says: str) -> None:
@@ -184,8 +184,12 @@ def _changed(root: Path, kind: str, change: Callable[[dict[str, Any]], object]) 
     [
         ("model.answered", lambda row: row.pop("turn"), "is no part of a record"),
         ("model.asked", lambda row: row.pop("n"), "is no part of a record"),
-        ("tool.answered", lambda row: row.pop("content"), "is no answer of a tool"),
-        ("tool.answered", lambda row: row.update(content=[{"type": "text"}]), "is no answer of a tool"),
+        ("tool.answered", lambda row: row.pop("content"), "not a valid 'tool.answered' row"),
+        (
+            "tool.answered",
+            lambda row: row.update(content=[{"type": "text"}]),
+            "not a valid 'tool.answered' row",
+        ),
     ],
 )
 def test_rows_that_lack_what_they_should_tell_end_the_sitting_in_words(
