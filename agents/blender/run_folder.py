@@ -129,4 +129,3 @@ def new_run(runs: Path) -> RunFolder:
             continue
         return RunFolder.make(root)
     raise Refusal(f"No folder could be made in {runs}: 999 runs were started in one second.")
-

@@ -131,9 +131,7 @@ def test_a_folder_without_valid_weights_says_how_to_get_them_offline(
         assert "hf download openai/clip-vit-base-patch32 model.safetensors --revision" in said
 
 
-def test_fetches_only_by_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_fetches_only_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     hub = pytest.importorskip("huggingface_hub")
     asked: list[bool] = []
 

@@ -116,9 +116,7 @@ def test_skips_a_task_that_links_out_of_the_set(tmp_path: Path) -> None:
         (GOAL, b"\x89PNG\r\n\x1a\n", "is not a PNG"),
     ],
 )
-def test_names_the_path_of_an_invalid_file(
-    name: str, content: bytes, said: str, tmp_path: Path
-) -> None:
+def test_names_the_path_of_an_invalid_file(name: str, content: bytes, said: str, tmp_path: Path) -> None:
     folder = make_task(tmp_path)
     (folder / name).write_bytes(content)
     told = fault_of(tmp_path)

@@ -51,9 +51,7 @@ def folder(place: Path, *names: str) -> FolderSystem:
         (["soft_D1_02,cloth_D1_02", "cloth_D1_02"], 2, "cloth_D1_02"),
     ],
 )
-def test_selects_scenes_by_id_category_level_pattern_or_set(
-    names: list[str], count: int, first: str
-) -> None:
+def test_selects_scenes_by_id_category_level_pattern_or_set(names: list[str], count: int, first: str) -> None:
     found = [spec.id for spec in select_scenes(names)]
     assert (len(found), found[0]) == (count, first)
     assert len({*found}) == count
