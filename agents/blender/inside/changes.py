@@ -6,18 +6,8 @@ from bpy.app.handlers import persistent
 
 # Collections of bpy.data whose changes are reported.
 KINDS = (
-    *(
-        "objects",
-        "materials",
-        "collections",
-        "meshes",
-        "lights",
-        "cameras",
-        "actions",
-        "node_groups",
-        "images",
-    ),
-    *("scenes", "worlds"),
+    *("objects", "materials", "collections", "meshes", "lights", "cameras", "actions", "node_groups"),
+    *("images", "scenes", "worlds"),
 )
 LISTED = 40  # names of one kind in a report; the rest are counted
 
@@ -92,9 +82,9 @@ def _entry(old, new, changed):
     """The names that differ between ``old`` and ``new`` ({uid: name}), and those of the uids that ``changed``."""
     entry = {}
     for word, names in (
-        ("added", {name for key, name in new.items() if key not in old}),
-        ("removed", {name for key, name in old.items() if key not in new}),
-        ("changed", {new[key] for key in changed}),
+        ("added", [name for key, name in new.items() if key not in old]),
+        ("removed", [name for key, name in old.items() if key not in new]),
+        ("changed", [new[key] for key in changed]),
     ):
         listed = sorted(names)
         if len(listed) > LISTED:

@@ -23,31 +23,10 @@ _ALARMS = (signal.ITIMER_REAL, signal.ITIMER_VIRTUAL, signal.ITIMER_PROF)
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM, signal.SIGVTALRM, signal.SIGPROF, signal.SIGCHLD)
 # Modules of which every name is restored: the tools depend on them.
 _RESTORED_MODULES = (
-    *(
-        "ast",
-        "builtins",
-        "contextlib",
-        "ctypes",
-        "fcntl",
-        "functools",
-        "gc",
-        "hashlib",
-        "hmac",
-        "importlib",
-        "io",
-    ),
-    *(
-        "json",
-        "json.decoder",
-        "json.encoder",
-        "linecache",
-        "math",
-        "os",
-        "posixpath",
-        "re",
-        "signal",
-        "struct",
-    ),
+    *("ast", "builtins", "contextlib", "ctypes", "fcntl", "functools", "gc", "hashlib", "hmac"),
+    *("importlib", "io"),
+    *("json", "json.decoder", "json.encoder", "linecache", "math", "os", "posixpath", "re"),
+    *("signal", "struct"),
     *("threading", "time", "traceback", "types", "bpy", "bpy.ops", "bpy.path", "bpy.utils", "mathutils"),
 )
 _CODE = (types.FunctionType, types.BuiltinFunctionType, types.ModuleType, type)

@@ -68,17 +68,8 @@ def camera_facts(obj, scene):
 
 
 _CAMERA_LISTED = (
-    *(
-        "lens",
-        "angle",
-        "angle_x",
-        "angle_y",
-        "ortho_scale",
-        "clip_start",
-        "clip_end",
-        "lens_unit",
-        "display_size",
-    ),
+    *("lens", "angle", "angle_x", "angle_y", "ortho_scale", "clip_start", "clip_end"),
+    *("lens_unit", "display_size"),
     *("show_name", "show_limits", "show_mist", "show_sensor", "passepartout_alpha", "show_passepartout"),
 )
 

@@ -122,7 +122,7 @@ class BlockReader:
         return plan
 
     def _plans_by_part(self, block):
-        """The part for all that has none of its own, and {part: how to read its properties}."""
+        """(the part for properties without one of their own, {part: how to read its properties})."""
         known = self._plans.get((type(block), "parts"))
         if known is None:
             members = {}

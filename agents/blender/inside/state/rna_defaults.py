@@ -162,24 +162,10 @@ DEFAULTS = {
 LEFT_OUT = {
     # Listed elsewhere, or of the user interface.
     "*": (
-        *(
-            "rna_type",
-            "name",
-            "type",
-            "show_expanded",
-            "show_on_cage",
-            "show_in_editmode",
-            "is_active",
-            "active",
-        ),
-        *(
-            "show_viewport",
-            "show_render",
-            "use_pin_to_last",
-            "use_apply_on_spline",
-            "select",
-            "use_fake_user",
-        ),
+        *("rna_type", "name", "type", "show_expanded", "show_on_cage", "show_in_editmode"),
+        *("is_active", "active"),
+        *("show_viewport", "show_render", "use_pin_to_last", "use_apply_on_spline"),
+        *("select", "use_fake_user"),
         *("parent", "original", "asset_data", "preview", "tag"),
     ),
     # Set by Blender itself, at random or from the settings of the user.
@@ -193,12 +179,8 @@ LEFT_OUT = {
     "RenderSettings": ("filepath", "threads", "threads_mode", "use_stamp_memory"),
     "NodesModifier": (
         *("show_group_selector", "show_manage_panel", "open_output_attributes_panel", "open_manage_panel"),
-        *(
-            "open_bake_panel",
-            "open_named_attributes_panel",
-            "open_bake_data_blocks_panel",
-            "open_warnings_panel",
-        ),
+        *("open_bake_panel", "open_named_attributes_panel"),
+        *("open_bake_data_blocks_panel", "open_warnings_panel"),
         "node_group",
     ),
     "Constraint": ("owner_space_matrix", "set_inverse_pending", "enabled"),
@@ -212,14 +194,8 @@ LEFT_OUT = {
     "FluidDomainSettings": (
         *(f"has_cache_baked_{part}" for part in ("any", "data", "noise", "mesh", "particles", "guide")),
         *(f"cache_frame_pause_{part}" for part in ("data", "noise", "mesh", "particles", "guide")),
-        *(
-            "domain_type",
-            "resolution_max",
-            "cache_type",
-            "cache_directory",
-            "cache_frame_start",
-            "cache_frame_end",
-        ),
+        *("domain_type", "resolution_max", "cache_type", "cache_directory"),
+        *("cache_frame_start", "cache_frame_end"),
         *("cache_particle_format", "openvdb_cache_compress_type", "vector_scale_with_magnitude"),
         *("show_gridlines", "show_velocity", "vector_display_type", "use_slice", "display_interpolation"),
     ),
