@@ -88,7 +88,7 @@ def _page(found: list[CheckResult], well: bool) -> Group:
         for line in finding.keeps:
             below.add_row(Text("+", "green"), Text(line, "dim"))
         for line in finding.lacks:
-            below.add_row(Text("-", "yellow"), Text(f"does not keep out: {line}"))
+            below.add_row(Text("-", "yellow"), Text(f"does not prevent: {line}"))
         if finding.advice:
             below.add_row(Text("→", "bold cyan"), Text(finding.advice, "cyan"))
         if below.row_count:

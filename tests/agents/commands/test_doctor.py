@@ -104,7 +104,7 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
     assert max(map(len, lines)) <= 80
     assert lines[0].startswith("✓  Blender    ")
     assert "!  Sandbox    none: your files are open to what runs in Blender" in done.stdout
-    assert "- does not keep out: reading and writing files wherever you can" in done.stdout
+    assert "- does not prevent: reading and writing any file that you can" in done.stdout
     assert "→ simworlds kb build" in done.stdout
     assert re.search(
         r"^✓  Blender can work here, but look at: Sandbox.*Knowledge\.$", done.stdout, re.MULTILINE
@@ -114,14 +114,14 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
 def test_what_is_no_blender_is_said_and_exits_with_1(tmp_path: Path) -> None:
     done = run("--blender-exe", "/bin/true", home=tmp_path, COLUMNS="200")
     assert done.returncode == 1
-    assert "✗  Blender    No Blender was found: /bin/true does not say that it is Blender" in done.stdout
+    assert "✗  Blender    No Blender was found: /bin/true is not Blender" in done.stdout
     assert "✗  Blender cannot work here." in done.stdout
     named = run("--json", home=tmp_path, BLENDER_EXE=str(tmp_path))
     assert (named.returncode, json.loads(named.stdout)["works"]) == (1, False)
     assert list(findings(named)) == ["Blender", "Knowledge", "Room"]
     unknown = run("--json", "--blender", "4.9", home=tmp_path)
     assert unknown.returncode == 1
-    assert "no bpy package is known for Blender 4.9" in findings(unknown)["Blender"]["text"]
+    assert "there is no bpy package for Blender 4.9" in findings(unknown)["Blender"]["text"]
 
 
 def test_missing_libraries_are_named_with_their_packages(tmp_path: Path) -> None:

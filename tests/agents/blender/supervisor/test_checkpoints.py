@@ -300,7 +300,7 @@ def test_what_cannot_be_opened_is_passed_over_and_told(tmp_path: Path) -> None:
         assert last is not None
         assert last.number > int(files[-1].stem)
         # Where Blender stands is the newest now: a crash does not go through the broken ones again.
-        with pytest.raises(Died, match="how the scene was before"):
+        with pytest.raises(Died, match="the scene as it was before"):
             again.use(TOOL, code=CRASH)
         assert again.run(NAMES) == ["One"]
     finally:
