@@ -95,20 +95,22 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
             with anyio.CancelScope(shield=True):
                 await anyio.to_thread.run_sync(sessions.close)
 
-    async def call_tool(context: _Context, asked: types.CallToolRequestParams) -> types.CallToolResult:
-        if asked.name == docs_client.NAME:
-            return await _look_up(docs, asked.arguments)
-        if team is not None and (answer := team.use(asked.name, asked.arguments or {})) is not None:
+    async def call_tool(context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
+        if params.name == docs_client.NAME:
+            return await _look_up(docs, params.arguments)
+        if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
             return answer
-        tool = BY_NAME.get(asked.name)
+        tool = BY_NAME.get(params.name)
         if tool is None:
             names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), docs_client.NAME])
-            raise MCPError(types.INVALID_PARAMS, f"There is no tool {asked.name[:80]!r}; there are {names}.")
+            raise MCPError(
+                types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. Available: {names}."
+            )
         try:
             session = await sessions.get(_client(context))
         except BlenderError as error:
             return _failed(str(error))
-        use = partial(session.use, tool, asked.arguments, about=docs.about)
+        use = partial(session.use, tool, params.arguments, about=docs.about)
         return await _call_with_progress(context, tool.name, use)
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
@@ -127,10 +129,10 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         return types.ListResourceTemplatesResult(resource_templates=await _or_empty(docs.templates))
 
     async def read_resource(
-        _context: _Context, asked: types.ReadResourceRequestParams
+        _context: _Context, params: types.ReadResourceRequestParams
     ) -> types.ReadResourceResult:
         try:
-            return await docs.read(str(asked.uri))
+            return await docs.read(str(params.uri))
         except DocsGone as error:
             raise MCPError(types.INTERNAL_ERROR, str(error)) from error
 
@@ -156,11 +158,11 @@ def _prompting(team: Team) -> dict[str, Any]:
     async def list_prompts(_context: _Context, _page: _Listing) -> types.ListPromptsResult:
         return types.ListPromptsResult(prompts=team.prompts())
 
-    async def get_prompt(_context: _Context, asked: types.GetPromptRequestParams) -> types.GetPromptResult:
-        return team.prompt(asked.name, asked.arguments or {})
+    async def get_prompt(_context: _Context, params: types.GetPromptRequestParams) -> types.GetPromptResult:
+        return team.prompt(params.name, params.arguments or {})
 
-    async def complete(_context: _Context, asked: types.CompleteRequestParams) -> types.CompleteResult:
-        values = team.completions(asked.argument.name, asked.argument.value)
+    async def complete(_context: _Context, params: types.CompleteRequestParams) -> types.CompleteResult:
+        values = team.completions(params.argument.name, params.argument.value)
         return types.CompleteResult(completion=types.Completion(values=values, total=len(values)))
 
     return {"on_list_prompts": list_prompts, "on_get_prompt": get_prompt, "on_completion": complete}
@@ -264,12 +266,12 @@ async def _result_of(name: str, call: Awaitable[Result]) -> types.CallToolResult
 
 
 def _as_mcp(result: Result) -> types.CallToolResult:
-    pictures = [
-        types.ImageContent(data=base64.b64encode(picture.png).decode(), mime_type="image/png")
-        for picture in result.pictures
+    images = [
+        types.ImageContent(data=base64.b64encode(image.png).decode(), mime_type="image/png")
+        for image in result.pictures
     ]
     return types.CallToolResult(
-        content=[_text(result.text), *pictures],
+        content=[_text(result.text), *images],
         structured_content=result.data or None,
         is_error=result.failed,
     )

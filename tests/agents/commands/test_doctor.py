@@ -107,7 +107,7 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
     assert "- does not prevent: reading and writing any file that you can" in done.stdout
     assert "→ simworlds kb build" in done.stdout
     assert re.search(
-        r"^✓  Blender can work here, but look at: Sandbox.*Knowledge\.$", done.stdout, re.MULTILINE
+        r"^✓  Blender can work here, but check: Sandbox.*Knowledge\.$", done.stdout, re.MULTILINE
     )
 
 
@@ -190,7 +190,7 @@ def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest
     other = doctor_checks._knowledge("3.4.1")
     assert other.state == "poor"
     assert other.advice == "simworlds kb build 3.4"
-    assert other.text == f"no base of Blender 3.4; there is one of {found.data['wanted']}"
+    assert other.text == f"no base for Blender 3.4, only for {found.data['wanted']}"
 
 
 def test_an_installed_blender_is_looked_at(tmp_path: Path) -> None:

@@ -241,7 +241,7 @@ def test_ctrl_c_ends_the_call_and_not_the_run(hardy: LiveSession) -> None:
 
 def test_arguments_too_large_are_refused_before_they_are_sent(hardy: LiveSession) -> None:
     blender = hardy.blender.inner_pid
-    with pytest.raises(Refusal, match=r"arguments of execute are too large: .* at most"):
+    with pytest.raises(Refusal, match=r"arguments of execute are too large: .*the limit is"):
         hardy.blender.call("execute", {"code": "#" * (17 << 20)}, timeout=20)
     assert hardy.blender.inner_pid == blender
 
@@ -254,7 +254,7 @@ next(item for item in gc.get_objects() if isinstance(item, Encoder))._largest = 
 
 
 def test_an_answer_too_large_is_told(own_session: LiveSession) -> None:
-    with pytest.raises(Refusal, match=r"The answer cannot be sent: .* at most"):
+    with pytest.raises(Refusal, match=r"The reply cannot be sent: .*the limit is"):
         own_session.use(TOOL, code=f"{SMALL_ANSWERS}\n'x' * 3000")
 
 
