@@ -6,12 +6,15 @@ import json
 import sys
 from contextlib import closing
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from agents.commands import options
+
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.console import Console, Group
     from rich.text import Text
 
@@ -23,19 +26,9 @@ _SIGNS: dict[State, tuple[str, str]] = {"good": ("✓", "green"), "poor": ("!", 
 
 
 @click.command()
-@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
-@click.option(
-    "--blender-exe",
-    type=click.Path(path_type=Path),
-    envvar="BLENDER_EXE",
-    show_envvar=True,
-    help="The Blender to check instead of bpy.",
-)
-@click.option(
-    "--sandbox",
-    type=click.Choice(["bubblewrap", "landlock", "none"]),
-    help="What confines Blender. Default: the strongest that works.",
-)
+@options.VERSION
+@options.EXECUTABLE
+@options.SANDBOX
 @click.option("--json", "as_json", is_flag=True, help="Print all results as JSON.")
 def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | None, as_json: bool) -> None:
     """Test what a live Blender needs on this machine, and report what is missing.

@@ -114,9 +114,12 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
         if started:
             blender = started[0]
             yield "trying the sandbox", lambda: _confined(blender, sandbox, choice.sandbox)
-            yield "drawing with Workbench", lambda: _workbench(blender)
-            yield "rendering with Cycles", lambda: _cycles(blender)
-            yield "checking for video", lambda: _films(blender)
+            yield (
+                "drawing with Workbench",
+                lambda: _tried(blender, "Workbench", "check_workbench", _workbench),
+            )
+            yield "rendering with Cycles", lambda: _tried(blender, "Cycles", "check_cycles", _cycles)
+            yield "checking for video", lambda: _tried(blender, "Films", "check_video", _films)
             other = RunFolder.make(scratch / "fluids")
             alone = launch_in(other.workspace, runtimes[0], sandbox=sandbox)
             yield "baking a drop of liquid", lambda: _fluids(alone)
@@ -259,44 +262,32 @@ def _tried(
         return CheckResult(name, "poor", f"does not work: {error}".partition(" A new Blender")[0])
 
 
-def _workbench(blender: Supervisor) -> CheckResult:
-    def describe(facts: dict[str, Any]) -> CheckResult:
-        if facts["fault"]:
-            advice = "apt-get install libegl1 libgl1-mesa-dri" if "EGL" in facts["fault"] else ""
-            text = f"does not work: {facts['fault']}. Previews use Cycles instead, which is slower"
-            return CheckResult("Workbench", "poor", text, advice=advice, data=facts)
-        where = f" on {facts['renderer']}" if facts["renderer"] else ""
-        how = (
-            "; without a graphics card, a first EEVEE frame takes half a minute" if facts["software"] else ""
-        )
-        text = f"first image in {_time(facts['seconds'])}{where}{how}"
-        return CheckResult("Workbench", "good", text, data=facts)
-
-    return _tried(blender, "Workbench", "check_workbench", describe)
+def _workbench(facts: dict[str, Any]) -> CheckResult:
+    if facts["fault"]:
+        advice = "apt-get install libegl1 libgl1-mesa-dri" if "EGL" in facts["fault"] else ""
+        text = f"does not work: {facts['fault']}. Previews use Cycles instead, which is slower"
+        return CheckResult("Workbench", "poor", text, advice=advice, data=facts)
+    where = f" on {facts['renderer']}" if facts["renderer"] else ""
+    slow = "; without a graphics card, a first EEVEE frame takes half a minute" if facts["software"] else ""
+    return CheckResult(
+        "Workbench", "good", f"first image in {_time(facts['seconds'])}{where}{slow}", data=facts
+    )
 
 
-def _cycles(blender: Supervisor) -> CheckResult:
-    def describe(facts: dict[str, Any]) -> CheckResult:
-        if facts["fault"]:
-            return CheckResult("Cycles", "poor", f"does not work: {facts['fault']}", data=facts)
-        cards = [f"{name} ({kind})" for kind, names in facts["devices"].items() for name in names]
-        on = (
-            f"the processor and {', '.join(cards)}"
-            if cards
-            else "the processor, without a usable graphics card"
-        )
-        return CheckResult("Cycles", "good", f"first image in {_time(facts['seconds'])}; on {on}", data=facts)
-
-    return _tried(blender, "Cycles", "check_cycles", describe)
+def _cycles(facts: dict[str, Any]) -> CheckResult:
+    if facts["fault"]:
+        return CheckResult("Cycles", "poor", f"does not work: {facts['fault']}", data=facts)
+    cards = [f"{name} ({kind})" for kind, names in facts["devices"].items() for name in names]
+    where = (
+        f"the processor and {', '.join(cards)}" if cards else "the processor, without a usable graphics card"
+    )
+    return CheckResult("Cycles", "good", f"first image in {_time(facts['seconds'])}, on {where}", data=facts)
 
 
-def _films(blender: Supervisor) -> CheckResult:
-    def describe(facts: dict[str, Any]) -> CheckResult:
-        if not facts["supported"]:
-            return CheckResult("Films", "poor", "this Blender can write only single frames", data=facts)
-        return CheckResult("Films", "good", f"through FFmpeg (libavcodec {facts['version']})", data=facts)
-
-    return _tried(blender, "Films", "check_video", describe)
+def _films(facts: dict[str, Any]) -> CheckResult:
+    if not facts["supported"]:
+        return CheckResult("Films", "poor", "this Blender can write only single frames", data=facts)
+    return CheckResult("Films", "good", f"through FFmpeg (libavcodec {facts['version']})", data=facts)
 
 
 def _fluids(launch: Launch) -> CheckResult:

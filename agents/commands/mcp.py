@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from agents.commands import options
+
 if TYPE_CHECKING:
     from agents.blender.blender_sessions import SessionSetup
     from simworlds.sandbox.confined_command import Kind, Sandbox
@@ -28,20 +30,10 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
     type=click.Path(file_okay=False, resolve_path=True, path_type=Path),
     help="Folder to work in; a run that is in it is continued. Default: a new folder for each client.",
 )
-@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
-@click.option(
-    "--blender-exe",
-    type=click.Path(path_type=Path),
-    envvar="BLENDER_EXE",
-    show_envvar=True,
-    help="The Blender to start instead of bpy.",
-)
+@options.VERSION
+@options.EXECUTABLE
 @click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets.")
-@click.option(
-    "--sandbox",
-    type=click.Choice(["bubblewrap", "landlock", "none"]),
-    help="What confines Blender. Default: the strongest that works.",
-)
+@options.SANDBOX
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from agents.commands import options
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
     from types import FrameType
@@ -50,15 +52,9 @@ class _CannotCheckError(Exception):
 @click.option("--image", type=_PATH, help="Draw the findings on views of the scene, as a PNG.")
 @click.option("--frame", type=int, help="The frame to check. Default: the frame saved in the file.")
 @click.option("--read", type=_PATH, multiple=True, help="A folder that Blender may read, for linked files.")
-@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
-@click.option(
-    "--blender-exe",
-    type=_PATH,
-    envvar="BLENDER_EXE",
-    show_envvar=True,
-    help="The Blender to use instead of bpy.",
-)
-def verify(scene: Path, form: str | None, rules: str | None, **given: Any) -> None:
+@options.VERSION
+@options.EXECUTABLE
+def verify(scene: Path, form: str | None, rules: str | None, **choices: Any) -> None:
     """Check a .blend against the scene protocol, and against the plan that it was built to.
 
     The file is not changed, and no script in it runs. Exit code 0: no hard rule is broken. 1: at least one is. 2: it
@@ -67,7 +63,7 @@ def verify(scene: Path, form: str | None, rules: str | None, **given: Any) -> No
     _on_signals(_interrupt)
     try:
         try:
-            code = _verify(scene, form, _rules(rules), given)
+            code = _verify(scene, form, _rules(rules), choices)
         except _CannotCheckError as error:
             _print_error(error, form)
             code = _UNCHECKED
@@ -77,16 +73,16 @@ def verify(scene: Path, form: str | None, rules: str | None, **given: Any) -> No
     sys.exit(code)
 
 
-def _verify(scene: Path, form: str | None, rules: tuple[Rule, ...], given: dict[str, Any]) -> int:
+def _verify(scene: Path, form: str | None, rules: tuple[Rule, ...], choices: dict[str, Any]) -> int:
     from agents.protocol.report.report import exit_code  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
-    plan = _plan(given["plan"]) if given["plan"] else None
-    image: Path | None = given["image"]
+    plan = _plan(choices["plan"]) if choices["plan"] else None
+    image: Path | None = choices["image"]
     if image is not None and not image.absolute().parent.is_dir():
         raise _CannotCheckError(f"The folder {image.absolute().parent} for {image.name} does not exist.")
     try:
-        report, checked = _run(scene, rules, plan, given)
+        report, checked = _run(scene, rules, plan, choices)
     except BlenderError as error:
         raise _CannotCheckError(f"{scene} could not be checked: {error}") from error
     _print(report, checked, form)
@@ -121,7 +117,7 @@ def _plan(path: Path) -> ScenePlan:
 
 
 def _run(
-    scene: Path, rules: tuple[Rule, ...], plan: ScenePlan | None, given: dict[str, Any]
+    scene: Path, rules: tuple[Rule, ...], plan: ScenePlan | None, choices: dict[str, Any]
 ) -> tuple[Report, Checked]:
     """Checks the scene, and draws the image if one is wanted. Raises _CannotCheckError and BlenderError."""
     from agents.blender.tools.base import Call  # noqa: PLC0415 - not for --help
@@ -131,10 +127,10 @@ def _run(
     with _StatusLine() as status:
         call = Call(status.progress)
         status.show(f"Opening {scene.name}")
-        with _opened(scene, given, call) as blender:
+        with _opened(scene, choices, call) as blender:
             status.show("Going to the frame")
             position = blender.call(
-                "stand_at", {"frame": given["frame"]}, timeout=_STAND_SECONDS, progress=call.progress
+                "stand_at", {"frame": choices["frame"]}, timeout=_STAND_SECONDS, progress=call.progress
             ).value
             process = blender.inner_pid
             status.show("Measuring")
@@ -150,15 +146,15 @@ def _run(
                 blender=blender.launch.runtime.version,
                 plan=plan.title if plan else "",
             )
-            if given["image"] is not None:
+            if choices["image"] is not None:
                 status.show("Drawing")
-                if fault := _draw(blender, report, call, checked, given["image"]):
+                if fault := _draw(blender, report, call, checked, choices["image"]):
                     click.echo(f"No image could be made: {fault}", err=True)
     return report, checked
 
 
 @contextmanager
-def _opened(scene: Path, given: dict[str, Any], call: Call) -> Generator[Supervisor]:
+def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Supervisor]:
     """A Blender with the file open, in a temporary run folder. Raises _CannotCheckError and BlenderError."""
     from agents.blender.launch import make_launch  # noqa: PLC0415 - not for --help
     from agents.blender.run_folder import RunFolder  # noqa: PLC0415
@@ -173,10 +169,10 @@ def _opened(scene: Path, given: dict[str, Any], call: Call) -> Generator[Supervi
         find_blend_file(str(real), folder, (real.parent,))
         launch = make_launch(
             folder.workspace,
-            version=given["blender"],
-            blender_exe=given["blender_exe"],
+            version=choices["blender"],
+            blender_exe=choices["blender_exe"],
             # Blender may read the file and the caches beside it, but nothing else in that folder.
-            read=(*given["read"], *(path for path in (real, caches_folder(real)) if path.exists())),
+            read=(*choices["read"], *(path for path in (real, caches_folder(real)) if path.exists())),
         )
         with Supervisor(launch, folder) as blender:
             loaded = validated(

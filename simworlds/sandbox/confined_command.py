@@ -167,13 +167,13 @@ def default_limits() -> ResourceLimits:
 
 def _group_limits() -> list[int]:
     """The memory limits of this process's control group, in bytes."""
-    found: list[int] = []
+    limits: list[int] = []
     with suppress(OSError, ValueError):
         group = Path("/proc/self/cgroup").read_text().strip().rpartition(":")[2]
         for path in (f"{group}/memory.max", "/memory.max", "/memory/memory.limit_in_bytes"):
             with suppress(OSError, ValueError):
-                found.append(int(Path(f"/sys/fs/cgroup{path}").read_text()))
-    return found
+                limits.append(int(Path(f"/sys/fs/cgroup{path}").read_text()))
+    return limits
 
 
 def _best_kind() -> Kind:

@@ -149,8 +149,8 @@ def linear(colour: contact_sheet.Colour) -> list[float]:
 
 def _take_image(folder: RunFolder, file: str, size: int) -> Image.Image:
     """Reads an image that Blender left in the workspace, and removes it."""
-    with folder.open_made(file) as made:
-        picture = contact_sheet.read_png(made, _BACKGROUND)
+    with folder.open_made(file) as image:
+        picture = contact_sheet.read_png(image, _BACKGROUND)
     with contextlib.suppress(OSError):
         (folder.workspace / file).unlink()
     return picture.resize((size, size), Image.Resampling.LANCZOS)
