@@ -1,4 +1,4 @@
-"""Which client works with which Blender: every one with its own, in a run's folder of its own."""
+"""The clients of a server: each has its own Blender, in its own run folder."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from simworlds.sandbox.confined_command import Sandbox
 
 CLOSE_SECONDS = 5.0
-_LEAVE_SECONDS = 60.0  # for who leaves while the server goes on: a large scene takes long to write
-_LOOK_SECONDS = 30.0  # between two looks at who has been idle, at most
+_LEAVE_SECONDS = 60.0  # to close one session while the server runs: a large scene takes long to write
+_CHECK_SECONDS = 30.0  # at most, between two checks for idle sessions
 
 _LOG = logging.getLogger(__name__)
 
@@ -42,10 +42,10 @@ def _on_stderr(line: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class SessionSetup:
-    """What every studio is set up with.
+    """How sessions are set up.
 
-    ``run`` is the folder to work in; None: a fresh one for each client. ``read``: folders that Blender may read.
-    ``tell`` gets what its user should know, in a line.
+    ``run`` is the folder to work in; None: a new one for each client. ``read``: folders that Blender may read.
+    ``tell`` gets lines for the server's user.
     """
 
     sandbox: Sandbox
@@ -57,9 +57,9 @@ class SessionSetup:
 
 
 class BlenderSession:
-    """One client's Blender, and the thread that works with it: calls are run one by one, in the order they come in.
+    """One client's Blender, with a thread that runs its calls one by one, in order.
 
-    ``folder`` is the run to go on with; None: a new one, or the one of the set-up.
+    ``folder`` is the run to continue; None: the one of ``setup``, or a new one.
     """
 
     def __init__(self, setup: SessionSetup, folder: RunFolder | None = None) -> None:
@@ -80,22 +80,22 @@ class BlenderSession:
         return 0.0 if self._waiting else time.monotonic() - self._used
 
     def start(self) -> None:
-        """Starts Blender in the background; what goes wrong is logged, and told to whoever calls a tool."""
+        """Starts Blender in the background. Errors are logged, and raised again by the first call."""
         self._thread.submit(self._started)
 
     async def use(
         self, tool: BlenderTool, arguments: dict[str, Any] | None, call: Call, about: Callable[[str], Docs]
     ) -> Result:
-        """Calls a tool, to which ``about`` gives a way to look up things of this Blender's version.
+        """Calls a tool; ``about`` makes a look-up in the documentation of a Blender version.
 
-        Cancelled, it gives the call up: Blender is killed and put back. Raises BlenderError.
+        If this is cancelled, so is the call: Blender is killed and restarted. Raises BlenderError.
         """
         self._waiting.add(call.cancelled)
         try:
             try:
                 future = self._thread.submit(self._use, tool, arguments, call, about)
             except RuntimeError as error:
-                raise Refusal("This session has been ended.") from error
+                raise Refusal("This session has ended.") from error
             return await asyncio.wrap_future(future)
         except asyncio.CancelledError:
             call.cancelled.set()
@@ -104,8 +104,8 @@ class BlenderSession:
             self._waiting.discard(call.cancelled)
             self._used = time.monotonic()
 
-    def give_up(self) -> None:
-        """From any thread: whatever runs is to end, and nothing is begun any more."""
+    def cancel(self) -> None:
+        """From any thread: cancels running and waiting calls; new ones are refused."""
         self._ended = True
         for cancelled in tuple(self._waiting):
             cancelled.set()
@@ -113,8 +113,8 @@ class BlenderSession:
             self._blender.end()
 
     def close(self, seconds: float = CLOSE_SECONDS) -> None:
-        """From any thread but its own: gives up what runs, keeps the scene, ends Blender, within ``seconds``."""
-        self.give_up()
+        """From any other thread: cancels calls, keeps the scene and ends Blender, within ``seconds``."""
+        self.cancel()
         with self._lock:
             if self._closing is None:
                 self._closing = self._thread.submit(self._close)
@@ -125,9 +125,9 @@ class BlenderSession:
             if self._blender is not None:
                 self._blender.kill()
         except Exception:
-            _LOG.exception("Blender could not be ended as it should")
+            _LOG.exception("Blender could not be closed properly")
 
-    # In the studio's own thread
+    # In the session's own thread
 
     def _started(self) -> None:
         try:
@@ -140,16 +140,16 @@ class BlenderSession:
     def _use(
         self, tool: BlenderTool, arguments: dict[str, Any] | None, call: Call, about: Callable[[str], Docs]
     ) -> Result:
-        asked = parse(tool, arguments)
+        parsed = parse(tool, arguments)
         blender = self._running()
         if call.cancelled.is_set():
-            raise Refusal(f"{tool.name} was given up before it began.")
+            raise Refusal(f"{tool.name} was cancelled before it began.")
         self._unused = False
-        return perform(tool, ToolContext(blender, about(blender.launch.runtime.version)), asked, call)
+        return perform(tool, ToolContext(blender, about(blender.launch.runtime.version)), parsed, call)
 
     def _running(self) -> Supervisor:
         if self._ended:
-            raise Refusal("This session has been ended.")
+            raise Refusal("This session has ended.")
         if self._blender is None:
             self._blender = self._begin()
             self._blender.start()
@@ -169,7 +169,7 @@ class BlenderSession:
                 read=setup.read,
             )
         except OSError as error:
-            raise CannotStart(f"There is no folder to work in: {error}") from error
+            raise CannotStart(f"The run folder cannot be made: {error}") from error
         try:
             blender = Supervisor(launch, self.folder)
         except BaseException:
@@ -181,14 +181,14 @@ class BlenderSession:
     def _close(self) -> None:
         if self._blender is not None:
             self._blender.close()
-        if self._unused and self.folder is not None:  # nobody has asked anything of it
+        if self._unused and self.folder is not None:
             shutil.rmtree(self.folder.root, ignore_errors=True)
 
 
 class BlenderSessions:
-    """The studios of a server, by client: at most so many at once, each closed after ``idle`` seconds without a call.
+    """The sessions of a server by client: ``at_most`` at once, each closed after ``idle`` seconds without a call.
 
-    A client whose studio was closed that way finds its run as it was left.
+    A client whose session was closed that way continues its run with the next call.
     """
 
     def __init__(self, setup: SessionSetup, *, at_most: int = 1, idle: float | None = None) -> None:
@@ -201,16 +201,16 @@ class BlenderSessions:
         self._lock = anyio.Lock()
 
     def start(self, client: str) -> None:
-        """Starts a client's Blender in the background, before anybody asks. Raises Refusal."""
+        """Starts a client's Blender in the background, before its first call. Raises Refusal."""
         self._admit()
         session = self._open[client] = BlenderSession(self._setup)
         session.start()
 
     async def get(self, client: str) -> BlenderSession:
-        """The client's studio. Raises Refusal when it has none and there are too many."""
-        if (found := self._open.get(client)) is not None:
-            return found
-        # Who is just leaving is waited for.
+        """The client's session, a new one if it has none. Raises Refusal if there are too many."""
+        if (session := self._open.get(client)) is not None:
+            return session
+        # Waits for a session that is being closed.
         async with self._lock:
             if client not in self._open:
                 self._admit()
@@ -219,30 +219,30 @@ class BlenderSessions:
 
     def _admit(self) -> None:
         if self._ended:
-            raise Refusal("This server is ending.")
+            raise Refusal("This server is shutting down.")
         if len(self._open) < self._at_most:
             return
         if self._setup.run:
             raise Refusal(
-                f"This server works in one folder, {self._setup.run}, and another session has it. End that "
-                "session, or start the server without --run: every session then has a folder of its own."
+                f"Another session is using this server's only folder, {self._setup.run}. End that session, or start "
+                "the server without --run, which gives every session its own folder."
             )
         raise Refusal(
-            f"{len(self._open)} sessions have a Blender open here, and no more may (--sessions). End one of "
-            "them, or wait until one has been idle for long enough."
+            f"All {len(self._open)} sessions that this server allows (--sessions) are in use. End one of them, or "
+            "wait until an idle one is closed."
         )
 
     async def end(self, client: str) -> None:
-        """The client has left: closes its studio, if it has one."""
+        """Closes the session of a client that has left, if it has one."""
         await self._close(client)
         self._left.pop(client, None)
 
     async def watch(self) -> None:
-        """Closes idle studios until it is cancelled."""
+        """Closes idle sessions until it is cancelled."""
         if self._idle is None:
             return
         while True:
-            await anyio.sleep(min(self._idle / 4, _LOOK_SECONDS))
+            await anyio.sleep(min(self._idle / 4, _CHECK_SECONDS))
             for client in [client for client, session in self._open.items() if session.idle > self._idle]:
                 await self._close(client, self._idle)
 
@@ -258,11 +258,11 @@ class BlenderSessions:
                 self._left[client] = session.folder
 
     def close(self, seconds: float = CLOSE_SECONDS) -> None:
-        """Closes all studios for good, within ``seconds``."""
+        """Closes all sessions for good, within ``seconds``."""
         self._ended = True
         deadline = time.monotonic() + seconds
         sessions = tuple(self._open.values())
         for session in sessions:
-            session.give_up()
+            session.cancel()
         for session in sessions:
             session.close(max(0.1, deadline - time.monotonic()))

@@ -1,4 +1,4 @@
-"""The knowledge base as the agents reach it: a server in a process of its own, spoken to like any other over MCP."""
+"""The agents' client of the knowledge base, whose MCP server runs in its own process."""
 
 from __future__ import annotations
 
@@ -38,14 +38,13 @@ class DocsGone(Exception):  # noqa: N818 - reads as the state it names
 
 
 class DocsClient:
-    """``simworlds serve``, started when it is first needed, and again when it has ended.
+    """A client of ``simworlds serve``, which is started when first needed, and again when it has ended.
 
-    Works between entering and leaving ``running``. Everything that asks raises DocsGone, and MCPError for what the
-    server refuses.
+    Works inside ``running``. All requests raise DocsGone, and MCPError for what the server refuses.
     """
 
     def __init__(self, options: Sequence[str] = ()) -> None:
-        """``options`` are further words for ``simworlds serve``."""
+        """``options`` are further options of ``simworlds serve``."""
         path = os.pathsep.join(filter(None, [str(_SOURCE), os.environ.get("PYTHONPATH")]))
         self._server = StdioServerParameters(
             command=sys.executable,
@@ -56,14 +55,14 @@ class DocsClient:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._client: Client | None = None
         self._lost = anyio.Event()
-        self._door = anyio.Lock()
+        self._lock = anyio.Lock()
 
     @asynccontextmanager
     async def running(self) -> AsyncGenerator[None]:
         """Starts the server in the background; ends it on leaving."""
         async with anyio.create_task_group() as tasks:
             self._tasks, self._loop = tasks, asyncio.get_running_loop()
-            tasks.start_soon(self._greet)
+            tasks.start_soon(self._connect_early)
             try:
                 yield
             finally:
@@ -71,41 +70,41 @@ class DocsClient:
                 tasks.cancel_scope.cancel()
 
     async def tools(self) -> list[types.Tool]:
-        """What the server lists."""
-        return (await self._asked(lambda client: client.list_tools())).tools
+        """The server's tools."""
+        return (await self._request(lambda client: client.list_tools())).tools
 
     async def call(self, arguments: dict[str, Any] | None) -> types.CallToolResult:
-        """``blender_docs``, as the server answers it."""
-        found = await self._asked(lambda client: client.call_tool(NAME, arguments or {}))
+        """The server's answer to a call of ``blender_docs``."""
+        result = await self._request(lambda client: client.call_tool(NAME, arguments or {}))
         return types.CallToolResult(
-            content=found.content, structured_content=found.structured_content, is_error=found.is_error
+            content=result.content, structured_content=result.structured_content, is_error=result.is_error
         )
 
     async def resources(self) -> list[types.Resource]:
         """The server's resources."""
-        return (await self._asked(lambda client: client.list_resources())).resources
+        return (await self._request(lambda client: client.list_resources())).resources
 
     async def templates(self) -> list[types.ResourceTemplate]:
         """The server's resource templates."""
-        return (await self._asked(lambda client: client.list_resource_templates())).resource_templates
+        return (await self._request(lambda client: client.list_resource_templates())).resource_templates
 
     async def read(self, uri: str) -> types.ReadResourceResult:
-        """A resource of the server's."""
-        found = await self._asked(lambda client: client.read_resource(uri))
-        return types.ReadResourceResult(contents=found.contents)
+        """A resource of the server."""
+        result = await self._request(lambda client: client.read_resource(uri))
+        return types.ReadResourceResult(contents=result.contents)
 
     def about(self, version: str) -> Docs:
-        """A way to ask about a Blender version from any thread but the server's own; "" after ``HINT_SECONDS``."""
+        """A look-up for a Blender version, for any other thread; it returns "" after ``HINT_SECONDS``."""
 
         def docs(query: str, *, max_tokens: int = 400) -> str:
             if self._loop is None or self._tasks is None:
                 return ""
             arguments = {"query": query, "blender": version, "max_tokens": max_tokens}
-            asked = asyncio.run_coroutine_threadsafe(self._hint(arguments), self._loop)
+            future = asyncio.run_coroutine_threadsafe(self._hint(arguments), self._loop)
             try:
-                return asked.result(HINT_SECONDS)
+                return future.result(HINT_SECONDS)
             except TimeoutError:
-                asked.cancel()
+                future.cancel()
             except Exception:
                 _LOG.debug("no hint on %.100r", query, exc_info=True)
             return ""
@@ -113,13 +112,13 @@ class DocsClient:
         return docs
 
     async def _hint(self, arguments: dict[str, Any]) -> str:
-        found = await self.call(arguments)
-        answer = found.structured_content or {}
-        return "" if found.is_error or answer.get("kind") == "none" else str(answer.get("text", ""))
+        result = await self.call(arguments)
+        answer = result.structured_content or {}
+        return "" if result.is_error or answer.get("kind") == "none" else str(answer.get("text", ""))
 
     # The connection
 
-    async def _asked(self, ask: Callable[[Client], Awaitable[_T]]) -> _T:
+    async def _request(self, ask: Callable[[Client], Awaitable[_T]]) -> _T:
         for last in (False, True):
             client = await self._connected()
             try:
@@ -128,22 +127,22 @@ class DocsClient:
                 if error.code != types.CONNECTION_CLOSED:
                     raise
                 if last:
-                    raise DocsGone("The knowledge base's server ended twice while it was asked.") from error
+                    raise DocsGone("The knowledge base's server ended twice during one request.") from error
                 self._forget(client)
         raise AssertionError  # never reached
 
-    async def _greet(self) -> None:
+    async def _connect_early(self) -> None:
         try:
             await self._connected()
         except DocsGone as error:
             _LOG.error("%s", error)
 
     async def _connected(self) -> Client:
-        async with self._door:
+        async with self._lock:
             if self._client is not None:
                 return self._client
             if self._tasks is None:
-                raise DocsGone("The knowledge base's server has been ended.")
+                raise DocsGone("The knowledge base's server has been stopped.")
             try:
                 client: Client = await self._tasks.start(self._hold)
             except Exception as error:
@@ -157,16 +156,16 @@ class DocsClient:
             self._lost.set()
 
     async def _hold(self, *, task_status: TaskStatus[Client]) -> None:
-        """Keeps one connection open until it is lost: what opens it must close it too."""
+        """Keeps one connection open until it is lost; the same task must open and close it."""
         lost = self._lost = anyio.Event()
-        greeted = False
+        connected = False
         transport = stdio_client(self._server, errlog=sys.stderr)
         try:
             async with Client(transport, read_timeout_seconds=_ANSWER_SECONDS) as client:
-                greeted = True
+                connected = True
                 task_status.started(client)
                 await lost.wait()
         except Exception:
-            if not greeted:
+            if not connected:
                 raise
-            _LOG.debug("the connection did not close as it should", exc_info=True)
+            _LOG.debug("the connection did not close properly", exc_info=True)

@@ -1,4 +1,4 @@
-"""Whether a Blender can simulate fluids, and whether it needs help for it."""
+"""Tests whether a Blender can simulate fluids, and whether it needs the repair in mantaflow.py."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _TEST_SECONDS = 60.0
 
 @dataclass(frozen=True, slots=True)
 class FluidCheck:
-    """``version``: Blender's. ``fault``: why fluids do not work, None if they do.
+    """The result for a Blender ``version``. ``fault``: why fluids do not work, None if they do.
 
-    ``needs_remedy``: whether they work only with what inside/mantaflow.py does; None for a Blender that never gets it.
+    ``needs_remedy``: whether they work only with simworlds/sandbox/inside/mantaflow.py; None where that never runs.
     """
 
     version: str
@@ -29,24 +29,26 @@ class FluidCheck:
         if self.fault is not None:
             return f"Blender {self.version} does not simulate fluids: {self.fault}"
         if self.needs_remedy is None:
-            return f"Blender {self.version} simulates fluids by itself."
+            return f"Blender {self.version} simulates fluids."
         if self.needs_remedy:
-            return f"bpy {self.version} simulates fluids, with the remedy that it still needs."
-        return f"bpy {self.version} simulates fluids by itself: the remedy is no longer needed for it."
+            return f"bpy {self.version} simulates fluids, with the repair that it needs."
+        return f"bpy {self.version} simulates fluids; the repair is no longer needed for it."
 
 
 def check_fluids(launch: Launch) -> FluidCheck:
-    """Bakes a drop of liquid in processes of its own, with the remedy and without. Raises CannotStart."""
+    """Bakes a drop of liquid in separate processes, with and without the repair. Raises CannotStart."""
     process = BlenderProcess(launch)
     try:
-        found: dict[str, Any] = process.call("fluid_self_test", {"remedy": True}, timeout=_TEST_SECONDS).value
+        result: dict[str, Any] = process.call(
+            "fluid_self_test", {"remedy": True}, timeout=_TEST_SECONDS
+        ).value
     except BlenderError as error:
         return FluidCheck(launch.runtime.version, str(error), None)
     finally:
         process.kill()
-    if not found["works"]:
-        return FluidCheck(found["version"], "a baked drop of liquid has no surface.", None)
-    return FluidCheck(found["version"], None, _dies_without(launch) if found["hooked"] else None)
+    if not result["works"]:
+        return FluidCheck(result["version"], "a baked drop of liquid has no surface.", None)
+    return FluidCheck(result["version"], None, _dies_without(launch) if result["hooked"] else None)
 
 
 def _dies_without(launch: Launch) -> bool:

@@ -1,4 +1,4 @@
-"""The Blender of a run: the worker that runs in it, and the folders that it gets."""
+"""How a run's Blender is started: its worker and its folders."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WORKER = Program("simworlds_worker.worker", {**SHARED, "simworlds_worker": Path(
 
 
 def runs_folder() -> Path:
-    """Where runs lie that were given no folder of their own."""
+    """The folder of runs for which no other was chosen."""
     return home_folder() / "runs"
 
 
@@ -30,14 +30,14 @@ def make_launch(
     sandbox: Sandbox | None = None,
     read: tuple[Path, ...] = (),
 ) -> Launch:
-    """Finds the Blender (an executable, this environment's bpy, or one made for ``version``). Raises CannotStart."""
+    """Finds a Blender (an executable, this environment's bpy, or one installed for ``version``). Raises CannotStart."""
     return launch_in(workspace, find_blender(version, blender_exe), sandbox=sandbox, read=read)
 
 
 def launch_in(
     workspace: Path, runtime: Runtime, *, sandbox: Sandbox | None = None, read: tuple[Path, ...] = ()
 ) -> Launch:
-    """A worker of a Blender that was found; the workspace is made."""
+    """The launch of the worker in ``runtime``; the workspace is made."""
     workspace.mkdir(parents=True, exist_ok=True)
     workspace = workspace.resolve()
     return Launch(runtime, workspace, workspace.with_name(PRIVATE), sandbox or best_sandbox(), WORKER, read)

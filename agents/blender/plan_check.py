@@ -1,4 +1,4 @@
-"""``blender_plan_check``: a scene plan, judged for itself before anything is built."""
+"""``blender_plan_check``: checks a scene plan before anything is built."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 NAME = "blender_plan_check"
 _TITLE = "Check a scene plan"
 DESCRIPTION = """\
-Check a scene plan before anything is built: fields and their values, names that nobody has, relations that contradict \
-each other or close a circle, things that nothing holds up, contents that do not fit into their container, phases out \
-of the timeline or before their cause, tolerances. Answers with each fault as its path and a sentence, or, for a sound \
-plan, with what is in it and which rules of blender_verify judge it from which stage on. It does not touch Blender and \
-does not know the geometry: whether things overlap is measured once they are built."""
-_FAULTS = 20
+Check a scene plan before anything is built: fields and their values, unknown names, relations that contradict each \
+other or form a cycle, objects without support, contents that do not fit into their container, phases outside the \
+timeline or before their cause, tolerances. The reply lists each fault with its path, or, for a valid plan, what is in \
+it and from which stage on each rule of blender_verify applies. Blender is not used and the geometry is not known: \
+overlaps are measured once the objects are built."""
+_LISTED_FAULTS = 20
 _LISTED = 12
 
 
@@ -57,15 +57,15 @@ def entry() -> types.Tool:
 
 
 def answer(arguments: Mapping[str, Any]) -> types.CallToolResult:
-    """What the tool answers: text for the model, and the same as data."""
-    given = arguments.get("plan")
-    if isinstance(given, str):  # models at times write JSON into a string
-        given = given.encode(errors="replace")
-    if not isinstance(given, (bytes, dict)) or set(arguments) != {"plan"}:
-        return _result('Give the plan, and nothing else: {"plan": {…}}.', failed=True)
-    plan, faults = plan_from(given)
+    """The tool's reply: text for the model, and the same as data."""
+    data = arguments.get("plan")
+    if isinstance(data, str):  # models sometimes write JSON into a string
+        data = data.encode(errors="replace")
+    if not isinstance(data, (bytes, dict)) or set(arguments) != {"plan"}:
+        return _result('Give only the plan: {"plan": {…}}.', failed=True)
+    plan, faults = plan_from(data)
     if plan is None:
-        return _result(_told(faults), {"sound": False, "faults": [_as_json(one) for one in faults]})
+        return _result(_fault_text(faults), {"sound": False, "faults": [_as_json(fault) for fault in faults]})
     return _result(summary(plan), {"sound": True, "faults": [], "stages": list(plan.stages)})
 
 
@@ -81,24 +81,24 @@ def _as_json(fault: Fault) -> dict[str, str]:
     return {"path": fault.path, "message": fault.message}
 
 
-def _told(faults: list[Fault]) -> str:
+def _fault_text(faults: list[Fault]) -> str:
     count = len(faults)
-    lines = [f"- `{fault.path or 'the whole'}`: {fault.message}" for fault in faults[:_FAULTS]]
-    lines += [f"- … and {count - _FAULTS} more"] if count > _FAULTS else []
+    lines = [f"- `{fault.path or 'plan'}`: {fault.message}" for fault in faults[:_LISTED_FAULTS]]
+    lines += [f"- … and {count - _LISTED_FAULTS} more"] if count > _LISTED_FAULTS else []
     return "\n".join([f"The plan has {count} fault{'s' if count != 1 else ''}:", *lines])
 
 
 def summary(plan: ScenePlan) -> str:
-    """What a sound plan says, for whoever is to build it."""
+    """A summary of a valid plan, for whoever builds it."""
     roles: dict[str, list[str]] = {}
-    for one in plan.objects:
-        roles.setdefault(one.role, []).append(one.name)
+    for obj in plan.objects:
+        roles.setdefault(obj.role, []).append(obj.name)
     objects = "; ".join(f"{role}: {folded(names, _LISTED)}" for role, names in roles.items())
     return "\n".join(
         [
-            f"The plan {plan.title!r} contradicts itself nowhere.",
+            f"The plan {plan.title!r} is valid.",
             f"- Objects ({len(plan.objects)}): {objects}.",
-            f"- Relations ({len(plan.relations)}): {_counted(one.kind for one in plan.relations)}.",
+            f"- Relations ({len(plan.relations)}): {_counted(relation.kind for relation in plan.relations)}.",
             f"- {_motion(plan)}",
             f"- Stages: {', '.join(plan.stages)}.",
             *_rules(plan),
@@ -114,7 +114,7 @@ def _motion(plan: ScenePlan) -> str:
     frames = plan.frame_end - plan.frame_start + 1
     phases = plan.motion.phases
     if not phases:
-        return "Phases: none; the scene is still."
+        return "Phases: none; nothing moves."
     actors = folded((phase.actor for phase in phases), _LISTED)
     return (
         f"Phases ({len(phases)}) of {actors}, in frames {plan.frame_start}–{plan.frame_end} "
@@ -123,11 +123,14 @@ def _motion(plan: ScenePlan) -> str:
 
 
 def _rules(plan: ScenePlan) -> list[str]:
-    """From which of the plan's stages on which rules judge."""
+    """The rules that apply from each of the plan's stages on."""
     order = [rule.id for rule in RULES]
     since: dict[str, list[str]] = {}
     for rule in rules_of(STAGES[-1]):
         first = next(stage for stage in plan.stages if STAGES.index(stage) >= STAGES.index(begins(rule)))
         since.setdefault(first, []).append(rule.id)
-    told = [(stage, told_ids(since[stage], order)) for stage in plan.stages if stage in since]
-    return [f"- Judged from {stage} on by {ids}." for stage, ids in told]
+    return [
+        f"- Checked from {stage} on: {told_ids(since[stage], order)}."
+        for stage in plan.stages
+        if stage in since
+    ]

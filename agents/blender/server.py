@@ -1,4 +1,4 @@
-"""The MCP server of the tool suite: every client with a Blender of its own, and the knowledge base beside it."""
+"""The MCP server of the tool suite: a Blender for every client, and the knowledge base beside it."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ if TYPE_CHECKING:
     _Use = Callable[..., Awaitable[Result]]
 
 _HABITS = (
-    ("blender_plan_check", "for a whole scene: write its plan first, and check it; the prompt make_scene says how"),
-    ("blender_docs", "before you use an API name that you have not looked up for this version, at the start of a "
-     "stage of work (with its topic: cloth, materials), and on any error that is still unclear"),
-    ("blender_execute", "to build, in small steps: one object or one idea a call, meaningful names"),
-    ("blender_scene_state", "for the numbers: what is where, how large, which modifiers and caches"),
+    ("blender_plan_check", "for a whole scene: write its plan first and check it; the prompt make_scene says how"),
+    ("blender_docs", "before you use an API name that you have not looked up for this version, when you begin "
+     "a topic (cloth, materials), and on any error that is still unclear"),
+    ("blender_execute", "to build in small steps: one object or idea per call, with meaningful names"),
+    ("blender_scene_state", "for numbers: positions, sizes, modifiers, caches"),
     ("blender_single_mesh_preview", "to see one mesh from all sides before it is used"),
-    ("blender_scene_layout_preview", "to see the scene; look after every step that changes its looks"),
+    ("blender_scene_layout_preview", "to see the scene; use it after every step that changes what is seen"),
     ("blender_bake", "for physics, before you judge motion; never jump to a frame of an unbaked simulation"),
     ("blender_motion_sheet_preview", "to see and measure motion over time"),
     ("blender_save", "when a stage is done"),
-    ("blender_render", "last, when everything stands; start with a still"),
+    ("blender_render", "last, when everything is in place; start with a still"),
 )  # fmt: skip
 _PROGRESS_SECONDS = 0.25
 _LIST_SECONDS = 20.0  # what a list waits for the knowledge base
@@ -62,24 +62,24 @@ _LOG = logging.getLogger(__name__)
 
 
 def instructions(more: Iterable[str] = ()) -> str:
-    """What an agent is told of how to work with the tools there are, ``more`` of which the server has beside them."""
+    """The server's instructions for models: how to work with the tools, including ``more`` of the server's own."""
     known = {*BY_NAME, *more, docs_client.NAME}
     habits = [f"- {name}: {when}." for name, when in _HABITS if name in known]
     return "\n".join(
         [
-            "You have a live Blender of your own, without a window. What you make stays from call to call; if "
-            "Blender crashes or hangs, it is started again where the last checkpoint stands, and the error says "
-            "which: read where the scene stands before you go on. Lengths are metres, angles in Python radians.",
+            "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes "
+            "or hangs, it is restarted from the last checkpoint, which the error names: read the scene's state "
+            "before you go on. Lengths are in metres, angles in Python in radians.",
             *habits,
-            "Do not trust a step that you have not checked: read what a call says it changed, then look.",
+            "Check every step: read what the call says it changed, then look at the scene.",
         ]
     )
 
 
 def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None = None) -> Server[None]:
-    """The server, without a transport. Closes the studios when it ends.
+    """The server, without a transport. Closes the sessions when it ends.
 
-    ``team`` offers what a model needs to plan and review too; a caller with roles of its own does without.
+    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles.
     """
 
     @asynccontextmanager
@@ -95,21 +95,23 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
             with anyio.CancelScope(shield=True):
                 await anyio.to_thread.run_sync(sessions.close)
 
-    async def call_tool(context: _Context, asked: types.CallToolRequestParams) -> types.CallToolResult:
-        if asked.name == docs_client.NAME:
-            return await _looked_up(docs, asked.arguments)
-        if team is not None and (answer := team.use(asked.name, asked.arguments or {})) is not None:
+    async def call_tool(context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
+        if params.name == docs_client.NAME:
+            return await _look_up(docs, params.arguments)
+        if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
             return answer
-        tool = BY_NAME.get(asked.name)
+        tool = BY_NAME.get(params.name)
         if tool is None:
             names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), docs_client.NAME])
-            raise MCPError(types.INVALID_PARAMS, f"There is no tool {asked.name[:80]!r}; there are {names}.")
+            raise MCPError(
+                types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. Available: {names}."
+            )
         try:
             session = await sessions.get(_client(context))
         except BlenderError as error:
             return _failed(str(error))
-        use = partial(session.use, tool, asked.arguments, about=docs.about)
-        return await _watched(context, tool.name, use)
+        use = partial(session.use, tool, params.arguments, about=docs.about)
+        return await _call_with_progress(context, tool.name, use)
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
         listed = [*map(entry, TOOLS), *(team.tools() if team is not None else ())]
@@ -117,20 +119,20 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
             with anyio.fail_after(_LIST_SECONDS):
                 listed += await docs.tools()
         except (DocsGone, MCPError, TimeoutError) as error:
-            _LOG.error("%s cannot be listed: %s", docs_client.NAME, error or "it does not answer")
+            _LOG.error("%s cannot be listed: %s", docs_client.NAME, error or "no reply")
         return types.ListToolsResult(tools=listed)
 
     async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
-        return types.ListResourcesResult(resources=await _or_none(docs.resources))
+        return types.ListResourcesResult(resources=await _or_empty(docs.resources))
 
     async def list_templates(_context: _Context, _page: _Listing) -> types.ListResourceTemplatesResult:
-        return types.ListResourceTemplatesResult(resource_templates=await _or_none(docs.templates))
+        return types.ListResourceTemplatesResult(resource_templates=await _or_empty(docs.templates))
 
     async def read_resource(
-        _context: _Context, asked: types.ReadResourceRequestParams
+        _context: _Context, params: types.ReadResourceRequestParams
     ) -> types.ReadResourceResult:
         try:
-            return await docs.read(str(asked.uri))
+            return await docs.read(str(params.uri))
         except DocsGone as error:
             raise MCPError(types.INTERNAL_ERROR, str(error)) from error
 
@@ -151,16 +153,16 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
 
 
 def _prompting(team: Team) -> dict[str, Any]:
-    """The handlers of prompts, and of their arguments as they are typed."""
+    """The handlers of prompts and of argument completion."""
 
     async def list_prompts(_context: _Context, _page: _Listing) -> types.ListPromptsResult:
         return types.ListPromptsResult(prompts=team.prompts())
 
-    async def get_prompt(_context: _Context, asked: types.GetPromptRequestParams) -> types.GetPromptResult:
-        return team.prompt(asked.name, asked.arguments or {})
+    async def get_prompt(_context: _Context, params: types.GetPromptRequestParams) -> types.GetPromptResult:
+        return team.prompt(params.name, params.arguments or {})
 
-    async def complete(_context: _Context, asked: types.CompleteRequestParams) -> types.CompleteResult:
-        values = team.completions(asked.argument.name, asked.argument.value)
+    async def complete(_context: _Context, params: types.CompleteRequestParams) -> types.CompleteResult:
+        values = team.completions(params.argument.name, params.argument.value)
         return types.CompleteResult(completion=types.Completion(values=values, total=len(values)))
 
     return {"on_list_prompts": list_prompts, "on_get_prompt": get_prompt, "on_completion": complete}
@@ -174,7 +176,7 @@ def _own_version() -> str:
 
 
 def _client(context: _Context) -> str:
-    """Who asks: over HTTP a session that the transport has checked, else the only one."""
+    """The client's id: over HTTP its session, which the transport has checked; else \"\"."""
     return context.request.headers.get(_SESSION, "") if context.request is not None else ""
 
 
@@ -184,7 +186,7 @@ def _client(context: _Context) -> str:
 def entry(tool: BlenderTool) -> types.Tool:
     """A tool's entry in the list of tools."""
     schema = schema_of(tool.arguments)
-    schema.pop("description", None)  # the tool's own says it
+    schema.pop("description", None)  # the tool has its own
     return types.Tool(
         name=tool.name,
         title=tool.title,
@@ -200,73 +202,76 @@ def entry(tool: BlenderTool) -> types.Tool:
     )
 
 
-class _Latest:
-    """The last progress that a tool reported, from whichever thread."""
+class _ProgressReporter:
+    """Passes the progress that a tool reports, from any thread, on to the client."""
 
     def __init__(self) -> None:
         self._reported: tuple[float, float | None, str] | None = None
         self._sent = float("-inf")
 
     def __call__(self, done: float, total: float | None, text: str) -> None:
-        """Notes it."""
+        """Takes a report of the tool."""
         self._reported = (done, total, text)
 
     @asynccontextmanager
-    async def told(self, context: _Context) -> AsyncGenerator[None]:
-        """Tells the client meanwhile, a few times a second, and once at the end."""
+    async def reporting(self, context: _Context) -> AsyncGenerator[None]:
+        """Sends the latest report a few times a second during the body, and once at the end."""
 
-        async def keep_telling() -> None:
+        async def keep_sending() -> None:
             while True:
                 await anyio.sleep(_PROGRESS_SECONDS)
-                await self._tell(context)
+                await self._send(context)
 
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(keep_telling)
+            tasks.start_soon(keep_sending)
             yield
-            await self._tell(context)
+            await self._send(context)
             tasks.cancel_scope.cancel()
 
-    async def _tell(self, context: _Context) -> None:
-        # What does not get further than before is no progress to the protocol.
+    async def _send(self, context: _Context) -> None:
+        # The protocol wants progress to increase.
         if self._reported is not None and self._reported[0] > self._sent:
             self._sent, total, text = self._reported
             await context.session.report_progress(self._sent, total, text or None)
 
 
-async def _watched(context: _Context, name: str, use: _Use) -> types.CallToolResult:
-    """What came of a call; meanwhile the client is told how far it is, if that wants to know."""
+async def _call_with_progress(context: _Context, name: str, use: _Use) -> types.CallToolResult:
+    """The result of a call; its progress is reported if the client asked for it."""
     if context.meta is None or context.meta.get("progress_token") is None:
-        return await _answered(name, use(call=Call()))
-    latest = _Latest()
-    async with latest.told(context):
-        return await _answered(name, use(call=Call(progress=latest)))
+        return await _result_of(name, use(call=Call()))
+    reporter = _ProgressReporter()
+    async with reporter.reporting(context):
+        return await _result_of(name, use(call=Call(progress=reporter)))
 
 
-async def _answered(name: str, call: Awaitable[Result]) -> types.CallToolResult:
+async def _result_of(name: str, call: Awaitable[Result]) -> types.CallToolResult:
     try:
-        return _shown(await call)
+        return _as_mcp(await call)
     except Lost as error:
-        said = error.printed.strip()
-        return _failed(
-            f"{error}\n\nThe end of what Blender printed:\n```\n{said}\n```" if said else str(error)
-        )
+        output = error.printed.strip()
+        end = f"\n\nThe end of Blender's output:\n```\n{output}\n```" if output else ""
+        return _failed(f"{error}{end}")
     except ToolBroke as error:
         _LOG.error("%s failed in Blender: %s\n%s", name, error, error.details)
-        return _failed(f"{name} itself failed, which is no fault of yours: {error}. Blender goes on.")
+        return _failed(
+            f"{name} failed because of a bug in the tool, not in your call: {error}. Blender still runs."
+        )
     except BlenderError as error:
         return _failed(str(error))
     except Exception as error:
         _LOG.exception("%s failed", name)
-        return _failed(f"{name} failed on this call ({type(error).__name__}). Ask it otherwise.")
+        return _failed(
+            f"{name} failed on this call ({type(error).__name__}). Change the call, or report it with its arguments."
+        )
 
 
-def _shown(result: Result) -> types.CallToolResult:
-    pictures = [
-        types.ImageContent(data=base64.b64encode(picture.png).decode(), mime_type="image/png")
-        for picture in result.pictures
+def _as_mcp(result: Result) -> types.CallToolResult:
+    images = [
+        types.ImageContent(data=base64.b64encode(image.png).decode(), mime_type="image/png")
+        for image in result.pictures
     ]
     return types.CallToolResult(
-        content=[_text(result.text), *pictures],
+        content=[_text(result.text), *images],
         structured_content=result.data or None,
         is_error=result.failed,
     )
@@ -277,23 +282,23 @@ def _failed(message: str) -> types.CallToolResult:
 
 
 def _text(text: str) -> types.TextContent:
-    # Halves of characters, as in names of files that are no text, cannot be sent.
+    # Lone surrogates, as from file names that are not UTF-8, cannot be sent.
     return types.TextContent(text=text.encode(errors="replace").decode())
 
 
 # The knowledge base
 
 
-async def _looked_up(docs: DocsClient, arguments: dict[str, Any] | None) -> types.CallToolResult:
+async def _look_up(docs: DocsClient, arguments: dict[str, Any] | None) -> types.CallToolResult:
     try:
         return await docs.call(arguments)
     except DocsGone as error:
         return _failed(str(error))
 
 
-async def _or_none(listed: Callable[[], Any]) -> list[Any]:
+async def _or_empty(list_them: Callable[[], Any]) -> list[Any]:
     try:
-        return await listed()
+        return await list_them()
     except DocsGone as error:
         _LOG.error("%s", error)
         return []
@@ -309,7 +314,7 @@ def make_app(
     path: str,
     security: TransportSecuritySettings,
 ) -> ASGIApp:
-    """The server as an ASGI application that keeps a session for every client; ``idle`` in seconds."""
+    """The server as an ASGI application with a session for every client, which ends after ``idle`` seconds."""
     server.middleware.append(_only_with_sessions)
     app = server.streamable_http_app(
         streamable_http_path=path,
@@ -317,25 +322,25 @@ def make_app(
         max_sessions=_MANY_CLIENTS,
         transport_security=security,
     )
-    return _Leaving(app, sessions)
+    return _EndOnDelete(app, sessions)
 
 
 async def _only_with_sessions(ctx: ServerRequestContext[Any, Any], call_next: CallNext) -> HandlerResult:
-    """The protocol of 2026 has no sessions over HTTP, by which a Blender could be told to be a client's own.
+    """Refuses the protocol of 2026, which has no sessions over HTTP to tell whose Blender is whose.
 
-    Clients then shake hands as before.
+    Clients then fall back to an older version.
     """
     if ctx.protocol_version in MODERN_PROTOCOL_VERSIONS:
         raise MCPError(
             types.UNSUPPORTED_PROTOCOL_VERSION,
-            "Every session has a Blender of its own here: use a version of the protocol that has sessions.",
+            "This server has a Blender for every session: use a protocol version that has sessions.",
             {"supported": list(HANDSHAKE_PROTOCOL_VERSIONS), "requested": ctx.protocol_version},
         )
     return await call_next(ctx)
 
 
-class _Leaving:
-    """Closes the studio of a client that ends its session."""
+class _EndOnDelete:
+    """Closes the Blender of a client that ends its session with DELETE."""
 
     def __init__(self, app: ASGIApp, sessions: BlenderSessions) -> None:
         self._app = app

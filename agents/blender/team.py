@@ -1,6 +1,6 @@
-"""The team over MCP: its roles and stages as prompts, and the plan's check as a tool.
+"""The team over MCP: roles and stages as prompts, and the plan check as a tool.
 
-With these, a model that has the Blender tools can be planner, coder and reviewer by itself.
+With these, a single model with the Blender tools can be planner, coder and reviewer.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _STAGES = ", ".join(STAGES)
 
 @dataclass(frozen=True, slots=True)
 class Prompt:
-    """A prompt that clients offer to their users; ``write`` makes it from the arguments."""
+    """A prompt that clients offer to their users; ``write`` makes its text from the arguments."""
 
     name: str
     title: str
@@ -36,7 +36,7 @@ class Prompt:
 
     @property
     def entry(self) -> types.Prompt:
-        """Its entry in the list of prompts."""
+        """The prompt's entry in the list of prompts."""
         return types.Prompt(
             name=self.name, title=self.title, description=self.description, arguments=list(self.arguments)
         )
@@ -51,7 +51,7 @@ def _joined(*parts: str) -> str:
 
 
 def _everything(*, edit: bool) -> str:
-    """What the whole team knows, from the loop to the stages."""
+    """Everything the team knows: the loop, the roles, the protocol, the stages."""
     return _joined(
         team_text(edit=edit),
         *(role_text(role, edit=edit) for role in ("planner", "coder", "reviewer", "final_reviewer")),
@@ -66,7 +66,7 @@ def _make_scene(prompt: str) -> str:
 
 
 def _edit_scene(instruction: str, file: str = "") -> str:
-    where = f"The file: {file}" if file else "The file is the scene that is open; if it is empty, ask which."
+    where = f"The file: {file}" if file else "The file is the open scene; if that is empty, ask which file."
     return _joined(_everything(edit=True), f"# The instruction\n\n{instruction}\n\n{where}")
 
 
@@ -75,8 +75,8 @@ def _plan(prompt: str) -> str:
         role_text("planner"),
         protocol_text(),
         shapes_text("planner"),
-        f"# The request\n\nWrite the scene plan for this, check it with `{plan_check.NAME}`, mend it until it is "
-        f"sound, and show it. Build nothing yet.\n\n{prompt}",
+        f"# The request\n\nWrite the scene plan for this, check it with `{plan_check.NAME}`, fix it until it is "
+        f"valid, and show it. Build nothing yet.\n\n{prompt}",
     )
 
 
@@ -86,8 +86,8 @@ def _stage(stage: Stage) -> str:
         protocol_text(),
         shapes_text("coder"),
         stage_text(stage),
-        f"# The request\n\nBuild the stage {stage} of our scene plan in the open scene. Plan it in a few lines "
-        "first: what is to be done, and how it is known to be done.",
+        f"# The request\n\nBuild the stage {stage} of our scene plan in the open scene. First plan it in a few "
+        "lines: what to do, and how to tell that it is done.",
     )
 
 
@@ -97,28 +97,28 @@ def _review(stage: Stage) -> str:
         protocol_text(),
         shapes_text("reviewer"),
         stage_text(stage),
-        f"# The request\n\nReview the stage {stage} in the open scene. Where no tactical plan is at hand, ask "
-        "yourself what its questions would be. Call blender_verify too, and tell its hard findings beside your review.",
+        f"# The request\n\nReview the stage {stage} in the open scene. Without a tactical plan, work out what its "
+        "questions would be. Also call blender_verify, and add its hard findings to your review.",
     )
 
 
-_PROMPT = _argument("prompt", "What the scene is to show, and what is to happen in it.")
+_PROMPT = _argument("prompt", "What the scene shows, and what happens in it.")
 _STAGE = _argument("stage", f"One of: {_STAGES}.")
 
 PROMPTS: tuple[Prompt, ...] = (
     Prompt(
         "make_scene",
         "Make a scene",
-        "From a sentence to a simulated, editable .blend: plans, builds stage by stage, verifies, reviews, renders.",
+        "Turns a sentence into a simulated, editable .blend: plans, builds by stages, verifies, reviews, renders.",
         (_PROMPT,),
         _make_scene,
     ),
     Prompt(
         "edit_scene",
         "Edit a scene",
-        "Changes what the instruction names in a .blend, by the same stages and checks, and leaves the rest alone.",
+        "Changes only what the instruction names in a .blend, with the same stages and checks.",
         (
-            _argument("instruction", "What is to be different."),
+            _argument("instruction", "What to change."),
             _argument("file", "The .blend to open. Default: the scene that is open.", required=False),
         ),
         _edit_scene,
@@ -127,35 +127,33 @@ PROMPTS: tuple[Prompt, ...] = (
     Prompt(
         "stage", "Build a stage", "Builds one stage of a scene plan in the open scene.", (_STAGE,), _stage
     ),
-    Prompt(
-        "review", "Review a stage", "Looks at the open scene and judges one stage of it.", (_STAGE,), _review
-    ),
+    Prompt("review", "Review a stage", "Reviews one stage of the open scene.", (_STAGE,), _review),
 )
 _BY_NAME = {prompt.name: prompt for prompt in PROMPTS}
 
 
 class Team:
-    """What a server offers beside Blender's own tools."""
+    """What a server offers besides Blender's tools: the plan check and the prompts."""
 
     names = (plan_check.NAME,)
 
     def tools(self) -> list[types.Tool]:
-        """The entries of its tools."""
+        """The entries of the tools."""
         return [plan_check.entry()]
 
     def prompts(self) -> list[types.Prompt]:
-        """The entries of its prompts."""
+        """The entries of the prompts."""
         return [prompt.entry for prompt in PROMPTS]
 
     def use(self, name: str, arguments: Mapping[str, Any]) -> types.CallToolResult | None:
-        """What the tool of that name answers; None where there is no such tool here."""
+        """The reply of the tool of that name; None if it is not one of these."""
         return plan_check.answer(arguments) if name == plan_check.NAME else None
 
     def prompt(self, name: str, arguments: Mapping[str, str]) -> types.GetPromptResult:
-        """The text of a prompt. Raises MCPError, naming what there is."""
+        """The text of a prompt. Raises MCPError, which names the valid choices."""
         prompt = _BY_NAME.get(name)
         if prompt is None:
-            raise _refused(f"There is no prompt {name[:80]!r}; there are {', '.join(_BY_NAME)}.")
+            raise _refused(f"There is no prompt {name[:80]!r}. Available: {', '.join(_BY_NAME)}.")
         text = prompt.write(**_checked(prompt, arguments))
         return types.GetPromptResult(
             description=prompt.description,
@@ -163,24 +161,24 @@ class Team:
         )
 
     def completions(self, argument: str, begun: str) -> list[str]:
-        """Values of an argument that begin so."""
+        """Values of an argument that start with ``begun``."""
         return [stage for stage in STAGES if stage.startswith(begun)] if argument == _STAGE.name else []
 
 
-def _checked(prompt: Prompt, given: Mapping[str, str]) -> dict[str, str]:
-    """The arguments of a prompt, those that say nothing left out. Raises MCPError."""
-    known = {one.name: bool(one.required) for one in prompt.arguments}
-    found = {name: text.strip() for name, text in given.items() if text.strip()}
-    if strange := [name for name in found if name not in known]:
-        raise _refused(f"{prompt.name} has no argument {strange[0][:80]!r}; it has {', '.join(known)}.")
-    if missing := [name for name, required in known.items() if required and name not in found]:
+def _checked(prompt: Prompt, arguments: Mapping[str, str]) -> dict[str, str]:
+    """The arguments of a prompt, without empty ones. Raises MCPError."""
+    known = {argument.name: bool(argument.required) for argument in prompt.arguments}
+    texts = {name: text.strip() for name, text in arguments.items() if text.strip()}
+    if unknown := [name for name in texts if name not in known]:
+        raise _refused(f"{prompt.name} has no argument {unknown[0][:80]!r}; it has {', '.join(known)}.")
+    if missing := [name for name, required in known.items() if required and name not in texts]:
         raise _refused(f"{prompt.name} needs the argument {missing[0]!r}.")
-    if long := [name for name, text in found.items() if len(text) > _LONGEST]:
-        raise _refused(f"{long[0]!r} has {len(found[long[0]])} characters; {_LONGEST} are the most.")
-    stage = found.get(_STAGE.name)
+    if long := [name for name, text in texts.items() if len(text) > _LONGEST]:
+        raise _refused(f"{long[0]!r} has {len(texts[long[0]])} characters; the limit is {_LONGEST}.")
+    stage = texts.get(_STAGE.name)
     if stage is not None and stage not in STAGES:
-        raise _refused(f"There is no stage {stage[:80]!r}; there are {_STAGES}.")
-    return found
+        raise _refused(f"There is no stage {stage[:80]!r}. Available: {_STAGES}.")
+    return texts
 
 
 def _refused(message: str) -> MCPError:

@@ -1,4 +1,4 @@
-"""The verifier's way to Blender: facts and measurements of the scene that is open."""
+"""Runs the verifier on the open scene: gets its facts and measurements from Blender."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MEASURE_SECONDS = 600.0
 
 
 def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | None, call: Call) -> Report:
-    """Judges the open scene. Raises BlenderError when Blender is lost, or cannot be asked for the facts."""
+    """Checks the open scene against rules. Raises BlenderError if Blender is lost or cannot give the facts."""
 
-    def ask(requests: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    def measure(requests: list[dict[str, Any]]) -> list[dict[str, Any]]:
         try:
             return blender.call(
                 "measure",
@@ -36,5 +36,5 @@ def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | N
         except (Refusal, ToolBroke) as error:
             return [{"unmeasured": str(error)}] * len(requests)
 
-    told = blender.call("scene_facts", {}, timeout=SNAPSHOT_SECONDS, cancelled=call.cancelled)
-    return verify(Facts.read(told.value), ask, rules, plan)
+    facts = blender.call("scene_facts", {}, timeout=SNAPSHOT_SECONDS, cancelled=call.cancelled)
+    return verify(Facts.read(facts.value), measure, rules, plan)

@@ -1,4 +1,4 @@
-"""The command ``simworlds doctor``: what works on this machine, found by trying it."""
+"""The command ``simworlds doctor``: tries what works on this machine."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ import json
 import sys
 from contextlib import closing
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from agents.commands import options
+
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.console import Console, Group
     from rich.text import Text
 
@@ -23,22 +26,12 @@ _SIGNS: dict[State, tuple[str, str]] = {"good": ("✓", "green"), "poor": ("!", 
 
 
 @click.command()
-@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
-@click.option(
-    "--blender-exe",
-    type=click.Path(path_type=Path),
-    envvar="BLENDER_EXE",
-    show_envvar=True,
-    help="The Blender to look at, if not bpy.",
-)
-@click.option(
-    "--sandbox",
-    type=click.Choice(["bubblewrap", "landlock", "none"]),
-    help="What confines Blender. Default: the strongest that works.",
-)
-@click.option("--json", "as_json", is_flag=True, help="Everything that was found, as JSON.")
+@options.VERSION
+@options.EXECUTABLE
+@options.SANDBOX
+@click.option("--json", "as_json", is_flag=True, help="Print all results as JSON.")
 def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | None, as_json: bool) -> None:
-    """Try what a live Blender needs on this machine, and say what is missing.
+    """Test what a live Blender needs on this machine, and report what is missing.
 
     Exits with 0 if Blender can work here, otherwise with 1.
     """
@@ -48,29 +41,29 @@ def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | Non
 
     from agents.commands.doctor_checks import BlenderChoice  # noqa: PLC0415
 
-    found = _found(BlenderChoice(blender, blender_exe, sandbox), Console(stderr=True))
-    well = all(finding.state != "bad" for finding in found if finding.name in _NEEDED)
+    results = _run_checks(BlenderChoice(blender, blender_exe, sandbox), Console(stderr=True))
+    well = all(result.state != "bad" for result in results if result.name in _NEEDED)
     if as_json:
-        told = {"works": well, "findings": [asdict(finding) for finding in found]}
-        click.echo(json.dumps(told, indent=2, ensure_ascii=False))
+        data = {"works": well, "findings": [asdict(result) for result in results]}
+        click.echo(json.dumps(data, indent=2, ensure_ascii=False))
     else:
-        Console(highlight=False).print(_page(found, well))
+        Console(highlight=False).print(_page(results, well))
     sys.exit(0 if well else 1)
 
 
-def _found(choice: BlenderChoice, console: Console) -> list[CheckResult]:
-    """What each check came to; what is being done is shown meanwhile, where somebody looks on."""
+def _run_checks(choice: BlenderChoice, console: Console) -> list[CheckResult]:
+    """The result of each check; on a terminal, what is being done is shown meanwhile."""
     from agents.commands.doctor_checks import checks  # noqa: PLC0415 - not for --help
 
-    found: list[CheckResult] = []
+    results: list[CheckResult] = []
     with console.status("") as status, closing(checks(choice)) as each:
         for doing, check in each:
             status.update(f"[dim]{doing} …[/dim]")
-            found.append(check())
-    return found
+            results.append(check())
+    return results
 
 
-def _page(found: list[CheckResult], well: bool) -> Group:
+def _page(results: list[CheckResult], well: bool) -> Group:
     from rich.console import Group  # noqa: PLC0415 - not for --json
     from rich.table import Table  # noqa: PLC0415 - not for --json
     from rich.text import Text  # noqa: PLC0415
@@ -79,21 +72,21 @@ def _page(found: list[CheckResult], well: bool) -> Group:
     page.add_column(no_wrap=True)
     page.add_column(no_wrap=True)
     page.add_column(overflow="fold")
-    for finding in found:
-        sign, colour = _SIGNS[finding.state]
-        page.add_row(Text(sign, colour), Text(finding.name, "bold"), Text(finding.text))
+    for result in results:
+        sign, colour = _SIGNS[result.state]
+        page.add_row(Text(sign, colour), Text(result.name, "bold"), Text(result.text))
         below = Table.grid(padding=(0, 1, 0, 0))
-        if finding.place:
-            page.add_row("", "", Text(finding.place, "dim"))
-        for line in finding.keeps:
+        if result.place:
+            page.add_row("", "", Text(result.place, "dim"))
+        for line in result.keeps:
             below.add_row(Text("+", "green"), Text(line, "dim"))
-        for line in finding.lacks:
-            below.add_row(Text("-", "yellow"), Text(f"does not keep out: {line}"))
-        if finding.advice:
-            below.add_row(Text("→", "bold cyan"), Text(finding.advice, "cyan"))
+        for line in result.lacks:
+            below.add_row(Text("-", "yellow"), Text(f"does not prevent: {line}"))
+        if result.advice:
+            below.add_row(Text("→", "bold cyan"), Text(result.advice, "cyan"))
         if below.row_count:
             page.add_row("", "", below)
-    return Group(page, "", _verdict([finding.name for finding in found if finding.state == "poor"], well), "")
+    return Group(page, "", _verdict([result.name for result in results if result.state == "poor"], well), "")
 
 
 def _verdict(poor: list[str], well: bool) -> Text:
@@ -101,5 +94,5 @@ def _verdict(poor: list[str], well: bool) -> Text:
 
     if not well:
         return Text("✗  Blender cannot work here.", "bold red")
-    without = f", but look at: {', '.join(poor)}" if poor else ""
+    without = f", but check: {', '.join(poor)}" if poor else ""
     return Text(f"✓  Blender can work here{without}.", "bold green")

@@ -1,4 +1,4 @@
-"""What ``simworlds doctor`` looks at: each check tries something for real and says what came of it."""
+"""The checks of ``simworlds doctor``: each tries something for real and reports the result."""
 
 from __future__ import annotations
 
@@ -68,10 +68,10 @@ _ESCAPES = {
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """What a check found. ``poor``: Blender works, though something is missing; ``advice``: what would help.
+    """The result of a check. ``poor``: Blender works, but something is missing; ``advice``: what would help.
 
-    ``place`` is a path that it is about; ``keeps`` and ``lacks`` list what does and does not hold; ``data`` is the same
-    for programs.
+    ``place`` is a path concerned; ``keeps`` and ``lacks`` list what the sandbox does and does not guarantee; ``data``
+    is the same for programs.
     """
 
     name: str
@@ -86,7 +86,7 @@ class CheckResult:
 
 @dataclass(frozen=True, slots=True)
 class BlenderChoice:
-    """Which Blender is looked at, and what confines it."""
+    """Which Blender is checked, and in which sandbox."""
 
     version: str | None = None
     blender_exe: Path | None = None
@@ -97,49 +97,52 @@ Check = tuple[str, "Callable[[], CheckResult]"]
 
 
 def checks(choice: BlenderChoice) -> Generator[Check]:
-    """(what is being done, the check), in order; the generator is to be closed, which ends Blender.
+    """(what is being done, the check) in order. Close the generator to end Blender.
 
-    Where Blender does not start, those that need it are left out.
+    Checks that need a running Blender are left out if it does not start.
     """
     with ExitStack() as held:
         sandbox = best_sandbox(choice.sandbox)
-        rooms = Path(held.enter_context(tempfile.TemporaryDirectory(prefix="simworlds-doctor-"))).resolve()
-        found: list[Runtime] = []
-        yield "finding Blender", lambda: _find(choice, found)
+        scratch = Path(held.enter_context(tempfile.TemporaryDirectory(prefix="simworlds-doctor-"))).resolve()
+        runtimes: list[Runtime] = []
+        yield "finding Blender", lambda: _find(choice, runtimes)
         started: list[Supervisor] = []
-        if found:
-            folder = RunFolder.make(rooms / "run")
-            launch = launch_in(folder.workspace, found[0], sandbox=sandbox)
+        if runtimes:
+            folder = RunFolder.make(scratch / "run")
+            launch = launch_in(folder.workspace, runtimes[0], sandbox=sandbox)
             yield "starting Blender", lambda: _start(launch, folder, held, started)
         if started:
             blender = started[0]
             yield "trying the sandbox", lambda: _confined(blender, sandbox, choice.sandbox)
-            yield "drawing with Workbench", lambda: _workbench(blender)
-            yield "rendering with Cycles", lambda: _cycles(blender)
-            yield "asking for films", lambda: _films(blender)
-            other = RunFolder.make(rooms / "fluids")
-            alone = launch_in(other.workspace, found[0], sandbox=sandbox)
+            yield (
+                "drawing with Workbench",
+                lambda: _tried(blender, "Workbench", "check_workbench", _workbench),
+            )
+            yield "rendering with Cycles", lambda: _tried(blender, "Cycles", "check_cycles", _cycles)
+            yield "checking for video", lambda: _tried(blender, "Films", "check_video", _films)
+            other = RunFolder.make(scratch / "fluids")
+            alone = launch_in(other.workspace, runtimes[0], sandbox=sandbox)
             yield "baking a drop of liquid", lambda: _fluids(alone)
         yield (
             "looking for the knowledge base",
-            lambda: _knowledge(found[0].version if found else choice.version),
+            lambda: _knowledge(runtimes[0].version if runtimes else choice.version),
         )
-        yield "measuring room", lambda: _room(sandbox)
+        yield "measuring free space", lambda: _room(sandbox)
 
 
 # Blender
 
 
-def _find(choice: BlenderChoice, found: list[Runtime]) -> CheckResult:
+def _find(choice: BlenderChoice, runtimes: list[Runtime]) -> CheckResult:
     try:
         runtime = find_blender(choice.version, choice.blender_exe)
     except CannotStart as error:
         return CheckResult("Blender", "bad", str(error))
-    found.append(runtime)
+    runtimes.append(runtime)
     how = {
-        "executable": "named by --blender-exe or BLENDER_EXE",
+        "executable": "given by --blender-exe or BLENDER_EXE",
         "environment": "the bpy package of this environment",
-        "managed": "the bpy package of an environment made for it",
+        "managed": "the bpy package of an environment installed for it",
     }[runtime.kind]
     data = {"version": runtime.version, "kind": runtime.kind, "executable": str(runtime.executable)}
     return CheckResult("Blender", "good", f"{runtime.version}, {how}", place=data["executable"], data=data)
@@ -155,7 +158,7 @@ def _start(launch: Launch, folder: RunFolder, held: ExitStack, started: list[Sup
     finally:
         del os.environ[_VARIABLE]
     seconds = time.perf_counter() - began
-    text = f"{_time(seconds)} to the first answer"
+    text = f"ready after {_time(seconds)}"
     return CheckResult("Start", "good", text, data={"seconds": round(seconds, 3)})
 
 
@@ -167,13 +170,13 @@ def _not_started(runtime: Runtime, error: str) -> CheckResult:
     other = [library for library in missing if library not in PACKAGES]
     advice = f"apt-get install {' '.join(packages)}" if packages else ""
     if other:
-        advice += f"{' and ' if advice else ''}whatever package holds {', '.join(other)}"
+        advice += f"{' and ' if advice else ''}the packages that contain {', '.join(other)}"
     text = f"system libraries are missing: {', '.join(missing)}"
     return CheckResult("Start", "bad", text, advice=advice, data={"missing": missing, "packages": packages})
 
 
 def missing_libraries(runtime: Runtime, error: str) -> list[str]:
-    """The system libraries that Blender lacks: those that its loader names, else those that the error does."""
+    """The system libraries that Blender lacks: those that ``ldd`` names, else those in the error."""
     listed = _output(["ldd", str(_binary(runtime))]) if shutil.which("ldd") else ""
     return sorted(set(_MISSING.findall(listed)) or set(_MISSING.findall(error)))
 
@@ -208,23 +211,23 @@ def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Che
     with tempfile.TemporaryDirectory(prefix=".simworlds-doctor-", dir=_outside()) as outside:
         file = Path(outside) / "file"
         file.touch()
-        asked = {"file": str(file), "folder": outside, "variable": _VARIABLE}
+        request = {"file": str(file), "folder": outside, "variable": _VARIABLE}
         try:
-            tried: dict[str, Any] = blender.call("check_escapes", asked, timeout=_TRY_SECONDS).value
+            tried: dict[str, Any] = blender.call("check_escapes", request, timeout=_TRY_SECONDS).value
         except BlenderError as error:
             return CheckResult("Sandbox", "bad", str(error), data=data)
-    out = [told for name, told in _ESCAPES.items() if tried.get(name)]
+    escapes = [text for name, text in _ESCAPES.items() if tried.get(name)]
     expected = {_ESCAPES["read"], _ESCAPES["write"]} if sandbox.kind == "none" else set[str]()
     if not confine_self.has_seccomp():
         expected |= {_ESCAPES["network"], _ESCAPES["process"]}
-    if broken := [told for told in out if told not in expected]:
-        text = f"{sandbox.kind}, but it does not hold: {'; '.join(broken)}"
+    if broken := [text for text in escapes if text not in expected]:
+        text = f"{sandbox.kind}, but it does not work: {'; '.join(broken)}"
         return CheckResult("Sandbox", "bad", text, lacks=tuple(broken), data=data)
     advice = _better(sandbox.kind) if wanted is None else ""
     text = {
-        "bubblewrap": "bubblewrap, tried and tight",
-        "landlock": "Landlock, tried and tight",
-        "none": "none: your files are open to what runs in Blender",
+        "bubblewrap": "bubblewrap, tested: nothing escapes",
+        "landlock": "Landlock, tested: nothing escapes",
+        "none": "none: code in Blender can read and write your files",
     }[sandbox.kind]
     state: State = "poor" if sandbox.kind == "none" else "good"
     return CheckResult(
@@ -233,7 +236,7 @@ def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Che
 
 
 def _outside() -> Path | None:
-    """Where the user's own files lie, if a file can be made there."""
+    """The user's home folder, if a file can be made there."""
     home = Path.home()
     return home if os.access(home, os.W_OK) else None
 
@@ -243,71 +246,58 @@ def _better(kind: Kind) -> str:
     if sys.platform != "linux" or kind == "bubblewrap":
         return ""
     if shutil.which("bwrap") is None:
-        return "stronger with bubblewrap: apt-get install bubblewrap (dnf, pacman and zypper call it so, too)"
-    return f"bubblewrap is installed, but cannot be used here: {bubblewrap_fault()}"
+        return "for a stronger sandbox: apt-get install bubblewrap (the same name in dnf, pacman and zypper)"
+    return f"bubblewrap is installed, but does not work here: {bubblewrap_fault()}"
 
 
 # What Blender can do
 
 
 def _tried(
-    blender: Supervisor, name: str, key: str, told: Callable[[dict[str, Any]], CheckResult], **given: Any
+    blender: Supervisor, name: str, key: str, describe: Callable[[dict[str, Any]], CheckResult]
 ) -> CheckResult:
     try:
-        found = blender.call(key, given, timeout=_TRY_SECONDS).value
-        return told(found)
+        return describe(blender.call(key, {}, timeout=_TRY_SECONDS).value)
     except (LookupError, TypeError, BlenderError) as error:
         return CheckResult(name, "poor", f"does not work: {error}".partition(" A new Blender")[0])
 
 
-def _workbench(blender: Supervisor) -> CheckResult:
-    def told(found: dict[str, Any]) -> CheckResult:
-        if found["fault"]:
-            advice = "apt-get install libegl1 libgl1-mesa-dri" if "EGL" in found["fault"] else ""
-            text = f"cannot draw here: {found['fault']}. Previews are rendered with Cycles, more slowly"
-            return CheckResult("Workbench", "poor", text, advice=advice, data=found)
-        where = f" on {found['renderer']}" if found["renderer"] else ""
-        how = "; no graphics card, so a first frame of EEVEE takes half a minute" if found["software"] else ""
-        text = f"a first picture in {_time(found['seconds'])}{where}{how}"
-        return CheckResult("Workbench", "good", text, data=found)
-
-    return _tried(blender, "Workbench", "check_workbench", told)
+def _workbench(facts: dict[str, Any]) -> CheckResult:
+    if facts["fault"]:
+        advice = "apt-get install libegl1 libgl1-mesa-dri" if "EGL" in facts["fault"] else ""
+        text = f"does not work: {facts['fault']}. Previews use Cycles instead, which is slower"
+        return CheckResult("Workbench", "poor", text, advice=advice, data=facts)
+    where = f" on {facts['renderer']}" if facts["renderer"] else ""
+    slow = "; without a graphics card, a first EEVEE frame takes half a minute" if facts["software"] else ""
+    return CheckResult(
+        "Workbench", "good", f"first image in {_time(facts['seconds'])}{where}{slow}", data=facts
+    )
 
 
-def _cycles(blender: Supervisor) -> CheckResult:
-    def told(found: dict[str, Any]) -> CheckResult:
-        if found["fault"]:
-            return CheckResult("Cycles", "poor", f"cannot render here: {found['fault']}", data=found)
-        cards = [f"{name} ({kind})" for kind, names in found["devices"].items() for name in names]
-        on = (
-            f"the processor and {', '.join(cards)}"
-            if cards
-            else "the processor; no graphics card that it can use"
-        )
-        return CheckResult(
-            "Cycles", "good", f"a first picture in {_time(found['seconds'])}; on {on}", data=found
-        )
-
-    return _tried(blender, "Cycles", "check_cycles", told)
+def _cycles(facts: dict[str, Any]) -> CheckResult:
+    if facts["fault"]:
+        return CheckResult("Cycles", "poor", f"does not work: {facts['fault']}", data=facts)
+    cards = [f"{name} ({kind})" for kind, names in facts["devices"].items() for name in names]
+    where = (
+        f"the processor and {', '.join(cards)}" if cards else "the processor, without a usable graphics card"
+    )
+    return CheckResult("Cycles", "good", f"first image in {_time(facts['seconds'])}, on {where}", data=facts)
 
 
-def _films(blender: Supervisor) -> CheckResult:
-    def told(found: dict[str, Any]) -> CheckResult:
-        if not found["supported"]:
-            return CheckResult("Films", "poor", "this Blender writes single frames alone", data=found)
-        return CheckResult("Films", "good", f"through FFmpeg (libavcodec {found['version']})", data=found)
-
-    return _tried(blender, "Films", "check_video", told)
+def _films(facts: dict[str, Any]) -> CheckResult:
+    if not facts["supported"]:
+        return CheckResult("Films", "poor", "this Blender can write only single frames", data=facts)
+    return CheckResult("Films", "good", f"through FFmpeg (libavcodec {facts['version']})", data=facts)
 
 
 def _fluids(launch: Launch) -> CheckResult:
-    """In processes of its own: one that lacks what it needs for this ends with it."""
+    """Runs in processes of its own, since a Blender without fluid support crashes."""
     try:
-        found = check_fluids(launch)
+        support = check_fluids(launch)
     except CannotStart as error:
         return CheckResult("Fluids", "poor", str(error))
-    state: State = "good" if found.fault is None else "poor"
-    return CheckResult("Fluids", state, str(found).partition(" A new Blender")[0], data=asdict(found))
+    state: State = "good" if support.fault is None else "poor"
+    return CheckResult("Fluids", state, str(support).partition(" A new Blender")[0], data=asdict(support))
 
 
 def _time(seconds: float) -> str:
@@ -331,19 +321,19 @@ def _knowledge(version: str | None) -> CheckResult:
         )
         bases: list[dict[str, Any]] = json.loads(done.stdout)
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
-        return CheckResult("Knowledge", "poor", f"what bases there are cannot be found out: {error}")
+        return CheckResult("Knowledge", "poor", f"the list of bases cannot be read: {error}")
     minors = {".".join(str(base.get("blender", "")).split(".")[:2]): base for base in bases}
     minor = ".".join((version or "").split(".")[:2])
     data = {"built": sorted(minors), "wanted": minor}
     if (base := minors.get(minor)) is not None:
-        text = f"of Blender {base['blender']}, {base.get('bytes', 0) / 1e6:,.0f} MB"
+        text = f"for Blender {base['blender']}, {base.get('bytes', 0) / 1e6:,.0f} MB"
         return CheckResult("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
-    have = f"; there is one of {', '.join(sorted(minors))}" if minors else ""
+    have = f", only for {', '.join(sorted(minors))}" if minors else ""
     advice = f"simworlds kb build {minor}".rstrip()
     return CheckResult(
         "Knowledge",
         "poor",
-        f"no base{f' of Blender {minor}' if minor else ''}{have}",
+        f"no base{f' for Blender {minor}' if minor else ''}{have}",
         advice=advice,
         data=data,
     )
@@ -351,14 +341,14 @@ def _knowledge(version: str | None) -> CheckResult:
 
 def _room(sandbox: Sandbox) -> CheckResult:
     place = runs_folder()
-    there = next(folder for folder in (place, *place.parents) if folder.is_dir())
-    free = shutil.disk_usage(there).free
+    existing = next(folder for folder in (place, *place.parents) if folder.is_dir())
+    free = shutil.disk_usage(existing).free
     memory = sandbox.limits.memory
-    text = f"{free / GIB:,.0f} GiB of disk are free for runs"
+    text = f"{free / GIB:,.0f} GiB of disk space free for runs"
     if memory:
-        text += f", and Blender may take {memory / GIB:.1f} GiB of memory"
+        text += f"; Blender may use {memory / GIB:.1f} GiB of memory"
     data = {"memory": memory, "free": free, "runs": str(place)}
     if free < _LEAST_FREE:
-        advice = "make room there, or set SIMWORLDS_HOME"
+        advice = "free some space there, or set SIMWORLDS_HOME"
         return CheckResult("Room", "poor", text, place=str(place), advice=advice, data=data)
     return CheckResult("Room", "good", text, place=str(place), data=data)

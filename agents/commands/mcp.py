@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from agents.commands import options
+
 if TYPE_CHECKING:
     from agents.blender.blender_sessions import SessionSetup
     from simworlds.sandbox.confined_command import Kind, Sandbox
@@ -26,37 +28,29 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
 @click.option(
     "--run",
     type=click.Path(file_okay=False, resolve_path=True, path_type=Path),
-    help="Folder to work in; a run that is there goes on. Default: a new one for each client.",
+    help="Folder to work in; a run that is in it is continued. Default: a new folder for each client.",
 )
-@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
-@click.option(
-    "--blender-exe",
-    type=click.Path(path_type=Path),
-    envvar="BLENDER_EXE",
-    show_envvar=True,
-    help="The Blender to start, if not bpy.",
-)
-@click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, as of assets.")
-@click.option(
-    "--sandbox",
-    type=click.Choice(["bubblewrap", "landlock", "none"]),
-    help="What confines Blender. Default: the strongest that works.",
-)
+@options.VERSION
+@options.EXECUTABLE
+@click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets.")
+@options.SANDBOX
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=_PORT, show_default=True, help="0 takes a free one."
+    "--port", type=click.IntRange(0, 65535), default=_PORT, show_default=True, help="0 takes a free port."
 )
-@click.option("--token", envvar="SIMWORLDS_TOKEN", show_envvar=True, help="What clients must send.")
-@click.option("--allow-host", multiple=True, metavar="NAME", help="A further name of this server.")
-@click.option("--sessions", type=click.IntRange(1), default=4, show_default=True, help="Blenders at once.")
+@click.option("--token", envvar="SIMWORLDS_TOKEN", show_envvar=True, help="Token that clients must send.")
+@click.option("--allow-host", multiple=True, metavar="NAME", help="Another host name of this server.")
+@click.option(
+    "--sessions", type=click.IntRange(1), default=4, show_default=True, help="Most Blenders at once."
+)
 @click.option(
     "--idle",
     type=click.FloatRange(0, min_open=True),
     default=30.0,
     show_default=True,
     metavar="MINUTES",
-    help="A Blender is closed after so long without a call.",
+    help="Close a Blender after this long without a call.",
 )
 @click.pass_context
 def mcp(  # noqa: PLR0913 - one for each option
@@ -77,13 +71,13 @@ def mcp(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Serve a live Blender over MCP, on stdio or HTTP, with blender_docs beside it.
 
-    Every client has a Blender of its own, in a run's folder of its own, which it finds as it left it. On an address
-    other than loopback clients must send a token: Authorization: Bearer …
+    Every client has its own Blender and run folder, and finds both as it left them. On an address other than
+    loopback clients must send a token: Authorization: Bearer …
     """
     for_http = [name for name in _ONLY_HTTP if context.get_parameter_source(name) is _TYPED]
     if for_http and not over_http:
-        raise click.UsageError(f"--{for_http[0].replace('_', '-')} goes with --http.")
-    # Nothing of what is loaded is garbage: looking for it would take part of the time to start.
+        raise click.UsageError(f"--{for_http[0].replace('_', '-')} needs --http.")
+    # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415 - not for --help
@@ -107,7 +101,7 @@ def _over_stdio(setup: SessionSetup) -> None:
     from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415 - not for --help
 
     sessions = BlenderSessions(setup)
-    # Blender comes up while the MCP package is loaded: each takes half a second.
+    # Blender starts while the MCP package is loaded: each takes half a second.
     sessions.start("")
     from agents.blender.docs_client import DocsClient  # noqa: PLC0415
     from agents.blender.server import make_server  # noqa: PLC0415
@@ -142,13 +136,13 @@ def _loaded() -> None:
 
 
 def _same_blender(setup: SessionSetup) -> list[str]:
-    """The options by which ``simworlds serve`` answers for the Blender that is worked with."""
+    """The options by which ``simworlds serve`` answers for the same Blender."""
     options = {"--blender": setup.version, "--blender-exe": setup.blender_exe}
     return [word for name, value in options.items() if value is not None for word in (name, str(value))]
 
 
 def _confined(wanted: Kind | None) -> Sandbox:
-    """The sandbox, said on stderr. Raises CannotStart when the one that is wanted does not work here."""
+    """The sandbox, which is described on stderr. Raises CannotStart if the wanted one does not work here."""
     from simworlds.sandbox.confine_self import landlock_abi  # noqa: PLC0415 - not for --help
     from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
@@ -157,8 +151,8 @@ def _confined(wanted: Kind | None) -> Sandbox:
         raise CannotStart(f"bubblewrap does not work here: {fault}")
     if wanted == "landlock" and not (sys.platform == "linux" and landlock_abi()):
         raise CannotStart("This system's kernel has no Landlock.")
-    found = best_sandbox(wanted)
-    click.echo(f"Sandbox ({found.kind}): {'; '.join(found.holds)}.", err=True)
-    if found.lacks:
-        click.echo(f"It does not keep out: {'; '.join(found.lacks)}.", err=True)
-    return found
+    best = best_sandbox(wanted)
+    click.echo(f"Sandbox ({best.kind}): {'; '.join(best.holds)}.", err=True)
+    if best.lacks:
+        click.echo(f"It does not prevent: {'; '.join(best.lacks)}.", err=True)
+    return best

@@ -1,4 +1,4 @@
-"""The command ``simworlds verify``."""
+"""The command ``simworlds verify``: checks a .blend against the scene protocol and a plan."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
+
+from agents.commands import options
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -34,7 +36,7 @@ _PATH = click.Path(path_type=Path)
 
 
 class _CannotCheckError(Exception):
-    """The scene cannot be checked; the message says why. ``faults`` are those of a plan: [path, sentence]."""
+    """The scene cannot be checked; the message says why. ``faults`` are those of its plan: (path, sentence)."""
 
     def __init__(self, message: str, faults: list[tuple[str, str]] | None = None) -> None:
         self.faults = faults or []
@@ -44,32 +46,26 @@ class _CannotCheckError(Exception):
 @click.command()
 @click.argument("scene", type=_PATH)
 @click.option("--plan", type=_PATH, help="The scene plan (JSON) that the scene was built to.")
-@click.option("--rules", metavar="LIST", help="Families or rules, as C,G,V1. Default: all.")
+@click.option("--rules", metavar="LIST", help="Families or rules, such as C,G,V1. Default: all.")
 @click.option("--json", "form", flag_value="json", help="Print everything as JSON.")
 @click.option("--sarif", "form", flag_value="sarif", help="Print the findings as SARIF 2.1.0.")
 @click.option("--image", type=_PATH, help="Draw the findings on views of the scene, as a PNG.")
-@click.option("--frame", type=int, help="The frame to check. Default: the one that the file was saved at.")
-@click.option("--read", type=_PATH, multiple=True, help="A folder that Blender may read, as of linked files.")
-@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
-@click.option(
-    "--blender-exe",
-    type=_PATH,
-    envvar="BLENDER_EXE",
-    show_envvar=True,
-    help="The Blender to use, if not bpy.",
-)
-def verify(scene: Path, form: str | None, rules: str | None, **given: Any) -> None:
+@click.option("--frame", type=int, help="The frame to check. Default: the frame saved in the file.")
+@click.option("--read", type=_PATH, multiple=True, help="A folder that Blender may read, for linked files.")
+@options.VERSION
+@options.EXECUTABLE
+def verify(scene: Path, form: str | None, rules: str | None, **choices: Any) -> None:
     """Check a .blend against the scene protocol, and against the plan that it was built to.
 
-    Any .blend will do; it is not changed, and no script in it runs. Exit code 0: no hard rule is broken. 1: one is.
-    2: it could not be checked: the file cannot be opened, the plan contradicts itself, a rule could not be decided.
+    The file is not changed, and no script in it runs. Exit code 0: no hard rule is broken. 1: at least one is. 2: it
+    could not be checked: the file cannot be opened, the plan has faults, or a rule could not be decided.
     """
     _on_signals(_interrupt)
     try:
         try:
-            code = _verified(scene, form, _rules(rules), given)
+            code = _verify(scene, form, _rules(rules), choices)
         except _CannotCheckError as error:
-            _tell(error, form)
+            _print_error(error, form)
             code = _UNCHECKED
     except KeyboardInterrupt:
         click.echo("Interrupted.", err=True)
@@ -77,16 +73,16 @@ def verify(scene: Path, form: str | None, rules: str | None, **given: Any) -> No
     sys.exit(code)
 
 
-def _verified(scene: Path, form: str | None, rules: tuple[Rule, ...], given: dict[str, Any]) -> int:
+def _verify(scene: Path, form: str | None, rules: tuple[Rule, ...], choices: dict[str, Any]) -> int:
     from agents.protocol.report.report import exit_code  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
-    plan = _plan(given["plan"]) if given["plan"] else None
-    image: Path | None = given["image"]
+    plan = _plan(choices["plan"]) if choices["plan"] else None
+    image: Path | None = choices["image"]
     if image is not None and not image.absolute().parent.is_dir():
-        raise _CannotCheckError(f"There is no folder {image.absolute().parent} to put {image.name} into.")
+        raise _CannotCheckError(f"The folder {image.absolute().parent} for {image.name} does not exist.")
     try:
-        report, checked = _run(scene, rules, plan, given)
+        report, checked = _run(scene, rules, plan, choices)
     except BlenderError as error:
         raise _CannotCheckError(f"{scene} could not be checked: {error}") from error
     _print(report, checked, form)
@@ -103,7 +99,7 @@ def _rules(wanted: str | None) -> tuple[Rule, ...]:
 
 
 def _plan(path: Path) -> ScenePlan:
-    """Raises _CannotCheckError, with what contradicts itself in it."""
+    """Raises _CannotCheckError, with the plan's faults."""
     from agents.protocol.verify_request import plan_from  # noqa: PLC0415 - not for --help
 
     try:
@@ -121,62 +117,62 @@ def _plan(path: Path) -> ScenePlan:
 
 
 def _run(
-    scene: Path, rules: tuple[Rule, ...], plan: ScenePlan | None, given: dict[str, Any]
+    scene: Path, rules: tuple[Rule, ...], plan: ScenePlan | None, choices: dict[str, Any]
 ) -> tuple[Report, Checked]:
-    """Checks, and draws if that is asked for. Raises _CannotCheckError and BlenderError."""
+    """Checks the scene, and draws the image if one is wanted. Raises _CannotCheckError and BlenderError."""
     from agents.blender.tools.base import Call  # noqa: PLC0415 - not for --help
     from agents.blender.verification import verify_scene  # noqa: PLC0415
     from agents.protocol.report.report import Checked  # noqa: PLC0415
 
-    with _Waiting() as waiting:
-        call = Call(waiting.progress)
-        waiting.for_(f"Opening {scene.name}")
-        with _opened(scene, given, call) as blender:
-            waiting.for_("Going to the frame")
-            stands = blender.call(
-                "go_to_frame", {"frame": given["frame"]}, timeout=_STAND_SECONDS, progress=call.progress
+    with _StatusLine() as status:
+        call = Call(status.progress)
+        status.show(f"Opening {scene.name}")
+        with _opened(scene, choices, call) as blender:
+            status.show("Going to the frame")
+            position = blender.call(
+                "go_to_frame", {"frame": choices["frame"]}, timeout=_STAND_SECONDS, progress=call.progress
             ).value
             process = blender.inner_pid
-            waiting.for_("Measuring")
+            status.show("Measuring")
             report = verify_scene(blender, rules, plan, call)
             if blender.inner_pid != process:
-                # What stands there now is an empty scene, about which nobody has asked.
-                raise _CannotCheckError(f"{scene} could not be checked: Blender ended over it.")
+                # The new Blender has an empty scene.
+                raise _CannotCheckError(f"{scene} could not be checked: Blender ended while checking it.")
             checked = Checked(
                 rules,
                 file=str(scene),
-                scene=str(stands["scene"]),
-                frame=int(stands["frame"]),
+                scene=str(position["scene"]),
+                frame=int(position["frame"]),
                 blender=blender.launch.runtime.version,
                 plan=plan.title if plan else "",
             )
-            if given["image"] is not None:
-                waiting.for_("Drawing")
-                if fault := _draw(blender, report, call, checked, given["image"]):
-                    click.echo(f"There is no picture: {fault}", err=True)
+            if choices["image"] is not None:
+                status.show("Drawing")
+                if fault := _draw(blender, report, call, checked, choices["image"]):
+                    click.echo(f"No image could be made: {fault}", err=True)
     return report, checked
 
 
 @contextmanager
-def _opened(scene: Path, given: dict[str, Any], call: Call) -> Generator[Supervisor]:
-    """A Blender with the file open, in a run's folder that goes with it. Raises _CannotCheckError, BlenderError."""
+def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Supervisor]:
+    """A Blender with the file open, in a temporary run folder. Raises _CannotCheckError and BlenderError."""
     from agents.blender.launch import make_launch  # noqa: PLC0415 - not for --help
     from agents.blender.run_folder import RunFolder  # noqa: PLC0415
     from agents.blender.saved_files import LoadedFile, caches_folder, find_blend_file, validated  # noqa: PLC0415
     from agents.blender.supervisor import Supervisor  # noqa: PLC0415
 
     real = scene.expanduser().resolve()
-    with tempfile.TemporaryDirectory(prefix="simworlds-verify-", ignore_cleanup_errors=True) as place:
-        folder = RunFolder.make(Path(place).resolve() / "run")
+    with tempfile.TemporaryDirectory(prefix="simworlds-verify-", ignore_cleanup_errors=True) as temporary:
+        folder = RunFolder.make(Path(temporary).resolve() / "run")
         if not real.exists():
             raise _CannotCheckError(f"There is no file {scene}.")
         find_blend_file(str(real), folder, (real.parent,))
         launch = make_launch(
             folder.workspace,
-            version=given["blender"],
-            blender_exe=given["blender_exe"],
-            # It may read the file and the caches beside it, but nothing else of that folder.
-            read=(*given["read"], *(one for one in (real, caches_folder(real)) if one.exists())),
+            version=choices["blender"],
+            blender_exe=choices["blender_exe"],
+            # Blender may read the file and the caches beside it, but nothing else in that folder.
+            read=(*choices["read"], *(path for path in (real, caches_folder(real)) if path.exists())),
         )
         with Supervisor(launch, folder) as blender:
             loaded = validated(
@@ -189,17 +185,16 @@ def _opened(scene: Path, given: dict[str, Any], call: Call) -> Generator[Supervi
                     progress=call.progress,
                 ).value,
             )
-            if absent := [
-                one.path for one in loaded.external if one.missing and one.what.startswith("library")
-            ]:
-                raise _CannotCheckError(
-                    f"{scene} links {absent[0]}, which cannot be read: give its folder with --read."
-                )
+            for file in loaded.external:
+                if file.missing and file.what.startswith("library"):
+                    raise _CannotCheckError(
+                        f"{scene} links {file.path}, which cannot be read: give its folder with --read."
+                    )
             yield blender
 
 
 def _draw(blender: Supervisor, report: Report, call: Call, checked: Checked, target: Path) -> str:
-    """Draws; returns why there is no picture, "" if there is one."""
+    """Draws the image; returns why that failed, "" if it did not."""
     from agents.blender.sheets.findings_sheet import draw_findings  # noqa: PLC0415
     from simworlds.sandbox.errors import Refusal  # noqa: PLC0415 - only for --image
 
@@ -212,7 +207,7 @@ def _draw(blender: Supervisor, report: Report, call: Call, checked: Checked, tar
     return ""
 
 
-# What is said
+# Output
 
 
 def _print(report: Report, checked: Checked, form: str | None) -> None:
@@ -221,7 +216,7 @@ def _print(report: Report, checked: Checked, form: str | None) -> None:
     if form is not None:
         click.echo(dumped((as_json if form == "json" else as_sarif)(report, checked)))
         return
-    from rich.console import Console  # noqa: PLC0415 - the other ways do without
+    from rich.console import Console  # noqa: PLC0415 - not for --json
 
     console = Console(highlight=False, soft_wrap=False)
     if not console.is_terminal and "COLUMNS" not in os.environ:
@@ -229,8 +224,8 @@ def _print(report: Report, checked: Checked, form: str | None) -> None:
     console.print(as_table(report, checked, console.width))
 
 
-def _tell(error: _CannotCheckError, form: str | None) -> None:
-    """The reason on stderr; for machines also where they look for the report."""
+def _print_error(error: _CannotCheckError, form: str | None) -> None:
+    """Prints the error on stderr, and for --json and --sarif also in their form on stdout."""
     from agents.protocol.report.report import dumped, sarif_failure  # noqa: PLC0415 - not for --help
 
     lines = [f"Error: {error}", *(f"  {path or 'plan'}: {message}" for path, message in error.faults)]
@@ -242,8 +237,8 @@ def _tell(error: _CannotCheckError, form: str | None) -> None:
         click.echo(dumped(sarif_failure("\n".join(lines))))
 
 
-class _Waiting:
-    """Says on stderr what is being done, once the whole takes longer than two seconds."""
+class _StatusLine:
+    """Shows on stderr what is being done, once the command takes longer than two seconds."""
 
     def __init__(self) -> None:
         self._text = self._what = ""
@@ -252,7 +247,7 @@ class _Waiting:
         self._timer = threading.Timer(_PATIENCE_SECONDS, self._begin)
         self._timer.daemon = True
 
-    def __enter__(self) -> _Waiting:
+    def __enter__(self) -> _StatusLine:
         self._timer.start()
         return self
 
@@ -262,13 +257,13 @@ class _Waiting:
         if self._status is not None:
             self._status.stop()
 
-    def for_(self, what: str) -> None:
-        """What is being done from here on."""
+    def show(self, what: str) -> None:
+        """Sets what is being done."""
         self._what = what
         self._say(what)
 
     def progress(self, done: float, total: float | None, text: str) -> None:
-        """How far that is."""
+        """Sets how far it is."""
         share = f" {done / total:.0%}" if total else ""
         if self._status is not None:
             self._status.update(f"{self._what}{share} {text}".rstrip())
@@ -282,7 +277,7 @@ class _Waiting:
 
     def _begin(self) -> None:
         if sys.stderr.isatty():
-            from rich.console import Console  # noqa: PLC0415 - only for who waits
+            from rich.console import Console  # noqa: PLC0415 - only when it takes long
 
             self._status = Console(stderr=True).status(self._text)
             self._status.start()
@@ -297,7 +292,7 @@ def _on_signals(handler: Callable[[int, FrameType | None], NoReturn]) -> None:
 
 
 def _interrupt(_number: int, _frame: FrameType | None) -> NoReturn:
-    """Unwinds once, and undisturbed: no process and no folder stays behind."""
+    """Unwinds once, ignoring further signals, so that no process or folder stays behind."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     raise KeyboardInterrupt

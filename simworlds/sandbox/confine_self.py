@@ -1,9 +1,9 @@
-"""Gives up rights, then becomes the given command. Runs by itself, on the standard library, in the sandboxed process.
+"""Confines its own process, then becomes the given command. A script that uses only the standard library.
 
 ``python -I -S confine_self.py JSON -- COMMAND …``. JSON holds ``memory`` and ``file_size`` (bytes, 0: no limit) and,
-where the file system is to be closed by Landlock, ``read`` and ``write`` (paths). What holds on Linux afterwards, for
-the command and whatever it becomes: it ends with its parent, and is the first to go when memory runs out; no
-capability, no socket, no second process, no signal to others, no change of limits. Elsewhere: the limits.
+where Landlock closes the file system, ``read`` and ``write`` (paths). Afterwards, on Linux, the command and whatever
+it becomes end with the parent and are killed first when memory runs out; they have no capability, no socket, no second
+process, no signal to others, and cannot change their limits. On other systems only the limits hold.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ ARCHITECTURES = {
     "aarch64": (1, 0xC00000B7),
 }  # column in NUMBERS, seccomp's own number
 
-# System call → its number on x86_64 and aarch64, None where there is none.
+# System call → its number on x86_64 and aarch64; None if it does not exist there.
 NUMBERS: dict[str, tuple[int | None, int | None]] = {
     # further processes
     "fork": (57, None),
@@ -85,7 +85,7 @@ NUMBERS: dict[str, tuple[int | None, int | None]] = {
     "perf_event_open": (298, 241),
     "userfaultfd": (323, 282),
     "io_uring_setup": (425, 425),
-    # its own bounds
+    # its own limits
     "setrlimit": (160, 164),
     "prlimit64": (302, 261),
     "seccomp": (317, 277),
@@ -119,65 +119,28 @@ NUMBERS: dict[str, tuple[int | None, int | None]] = {
     "futimesat": (261, None),
     "utimensat": (280, 88),
 }
-_REFUSED = (
-    *(
-        "fork",
-        "vfork",
-        "unshare",
-        "setns",
-        "tkill",
-        "rt_sigqueueinfo",
-        "rt_tgsigqueueinfo",
-        "pidfd_send_signal",
-    ),
-    *(
-        "pidfd_getfd",
-        "ptrace",
-        "process_vm_readv",
-        "process_vm_writev",
-        "process_madvise",
-        "kcmp",
-        "move_pages",
-    ),
-    *("migrate_pages", "setpriority", "ioprio_set", "sched_setparam", "sched_setscheduler", "sched_setattr"),
-    *(
-        "inotify_add_watch",
-        "socket",
-        "shmget",
-        "semget",
-        "msgget",
-        "mq_open",
-        "mount",
-        "add_key",
-        "request_key",
-    ),
-    *("keyctl", "bpf", "perf_event_open", "userfaultfd", "io_uring_setup", "setrlimit", "seccomp"),
-)
-# Landlock knows neither owners, modes, times and attributes nor, before Linux 6.2, cutting a file short. Copying a file
-# also sets its mode and times: that is said to have worked, and changes nothing.
-_REFUSED_FILES = (
-    *(
-        "truncate",
-        "chown",
-        "lchown",
-        "fchown",
-        "fchownat",
-        "setxattr",
-        "lsetxattr",
-        "fsetxattr",
-        "removexattr",
-    ),
-    *("lremovexattr", "fremovexattr", "setxattrat", "removexattrat", "file_setattr"),
-)
+_REFUSED = """
+    fork vfork unshare setns tkill rt_sigqueueinfo rt_tgsigqueueinfo pidfd_send_signal pidfd_getfd
+    ptrace process_vm_readv process_vm_writev process_madvise kcmp move_pages migrate_pages setpriority
+    ioprio_set sched_setparam sched_setscheduler sched_setattr inotify_add_watch socket shmget semget
+    msgget mq_open mount add_key request_key keyctl bpf perf_event_open userfaultfd io_uring_setup
+    setrlimit seccomp
+""".split()  # noqa: SIM905 - one name a line would hide the list
+# Landlock does not cover owners, modes, times and attributes or, before Linux 6.2, truncation. Copying a file also sets
+# its mode and times: those calls report success and change nothing.
+_REFUSED_FILES = """
+    truncate chown lchown fchown fchownat setxattr lsetxattr fsetxattr removexattr lremovexattr
+    fremovexattr setxattrat removexattrat file_setattr
+""".split()  # noqa: SIM905
 _PRETENDED_FILES = ("chmod", "fchmod", "fchmodat", "fchmodat2", "utime", "utimes", "futimesat", "utimensat")
-# (call, argument, values of it that are refused): who gets a descriptor's signals; typing on a terminal.
+# (call, argument, refused values): redirecting a descriptor's signals; typing into a terminal.
 _REFUSED_VALUES = (
     ("prctl", 0, (_SET_PDEATHSIG, _SET_DUMPABLE, _SET_SECCOMP)),
     ("fcntl", 1, (8, 15)),
     ("ioctl", 1, (0x8901, 0x8902, 0x5412)),
 )
 
-# Landlock: system calls are numbered alike everywhere.
+# Landlock: the same system call numbers on every machine.
 _CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
 _FILE_RIGHTS = 1 << 0 | 1 << 1 | 1 << 2 | 1 << 14 | 1 << 15  # execute, write, read, truncate, ioctl
 _READING = 1 << 0 | 1 << 2 | 1 << 3  # execute, read a file, list a folder
@@ -185,18 +148,18 @@ _RIGHTS_BY_ABI = ((1, 13), (2, 14), (3, 15), (5, 16))  # ABI → how many file r
 
 
 class CannotConfine(Exception):  # noqa: N818 - reads as the state it names
-    """A right could not be given up."""
+    """The process could not be confined."""
 
 
 def landlock_abi() -> int:
-    """The kernel's Landlock version; 0 without one."""
+    """The kernel's Landlock version; 0 if it has none."""
     if sys.platform != "linux":
         return 0
     return max(0, _LIBC.syscall(_CREATE_RULESET, None, ctypes.c_size_t(0), 1))
 
 
 def has_seccomp() -> bool:
-    """Whether this module knows the machine's system calls."""
+    """Whether system calls can be closed on this machine: Linux with known call numbers."""
     return sys.platform == "linux" and os.uname().machine in ARCHITECTURES
 
 
@@ -207,26 +170,26 @@ def _checked(result: int, what: str) -> int:
 
 
 def limit(memory: int, file_size: int) -> None:
-    """Limits for this process: bytes of private memory, bytes of one file; no core dumps. Past them calls fail."""
+    """Limits this process: bytes of private memory and of one file, no core dumps. Calls beyond them fail."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     for which, amount in ((resource.RLIMIT_DATA, memory), (resource.RLIMIT_FSIZE, file_size)):
         if amount:
             hard = resource.getrlimit(which)[1]
             least = amount if hard == resource.RLIM_INFINITY else min(amount, hard)
             resource.setrlimit(which, (least, least))
-    # A file that grows too large is an error of the call that lets it grow, in C too.
+    # Writing beyond the limit is an error of the call, in C too, instead of a signal.
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
 
 def end_early() -> None:
-    """Lets this process end with the thread that started it, and be the first that the kernel takes for its memory."""
+    """Makes this process end with the thread that started it, and be the first that is killed for memory."""
     _checked(_LIBC.prctl(_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0), "parent's death")
     with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w") as file:  # noqa: PTH123
         file.write("1000")
 
 
 def drop_capabilities() -> None:
-    """Gives up whatever root could do, for good."""
+    """Gives up all capabilities for good."""
     _checked(_LIBC.prctl(_SET_NO_NEW_PRIVS, 1, 0, 0, 0), "no_new_privs")
     for capability in range(_LAST_CAPABILITY + 1):
         _LIBC.prctl(_CAPBSET_DROP, capability, 0, 0, 0)
@@ -234,7 +197,10 @@ def drop_capabilities() -> None:
 
 
 def close_files(read: list[str], write: list[str]) -> None:
-    """Landlock: only ``read`` can be read, only ``write`` also written. Raises CannotConfine."""
+    """Closes the file system with Landlock: only ``read`` and ``write`` can be read, only ``write`` written.
+
+    Raises CannotConfine.
+    """
     abi = landlock_abi()
     if not abi:
         raise CannotConfine("this kernel has no Landlock")
@@ -256,7 +222,7 @@ def _allow(ruleset: int, path: str, rights: int) -> None:
     try:
         place = os.open(path, os.O_PATH | os.O_CLOEXEC)
     except OSError:
-        return  # what is not there needs no leave
+        return  # a missing path needs no rule
     if not os.path.isdir(path):  # noqa: PTH112 - pathlib costs more than it gives here
         rights &= _FILE_RIGHTS
     rule = struct.pack("=Qi", rights, place)
@@ -269,14 +235,14 @@ def _step(code: int, constant: int, yes: int = 0, no: int = 0) -> bytes:
 
 
 def _argument(index: int, *, high: bool = False) -> bytes:
-    """Loads half of an argument: both architectures put the low half first."""
+    """Loads the low or high half of an argument; both architectures put the low half first."""
     return _step(_LOAD, 16 + 8 * index + 4 * high)
 
 
 def filter_program(machine: str, own: int, *, files: bool) -> bytes:
-    """The seccomp filter: for each call by number, what is answered. ``own`` is this process.
+    """The seccomp filter: what happens on each system call. ``own`` is this process.
 
-    ``files``: also what Landlock leaves open. Raises KeyError for a machine it does not know.
+    ``files``: also close what Landlock leaves open. Raises KeyError for an unknown machine.
     """
     column, architecture = ARCHITECTURES[machine]
     load_number = _step(_LOAD, _NUMBER_AT)
@@ -290,7 +256,7 @@ def filter_program(machine: str, own: int, *, files: bool) -> bytes:
     ]
 
     def rule(call: str, *answer: bytes) -> None:
-        """``answer`` ends with a return; without one, the next rule loads the number again."""
+        """``answer`` are steps that end with a return; else the next rule goes on."""
         number = NUMBERS[call][column]
         if number is not None:
             steps.extend((load_number, _step(_EQUAL, number, 0, len(answer)), *answer))
@@ -298,12 +264,12 @@ def filter_program(machine: str, own: int, *, files: bool) -> bytes:
     refuse = _step(_RETURN, _REFUSE)
     for call in _REFUSED:
         rule(call, refuse)
-    # The C library falls back to clone, whose flags can be looked at.
+    # The C library falls back to clone, whose flags can be checked.
     rule("clone3", _step(_RETURN, _UNKNOWN))
     rule("clone", _argument(0), _step(_ANY_BIT, _CLONE_THREAD, 1, 0), refuse)
     for call in ("kill", "tgkill"):
         rule(call, _argument(0), _step(_EQUAL, own, 1, 0), refuse)
-    # Limits can be asked for (no new ones given), of whichever process.
+    # Limits of any process can be read, but none set.
     rule(
         *("prlimit64", _argument(2), _step(_EQUAL, 0, 1, 0), refuse),
         *(_argument(2, high=True), _step(_EQUAL, 0, 1, 0), refuse),
@@ -316,19 +282,19 @@ def filter_program(machine: str, own: int, *, files: bool) -> bytes:
             rule(call, refuse)
         for call in _PRETENDED_FILES:
             rule(call, _step(_RETURN, _PRETEND))
-        # Opening for reading alone can cut a file short.
+        # Opening only for reading can truncate a file.
         for call, index in (("open", 1), ("openat", 2)):
             only_cut = (_step(_AND, _TRUNCATING | _ACCESS), _step(_EQUAL, _TRUNCATING, 0, 1))
             rule(call, _argument(index), *only_cut, refuse)
         rule("openat2", _step(_RETURN, _UNKNOWN))
-        # Behind bubblewrap there is no other process whose cores could be chosen.
+        # With bubblewrap there is no other process whose CPU affinity could be set.
         rule("sched_setaffinity", _argument(0), _step(_EQUAL, 0, 1, 0), refuse)
     steps.append(_step(_RETURN, _ALLOW))
     return b"".join(steps)
 
 
 def close_calls(*, files: bool) -> None:
-    """Seccomp: no socket, no process, no signal to others; ``files``: see filter_program. Raises CannotConfine."""
+    """Closes system calls with seccomp; ``files``: see filter_program. Raises CannotConfine."""
     program = ctypes.create_string_buffer(filter_program(os.uname().machine, os.getpid(), files=files))
     described = struct.pack("HxxxxxxQ", (len(program) - 1) // 8, ctypes.addressof(program))
     _checked(_LIBC.prctl(_SET_NO_NEW_PRIVS, 1, 0, 0, 0), "no_new_privs")
@@ -336,7 +302,7 @@ def close_calls(*, files: bool) -> None:
 
 
 def main(words: list[str]) -> None:
-    """Confines this process and runs the command behind ``--`` in its place."""
+    """Confines this process, then replaces it by the command after ``--``."""
     rights, command = json.loads(words[0]), words[2:]
     limit(rights["memory"], rights["file_size"])
     if sys.platform == "linux":

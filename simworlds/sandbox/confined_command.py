@@ -1,9 +1,9 @@
-"""What Blender may touch: bubblewrap where it works, Landlock otherwise, plain limits elsewhere.
+"""Builds the command that runs Blender in a sandbox: bubblewrap if it works, else Landlock, else only limits.
 
-What remains open to code that runs in Blender: all of its own process, and so its own answers (see process.py); what
-the run's workspace and its temporary folder hold; to read the system's programs, Blender and Python; the graphics
-card; the kernel, as far as its calls are not closed. Files without a place on disk (memfd) count against no limit: when
-the machine runs out of memory, the kernel ends Blender first. Beside Landlock it can ask whether a path exists.
+What code in Blender can still reach: its own process, and so its own replies (see blender_process.py); the run's
+workspace and temporary folder; reading the system's programs, Blender and Python; the graphics card; the kernel, as
+far as its calls are not closed. Files in memory (memfd) count against no limit: when memory runs out, the kernel kills
+Blender first. With Landlock, code can ask whether a path exists.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _PROCESS = ("/proc/self", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat", "/proc
 
 @dataclass(frozen=True, slots=True)
 class ResourceLimits:
-    """Bytes: memory of the process, one file, and all that it may write; then numbers. 0: no limit."""
+    """Bytes of memory, of one file, of all files; numbers of files and threads. 0: no limit."""
 
     memory: int = 0
     file_size: int = 4 * GIB
@@ -50,7 +50,7 @@ class ResourceLimits:
 
     @property
     def in_words(self) -> tuple[str, ...]:
-        """In words."""
+        """The limits as phrases."""
         each = (
             (self.memory, f"{self.memory / GIB:.1f} GiB of memory"),
             (self.file_size, f"{self.file_size / GIB:.1f} GiB a file"),
@@ -63,7 +63,7 @@ class ResourceLimits:
 
 @dataclass(frozen=True, slots=True)
 class Sandbox:
-    """A way to confine a process. ``holds`` and ``lacks`` say in words what it does and does not keep out."""
+    """A way to confine a process. ``holds`` and ``lacks`` say what it guarantees and what it leaves open."""
 
     kind: Kind
     holds: tuple[str, ...]
@@ -71,45 +71,45 @@ class Sandbox:
     limits: ResourceLimits = field(default_factory=ResourceLimits)
 
     def command(self, words: list[str], *, read: list[Path], write: list[Path]) -> list[str]:
-        """``words``, confined: only ``read`` (besides the system's programs) is readable, only ``write`` writable.
+        """The command that runs ``words`` confined: it can read ``read`` and the system's programs, write ``write``.
 
-        Raises CannotStart where that would open the user's whole home folder.
+        Raises CannotStart if that would open the user's whole home folder.
         """
         rights: dict[str, object] = {"memory": self.limits.memory, "file_size": self.limits.file_size}
         script = Path(confine_self.__file__)
         readable = [str(path) for path in read]
         if self.kind == "landlock":
-            _spare_home(readable)
+            _check_home(readable)
             rights["read"] = [*_SYSTEM, *_SETTINGS, *_PROCESS, *readable]
             rights["write"] = [*(str(path) for path in write), *_DEVICES, *graphics()]
         launcher = [sys.executable, "-I", "-S", str(script), json.dumps(rights), "--", *words]
         if self.kind != "bubblewrap":
             return launcher
         readable += [str(script), *own_python()]
-        _spare_home(readable)
+        _check_home(readable)
         return [*_bubblewrap(readable, write), "--", *launcher]
 
 
-def _spare_home(paths: list[str]) -> None:
+def _check_home(paths: list[str]) -> None:
     home = Path.home().resolve()
     for path in paths:
         if home.is_relative_to(path) and str(home) != "/":
             raise CannotStart(
-                f"Blender or Python lies in {path} itself, and to read it would be to read all that you have there. "
-                "Put it into a folder of its own."
+                f"Blender or Python is installed directly in {path}, so reading it would open everything there. "
+                "Move it into a folder of its own."
             )
 
 
 def own_python() -> list[str]:
-    """The folders that this interpreter lives in."""
+    """The folders of this Python interpreter."""
     real = Path(sys.executable).resolve().parent.parent
     folders = {sys.prefix, sys.base_prefix, str(real), sysconfig.get_path("stdlib")}
     return sorted(folders - {"/usr", "/"})
 
 
 def graphics() -> list[str]:
-    """The devices of the graphics cards here."""
-    return sorted(found for pattern in _GRAPHICS for found in glob(pattern))  # noqa: PTH207 - absolute patterns
+    """The device files of this machine's graphics cards."""
+    return sorted(path for pattern in _GRAPHICS for path in glob(pattern))  # noqa: PTH207 - absolute patterns
 
 
 def _bubblewrap(read: list[str], write: list[Path]) -> list[str]:
@@ -123,41 +123,41 @@ def _bubblewrap(read: list[str], write: list[Path]) -> list[str]:
         words += ["--dev-bind", path, path]
     for folder in write:
         words += ["--bind", str(folder), str(folder)]
-    # What bubblewrap makes to hold all these is in memory and gone with the process: a write to it must not seem to
-    # work, and would not count against any limit.
+    # The folders that bubblewrap makes for these are in memory and gone with the process: a write to them must not seem
+    # to work, and would not count against any limit.
     return [*words, "--remount-ro", "/dev", "--remount-ro", "/"]
 
 
 def best_sandbox(wanted: Kind | None = None, limits: ResourceLimits | None = None) -> Sandbox:
-    """The strongest that works here, or the one that is ``wanted``, whether it works or not."""
+    """The strongest sandbox that works here, or the ``wanted`` one, whether it works or not."""
     kind = wanted or _best_kind()
     limits = limits or default_limits()
-    holds = ["ends with SimWorlds, whatever ends that", "sees no secret of your environment"]
+    holds = ["ends with SimWorlds, however that ends", "sees none of your environment's secrets"]
     lacks: list[str] = []
     if kind == "none":
-        lacks.append("reading and writing files wherever you can")
+        lacks.append("reading and writing any file that you can")
     else:
-        holds.append("writes to the run's workspace and a private temporary folder alone")
-        holds.append("reads these, the system's programs, Blender and Python alone")
+        holds.append("writes only to the run's workspace and a private temporary folder")
+        holds.append("reads only these, the system's programs, Blender and Python")
     if confine_self.has_seccomp():
-        holds.append("opens no network or other socket, starts no process, sends no other one a signal")
+        holds.append("opens no network or other socket, starts no process, signals no other process")
     elif kind == "bubblewrap":
-        holds.append("opens no network, sends no process outside a signal")
+        holds.append("opens no network, signals no process outside")
         lacks.append("starting processes, which end with Blender")
     else:
-        lacks.append("the network, and starting processes")
+        lacks.append("network access and starting processes")
     if kind == "bubblewrap":
         holds.append("sees no other process")
     elif kind == "landlock":
-        lacks.append("asking whether a path exists, how large and how old it is")
+        lacks.append("asking whether a path exists, its size and its age")
     if kind != "none" and graphics():
-        lacks.append("the graphics card")
+        lacks.append("use of the graphics card")
     holds.append(f"takes at most {', '.join(limits.in_words)}")
     return Sandbox(kind, tuple(holds), tuple(lacks), limits)
 
 
 def default_limits() -> ResourceLimits:
-    """Three quarters of the memory that this process can have."""
+    """Limits memory to three quarters of what this process can have."""
     try:
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (ValueError, OSError, AttributeError):
@@ -166,14 +166,14 @@ def default_limits() -> ResourceLimits:
 
 
 def _group_limits() -> list[int]:
-    """What the control group that this process is in may have, in bytes."""
-    found: list[int] = []
+    """The memory limits of this process's control group, in bytes."""
+    limits: list[int] = []
     with suppress(OSError, ValueError):
         group = Path("/proc/self/cgroup").read_text().strip().rpartition(":")[2]
         for path in (f"{group}/memory.max", "/memory.max", "/memory/memory.limit_in_bytes"):
             with suppress(OSError, ValueError):
-                found.append(int(Path(f"/sys/fs/cgroup{path}").read_text()))
-    return found
+                limits.append(int(Path(f"/sys/fs/cgroup{path}").read_text()))
+    return limits
 
 
 def _best_kind() -> Kind:
@@ -186,7 +186,7 @@ def _best_kind() -> Kind:
 
 @cache
 def bubblewrap_fault() -> str | None:
-    """Why bubblewrap cannot be used here; None if it can."""
+    """Why bubblewrap does not work here; None if it does."""
     if shutil.which("bwrap") is None:
         return "bwrap is not on PATH"
     words = [*_bubblewrap(own_python(), []), "--", sys.executable, "-I", "-S", "-c", ""]

@@ -1,4 +1,4 @@
-"""Which interpreter runs a script with Blender: a named executable, this environment, or a made one."""
+"""Finds the interpreter that runs Blender: a named executable, this environment, or one installed for a version."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from simworlds.sandbox.program import BOOT, Program
 Kind = Literal["executable", "environment", "managed"]
 Report = Callable[[str, int, int | None], None]
 
-_NAME_ONE = "name its executable with BLENDER_EXE=PATH (--blender-exe PATH)"
+_NAME_IT = "give its executable with --blender-exe PATH (or BLENDER_EXE=PATH)"
 _INSTALL_SECONDS = 1800.0
 _VERSION_SECONDS = 60.0
 _PASSED_ON = frozenset(
@@ -40,7 +40,7 @@ class Runtime:
     version: str
 
     def command(self, script: Path, args: list[str]) -> list[str]:
-        """The words that run ``script``. Its own arguments are those behind the first ``"--"`` of sys.argv."""
+        """The command that runs ``script``, whose own arguments are those after the first ``"--"`` of sys.argv."""
         if self.kind == "executable":
             flags = ["--background", "--factory-startup", "--python-exit-code", "3", "--python", str(script)]
         else:
@@ -57,20 +57,20 @@ def find_runtime(
 ) -> Runtime:
     """The runtime of a Blender version (``"5.1"``: its newest wheel, ``"5.1.2"``: exactly that one).
 
-    ``blender_exe`` is an executable or its folder, named by the user; with ``version`` None it decides which
-    version. ``home`` keeps the environments that are made. Raises RuntimeMissing, saying what was tried.
+    ``blender_exe`` is an executable or its folder; without ``version`` it decides the version. ``home`` keeps installed
+    environments. Raises RuntimeMissing, which says what was tried.
     """
     if blender_exe is not None:
         return _named_executable(blender_exe.expanduser(), version)
     installed = installed_bpy()
-    asked = version or installed or releases()[-1].bpy
-    if installed is not None and same_version(asked, installed):
+    wanted = version or installed or releases()[-1].bpy
+    if installed is not None and same_version(wanted, installed):
         return Runtime(Path(sys.executable), "environment", installed)
-    return _managed(asked, home / "runtimes", progress)
+    return _managed(wanted, home / "runtimes", progress)
 
 
 def installed_bpy() -> str | None:
-    """The version of this environment's bpy, found out without importing it; None when there is none."""
+    """The version of this environment's bpy, without importing it; None if there is none."""
     try:
         return metadata.version("bpy")
     except metadata.PackageNotFoundError:
@@ -78,17 +78,17 @@ def installed_bpy() -> str | None:
 
 
 def run_program(runtime: Runtime, program: Program, args: list[str], *, timeout: float, log: Path) -> None:
-    """Run a program of modules with ``args`` in Blender's interpreter. Otherwise as ``run_script``."""
+    """Runs a program with ``args`` in Blender's interpreter, as ``run_script`` does a script."""
     run_script(runtime, BOOT, program.arguments(*args), timeout=timeout, log=log, name=program.module)
 
 
 def run_script(  # noqa: PLR0913 - what is run, and how
     runtime: Runtime, script: Path, args: list[str], *, timeout: float, log: Path, name: str = ""
 ) -> None:
-    """Run ``script`` with ``args`` in Blender's interpreter; all that it prints goes to the file ``log``.
+    """Runs ``script`` with ``args`` in Blender's interpreter; its output goes to the file ``log``.
 
-    The process gets none of the environment's secrets and no settings of the user's Blender, and dies with
-    its children after ``timeout`` seconds or on Ctrl-C. Raises ProgramFailed with the end of its output.
+    The process gets none of the environment's secrets and no settings of the user's Blender. It is killed with its
+    children after ``timeout`` seconds or on Ctrl-C. Raises ProgramFailed with the end of its output.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="simworlds-") as settings:
@@ -103,7 +103,7 @@ def run_script(  # noqa: PLR0913 - what is run, and how
 
 
 def clean_environment(settings: Path) -> dict[str, str]:
-    """Variables for a Blender: none of the user's secrets, and ``settings`` (a folder) in place of their Blender's."""
+    """Environment variables for a Blender: without the user's secrets, with ``settings`` as its settings folder."""
     passed = {name: value for name, value in os.environ.items() if name in _PASSED_ON}
     own = {
         f"BLENDER_USER_{name}": str(settings)
@@ -123,7 +123,7 @@ def _named_executable(path: Path, version: str | None) -> Runtime:
     real = executable_version(executable)
     if version is not None and not same_version(version, real):
         raise RuntimeMissing(
-            f"{executable} is Blender {real}, not {version}; ask for {minor_of(real)} or name another"
+            f"{executable} is Blender {real}, not {version}; use version {minor_of(real)} or another executable"
         )
     return Runtime(executable, "executable", real)
 
@@ -131,13 +131,13 @@ def _named_executable(path: Path, version: str | None) -> Runtime:
 def _executable_at(path: Path) -> Path:
     inside = [path / name for name in ("blender", "Contents/MacOS/Blender", "blender.exe")]
     for candidate in (path, *inside):
-        if found := shutil.which(candidate):
-            return Path(found).absolute()
-    raise RuntimeMissing(f"there is no Blender executable at {path}; give the path of the program itself")
+        if program := shutil.which(candidate):
+            return Path(program).absolute()
+    raise RuntimeMissing(f"there is no Blender executable at {path}; give the path of the program")
 
 
 def executable_version(executable: Path) -> str:
-    """The full version of a Blender executable, as it says itself. RuntimeMissing if it is none."""
+    """The full version that a Blender executable reports. Raises RuntimeMissing if it is not Blender."""
     try:
         done = subprocess.run(
             [str(executable), "--version"],
@@ -151,19 +151,19 @@ def executable_version(executable: Path) -> str:
     output = (done.stdout + done.stderr).decode(errors="replace")
     match = re.search(r"^Blender (\d+\.\d+\.\d+)", output, re.MULTILINE)
     if match is None:
-        raise RuntimeMissing(f"{executable} does not say that it is Blender, but: {output.strip()[:300]!r}")
+        raise RuntimeMissing(f"{executable} is not Blender: --version printed {output.strip()[:300]!r}")
     return match[1]
 
 
-def _managed(asked: str, runtimes: Path, progress: Report | None) -> Runtime:
-    entry = release(asked)
+def _managed(wanted: str, runtimes: Path, progress: Report | None) -> Runtime:
+    entry = release(wanted)
     if entry is None:
         known = ", ".join(row.minor for row in releases())
         raise RuntimeMissing(
-            f"no bpy package is known for Blender {asked} (there is one for {known}); install that one and "
-            f"{_NAME_ONE}"
+            f"there is no bpy package for Blender {wanted} (only for {known}); install that Blender and "
+            f"{_NAME_IT}"
         )
-    version = entry.bpy if asked.count(".") == 1 else asked
+    version = entry.bpy if wanted.count(".") == 1 else wanted
     folder = runtimes / version
     if not folder.is_dir():
         _install(version, entry, folder, progress)
@@ -175,7 +175,7 @@ def _python_in(folder: Path) -> Path:
 
 
 def _install(version: str, entry: Release, folder: Path, progress: Report | None) -> None:
-    """Make an environment with bpy in it. It gets its name when it is whole: a killed one is redone."""
+    """Makes an environment with bpy. It gets its name when it is complete, so a killed install is repeated."""
     uv = _find_uv()
     log = folder.parent / f"{version}.log"
     environment = _install_environment(entry.python)
@@ -201,11 +201,11 @@ def _install(version: str, entry: Release, folder: Path, progress: Report | None
     except CommandFailed as error:
         raise RuntimeMissing(
             f"bpy {version} for CPython {entry.python} could not be installed: {error}. The whole output is "
-            f"in {log}. Run again with a network, or install that Blender and {_NAME_ONE}"
+            f"in {log}. Run again with a network connection, or install that Blender and {_NAME_IT}"
         ) from error
     except OSError as error:
         raise RuntimeMissing(
-            f"{folder} cannot be made: {error}; make room there, or set SIMWORLDS_HOME"
+            f"{folder} cannot be made: {error}; free some space there, or set SIMWORLDS_HOME"
         ) from error
 
 
@@ -215,14 +215,14 @@ def _find_uv() -> str:
 
         return uv.find_uv_bin()
     except (ImportError, FileNotFoundError):
-        found = shutil.which("uv")
-    if found is None:
+        program = shutil.which("uv")
+    if program is None:
         raise RuntimeMissing("uv is neither installed nor on PATH; install it with: python -m pip install uv")
-    return found
+    return program
 
 
 def _install_environment(python: str) -> dict[str, str]:
-    """uv passes over pyenv's shims, but takes a version that stands in pyenv's folder when it is on PATH."""
+    """Puts pyenv's versions on PATH: uv ignores pyenv's shims, but uses an interpreter that is on PATH."""
     dropped = {"VIRTUAL_ENV", "CONDA_PREFIX", "PYTHONPATH", "PYTHONHOME", "ANTHROPIC_API_KEY"}
     environment = {name: value for name, value in os.environ.items() if name not in dropped}
     pyenv = Path(environment.get("PYENV_ROOT") or Path.home() / ".pyenv")

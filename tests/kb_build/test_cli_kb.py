@@ -192,7 +192,7 @@ def test_two_blenders_are_compared(built: Built) -> None:
     ("words", "message"),
     [
         (("kb", "build", "five"), "'five' is not a Blender version"),
-        (("kb", "build", "9.9"), "no bpy package is known for Blender 9.9"),
+        (("kb", "build", "9.9"), "there is no bpy package for Blender 9.9"),
         (("kb", "build", "5.1", "--blender-exe", "/nowhere"), "no Blender executable at /nowhere"),
         (("kb", "build", "--require", "pictures"), "give manual, guides or both"),
         (("kb", "build", "--jobs", "0"), "--jobs"),

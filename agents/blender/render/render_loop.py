@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from agents.blender.render.frame_cache import RenderedFrame
 from simworlds.sandbox.errors import BlenderError, Interrupted
@@ -12,25 +12,10 @@ from simworlds.sandbox.errors import BlenderError, Interrupted
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from agents.blender.render.frame_cache import FrameCache
     from agents.blender.render.frame_renderer import FrameRenderer
     from agents.blender.render.render_budget import RenderBudget
     from agents.blender.tools.base import Call
-
-
-class FrameStore(Protocol):
-    """Where frames go: a FrameCache or a StillStore."""
-
-    def path(self, number: int) -> Path:
-        """The file of a frame."""
-        ...
-
-    def get(self, number: int) -> RenderedFrame | None:
-        """How a frame was made; None if it is not here."""
-        ...
-
-    def add(self, number: int, frame: RenderedFrame) -> None:
-        """Notes that a frame's file has been written."""
-        ...
 
 
 class StillStore:
@@ -80,7 +65,11 @@ class RenderOutcome:
 
 
 def render_frames(
-    renderer: FrameRenderer, store: FrameStore, frames: list[int], call: Call, budget: RenderBudget | None
+    renderer: FrameRenderer,
+    store: FrameCache | StillStore,
+    frames: list[int],
+    call: Call,
+    budget: RenderBudget | None,
 ) -> RenderOutcome:
     """Renders those of ``frames`` that are not in ``store``. Raises BlenderError when there is not a single one."""
     wanted: int | None = renderer.shot["samples"]

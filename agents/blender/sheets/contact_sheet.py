@@ -1,6 +1,6 @@
-"""Contact sheets: pictures in a grid, each with its caption, under one title.
+"""Contact sheets: images in a grid, each with its caption, under one title.
 
-A sheet is put together from blocks, which are pictures themselves:
+A sheet is made of blocks, which are images themselves:
 
     views = grid([Panel(picture, "front"), Panel(other, "right")], columns=2)
     to_png(sheet("Chair", [views], subtitle="frame 12", notes=["Cloth is not baked."]))
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 Colour = tuple[int, int, int]
+Rectangle = tuple[float, float, float, float]  # left, top, right, bottom
 
 PAPER: Colour = (250, 250, 248)
 INK: Colour = (24, 26, 30)
@@ -42,14 +43,14 @@ Y_GREEN: Colour = (62, 135, 20)
 Z_BLUE: Colour = (40, 100, 215)
 
 MARGIN, GAP = 12, 8
-_LARGEST_SIDE = 8192  # of a picture that is read, in pixels
-_BAR_SHARE = 0.3  # of a picture's width that a scale bar may take
+_LARGEST_SIDE = 8192  # pixels of an image that is read
+_BAR_SHARE = 0.3  # of an image's width, for the scale bar
 _GIZMO_REACH = 28
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How words are written: ``size`` in pixels; ``halo``: a white rim of so many pixels, for use on pictures."""
+    """A style of text: ``size`` in pixels; ``halo``: width of a white outline, for text on images."""
 
     size: int = 15
     colour: Colour = INK
@@ -67,9 +68,9 @@ LABEL = Style(12, halo=2)
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A picture with its ``caption`` above it; ``side_note`` stands at the right end of the caption's line.
+    """An image with its ``caption`` above it; ``side_note`` is at the right end of the caption's line.
 
-    ``border`` colours the frame around it, for a panel that stands out.
+    ``border`` is the colour of its frame.
     """
 
     picture: Image.Image
@@ -79,16 +80,16 @@ class Panel:
 
 
 def read_png(file: BinaryIO, under: Colour = PAPER) -> Image.Image:
-    """A PNG as an RGB picture, over the colour ``under`` where it is transparent. Raises Refusal for anything else."""
+    """A PNG as an RGB image, with ``under`` behind transparent pixels. Raises Refusal for anything else."""
     try:
         picture = Image.open(file, formats=["PNG"])
         if max(picture.size) > _LARGEST_SIDE:
             raise Refusal(
-                f"The picture has {picture.width} × {picture.height} pixels; {_LARGEST_SIDE} a side at most."
+                f"The image has {picture.width} × {picture.height} pixels; the limit is {_LARGEST_SIDE} a side."
             )
         picture.load()
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise Refusal(f"The picture cannot be read: {error}.") from error
+        raise Refusal(f"The image cannot be read: {error}.") from error
     if "A" not in picture.getbands() and "transparency" not in picture.info:
         return picture.convert("RGB")
     background = Image.new("RGBA", picture.size, (*under, 255))
@@ -96,7 +97,7 @@ def read_png(file: BinaryIO, under: Colour = PAPER) -> Image.Image:
 
 
 def to_png(picture: Image.Image) -> bytes:
-    """The picture as a PNG file's bytes."""
+    """The image as the bytes of a PNG file."""
     file = io.BytesIO()
     picture.save(file, "PNG")
     return file.getvalue()
@@ -106,7 +107,7 @@ def to_png(picture: Image.Image) -> bytes:
 
 
 def grid(panels: Sequence[Panel], columns: int) -> Image.Image:
-    """The panels row by row; every column is as wide, and every row as high, as its largest picture."""
+    """The panels row by row; each column is as wide, and each row as high, as its largest image."""
     rows = [panels[start : start + columns] for start in range(0, len(panels), columns)]
     widths = [2 + max(panel.picture.width for panel in panels[at::columns]) for at in range(len(rows[0]))]
     line = TEXT.size + 8 if any(panel.caption or panel.side_note for panel in panels) else 0
@@ -137,7 +138,7 @@ def _write_caption(draw: ImageDraw.ImageDraw, panel: Panel, place: tuple[int, in
 
 
 def paragraph(text: str, width: int, style: Style = TEXT) -> Image.Image:
-    """Text, broken into lines of at most ``width`` pixels."""
+    """Text, wrapped at ``width`` pixels."""
     lines = wrapped(text, width, style.size)
     height = math.ceil(style.size * 1.35)
     block = Image.new("RGB", (width, height * len(lines)), PAPER)
@@ -148,7 +149,7 @@ def paragraph(text: str, width: int, style: Style = TEXT) -> Image.Image:
 
 
 def stack(blocks: Sequence[Image.Image], gap: int = GAP) -> Image.Image:
-    """The blocks below each other, flush left."""
+    """The blocks below each other, aligned left."""
     height = sum(block.height for block in blocks) + gap * (len(blocks) - 1)
     whole = Image.new("RGB", (max(block.width for block in blocks), height), PAPER)
     y = 0
@@ -166,9 +167,9 @@ def sheet(
     remarks: Sequence[str] = (),
     notes: Sequence[str] = (),
 ) -> Image.Image:
-    """The blocks below each other under a title line, with a margin around all.
+    """The blocks below each other under a title, with a margin around all.
 
-    ``remarks`` and ``notes`` stand at the end; notes are what a reader must not miss, and are coloured.
+    ``remarks`` and ``notes`` are at the end; notes are coloured, since a reader must not miss them.
     """
     width = max(block.width for block in blocks)
     parts = [paragraph(shortened(title, width, TITLE.size), width, TITLE)]
@@ -183,13 +184,13 @@ def sheet(
     return whole
 
 
-# Marks on a picture
+# Marks on an image
 
 
 def write(
     draw: ImageDraw.ImageDraw, place: tuple[float, float], text: str, style: Style = TEXT, anchor: str = "la"
 ) -> None:
-    """One line of text; ``anchor`` as Pillow has it ("ls": left, on the base line)."""
+    """One line of text; ``anchor`` as in Pillow ("ls": left, on the baseline)."""
     draw.text(
         place,
         text,
@@ -202,7 +203,7 @@ def write(
 
 
 def draw_scale_bar(picture: Image.Image, metres_per_pixel: float) -> float:
-    """A bar of a round length at the lower left, with that length beside it; returns it, in metres."""
+    """A scale bar at the lower left, with its length beside it; returns the length in metres."""
     length = round_length(picture.width * _BAR_SHARE * metres_per_pixel)
     pixels = round(length / metres_per_pixel)
     draw = ImageDraw.Draw(picture)
@@ -217,7 +218,7 @@ def draw_scale_bar(picture: Image.Image, metres_per_pixel: float) -> float:
 
 
 def draw_level(picture: Image.Image, y: float, name: str) -> None:
-    """A thin dashed line across at ``y`` pixels from above, with its name at the left; nothing if that is outside."""
+    """A thin dashed line at ``y`` pixels from the top, with its name at the left; nothing if that is outside."""
     if not 0 <= y < picture.height - 1:
         return
     draw = ImageDraw.Draw(picture)
@@ -227,9 +228,9 @@ def draw_level(picture: Image.Image, y: float, name: str) -> None:
 
 
 def draw_axes(picture: Image.Image, axes: Sequence[tuple[str, float, float, float]]) -> None:
-    """An axes gizmo at the lower right: of each axis its letter (X, Y, Z) and where its unit vector points.
+    """An axes gizmo at the lower right. ``axes``: letter (X, Y, Z) and unit vector (right, up, towards the viewer).
 
-    That is to the right, up, and towards the viewer. An axis seen end on is a dot, with a cross if it points away.
+    An axis seen end on is a dot, with a cross if it points away.
     """
     draw = ImageDraw.Draw(picture)
     x, y = picture.width - _GIZMO_REACH - 18, picture.height - _GIZMO_REACH - 18
@@ -247,9 +248,9 @@ def draw_axes(picture: Image.Image, axes: Sequence[tuple[str, float, float, floa
 
 
 def draw_labels(picture: Image.Image, labels: Sequence[tuple[str, float, float]]) -> list[str]:
-    """Names, each as near to its place (pixels) as the ones before it allow; returns those that found no room."""
+    """Names, each as near to its place (pixels) as the earlier ones allow; returns those without room."""
     draw = ImageDraw.Draw(picture)
-    taken: list[tuple[float, float, float, float]] = []
+    taken: list[Rectangle] = []
     left: list[str] = []
     for text, x, y in labels:
         name = shortened(text, picture.width * 0.35, LABEL.size)
@@ -259,7 +260,7 @@ def draw_labels(picture: Image.Image, labels: Sequence[tuple[str, float, float]]
             middle = y + aside * LABEL.size * 1.25
             box = (at - half, middle - LABEL.size * 0.6, at + half, middle + LABEL.size * 0.6)
             inside = box[1] > 2 and box[3] < picture.height - 2
-            if inside and not any(_overlap(box, other) for other in taken):
+            if inside and not any(overlap(box, other) for other in taken):
                 taken.append(box)
                 write(draw, (at, middle), name, LABEL, anchor="mm")
                 break
@@ -268,8 +269,9 @@ def draw_labels(picture: Image.Image, labels: Sequence[tuple[str, float, float]]
     return left
 
 
-def _overlap(one: tuple[float, float, float, float], two: tuple[float, float, float, float]) -> bool:
-    return one[0] < two[2] and two[0] < one[2] and one[1] < two[3] and two[1] < one[3]
+def overlap(first: Rectangle, second: Rectangle) -> bool:
+    """Whether two rectangles overlap."""
+    return first[0] < second[2] and second[0] < first[2] and first[1] < second[3] and second[1] < first[3]
 
 
 def _draw_end(draw: ImageDraw.ImageDraw, centre: tuple[int, int], colour: Colour, *, away: bool) -> None:

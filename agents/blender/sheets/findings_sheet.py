@@ -1,4 +1,4 @@
-"""The sheet on which findings are seen: what is at fault is coloured, and each fault is marked where it is."""
+"""Draws findings on views of the scene: faulty objects are coloured, and each finding is marked at its place."""
 
 from __future__ import annotations
 
@@ -36,61 +36,66 @@ _CLOSE, _CLOSE_COLUMNS, _TICK = 226, 4, 14
 
 @dataclass(frozen=True, slots=True)
 class FindingMark:
-    """A finding that is marked: its number on the sheet, and what is written beside it."""
+    """A finding that is marked on the sheet, with its number."""
 
     number: int
     finding: Finding
 
     @property
     def colour(self) -> contact_sheet.Colour:
-        """What it is drawn in."""
+        """The colour of the mark."""
         if self.finding.outcome != "broken":
             return _UNSURE
         return _HARD if self.finding.severity == "hard" else _SOFT
 
     @property
     def label(self) -> str:
-        """What is written in the pictures."""
+        """The text in the images."""
         return f"{self.number}  {told(self.finding)}"
 
     @property
     def line(self) -> str:
-        """What is written below them."""
+        """The line below the images."""
         return f"{self.number}  {told(self.finding)}: {self.finding.message}"
 
 
 def findings_to_mark(findings: Sequence[Finding], most: int = MOST_MARKS) -> list[Finding]:
-    """At most so many, of each kind the worst first, so that no kind crowds the others out."""
-    kinds = [row.findings for row in rows(findings) if any(one.objects or one.at for one in row.findings)]
+    """At most ``most`` findings, the worst of each kind first, so that no kind crowds out others."""
+    kinds = [
+        row.findings
+        for row in rows(findings)
+        if any(finding.objects or finding.at for finding in row.findings)
+    ]
     kinds = [kind for kind in kinds if not _is_everywhere(kind)] or kinds
-    found: list[Finding] = []
+    chosen: list[Finding] = []
     for rank in range(max((len(kind) for kind in kinds), default=0)):
-        found += [kind[rank] for kind in kinds if rank < len(kind)]
-    return found[:most]
+        chosen += [kind[rank] for kind in kinds if rank < len(kind)]
+    return chosen[:most]
 
 
 def _is_everywhere(kind: Sequence[Finding]) -> bool:
-    """Whether findings that say the same are so many, and so far from any place, that a picture tells nothing."""
-    return len(kind) > MOST_MARKS and not any(one.at for one in kind)
+    """Whether equal findings are too many, and none has a place, so that marking them shows nothing."""
+    return len(kind) > MOST_MARKS and not any(finding.at for finding in kind)
 
 
 def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -> bytes:
-    """A PNG: four views of the open scene, the findings marked in them and listed below. Raises BlenderError."""
-    marks = [FindingMark(place + 1, one) for place, one in enumerate(findings_to_mark(report.findings))]
-    marked = {id(mark.finding) for mark in marks}
-    asked = [mark.finding for mark in marks]
-    # All that is at fault is coloured, though not all of it is marked.
-    vague = [row for row in rows(report.findings) if _is_everywhere(row.findings)] if marks else []
-    vague = [row for row in vague if not marked & {id(one) for one in row.findings}]
-    left_out = {id(one) for row in vague for one in row.findings}
-    asked += [
-        one for one in report.findings if id(one) not in marked and id(one) not in left_out and one.objects
+    """A PNG: four views of the open scene, with findings marked in them and listed below. Raises BlenderError."""
+    marks = [
+        FindingMark(number, finding) for number, finding in enumerate(findings_to_mark(report.findings), 1)
     ]
+    marked = {id(mark.finding) for mark in marks}
+    drawn = [mark.finding for mark in marks]
+    # All faulty objects are coloured, even if not all are marked.
+    vague = [row for row in rows(report.findings) if _is_everywhere(row.findings)] if marks else []
+    vague = [row for row in vague if not marked & {id(finding) for finding in row.findings}]
+    left_out = {id(finding) for row in vague for finding in row.findings}
+    shown = marked | left_out
+    drawn += [finding for finding in report.findings if id(finding) not in shown and finding.objects]
     folder = blender.folder
     reply = blender.call(
         "findings_image",
         {
-            "findings": [_asked(one, id(one) in marked) for one in asked],
+            "findings": [_request(finding, id(finding) in marked) for finding in drawn],
             "folder": str(folder.workspace),
             "size": PANEL,
             "close": _CLOSE,
@@ -103,7 +108,7 @@ def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -
     blocks = [contact_sheet.grid([panel_of(folder, view, marks) for view in data["views"]], 2)]
     if data["close"]:
         blocks.append(
-            contact_sheet.grid([_close_up(folder, one, marks) for one in data["close"]], _CLOSE_COLUMNS)
+            contact_sheet.grid([_close_up(folder, view, marks) for view in data["close"]], _CLOSE_COLUMNS)
         )
     if marks:
         lines = [
@@ -116,7 +121,7 @@ def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -
         blocks,
         subtitle=verdict(report),
         remarks=[
-            *(f"Not coloured, for it is everywhere: {row.worst.rule}, {row.message}" for row in vague),
+            *(f"Not coloured, since it is everywhere: {row.worst.rule}, {row.message}" for row in vague),
             *_unmarked(report, marks, data["frame"]),
         ],
         notes=data["notes"],
@@ -124,7 +129,7 @@ def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -
     return contact_sheet.to_png(sheet)
 
 
-def _asked(finding: Finding, marked: bool) -> dict[str, Any]:
+def _request(finding: Finding, marked: bool) -> dict[str, Any]:
     length = finding.measured if finding.unit == "m" and finding.outcome == "broken" else None
     return {
         "objects": finding.objects,
@@ -137,23 +142,23 @@ def _asked(finding: Finding, marked: bool) -> dict[str, Any]:
 
 
 def linear(colour: contact_sheet.Colour) -> list[float]:
-    """A colour of a picture, as materials have it."""
+    """An sRGB colour as the linear one that materials use."""
     parts = [part / 255 for part in colour]
     return [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
 
 
-def _taken(folder: RunFolder, file: str, size: int) -> Image.Image:
-    """A picture that Blender left in the workspace, which is removed."""
-    with folder.open_made(file) as made:
-        picture = contact_sheet.read_png(made, _BACKGROUND)
+def _take_image(folder: RunFolder, file: str, size: int) -> Image.Image:
+    """Reads an image that Blender left in the workspace, and removes it."""
+    with folder.open_made(file) as image:
+        picture = contact_sheet.read_png(image, _BACKGROUND)
     with contextlib.suppress(OSError):
         (folder.workspace / file).unlink()
     return picture.resize((size, size), Image.Resampling.LANCZOS)
 
 
 def panel_of(folder: RunFolder, view: dict[str, Any], marks: Sequence[FindingMark]) -> contact_sheet.Panel:
-    """A view that Blender has told of, with scale, axes and ``marks``. Raises Refusal."""
-    picture = _taken(folder, view["file"], view["size"][0])
+    """The panel of a view that Blender rendered, with scale, axes and ``marks``. Raises Refusal."""
+    picture = _take_image(folder, view["file"], view["size"][0])
     if view["ground"] is not None:
         contact_sheet.draw_level(picture, view["ground"], "z = 0")
     contact_sheet.draw_scale_bar(picture, view["metres_per_pixel"])
@@ -163,18 +168,21 @@ def panel_of(folder: RunFolder, view: dict[str, Any], marks: Sequence[FindingMar
     return contact_sheet.Panel(picture, view["name"])
 
 
-def _close_up(folder: RunFolder, told: dict[str, Any], marks: Sequence[FindingMark]) -> contact_sheet.Panel:
-    picture = _taken(folder, told["file"], _CLOSE)
-    contact_sheet.draw_scale_bar(picture, told["metres_per_pixel"])
-    mark, draw, middle = marks[told["mark"]], ImageDraw.Draw(picture), _CLOSE // 2
-    for start, end in ((0, _TICK), (_CLOSE - _TICK, _CLOSE)):  # they point to the fault, and do not hide it
+def _close_up(folder: RunFolder, view: dict[str, Any], marks: Sequence[FindingMark]) -> contact_sheet.Panel:
+    picture = _take_image(folder, view["file"], _CLOSE)
+    contact_sheet.draw_scale_bar(picture, view["metres_per_pixel"])
+    mark, draw, middle = marks[view["mark"]], ImageDraw.Draw(picture), _CLOSE // 2
+    for start, end in (
+        (0, _TICK),
+        (_CLOSE - _TICK, _CLOSE),
+    ):  # lines that point to the fault and do not hide it
         draw.line((start, middle, end, middle), fill=mark.colour, width=2)
         draw.line((middle, start, middle, end), fill=mark.colour, width=2)
-    return contact_sheet.Panel(picture, mark.label, told["name"], border=mark.colour)
+    return contact_sheet.Panel(picture, mark.label, view["name"], border=mark.colour)
 
 
 def _draw_marks(picture: Image.Image, marks: Sequence[tuple[FindingMark, tuple[float, float]]]) -> None:
-    """A ring at each place, and beside it the rule and the size of the fault, where there is room."""
+    """A ring at each place, and beside it, if there is room, the rule and the size of the fault."""
     draw = ImageDraw.Draw(picture)
     inside = [(mark, at) for mark, at in marks if 0 <= at[0] < picture.width and 0 <= at[1] < picture.height]
     for mark, (x, y) in inside:
@@ -195,9 +203,9 @@ def _room_for(
     text: str,
     ring: tuple[float, float],
     size: tuple[int, int],
-    taken: Sequence[tuple[float, float, float, float]],
+    taken: Sequence[contact_sheet.Rectangle],
 ) -> tuple[float, float] | None:
-    """Where a label can begin (its left, the middle of its height) beside a ring; None where all is taken."""
+    """A free place for a label beside a ring (its left, the middle of its height); None if there is none."""
     width, (x, y) = text_width(text, _LABEL.size), ring
     aside = _RING + 4
     for down in (0, -1, 1, -2, 2, -3, 3):
@@ -207,25 +215,21 @@ def _room_for(
             place = (left, y + down * 0.75 * _LABEL.size)
             box = _box(text, place)
             fits = box[0] >= 2 and box[1] >= 2 and box[2] <= size[0] - 2 and box[3] <= size[1] - 2
-            if fits and not any(_overlap(box, other) for other in taken):
+            if fits and not any(contact_sheet.overlap(box, other) for other in taken):
                 return place
     return None
 
 
-def _box(text: str, place: tuple[float, float]) -> tuple[float, float, float, float]:
+def _box(text: str, place: tuple[float, float]) -> contact_sheet.Rectangle:
     half = _LABEL.size * 0.6
     return (place[0], place[1] - half, place[0] + text_width(text, _LABEL.size), place[1] + half)
 
 
-def _overlap(one: tuple[float, float, float, float], two: tuple[float, float, float, float]) -> bool:
-    return one[0] < two[2] and two[0] < one[2] and one[1] < two[3] and two[1] < one[3]
-
-
 def _unmarked(report: Report, marks: Sequence[FindingMark], frame: int) -> list[str]:
-    """What is not to be seen in the pictures, in words."""
+    """Remarks on findings that the images do not show."""
     elsewhere = [mark for mark in marks if mark.finding.frame not in {None, frame}]
-    told = [f"{mark.number} (frame {mark.finding.frame})" for mark in elsewhere]
-    remarks = [f"Not marked, for it is not at frame {frame}: {', '.join(told)}."] if told else []
+    numbers = [f"{mark.number} (frame {mark.finding.frame})" for mark in elsewhere]
+    remarks = [f"Not marked, since not at frame {frame}: {', '.join(numbers)}."] if numbers else []
     left = len(report.findings) - len(marks)
     if left:
         remarks.append(f"{left} more {'finding is' if left == 1 else 'findings are'} not marked.")

@@ -1,6 +1,6 @@
-"""What is drawn of a motion: its trail on pictures, and its course over the frames, with phases, caches and contacts.
+"""Draws motion: its trail on images, and a timeline of curves, phases, caches, contacts and keyframes.
 
-Everything on a timeline shares one axis of frames, so that what stands above each other happens at the same time.
+Everything on a timeline shares one axis of frames, so that what is above each other happens at the same time.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ EDGES: tuple[Colour, ...] = ((86, 134, 196), (200, 146, 70), (92, 160, 104), (16
 _LABELS, _RIGHT = 186, 50
 _CURVES, _HEAD, _ROW, _AXIS = 130, 54, 20, 26
 _GIZMO = (112, 92)
-_FINER = 3  # lines are drawn so many times larger, and shrunk
+_FINER = 3  # lines are drawn this many times larger, then shrunk
 _LABEL = Style(13, GREY)
 _NUMBER = Style(12, GREY)
 
 
 @dataclass(frozen=True, slots=True)
 class PhaseBand:
-    """A named stretch of frames, and what the motion comes to in it, in words: of the summaries the first that fits."""
+    """A named range of frames; the first of ``summaries`` that fits is written in it."""
 
     name: str
     start: int
@@ -50,7 +50,7 @@ class PhaseBand:
 
 @dataclass(frozen=True, slots=True)
 class BarRow:
-    """Something that holds over ``spans`` of frames, as bars, with ``text`` beside; ``dashed``: not for certain."""
+    """Bars over ``spans`` of frames, with ``text`` beside them; ``dashed``: not certain."""
 
     label: str
     spans: list[tuple[int, int]]
@@ -74,11 +74,11 @@ class MotionCourse:
     axes: list[tuple[str, float, float, float]]  # as draw_axes has them
 
 
-# On pictures
+# On images
 
 
 def draw_trail(picture: Image.Image, places: Sequence[Place | None], at: int) -> None:
-    """The way of a motion in a picture's pixels: strong up to place number ``at``, pale after it, a dot there."""
+    """The trail of a motion in pixels: strong up to place number ``at``, pale after it, with a dot there."""
     before = [place for place in places[: at + 1] if place is not None]
     after = [place for place in places[at:] if place is not None]
 
@@ -105,7 +105,7 @@ def draw_trail(picture: Image.Image, places: Sequence[Place | None], at: int) ->
 
 
 def _layered(picture: Image.Image, draw: Callable[[ImageDraw.ImageDraw, int], None]) -> None:
-    """Lets ``draw`` draw on a finer layer, which is then put over the picture with soft edges."""
+    """Lets ``draw`` draw on a larger layer, which is shrunk and put over the image with soft edges."""
     width, height = picture.size
     layer = Image.new("RGBA", (width * _FINER, height * _FINER), (0, 0, 0, 0))
     draw(ImageDraw.Draw(layer), _FINER)
@@ -117,7 +117,7 @@ def _layered(picture: Image.Image, draw: Callable[[ImageDraw.ImageDraw, int], No
 
 
 def timeline(course: MotionCourse, width: int) -> Image.Image:
-    """The course of a motion: phases, the two curves, and below them bars and keyframes."""
+    """A timeline: phases, two curves, and below them bars and keyframes."""
     rows = len(course.rows) + bool(course.keyframes)
     picture = Image.new("RGB", (width, _HEAD + _CURVES + _AXIS + _ROW * rows), PAPER)
     _Timeline(picture, course).draw()
@@ -157,7 +157,7 @@ class _Timeline:
         starts = {phase.start for phase in self._course.phases}
         ends = {phase.end for phase in self._course.phases}
         for number, phase in enumerate(self._course.phases):
-            # Where one phase ends on a frame and the next begins on the one after, they meet between.
+            # Phases that end and begin on neighbouring frames meet half-way between them.
             left = self._x(phase.start - (0.5 if phase.start - 1 in ends else 0))
             right = self._x(phase.end + (0.5 if phase.end + 1 in starts else 0))
             tint, edge = TINTS[number % len(TINTS)], EDGES[number % len(EDGES)]
@@ -195,7 +195,7 @@ class _Timeline:
         x, anchor = (self._left - 6, "rm") if left else (self._right + 6, "lm")
         for number in range(round(top / step) + 1):
             y = self._bottom - number * step / top * _CURVES
-            write(self._draw, (x, y), _told(number * step, step), style, anchor=anchor)
+            write(self._draw, (x, y), _format(number * step, step), style, anchor=anchor)
         y = self._top + (46 if left else 74)
         self._draw.line((8, y, 22, y), fill=colour, width=3)
         write(self._draw, (28, y), shortened(label, _LABELS - 28 - 34, 13), Style(13, colour), anchor="lm")
@@ -234,7 +234,7 @@ class _Timeline:
         self._write_beside(row, min(ends, default=self._left), max(ends, default=self._left), middle)
 
     def _write_beside(self, row: BarRow, left: float, right: float, y: float) -> None:
-        """The text of a bar: after it, before it, or upon it, wherever there is room."""
+        """The text of a bar: after it, before it, or on it, wherever there is room."""
         wide, style = text_width(row.text, 12), Style(12, row.colour)
         if right + 12 + wide < self._right:
             x = right + 7
@@ -258,7 +258,7 @@ class _Timeline:
 
 
 def _pieces(frames: Iterable[int], values: Curve) -> list[list[tuple[int, float]]]:
-    """The stretches of a curve where it is known."""
+    """The parts of a curve with known values."""
     pieces: list[list[tuple[int, float]]] = [[]]
     for frame, value in zip(frames, values, strict=True):
         if value is None:
@@ -275,7 +275,7 @@ def _round_step(least: float, *, whole: bool = False) -> float:
     return max(1.0, step) if whole else step
 
 
-def _told(value: float, step: float) -> str:
+def _format(value: float, step: float) -> str:
     digits = max(0, -math.floor(math.log10(step) + 1e-9))
     return f"{value:.{digits}f}"
 
@@ -284,5 +284,5 @@ STATES: dict[str, Colour] = {"baked": GREEN, "unbaked": AMBER}
 
 
 def state_colour(state: str) -> Colour:
-    """The colour of a cache's state: green where it can be trusted."""
+    """The colour of a cache's state: green if it can be trusted."""
     return RUST if "outdated" in state else STATES.get(state, GREY)

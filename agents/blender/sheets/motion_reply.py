@@ -1,4 +1,4 @@
-"""What Blender answers about motion, checked: it comes from outside the trust."""
+"""Blender's reply about motion. It is not trusted, so its shape is checked."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ class ShotView(_Reply):
     size: tuple[Side, Side]
 
     def pixel(self, place: Vector) -> tuple[float, float]:
-        """Where a place of the world is on the picture."""
-        way = [here - there for here, there in zip(place, self.centre, strict=True)]
-        right, up, _ = (sum(a * b for a, b in zip(way, axis, strict=True)) for axis in self.axes)
+        """The pixel of a point in the world."""
+        offset = [a - b for a, b in zip(place, self.centre, strict=True)]
+        right, up, _ = (sum(a * b for a, b in zip(offset, axis, strict=True)) for axis in self.axes)
         width, height = self.size
         return width / 2 + right / self.metres_per_pixel, height / 2 - up / self.metres_per_pixel
 
 
 class Shot(_Reply):
-    """One picture: ``view`` is None where the actor is not there."""
+    """One image; ``view`` is None if the actor is absent at that frame."""
 
     frame: Frame
     view: ShotView | None
 
 
 class Strip(_Reply):
-    """The pictures of one kind of view: ``path`` (the whole way) or ``close``."""
+    """The images of one kind of view: ``path`` (the whole path) or ``close``."""
 
     kind: Annotated[str, Field(pattern="^(path|close)$")]
     pictures: list[Shot] = Field(max_length=_MOST_PICTURES)
 
 
 class CacheState(_Reply):
-    """A physics cache that moves the actor: ``state`` in words, the frames that it is for."""
+    """A physics cache that moves the actor: ``state`` in words, and the frames it covers."""
 
     label: Text
     state: Text
@@ -58,7 +58,7 @@ class CacheState(_Reply):
 
 
 class Contact(_Reply):
-    """A contact: ``frames`` are the first and last one of each time, ``gap`` metres are between them at the first."""
+    """A contact: (first, last) frame of each period, and the ``gap`` in metres at the first."""
 
     partner: Text = Field(alias="with")
     frames: list[tuple[Frame, Frame]] = Field(min_length=1, max_length=50)
@@ -66,9 +66,9 @@ class Contact(_Reply):
 
     @property
     def when(self) -> str:
-        """In words: the first times."""
-        words = [f"{first}–{last}" if last > first else f"{first}" for first, last in self.frames[:3]]
-        return ", ".join(words) + (" …" if len(self.frames) > 3 else "")
+        """The first periods, in words."""
+        periods = [f"{first}–{last}" if last > first else f"{first}" for first, last in self.frames[:3]]
+        return ", ".join(periods) + (" …" if len(self.frames) > 3 else "")
 
 
 class PhaseMotion(_Reply):
@@ -114,7 +114,7 @@ class ActorMotion(_Reply):
 
 
 class MotionReply(_Reply):
-    """The whole answer. ``stepped_from``: the frame from which all were stepped, None if they were played."""
+    """The whole reply. ``stepped_from``: the frame from which all frames were stepped; None if they were played."""
 
     start: Frame
     end: Frame
@@ -128,9 +128,9 @@ class MotionReply(_Reply):
 
     @property
     def how_played(self) -> str:
-        """In words: whether the frames were played or stepped, and why."""
-        often = "" if self.stride == 1 else f"; measured every {self.stride} frames"
+        """Whether the frames were played or stepped, and why, in words."""
+        stride = "" if self.stride == 1 else f"; measured every {self.stride} frames"
         if self.stepped_from is None:
-            return f"played: all physics is baked, or there is none{often}"
+            return f"played, since all physics is baked or there is none{stride}"
         names = ", ".join(self.stepped_for[:4]) + (" …" if len(self.stepped_for) > 4 else "")
-        return f"stepped frame by frame from {self.stepped_from}, not baked: {names}{often}"
+        return f"stepped frame by frame from {self.stepped_from}, not baked: {names}{stride}"

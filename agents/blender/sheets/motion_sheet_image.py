@@ -1,4 +1,4 @@
-"""Motion sheets: strips of pictures and timelines, put together from what Blender answered."""
+"""Motion sheets: strips of images and timelines, drawn from Blender's reply."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ _SPEEDS = {"vertices": "vertex speed, m/s", "particles": "particle speed, m/s"}
 
 
 def draw_sheets(motion: MotionReply, open_tile: Callable[[str], BinaryIO]) -> list[bytes]:
-    """The sheets as PNGs: as many actors on each as are still readable. ``open_tile`` opens a picture by its name.
+    """The sheets as PNGs, each with as many actors as stay readable. ``open_tile`` opens an image by its name.
 
-    Raises Refusal for a picture that is missing or is none.
+    Raises Refusal for an image that is missing or cannot be read.
     """
 
     def tile(number: int, strip: Strip, shot: Shot, view: ShotView) -> Image.Image:
@@ -77,25 +77,25 @@ def draw_sheets(motion: MotionReply, open_tile: Callable[[str], BinaryIO]) -> li
         blocks.append(stack(parts))
     pages: list[list[Image.Image]] = [[]]
     for block in blocks:
-        if pages[-1] and sum(one.height for one in pages[-1]) + block.height > _TALLEST:
+        if pages[-1] and sum(other.height for other in pages[-1]) + block.height > _TALLEST:
             pages.append([])
         pages[-1].append(block)
     subtitle = f"Frames {motion.start}–{motion.end} at {motion.fps:g} fps, {motion.how_played}."
-    made: list[bytes] = []
+    sheets: list[bytes] = []
     for number, page in enumerate(pages, 1):
         title = f"Motion sheet ({number} of {len(pages)})" if len(pages) > 1 else "Motion sheet"
-        made.append(
+        sheets.append(
             to_png(
                 sheet(
                     title, [stack(page, _APART)], subtitle=subtitle, notes=motion.notes if number == 1 else ()
                 )
             )
         )
-    return made
+    return sheets
 
 
 def _heading(actor: ActorMotion) -> Image.Image:
-    """The actor's name, and a chip for every cache that moves it."""
+    """The actor's name, and a label for each cache that moves it."""
     line = paragraph(actor.name, WIDTH, _NAME)
     draw = ImageDraw.Draw(line)
     x: float = WIDTH
@@ -122,7 +122,7 @@ def _panel(actor: ActorMotion, strip: Strip, shot: Shot, tile: Callable[[ShotVie
     phase, colour = _phase_of(actor, shot.frame)
     caption = f"frame {shot.frame}"
     if shot.view is None:
-        return Panel(Image.new("RGB", (32, 32), PAPER), caption, "not there", colour)
+        return Panel(Image.new("RGB", (32, 32), PAPER), caption, "absent", colour)
     picture = tile(shot.view)
     if strip.kind == "path":
         places = [None if centre is None else shot.view.pixel(centre) for centre in actor.centres]
@@ -145,7 +145,7 @@ def _course(motion: MotionReply, actor: ActorMotion) -> MotionCourse:
         displacements=actor.displacements,
         speeds=actor.speeds,
         speed_label=_SPEEDS.get(actor.speed_of, "speed, m/s"),
-        phases=[PhaseBand(one.phase, one.start, one.end, _summaries(one)) for one in actor.phases],
+        phases=[PhaseBand(phase.phase, phase.start, phase.end, _summaries(phase)) for phase in actor.phases],
         sampled=motion.sampled,
         keyframes=actor.keyframes,
         rows=_rows(actor),
@@ -154,7 +154,7 @@ def _course(motion: MotionReply, actor: ActorMotion) -> MotionCourse:
 
 
 def _axes(actor: ActorMotion) -> list[tuple[str, float, float, float]]:
-    """How the world's axes stand in the pictures."""
+    """The directions of the world's axes in the images."""
     views = [shot.view for strip in actor.views for shot in strip.pictures if shot.view is not None]
     if not views:
         return []
@@ -163,9 +163,9 @@ def _axes(actor: ActorMotion) -> list[tuple[str, float, float, float]]:
 
 
 def _summaries(phase: PhaseMotion) -> tuple[str, ...]:
-    """What the motion comes to in a phase, at length and shorter and shorter."""
+    """Summaries of the motion in a phase, each shorter than the one before."""
     if not phase.present:
-        return ("not there",)
+        return ("absent",)
     way, turn = f"{phase.displacement:.3g} m", ""
     if phase.turn is not None and phase.turn >= 1:
         turn = f" · turns {phase.turn:.0f}°"
@@ -199,6 +199,6 @@ def _rows(actor: ActorMotion) -> list[BarRow]:
             for first, last in touch.frames:
                 goes_on = spans and first <= spans[-1][1] + 1  # from the phase before
                 spans.append((spans.pop()[0] if goes_on else first, last))
-    for name, spans in sorted(touched.items(), key=lambda one: one[1])[:_MOST_ROWS]:
+    for name, spans in sorted(touched.items(), key=lambda item: item[1])[:_MOST_ROWS]:
         rows.append(BarRow("touches", spans, EDGES[3], f"{name}, from {spans[0][0]}"))
     return rows

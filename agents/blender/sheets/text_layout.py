@@ -1,4 +1,4 @@
-"""Words on pictures: Blender's own fonts, and lines that fit."""
+"""Text on images: fonts, and lines that fit a width."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from PIL import ImageFont
 
 _LATIN, _WIDE = "Inter.woff2", "Noto Sans CJK Regular.woff2"
 _SYSTEM = ("DejaVuSans.ttf", "LiberationSans-Regular.ttf", "Arial.ttf", "Arial Unicode.ttf")
-_FIRST_WIDE = 0x2E80  # where the scripts of East Asia begin
+_FIRST_WIDE = 0x2E80  # first character of East Asian scripts
 
 
 def text_width(text: str, size: int) -> float:
-    """Pixels that a line of text takes."""
+    """The width of a line of text in pixels."""
     return font_for(text, size).getlength(text)
 
 
@@ -27,7 +27,7 @@ def one_line(text: str) -> str:
 
 
 def shortened(text: str, width: float, size: int) -> str:
-    """``text`` on one line, its middle left out where it is wider than ``width`` pixels."""
+    """``text`` on one line, with its middle left out if it is wider than ``width`` pixels."""
     text = one_line(text)[:2000]
     if text_width(text, size) <= width:
         return text
@@ -42,7 +42,7 @@ def shortened(text: str, width: float, size: int) -> str:
 
 
 def wrapped(text: str, width: float, size: int) -> list[str]:
-    """``text`` as lines of at most ``width`` pixels; what is too long for a line is shortened."""
+    """``text`` as lines of at most ``width`` pixels; words that are too long are shortened."""
     lines: list[str] = []
     for piece in text.splitlines() or [""]:
         line = ""
@@ -65,7 +65,7 @@ def round_length(longest: float) -> float:
 
 
 def format_length(metres: float) -> str:
-    """A length as readers compare it best: always in metres, four digits at most."""
+    """A length, always in metres so that lengths can be compared, with four digits at most."""
     if metres == 0 or 1e-4 <= abs(metres) < 1e4:
         digits = max(0, 2 - math.floor(math.log10(abs(metres)))) if metres else 0
         number = f"{metres:.{digits}f}"
@@ -74,14 +74,14 @@ def format_length(metres: float) -> str:
 
 
 def font_for(text: str, size: int) -> ImageFont.FreeTypeFont:
-    """A font that has the letters of ``text``, as far as there is one."""
+    """A font that has the characters of ``text``, if there is one."""
     wide = any(ord(letter) >= _FIRST_WIDE for letter in text)
     return _font(_WIDE if wide else _LATIN, size)
 
 
 @cache
 def _font(name: str, size: int) -> ImageFont.FreeTypeFont:
-    # bpy is only looked up: it must not run in this process.
+    # bpy is only located: it must not run in this process.
     spec = importlib.util.find_spec("bpy")
     inside = Path(spec.origin).parent.glob(f"*/datafiles/fonts/{name}") if spec and spec.origin else ()
     for choice in (*map(str, inside), *_SYSTEM):

@@ -1,10 +1,10 @@
-"""What a tool is: a name that models know, arguments that can be checked, and what comes back."""
+"""What all tools share: arguments, context, call and result."""
 
 from __future__ import annotations
 
 import threading
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
 
 
 class Arguments(BaseModel):
-    """The arguments of a tool; their descriptions are what a model reads."""
+    """The arguments of a tool; models read their descriptions."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 class Docs(Protocol):
-    """A way to ask the knowledge base."""
+    """A look-up in the knowledge base."""
 
     def __call__(self, query: str, *, max_tokens: int = 400) -> str:
-        """The answer in Markdown, "" where there is none to be had."""
+        """The answer in Markdown; "" if there is none."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class SavedImage:
-    """A PNG, and where it lies in the run's folder."""
+    """A PNG, and its path in the run's folder."""
 
     png: bytes
     path: Path
@@ -42,9 +42,9 @@ class SavedImage:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a tool found: ``text`` (Markdown, for the model), ``data`` (the same as JSON), pictures.
+    """What a tool returns: ``text`` (Markdown, for the model), ``data`` (the same as JSON), images.
 
-    ``failed``: the tool ran, and what it was asked to do went wrong.
+    ``failed``: the tool ran, but what it was to do went wrong.
     """
 
     text: str
@@ -55,7 +55,7 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class ToolContext:
-    """What a tool works with: one run's Blender, and the knowledge base."""
+    """What a tool works with: a run's Blender and the knowledge base."""
 
     blender: Supervisor
     docs: Docs
@@ -63,20 +63,17 @@ class ToolContext:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """How a call is watched: ``progress`` gets (done, total, text); ``cancelled`` is set when nobody waits any more."""
+    """A call's link to its caller: ``progress`` gets (done, total, text); ``cancelled`` is set to end the call."""
 
     progress: Progress | None = None
     cancelled: threading.Event = field(default_factory=threading.Event)
 
 
-Given = TypeVar("Given", bound=Arguments)
-
-
 @dataclass(frozen=True, slots=True)
 class BlenderTool:
-    """A tool of the suite (paper, Table "Tool suite"). ``run`` raises BlenderError for what it cannot do.
+    """A tool of the suite (paper, Table "Tool suite"). ``run`` raises BlenderError.
 
-    ``destructive``: what was there before may be gone afterwards.
+    ``destructive``: it may remove or replace what was there.
     """
 
     name: str
@@ -88,24 +85,21 @@ class BlenderTool:
     destructive: bool = False
 
 
-def parse(tool: BlenderTool, given: dict[str, Any] | None) -> Arguments:
-    """The arguments of a call, checked. Raises Refusal, naming each that is wrong."""
+def parse(tool: BlenderTool, arguments: dict[str, Any] | None) -> Arguments:
+    """The arguments of a call, checked. Raises Refusal, which names each wrong one."""
     try:
-        return tool.arguments.model_validate(given or {})
+        return tool.arguments.model_validate(arguments or {})
     except ValidationError as error:
         wrong = "; ".join(
             f"{'.'.join(str(part) for part in fault['loc']) or 'arguments'}: {fault['msg']}"
             for fault in error.errors(include_url=False, include_context=False)
         )
-        raise Refusal(f"The arguments do not fit {tool.name}: {wrong[:800]}") from error
+        raise Refusal(f"Wrong arguments for {tool.name}: {wrong[:800]}") from error
 
 
-def perform(tool: BlenderTool, context: ToolContext, asked: Arguments, call: Call) -> Result:
-    """Runs a tool; what has happened to Blender meanwhile comes before its text. Raises BlenderError."""
-    result = tool.run(context, asked, call)
-    note = context.blender.take_note()
-    return (
-        replace(result, text=f"{note}\n\n{result.text}", data={**result.data, "note": note})
-        if note
-        else result
-    )
+def perform(tool: BlenderTool, context: ToolContext, arguments: Arguments, call: Call) -> Result:
+    """Runs a tool. Its text begins with what happened to Blender since the last reply. Raises BlenderError."""
+    result = tool.run(context, arguments, call)
+    if not (note := context.blender.take_note()):
+        return result
+    return replace(result, text=f"{note}\n\n{result.text}", data={**result.data, "note": note})

@@ -1,4 +1,4 @@
-"""``blender_execute``: Python in the live Blender."""
+"""``blender_execute``: runs Python in the live Blender."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from agents.blender.formatting import format_count
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.sandbox.errors import Untrustworthy
 
@@ -21,27 +22,27 @@ _LONGEST_TITLE = 40
 class ExecuteArguments(Arguments):
     """The arguments of ``blender_execute``."""
 
-    code: str = Field(max_length=LONGEST_CODE, description="Python. `bpy` is there; import the rest.")
+    code: str = Field(max_length=LONGEST_CODE, description="Python. `bpy` is imported; import the rest.")
     timeout: float = Field(
         default=60.0, ge=0.1, le=3600, description="Seconds after which Blender is stopped and put back."
     )
     on_error: Literal["keep", "restore"] = Field(
         default="keep",
-        description="What becomes of a scene in which code failed half-way: kept as it is, or put back to before.",
+        description="When the code fails half-way: keep the scene as it is, or restore it as it was before.",
     )
 
 
 DESCRIPTION = """\
-Run Python in the live Blender. Each call has a fresh namespace; what is in the file (`bpy.data`) stays. \
-The reply holds what was printed, the value of a final expression, what changed in the scene, and for an \
-error the line that failed, with what the documentation of this Blender version says about the name that \
-was wrong. Physics: step frames one by one or bake; never jump. No network, no other processes; files go \
+Run Python in the live Blender. Each call has a fresh namespace; `bpy.data` stays from call to call. The \
+reply has the printed output, the value of a final expression, what changed in the scene, and for an \
+error the line that failed, with what the documentation of this Blender version says about the wrong \
+name. Physics: step frames one by one or bake; never jump. No network, no other processes; write files \
 below the current folder. Code that runs past `timeout` (seconds) or ends Blender is undone: Blender is \
-started again from the last checkpoint, which is taken after every call."""
+restarted from the last checkpoint, which is taken after every call."""
 
 
 class _Fault(BaseModel):
-    """An exception of executed code, as Blender's side tells it."""
+    """An exception of executed code, as the worker reports it."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -55,7 +56,7 @@ class _Fault(BaseModel):
 
 
 class _Outcome(BaseModel):
-    """What Blender's side tells of executed code, which could have bent that side."""
+    """The worker's report on executed code, which is not trusted: the code could have changed the worker."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -67,7 +68,7 @@ class _Outcome(BaseModel):
 
 
 def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result:
-    """Runs the code; tells what came of it."""
+    """Runs the code."""
     blender = context.blender
     if arguments.on_error == "restore":
         blender.keep("before code that may be undone")
@@ -83,63 +84,63 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
         progress=call.progress,
         cancelled=call.cancelled,
     )
-    data = _checked(context, reply, title, before)
+    data = _outcome(context, reply, title, before)
     data.update(stdout=reply.stdout, stderr=reply.stderr, seconds=round(reply.seconds, 4))
     error = data["error"]
     if error is None:
-        return Result(_told(data, reply), data)
+        return Result(_text(data, reply), data)
     error["documentation"] = context.docs(error["ask"]) if error["ask"] else ""
     if arguments.on_error == "restore":
-        data["scene"] = f"The scene was put back to {blender.restore()}."
+        data["scene"] = f"The scene was restored from {blender.restore()}."
     else:
-        data["scene"] = f"The scene is as the code left it.{_way_back(before, unkept)}"
-    return Result(_told(data, reply), data, failed=True)
+        data["scene"] = f"The scene is as the code left it.{_how_to_undo(before, unkept)}"
+    return Result(_text(data, reply), data, failed=True)
 
 
 def _title(code: str) -> str:
-    """The first line that says something, cut short."""
+    """The first line that is not empty, shortened."""
     lines = [line.strip() for line in code.splitlines() if line.strip()]
-    first = lines[0] if lines else "nothing"
+    first = lines[0] if lines else "(empty)"
     return first if len(lines) < 2 and len(first) <= _LONGEST_TITLE else f"{first[:_LONGEST_TITLE]} …"
 
 
-def _checked(context: ToolContext, reply: Reply, title: str, before: Checkpoint | None) -> dict[str, Any]:
-    """The outcome, if it is one; otherwise the scene is put back, for nothing is known of it."""
+def _outcome(context: ToolContext, reply: Reply, title: str, before: Checkpoint | None) -> dict[str, Any]:
+    """The worker's report; the scene is restored if it is malformed, since its state is unknown."""
     try:
         return _Outcome.model_validate(reply.value, strict=True).model_dump()
     except ValidationError as error:
         raise Untrustworthy(
-            f"What came back of the code {title!r} is no answer, and nothing of it is believed. The scene was put "
-            f"back to {context.blender.restore(before.number if before else None)}.",
+            f"The reply to the code {title!r} is malformed and was ignored. The scene was restored from "
+            f"{context.blender.restore(before.number if before else None)}.",
             (reply.stdout + reply.stderr)[-2000:],
         ) from error
 
 
-def _way_back(before: Checkpoint | None, unkept: int) -> str:
+def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     if before is None:
         return ""
-    also = f", and the {unkept} call(s) before it" if unkept else ""
-    return f" To undo it{also}: blender_load(checkpoint={before.number})."
+    calls = f" and the {format_count(unkept, 'call')} before it" if unkept else ""
+    return f" To undo it{calls}: blender_load(checkpoint={before.number})."
 
 
-def _told(data: dict[str, Any], reply: Reply) -> str:
+def _text(data: dict[str, Any], reply: Reply) -> str:
     parts: list[str] = []
     if error := data["error"]:
         parts.append(f"**{error['type']}**: {error['message']}")
         if error["source"]:
             parts.append(f"```python\n{error['source']}\n```")
         if error["there"]:
-            parts.append("There are, the nearest first: " + ", ".join(f"`{name}`" for name in error["there"]))
-        if error["documentation"]:
             parts.append(
-                f"What the documentation says of `{error['ask'][:120]}`:\n\n{error['documentation']}"
+                "Existing names, nearest first: " + ", ".join(f"`{name}`" for name in error["there"])
             )
+        if error["documentation"]:
+            parts.append(f"The documentation on `{error['ask'][:120]}`:\n\n{error['documentation']}")
         parts.append(data["scene"])
     if data["value"] is not None:
         parts.append(f"Value: `{data['value']}`")
     for name, text in (("Printed", reply.stdout), ("On stderr", reply.stderr)):
         if text.strip():
-            parts.append(f"{name}:\n```\n{_bounded(text.rstrip())}\n```")
+            parts.append(f"{name}:\n```\n{_shortened(text.rstrip())}\n```")
     if data["changed"]:
         lines = [
             f"- {kind} {word}: {', '.join(names)}"
@@ -153,7 +154,7 @@ def _told(data: dict[str, Any], reply: Reply) -> str:
     return "\n\n".join(parts)
 
 
-def _bounded(text: str) -> str:
+def _shortened(text: str) -> str:
     if len(text) <= _LONGEST_PRINT:
         return text
     half = _LONGEST_PRINT // 2

@@ -1,4 +1,4 @@
-"""``blender_motion_sheet_preview``: how actors move, in pictures over sampled frames and in numbers."""
+"""``blender_motion_sheet_preview``: how actors move, in images of sampled frames and in numbers."""
 
 from __future__ import annotations
 
@@ -13,36 +13,34 @@ from agents.blender.sheets.contact_sheet import GAP
 from agents.blender.sheets.motion_reply import ActorMotion, Frame, MotionReply, PhaseMotion
 from agents.blender.sheets.motion_sheet_image import WIDTH, draw_sheets
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
+from agents.blender.tools.preview_files import FOLDER
 from simworlds.sandbox.errors import ToolBroke
-from simworlds.sandbox.usage import empty_folder
+from simworlds.sandbox.usage import remove
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 MOST_ACTORS, MOST_PICTURES, MOST_PHASES = 8, 12, 24
-_FOLDER = "previews"
 _MEASURED = {
     "vertices": "mean of its vertices",
     "particles": "mean of its particles",
-    "fluid": "middle of its fluid",
+    "fluid": "centre of its fluid",
 }
 
 
 class PhaseArguments(BaseModel):
-    """A named stretch of the motion, both frames included."""
+    """A named part of the motion, both frames included."""
 
     model_config = ConfigDict(extra="forbid")
 
-    name: str = Field(min_length=1, max_length=60, description="What happens, as 'fall' or 'settle'.")
+    name: str = Field(min_length=1, max_length=60, description="What happens, such as 'fall' or 'settle'.")
     start: Frame = Field(description="First frame.")
     end: Frame = Field(description="Last frame; the next phase may begin on it.")
 
     @model_validator(mode="after")
     def _in_order(self) -> PhaseArguments:
         if self.end <= self.start:
-            raise ValueError(
-                f"phase {self.name!r} ends at {self.end}, which is not after its start {self.start}"
-            )
+            raise ValueError(f"phase {self.name!r} must end after its start {self.start}, not at {self.end}")
         return self
 
 
@@ -53,45 +51,45 @@ class MotionSheetArguments(Arguments):
         min_length=1,
         max_length=MOST_ACTORS,
         description="Names of objects, or of collections tagged protocol_role='object' (measured as one). An emitter "
-        "is followed by its particles, a fluid domain by its fluid.",
+        "is measured by its particles, a fluid domain by its fluid.",
     )
     phases: list[PhaseArguments] = Field(
         default_factory=list[PhaseArguments],
         max_length=MOST_PHASES,
-        description="Stretches of the motion that are measured one by one. Default: the scene's frame range as one.",
+        description="Parts of the motion that are measured one by one. Default: the scene's frame range as one.",
     )
     frames: list[Frame] = Field(
         default_factory=list[Frame],
         max_length=MOST_PICTURES,
-        description="Frames to draw, at least two; without phases, all between them is measured. Default: starts, "
-        "middles and ends of the phases, or seven over the range.",
+        description="Frames to draw, at least two; without phases, the whole range between them is measured. Default: "
+        "starts, middles and ends of the phases, or seven over the range.",
     )
     timeout: float = Field(
-        default=300.0, ge=1, le=3600, description="Seconds after which Blender is stopped and put back."
+        default=300.0, ge=1, le=3600, description="Seconds after which Blender is stopped and restarted."
     )
 
     @model_validator(mode="after")
     def _consistent(self) -> MotionSheetArguments:
         if len(set(self.frames)) == 1:
-            raise ValueError("frames: one frame alone shows no motion; give at least two")
+            raise ValueError("frames: a single frame shows no motion; give at least two")
         if len(set(self.actors)) != len(self.actors):
             raise ValueError("actors: a name is given twice")
         ordered = sorted(self.phases, key=lambda phase: phase.start)
-        for one, other in itertools.pairwise(ordered):
-            if other.start < one.end:
-                pair = " and ".join(f"{each.name!r} ({each.start}–{each.end})" for each in (one, other))
+        for phase, following in itertools.pairwise(ordered):
+            if following.start < phase.end:
+                pair = " and ".join(f"{each.name!r} ({each.start}–{each.end})" for each in (phase, following))
                 raise ValueError(f"phases: {pair} overlap")
         return self
 
 
 DESCRIPTION = """\
-See and measure how things move. For each actor: a strip of pictures over sampled frames in one fixed view of its \
-whole path (and close-ups if it is small in it), with its trail; below, displacement and speed over the frames with \
-phases, keyframes, contacts and the state of the physics caches that move it. As data, per actor and phase: \
-displacement and path length (m), peak and final speed (m/s), turn (degrees), what was touched from which frame on. \
-Measured on evaluated geometry: the mean of the vertices (cloth, soft bodies), of the particles, of a fluid's \
-surface. Physics that is not baked is stepped frame by frame from the start of its cache, and the sheet says so. \
-The scene is left as it was, at its frame."""
+See and measure how objects move. For each actor: a strip of images at sampled frames in one fixed view of its whole \
+path (and close-ups if it is small in it), with its trail; below, displacement and speed over the frames with phases, \
+keyframes, contacts and the state of the physics caches that move it. As data, per actor and phase: displacement and \
+path length (m), peak and final speed (m/s), turn (degrees), what was touched and from which frame on. Measured on \
+evaluated geometry: the mean of the vertices (cloth, soft bodies), of the particles, of a fluid's surface. Physics \
+that is not baked is stepped frame by frame from the start of its cache, and the sheet says so. The scene is not \
+changed and stays at its frame."""
 
 
 def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Result:
@@ -119,20 +117,18 @@ def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Re
             motion = MotionReply.model_validate(reply.value)
         except ValidationError as error:
             raise ToolBroke(
-                f"Blender's answer cannot be understood: {error.error_count()} faults", str(error)
+                f"Blender's reply does not have the expected form: {error.error_count()} faults", str(error)
             ) from error
         sheets = draw_sheets(motion, lambda name: folder.open_made(f"{tiles}/{name}"))
     finally:
-        empty_folder(place)
-        with suppress(OSError):
-            place.rmdir()
-    pictures = tuple(SavedImage(png, _kept(folder.root / _FOLDER, png)) for png in sheets)
+        remove(place)
+    pictures = tuple(SavedImage(png, _save(folder.root / FOLDER, png)) for png in sheets)
     data = _data(motion)
     data["pictures"] = [str(picture.path.relative_to(folder.root)) for picture in pictures]
-    return Result(_told(motion), data, pictures)
+    return Result(_text(motion), data, pictures)
 
 
-def _kept(folder: Path, png: bytes) -> Path:
+def _save(folder: Path, png: bytes) -> Path:
     """Writes a sheet under the next free name."""
     folder.mkdir(exist_ok=True)
     for number in itertools.count(1):
@@ -140,13 +136,13 @@ def _kept(folder: Path, png: bytes) -> Path:
         with suppress(FileExistsError), path.open("xb") as file:
             file.write(png)
             return path
-    raise AssertionError("numbers do not end")
+    raise AssertionError("itertools.count does not end")
 
 
 def _data(motion: MotionReply) -> dict[str, Any]:
-    """What a caller gets as data: the numbers, and where each actor is at the sampled frames."""
-    told = motion.model_dump(exclude={"actors"}, exclude_none=True)
-    told["actors"] = []
+    """The reply's data: the numbers, and where each actor is at the sampled frames."""
+    data = motion.model_dump(exclude={"actors"}, exclude_none=True)
+    data["actors"] = []
     for actor in motion.actors:
         numbers = actor.model_dump(
             by_alias=True,
@@ -163,22 +159,22 @@ def _data(motion: MotionReply) -> dict[str, Any]:
             for at, frame in enumerate(actor.frames)
             if frame in motion.sampled
         ]
-        told["actors"].append(numbers)
-    return told
+        data["actors"].append(numbers)
+    return data
 
 
 def _rounded(value: float | None) -> float | None:
     return None if value is None else round(value, 4)
 
 
-# In words
+# The text
 
 
-def _told(motion: MotionReply) -> str:
+def _text(motion: MotionReply) -> str:
     parts = [f"Frames {motion.start}–{motion.end} at {motion.fps:g} fps, {motion.how_played}."]
     parts += motion.notes
     for actor in motion.actors:
-        lines = [f"**{actor.name}** ({_what(actor)}); {_states(actor)}"]
+        lines = [f"**{actor.name}** ({_kind(actor)}); {_states(actor)}"]
         lines.append(
             "| phase | frames | displacement m | path m | peak m/s (frame) | final m/s | turn ° | touches (frames) |"
         )
@@ -188,11 +184,11 @@ def _told(motion: MotionReply) -> str:
     return "\n\n".join(parts)
 
 
-def _what(actor: ActorMotion) -> str:
+def _kind(actor: ActorMotion) -> str:
     words = [actor.kind, *([f"{actor.object_count} objects"] if actor.object_count > 1 else [])]
     words.append(_MEASURED.get(actor.measured, "its origin"))
     if actor.speed_of == "vertices":
-        words.append("deforming: speeds are means over its vertices")
+        words.append("deforms: speeds are means over its vertices")
     return ", ".join(words)
 
 
@@ -206,7 +202,7 @@ def _states(actor: ActorMotion) -> str:
 def _row(phase: PhaseMotion) -> str:
     name = phase.phase or "all"
     if not phase.present:
-        return f"| {name} | {phase.start}–{phase.end} | not there | | | | | |"
+        return f"| {name} | {phase.start}–{phase.end} | absent | | | | | |"
     way = ", ".join(f"{part:+.2f}" for part in phase.displacement_vector)
     touches = "; ".join(f"{touch.partner} {touch.when}" for touch in phase.contacts[:4])
     peak = "" if phase.peak_speed is None else f"{phase.peak_speed:.3g} ({phase.peak_frame})"

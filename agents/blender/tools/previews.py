@@ -1,4 +1,4 @@
-"""The four previews: pictures of one mesh, one object, one system, the whole scene."""
+"""The four preview tools: images of one mesh, one object, one system, the whole scene."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 from pydantic import Field
 
+from agents.blender.formatting import format_count
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import format_length
-from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
-from simworlds.files import write_whole
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from agents.blender.tools.preview_files import new_preview
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from agents.blender.run_folder import RunFolder
 
 PANEL = 384  # pixels a side
@@ -25,13 +24,13 @@ _LAST_FRAME = 1_048_574
 
 
 class PreviewArguments(Arguments):
-    """What all previews take."""
+    """The arguments of all previews."""
 
     frame: int | None = Field(
         default=None,
         ge=-_LAST_FRAME,
         le=_LAST_FRAME,
-        description="The frame to show; the current one by default. With simulations that are not baked, only that.",
+        description="The frame to show; by default the current one. With unbaked simulations, only the current one.",
     )
     timeout: float = Field(
         default=120.0, ge=1, le=3600, description="Seconds after which Blender is stopped."
@@ -53,11 +52,11 @@ class ObjectArguments(PreviewArguments):
 
 
 class LayoutArguments(PreviewArguments):
-    """What the previews of several objects take."""
+    """The arguments of previews of several objects."""
 
     everything: bool = Field(
         default=False,
-        description="Frame also grounds, backdrops and what lies far away, which otherwise reach out of the pictures.",
+        description="Also fit grounds, backdrops and distant objects into the views, which otherwise cut them off.",
     )
 
 
@@ -74,28 +73,28 @@ class SceneLayoutArguments(LayoutArguments):
 
 
 _ALIKE = """\
-One contact sheet: front, right, top and three-quarter view, each with a scale bar and the world's axes, framed on \
-the geometry as evaluated at the frame (modifiers, simulations, instances), in the materials' colours. Nothing in \
-the scene changes."""
+The reply is one contact sheet: front, right, top and three-quarter view, each with a scale bar and the world's axes, \
+framed on the evaluated geometry at the frame (modifiers, simulations, instances), in the materials' colours. The \
+scene is not changed."""
 
 
 def run_single_mesh(context: ToolContext, arguments: SingleMeshArguments, call: Call) -> Result:
-    """One object with geometry, alone."""
+    """Shows one Blender object alone."""
     return _preview(context, "mesh", arguments.object, arguments, call)
 
 
 def run_object(context: ToolContext, arguments: ObjectArguments, call: Call) -> Result:
-    """One L3, alone."""
+    """Shows one object (L3) alone."""
     return _preview(context, "object", arguments.object, arguments, call)
 
 
 def run_system_layout(context: ToolContext, arguments: SystemLayoutArguments, call: Call) -> Result:
-    """One L2, alone."""
+    """Shows one system (L2) alone."""
     return _preview(context, "system", arguments.system, arguments, call)
 
 
 def run_scene_layout(context: ToolContext, arguments: SceneLayoutArguments, call: Call) -> Result:
-    """All that renders show."""
+    """Shows everything that renders show."""
     return _preview(context, "scene", None, arguments, call)
 
 
@@ -103,7 +102,7 @@ def _preview(
     context: ToolContext, kind: str, name: str | None, arguments: PreviewArguments, call: Call
 ) -> Result:
     folder = context.blender.folder
-    given = {
+    request = {
         "kind": kind,
         "name": name,
         "frame": arguments.frame,
@@ -112,25 +111,25 @@ def _preview(
         "size": PANEL,
     }
     reply = context.blender.call(
-        "preview", given, timeout=arguments.timeout, progress=call.progress, cancelled=call.cancelled
+        "preview", request, timeout=arguments.timeout, progress=call.progress, cancelled=call.cancelled
     )
     data: dict[str, Any] = reply.value
     size = [high - low for low, high in zip(data["low"], data["high"], strict=True)]
     panels = [_panel(folder, view, size) for view in data["views"]]
+    title = re.sub(r"\W+", "-", data["title"]).strip("-")[:40] or "unnamed"
     png = contact_sheet.to_png(_sheet(kind, data, panels))
-    path = _place(folder, kind, data)
-    write_whole(path, png, durable=False)
+    image = new_preview(folder, f"{kind}-{title}-frame-{data['frame']}", png)
     for view in data["views"]:
         del view["file"]
-    data |= {"file": str(path.relative_to(folder.root)), "seconds": round(reply.seconds, 3)}
-    return Result(_told(kind, data), data, (SavedImage(png, path),))
+    data |= {"file": str(image.path.relative_to(folder.root)), "seconds": round(reply.seconds, 3)}
+    return Result(_text(kind, data), data, (image,))
 
 
 # The sheet
 
 
 def _panel(folder: RunFolder, view: dict[str, Any], size: list[float]) -> contact_sheet.Panel:
-    """The panel of a view, from the picture that Blender left in the workspace, which is removed."""
+    """The panel of a view; the image that Blender left in the workspace is removed."""
     with folder.open_made(view["file"]) as file:
         picture = contact_sheet.read_png(file, _BACKGROUND)
     with contextlib.suppress(OSError):
@@ -146,9 +145,9 @@ def _panel(folder: RunFolder, view: dict[str, Any], size: list[float]) -> contac
 
 
 def _across(view: str, size: list[float]) -> str:
-    """How far what is framed reaches along the axes that a view shows unshortened."""
-    shown = {"front": "XZ", "right": "YZ", "top": "XY"}.get(view, "")
-    return " · ".join(f"{letter} {format_length(size['XYZ'.index(letter)])}" for letter in shown)
+    """The extent of the framed geometry along the axes that a view shows without foreshortening."""
+    axes = {"front": "XZ", "right": "YZ", "top": "XY"}.get(view, "")
+    return " · ".join(f"{letter} {format_length(size['XYZ'.index(letter)])}" for letter in axes)
 
 
 def _sheet(kind: str, data: dict[str, Any], panels: list[contact_sheet.Panel]) -> Image.Image:
@@ -158,7 +157,7 @@ def _sheet(kind: str, data: dict[str, Any], panels: list[contact_sheet.Panel]) -
     return contact_sheet.sheet(
         f"{kind.capitalize()}: {data['title']}",
         blocks,
-        subtitle=f"frame {data['frame']} · {_size_of(data)} · {_counted(data['objects'], 'object')}",
+        subtitle=f"frame {data['frame']} · {_size_of(data)} · {format_count(data['objects'], 'object')}",
         remarks=_cut_away(data),
         notes=data["notes"],
     )
@@ -170,34 +169,21 @@ def _size_of(data: dict[str, Any]) -> str:
 
 
 def _cut_away(data: dict[str, Any]) -> list[str]:
-    """In words, what was taken off in which view; as no or one line."""
-    said = [f"{view['name']}: {', '.join(view['cut_away'])}" for view in data["views"] if view["cut_away"]]
-    return [f"Cut away to see inside – {'; '.join(said)}."] if said else []
+    """A line on what was cut away in which view; none if nothing was."""
+    views = [f"{view['name']}: {', '.join(view['cut_away'])}" for view in data["views"] if view["cut_away"]]
+    return [f"Cut away to see inside – {'; '.join(views)}."] if views else []
 
 
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}{'s' * (count != 1)}"
-
-
-def _told(kind: str, data: dict[str, Any]) -> str:
+def _text(kind: str, data: dict[str, Any]) -> str:
     low, high = (", ".join(f"{part:.4g}" for part in data[name]) for name in ("low", "high"))
     lines = [
-        f"{data['title']} ({kind}), frame {data['frame']}: {_counted(data['objects'], 'object')}, "
+        f"{data['title']} ({kind}), frame {data['frame']}: {format_count(data['objects'], 'object')}, "
         f"{_size_of(data)} (x × y × z), from ({low}) to ({high}).",
         *_cut_away(data),
         *(f"- {note}" for note in data["notes"]),
         f"Saved as {data['file']}.",
     ]
     return "\n".join(lines)
-
-
-def _place(folder: RunFolder, kind: str, data: dict[str, Any]) -> Path:
-    """A fresh path below ``previews``, that tells what it is."""
-    previews = folder.root / "previews"
-    previews.mkdir(exist_ok=True)
-    plain = re.sub(r"\W+", "-", data["title"]).strip("-")[:40] or "unnamed"
-    number = 1 + max((int(path.name[:4]) for path in previews.glob("[0-9][0-9][0-9][0-9]-*.png")), default=0)
-    return previews / f"{number:04d}-{kind}-{plain}-frame-{data['frame']}.png"
 
 
 SINGLE_MESH = BlenderTool(
@@ -216,7 +202,7 @@ OBJECT = BlenderTool(
     run_object,
     read_only=True,
 )
-_ROOMS = "Closed rooms are opened: what of their shell is towards the viewer is cut away, and named."
+_ROOMS = "Closed rooms are opened: the part of their shell that faces the viewer is cut away, and named."
 SYSTEM_LAYOUT = BlenderTool(
     "blender_system_layout_preview",
     "See how one system is laid out",
@@ -228,7 +214,7 @@ SYSTEM_LAYOUT = BlenderTool(
 SCENE_LAYOUT = BlenderTool(
     "blender_scene_layout_preview",
     "See how the scene is laid out",
-    f"See all that renders show, and what the scene's camera sees. {_ALIKE} {_ROOMS}",
+    f"See everything that renders show, and the view of the scene's camera. {_ALIKE} {_ROOMS}",
     SceneLayoutArguments,
     run_scene_layout,
     read_only=True,

@@ -1,4 +1,4 @@
-"""Physics and animation of a readout in words."""
+"""Physics and animation of a readout as lines for a model."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ def _size(count: Any) -> str:
 
 # Physics
 
-_TOLD = (
+_SHOWN_APART = (
     *("kind", "name", "count", "pattern", "settings", "cache", "caches", "off", "modifier", "surfaces"),
     "names",
 )
 
 
 def physics(entry: Entry) -> str:
-    """A part in a simulation: a line, and one for its cache."""
-    own = {key: item for key, item in entry.items() if key not in _TOLD}
+    """An object's part in a simulation: a line, and one for each cache."""
+    own = {key: item for key, item in entry.items() if key not in _SHOWN_APART}
     head = f"- {entry['kind']} {titled(entry)}"
     if "names" in entry:
         head = f"- {entry['kind']} ({entry['count']}): {', '.join(entry['names'])}"
@@ -52,45 +52,45 @@ def physics(entry: Entry) -> str:
 
 
 def _cache(cache: dict[str, Any]) -> str:
-    told = [cache["state"].upper()]
+    parts = [cache["state"].upper()]
     if cache.get("outdated"):
-        told.append("OUTDATED")
+        parts.append("OUTDATED")
     if "range" in cache:
-        told.append(f"frames {span(cache['range'])}")
+        parts.append(f"frames {span(cache['range'])}")
     if "step" in cache:
-        told.append(f"step {value(cache['step'])}")
+        parts.append(f"step {value(cache['step'])}")
     if "type" in cache:
-        told.append(f"cache_type {cache['type']}")
+        parts.append(f"cache_type {cache['type']}")
     if cache.get("baked"):
-        told.append(f"baked: {', '.join(cache['baked'])}")
+        parts.append(f"baked: {', '.join(cache['baked'])}")
     held = cache.get("on_disk")
     if isinstance(held, dict):
-        told.append(f"on disk: {_held(cast('dict[str, Any]', held))}")
+        parts.append(f"on disk: {_held(cast('dict[str, Any]', held))}")
     elif "frames" in cache:
         where = "in external files" if "external" in cache else "on disk" if held else "in memory"
-        told.append(f"holds {value(cache['frames'])} {where}")
+        parts.append(f"holds {value(cache['frames'])} {where}")
     if cache.get("bytes"):
-        told.append(_size(cache["bytes"]))
-    told += [
+        parts.append(_size(cache["bytes"]))
+    parts += [
         f"{key} {cache[key]}" for key in ("name", "external", "directory", "node", "target") if key in cache
     ]
-    return ", ".join(told)
+    return ", ".join(parts)
 
 
 def _held(held: dict[str, Any]) -> str:
     if "first" in held:
         return f"{span((held['first'], held['last']))} ({value(held['frames'])})"
-    return ", ".join(f"{part} {_held(one)}" for part, one in held.items())
+    return ", ".join(f"{part} {_held(frames)}" for part, frames in held.items())
 
 
 def by_kind(entries: Sequence[Entry]) -> list[Entry]:
-    """What simulates, in few entries: those of one kind and state together, without their settings."""
+    """The simulations in few entries: those of the same kind and state together, without settings."""
     groups: dict[str, list[Entry]] = {}
     for entry in entries:
         cache = entry.get("cache", {})
         state = (cache.get("state"), cache.get("outdated"), cache.get("range"), entry.get("type"))
         groups.setdefault(f"{entry['kind']} {state}", []).append(entry)
-    told: list[Entry] = []
+    merged: list[Entry] = []
     for group in groups.values():
         first = group[0]
         kept = {key: first[key] for key in ("kind", "name", "type") if key in first}
@@ -99,8 +99,8 @@ def by_kind(entries: Sequence[Entry]) -> list[Entry]:
         names = series([entry["name"] for entry in group])
         if len(names) > _FEW_NAMES:
             names[_FEW_NAMES:] = [f"… {len(names) - _FEW_NAMES} more"]
-        told.append({**kept, "count": len(group), "names": names})
-    return told
+        merged.append({**kept, "count": len(group), "names": names})
+    return merged
 
 
 _KEPT_OF_CACHE = ("state", "outdated", "range")
@@ -110,7 +110,7 @@ _KEPT_OF_CACHE = ("state", "outdated", "range")
 
 
 def animation(entry: Entry) -> str:
-    """What moves a data-block: its action with channels, its NLA, its drivers, its shape keys."""
+    """What animates a data-block: action with channels, NLA, drivers, shape keys."""
     if "actions" in entry:
         return f"- unused actions ({entry['count']}): {', '.join(entry['actions'])}"
     head = f"- {titled(entry)}" + (f" ({entry['of']})" if "of" in entry else "")
@@ -136,23 +136,23 @@ def animation(entry: Entry) -> str:
 
 def _channel(entry: Entry) -> str:
     axes = f"[{','.join(value(axis) for axis in entry['axes'])}]" if "axes" in entry else ""
-    told = [f"{_path(entry)}{axes}: {value(entry['keys'])} keys"]
+    parts = [f"{_path(entry)}{axes}: {value(entry['keys'])} keys"]
     if "frames" in entry:
-        told.append(f"frames {span(entry['frames'])}")
+        parts.append(f"frames {span(entry['frames'])}")
     if values := entry.get("values"):
         spans = [values] if not isinstance(values[0], list) else values
-        told.append(f"values {', '.join(_from_to(ends) for ends in spans)}")
+        parts.append(f"values {', '.join(_from_to(ends) for ends in spans)}")
     if entry.get("every_frame"):
-        told.append("a key on every frame")
+        parts.append("a key on every frame")
     for key in ("interpolation", "modifiers", "extrapolation", "samples"):
         if key in entry:
-            told.append(f"{key} {value(entry[key])}")
-    told += [word.upper() for word in ("muted", "broken") if entry.get(word)]
-    return ", ".join(told)
+            parts.append(f"{key} {value(entry[key])}")
+    parts += [word.upper() for word in ("muted", "broken") if entry.get(word)]
+    return ", ".join(parts)
 
 
 def _path(entry: Entry) -> str:
-    """The property; of folded ones the first and last."""
+    """The property; of folded ones, the first and the last."""
     return titled(entry) if "count" in entry else entry["path"]
 
 
@@ -164,7 +164,7 @@ def _driver(entry: Entry) -> str:
     axis = f"[{value(entry['axis'])}]" if "axis" in entry else ""
     expression = f" = {entry['expression']}" if "expression" in entry else ""
     variables = "; ".join(
-        f"{one['name']} = {', '.join(one['targets'])}" for one in entry.get("variables", ())
+        f"{variable['name']} = {', '.join(variable['targets'])}" for variable in entry.get("variables", ())
     )
     state = "".join(f" {word.upper()}" for word in ("muted", "broken") if entry.get(word))
     inside = f" ({variables})" if variables else ""
@@ -173,16 +173,16 @@ def _driver(entry: Entry) -> str:
 
 def _track(entry: Entry) -> str:
     strips = ", ".join(
-        f"{one['name']} frames {span(one['frames'])} action {one['action']}"
-        + (" MUTED" if one.get("muted") else "")
-        for one in entry["strips"]
+        f"{strip['name']} frames {span(strip['frames'])} action {strip['action']}"
+        + (" MUTED" if strip.get("muted") else "")
+        for strip in entry["strips"]
     )
     return f"NLA {entry['name']}{' MUTED' if entry.get('muted') else ''}: {strips}"
 
 
 def _block(entry: Entry) -> str:
-    told = {key: item for key, item in entry.items() if key not in {"name", "value", "count", "pattern"}}
-    return f"key {titled(entry)} {value(entry['value'])}" + (f" {pairs(told)}" if told else "")
+    rest = {key: item for key, item in entry.items() if key not in {"name", "value", "count", "pattern"}}
+    return f"key {titled(entry)} {value(entry['value'])}" + (f" {pairs(rest)}" if rest else "")
 
 
 _WRITERS: dict[str, Callable[[Entry], str]] = {
@@ -191,15 +191,15 @@ _WRITERS: dict[str, Callable[[Entry], str]] = {
     "nla": _track,
     "blocks": _block,
 }
-LISTS = tuple(_WRITERS)  # of an animated data-block, that may be long
+LISTS = tuple(_WRITERS)  # keys of lists of an animated data-block, which may be long
 
 
 def counted(entry: Entry) -> Entry:
-    """An animated data-block with the numbers of its channels, drivers, tracks and shape keys alone."""
-    told = {key: item for key, item in entry.items() if key not in LISTS}
+    """An animated data-block with only the numbers of its channels, drivers, tracks and shape keys."""
+    short = {key: item for key, item in entry.items() if key not in LISTS}
     if counts := {_WORDS[key]: len(entry[key]) for key in LISTS if key in entry and key != "channels"}:
-        told["counts"] = counts
-    return told
+        short["counts"] = counts
+    return short
 
 
 _WORDS = {"drivers": "drivers", "nla": "NLA tracks", "blocks": "shape keys"}

@@ -1,4 +1,4 @@
-"""Folds entries that differ only in numbers: Brick.001 … Brick.400 become one entry that says from where to where."""
+"""Folds entries that differ only in numbers: Brick.001 … Brick.400 become one entry with ranges."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ Entry = dict[str, Any]
 
 
 class Range(dict[str, Any]):
-    """Numbers ``from`` one ``to`` another, as JSON."""
+    """A range of numbers, ``from`` and ``to``, as JSON."""
 
 
-LEAST = 4  # entries that are worth folding
+LEAST = 4  # fewer entries are not folded
 _DIGITS = re.compile(r"\d+")
 _COPY = re.compile(r"\.\d{3,}$")  # what Blender appends to the name of a copy: Brick, Brick.001, …
 _SPECIAL = re.compile(r"[*?[]")
 _OWN = ("name", "count", "pattern")
-# What an entry may lack without being of another kind, and what it then stands for.
+# Keys that an entry may lack and still be folded with others, and the values that this means.
 _OPTIONAL: Final[dict[str, Any]] = {
     "rotation": [0, 0, 0],
     "scale": [1, 1, 1],
@@ -32,9 +32,9 @@ _OPTIONAL: Final[dict[str, Any]] = {
 
 
 def fold(entries: Sequence[Entry], *, by_name: bool = True) -> list[Entry]:
-    """The entries in their order, each series of like ones as one with ``count``, ``pattern`` and ranges.
+    """The entries in order, each series of similar ones as one entry with ``count``, ``pattern`` and ranges.
 
-    ``by_name``: only those whose names differ in numbers alone; otherwise whatever they are called.
+    ``by_name``: only those whose names differ only in numbers; otherwise whatever their names.
     """
     groups: dict[Any, list[Entry]] = {}
     of_each: list[list[Entry]] = []
@@ -53,7 +53,7 @@ def fold(entries: Sequence[Entry], *, by_name: bool = True) -> list[Entry]:
 
 
 def fold_tree(entries: Sequence[Entry]) -> list[Entry]:
-    """The same for entries that stand below each other by ``depth``: branches that are alike become one."""
+    """The same for entries that form a tree by ``depth``: similar branches become one."""
     branches: list[list[Entry]] = []
     for entry in entries:
         if not branches or entry["depth"] <= branches[0][0]["depth"]:
@@ -75,16 +75,16 @@ def fold_tree(entries: Sequence[Entry]) -> list[Entry]:
 
 
 def series(names: Sequence[str]) -> list[str]:
-    """Names in their order, each series of at least LEAST as "first … last (count)"."""
-    told: list[str] = []
+    """Names in order, each series of at least LEAST as "first … last (count)"."""
+    folded: list[str] = []
     for entry in fold([{"name": name} for name in names]):
         count = entry.get("count", 1)
-        told.append(f"{entry['name']} ({count})" if count > 1 else entry["name"])
-    return told
+        folded.append(f"{entry['name']} ({count})" if count > 1 else entry["name"])
+    return folded
 
 
 def shape_of(value: Any) -> Any:
-    """What two values that may be folded have in common: all but their numbers, and numbers in names."""
+    """What values must have in common to be folded: everything but numbers, and numbers in names."""
     if isinstance(value, bool) or value is None:
         return value
     if isinstance(value, (int, float, Range)):
@@ -109,38 +109,38 @@ def _shape_of_box(box: dict[str, Any]) -> Any:
 
 
 def merge(entries: Sequence[Entry]) -> Entry:
-    """One entry for several of the same shape."""
+    """One entry for several entries of the same shape."""
     names = list(dict.fromkeys(str(entry["name"]) for entry in entries))
-    told: Entry = {"name": names[0], "count": sum(entry.get("count", 1) for entry in entries)}
+    merged: Entry = {"name": names[0], "count": sum(entry.get("count", 1) for entry in entries)}
     if len(names) > 1 and len({shape_of(name) for name in names}) == 1:
-        told |= {"name": _first_to_last(names), "pattern": pattern_of(names)}
+        merged |= {"name": _first_to_last(names), "pattern": pattern_of(names)}
     elif len(names) > 1:
-        told["name"] = f"{names[0]}, {names[1]} and others alike"
+        merged["name"] = f"{names[0]}, {names[1]} and similar ones"
     for key in dict.fromkeys(key for entry in entries for key in entry if key not in _OWN):
-        found = [entry[key] for entry in entries if key in entry]
+        values = [entry[key] for entry in entries if key in entry]
         if key == "extent":
-            told[key] = _around(found)
+            merged[key] = _around(values)
         elif key not in _OPTIONAL:
-            told[key] = _merged(found)
-        elif (whole := _merged_optional(found, _OPTIONAL[key], len(entries))) is not None:
-            told[key] = whole
-    return told
+            merged[key] = _merged(values)
+        elif (whole := _merged_optional(values, _OPTIONAL[key], len(entries))) is not None:
+            merged[key] = whole
+    return merged
 
 
-def _merged_optional(found: list[Any], usual: Any, count: int) -> Any:
-    """What some entries have and others lack; None where that cannot be said in one."""
-    if len(found) < count:
+def _merged_optional(values: list[Any], usual: Any, count: int) -> Any:
+    """The merged value of a key that some entries lack; None if there is no single one."""
+    if len(values) < count:
         if usual is None:
             return None
-        found = [*found, usual]
-    return _merged(found) if len({shape_of(value) for value in found}) == 1 else None
+        values = [*values, usual]
+    return _merged(values) if len({shape_of(value) for value in values}) == 1 else None
 
 
 def pattern_of(names: Sequence[str]) -> str:
-    """A glob that fits names that differ in numbers alone."""
-    found = {_DIGITS.sub("*", _SPECIAL.sub(lambda sign: f"[{sign[0]}]", name)) for name in names}
+    """A glob for names that differ only in numbers."""
+    patterns = {_DIGITS.sub("*", _SPECIAL.sub(lambda sign: f"[{sign[0]}]", name)) for name in names}
     # The first of several copies has no number.
-    return min(found, key=len).rstrip("*") + "*" if len(found) > 1 else found.pop()
+    return min(patterns, key=len).rstrip("*") + "*" if len(patterns) > 1 else patterns.pop()
 
 
 def _first_to_last(names: Sequence[str]) -> str:
@@ -171,12 +171,12 @@ def _merged_numbers(values: Sequence[Any]) -> Any:
 
 
 def _around(boxes: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """The extent of several: the box around all, and the sizes of each. "nan" where one has no number."""
-    told: dict[str, Any] = {"min": _ends(boxes, "min", min), "max": _ends(boxes, "max", max)}
-    told["size"] = _merged([box["size"] for box in boxes])
+    """The extent of several boxes: the box around all, and the range of their sizes."""
+    extent: dict[str, Any] = {"min": _ends(boxes, "min", min), "max": _ends(boxes, "max", max)}
+    extent["size"] = _merged([box["size"] for box in boxes])
     if any(box.get("rough") for box in boxes):
-        told["rough"] = True
-    return told
+        extent["rough"] = True
+    return extent
 
 
 def _ends(boxes: Iterable[dict[str, Any]], key: str, choose: Any) -> list[Any]:

@@ -1,4 +1,4 @@
-"""``blender_scene_state``: what is in the scene, how it stands, what simulates and what moves."""
+"""``blender_scene_state``: what is in the scene, where it is, what simulates and what moves."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 TIMEOUT = 60.0
 _LONGEST_OBJECTS = 80  # characters of the caller's own ``objects`` in a call that is named
 _FEW = 8  # channels, drivers or shape keys of a data-block in a readout that is not full
-_TOO_MANY = 60  # entries, above which like ones are folded whatever they are called
-_PART = 40  # of them in one entry of a full one
+_TOO_MANY = 60  # entries, above which similar ones are folded whatever their names
+_PART = 40  # of them in one entry of a full readout
 _FEW_NAMES = 24  # series of names in one collection
 
 SectionName = Literal["collections", "objects", "physics", "animation", "materials", "view", "data_blocks"]
@@ -44,24 +44,24 @@ class SceneStateArguments(Arguments):
 
     detail: Literal["summary", "normal", "full"] = Field(
         default="normal",
-        description="summary: collections with names, what simulates, what moves. normal: every object with its "
+        description="summary: collections with names, simulations, animation. normal: every object with its "
         "transform, extent, modifiers and physics. full: also every channel, node and custom property.",
     )
     objects: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
         default=None,
         max_length=200,
-        description="Only these: names, patterns (Brick.*) or names of collections. They are not folded.",
+        description="Only these: names, patterns (Brick.*) or collection names. They are not folded.",
     )
     sections: list[SectionName] | None = Field(
         default=None,
         min_length=1,
-        description="Only these parts. view: cameras, lights, world, render settings. data_blocks, only when asked "
-        "for: a digest of every data-block in the file, as data, by which to tell what changed since.",
+        description="Only these parts. view: cameras, lights, world, render settings. data_blocks, never by default: "
+        "a digest of every data-block in the file, as data, to tell what has changed since.",
     )
     start: int = Field(
-        default=0, ge=0, description="Entries to pass over in each section, as the last readout says."
+        default=0, ge=0, description="Entries to skip in each section, as the last readout says."
     )
-    max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Longest readout.")
+    max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Length of the readout at most.")
 
 
 DESCRIPTION = """\
@@ -69,12 +69,12 @@ Read the live scene without changing it: collections with protocol tags; objects
 evaluated extent (world bounding box at the current frame), materials, modifiers and constraints in order with \
 the settings that differ from Blender's defaults; rigid bodies, cloth, soft bodies, particles, fluids, force \
 fields and the state of every cache; actions with channels and key ranges, drivers, shape keys; cameras, lights, \
-world, render settings; and, marked with !, what looks wrong. Long series are folded (Brick.001 … Brick.400). \
+world, render settings; and, marked with !, likely mistakes. Long series are folded (Brick.001 … Brick.400). \
 What does not fit is counted, with the call that shows it."""
 
 
 def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Result:
-    """Reads the scene; fits what it read into ``max_tokens``."""
+    """Reads the scene."""
     usual = _OF_SUMMARY if arguments.detail == "summary" else tuple(_TITLES)
     names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (arguments.sections or usual)]
     reply = context.blender.call(
@@ -88,7 +88,7 @@ def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Res
 
 
 def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
-    """The facts in words and as data, both within ``max_tokens``."""
+    """The facts as text and as data, both within ``max_tokens``."""
     sections = [
         ReadoutSection(name, _items(name, facts[name], arguments), weight, facts["unread"].get(name, 0))
         for name, (_, weight) in _TITLES.items()
@@ -102,12 +102,12 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
     data |= {name: [] for name in _TITLES if name in facts}
     parts = [head]
     for section in sections:
-        parts.append(_told(section, facts, arguments))
-        data[section.name] = [piece.data for piece in section.shown]
+        parts.append(_section_text(section, facts, arguments))
+        data[section.name] = [item.data for item in section.shown]
         if section.left_out:
             data["left_out"][section.name] = {"count": section.left_out, "call": _next(section, arguments)}
     if (blocks := facts.get(DATA_BLOCKS)) is not None:
-        parts.append(_counted(blocks["digests"]))
+        parts.append(_block_counts(blocks["digests"]))
         data |= {
             DATA_BLOCKS: blocks["digests"],
             "data_block_parts": blocks["parts"],
@@ -117,15 +117,15 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
     return Result(_clipped("\n\n".join(parts), arguments.max_tokens), data)
 
 
-def _counted(blocks: dict[str, str]) -> str:
+def _block_counts(blocks: dict[str, str]) -> str:
     """How many data-blocks there are of each kind."""
     kinds = Counter(name.partition(" ")[0] for name in blocks)
-    told = ", ".join(f"{count:,} {kind}" for kind, count in sorted(kinds.items()))
-    return f"## Data-blocks ({len(blocks):,})\n{told}. Their digests are in the structured data."
+    counts = ", ".join(f"{count:,} {kind}" for kind, count in sorted(kinds.items()))
+    return f"## Data-blocks ({len(blocks):,})\n{counts}. Their digests are in the structured data."
 
 
 def _items(name: SectionName, entries: list[Entry], arguments: SceneStateArguments) -> list[ReadoutItem]:
-    """What a section tells, from the entry on that the caller wants to begin with."""
+    """The items of a section, from ``start`` on."""
     full, summary = arguments.detail == "full", arguments.detail == "summary"
     if name == "collections":
         entries = [_with_series(entry) for entry in entries]
@@ -159,35 +159,35 @@ def _with_series(entry: Entry) -> Entry:
 
 
 def _shortened(entry: Entry) -> Entry:
-    """An animated data-block with the first of its channels, like ones folded, and how many more there are."""
-    told = dict(entry)
+    """An animated data-block with its first channels, similar ones folded, and how many more there are."""
+    short = dict(entry)
     for key in dynamics.LISTS:
         if len(items := entry.get(key, ())) > _FEW:
             items = fold([{"name": item.get("path", ""), **item} for item in items])
-            told[key] = items[:_FEW]
+            short[key] = items[:_FEW]
             if left := sum(item.get("count", 1) for item in items[_FEW:]):
-                told[f"{key}_left_out"] = left
-    return told
+                short[f"{key}_left_out"] = left
+    return short
 
 
 def _in_parts(entries: list[Entry]) -> list[Entry]:
-    """The entries, those with long lists as several, so that each fits into a readout."""
-    found: list[Entry] = []
+    """The entries, those with long lists split into several, so that each fits into a readout."""
+    parts: list[Entry] = []
     for entry in entries:
         longest = max((len(entry.get(key, ())) for key in dynamics.LISTS), default=0)
         for first in range(0, max(longest, 1), _PART):
             part = {key: items[first : first + _PART] for key in dynamics.LISTS if (items := entry.get(key))}
             if longest > _PART:
                 part["part"] = f"{first + 1}–{min(first + _PART, longest)} of {longest}"
-            found.append(entry | part)
-    return found
+            parts.append(entry | part)
+    return parts
 
 
-def _told(section: ReadoutSection, facts: dict[str, Any], arguments: SceneStateArguments) -> str:
-    """A section with its heading, and with the call that shows what is not in it."""
+def _section_text(section: ReadoutSection, facts: dict[str, Any], arguments: SceneStateArguments) -> str:
+    """A section with its heading, and the call that shows what is left out."""
     title, _ = _TITLES[cast("SectionName", section.name)]
     total = facts["unread"].get(section.name, 0) + len(facts[section.name])
-    lines = [f"## {title} ({total:,})", *(piece.text for piece in section.shown)]
+    lines = [f"## {title} ({total:,})", *(item.text for item in section.shown)]
     if section.left_out:
         lines.append(_footer(section, arguments))
     return "\n".join(lines)
@@ -199,19 +199,19 @@ def _footer(section: ReadoutSection, arguments: SceneStateArguments) -> str:
 
 
 def _next(section: ReadoutSection, arguments: SceneStateArguments) -> str:
-    """The call that goes on where a section ends."""
-    given: list[str] = []
+    """The call that continues a section."""
+    options: list[str] = []
     if arguments.objects is not None:
         objects = json.dumps(arguments.objects, ensure_ascii=False)
-        given.append(f"objects={objects if len(objects) <= _LONGEST_OBJECTS else '[… as before]'}")
-    given.append(f'sections=["{section.name}"]')
+        options.append(f"objects={objects if len(objects) <= _LONGEST_OBJECTS else '[… as before]'}")
+    options.append(f'sections=["{section.name}"]')
     if arguments.detail != "normal":
-        given.append(f'detail="{arguments.detail}"')
+        options.append(f'detail="{arguments.detail}"')
     if start := arguments.start + len(section.shown):
-        given.append(f"start={start}")
+        options.append(f"start={start}")
     if arguments.max_tokens != SceneStateArguments.model_fields["max_tokens"].default:
-        given.append(f"max_tokens={arguments.max_tokens}")
-    return f"blender_scene_state({', '.join(given)})"
+        options.append(f"max_tokens={arguments.max_tokens}")
+    return f"blender_scene_state({', '.join(options)})"
 
 
 def _clipped(text: str, room: int) -> str:

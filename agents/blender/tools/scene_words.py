@@ -1,4 +1,4 @@
-"""A readout's facts in words: compact lines that a model reads, in Blender's own terms."""
+"""The facts of a readout as compact lines for a model, in Blender's terms."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 _FEW = 8  # items of a list in a readout that is not full
 
 
-def value(given: Any) -> str:
-    """A fact as Python would write it, a range as ``from…to``."""
-    if given is None or isinstance(given, (bool, int, float, str)):
-        return str(given)
-    if isinstance(given, list):
-        return f"({', '.join(value(item) for item in cast('list[Any]', given))})"
-    table = cast("dict[str, Any]", given)
+def value(fact: Any) -> str:
+    """A fact as Python writes it; a range as ``from…to``."""
+    if fact is None or isinstance(fact, (bool, int, float, str)):
+        return str(fact)
+    if isinstance(fact, list):
+        return f"({', '.join(value(item) for item in cast('list[Any]', fact))})"
+    table = cast("dict[str, Any]", fact)
     if isinstance(table, Range):
         return f"{value(table['from'])}…{value(table['to'])}"
     return f"{{{pairs(table)}}}"
@@ -37,13 +37,13 @@ def row(numbers: Iterable[Any]) -> str:
 
 
 def span(ends: Sequence[Any]) -> str:
-    """From where to where: ``1–250``."""
+    """First and last: ``1–250``."""
     first, last = ends
     return value(first) if first == last else f"{value(first)}–{value(last)}"
 
 
 def titled(entry: Entry, word: str = "") -> str:
-    """Its name, how many it stands for, and a word behind them."""
+    """An entry's name, the number of objects it stands for, and ``word`` after them."""
     count = f" ({entry['count']})" if "count" in entry else ""
     return f"{entry['name']}{count} {word}".rstrip()
 
@@ -53,7 +53,7 @@ def _tags(entry: Entry) -> list[str]:
 
 
 def joined(head: str, parts: Iterable[str]) -> str:
-    """Parts of a line behind its head; empty ones are passed over."""
+    """A line of ``head`` and the parts that are not empty."""
     return "; ".join([head, *filter(None, parts)])
 
 
@@ -61,42 +61,42 @@ def joined(head: str, parts: Iterable[str]) -> str:
 
 
 def scene(facts: dict[str, Any]) -> str:
-    """The lines on top: what file, which frames, what it is rendered with, how many objects, what looks wrong."""
-    told, frame, units = facts["scene"], facts["scene"]["frame"], facts["scene"]["units"]
+    """The first lines: file, frames, render engine, number of objects, likely mistakes."""
+    info, frame, units = facts["scene"], facts["scene"]["frame"], facts["scene"]["units"]
     lines = [
-        joined(f'# Scene "{told["name"]}"', [told["file"], f"Blender {told['blender']}", *_tags(told)]),
+        joined(f'# Scene "{info["name"]}"', [info["file"], f"Blender {info['blender']}", *_tags(info)]),
         joined(
             f"frame {frame['current']} of {frame['start']}–{frame['end']} at {frame['fps']} fps",
             [
                 f"frame_step {frame['step']}" if frame["step"] != 1 else "",
                 f"preview range {span(frame['preview'])}" if "preview" in frame else "",
-                f"gravity {row(told['gravity'])}" if told["gravity"] is not None else "gravity off",
+                f"gravity {row(info['gravity'])}" if info["gravity"] is not None else "gravity off",
                 _unit(units),
             ],
         ),
         joined(
-            f"{told['engine']} {told['samples']} samples" if "samples" in told else told["engine"],
+            f"{info['engine']} {info['samples']} samples" if "samples" in info else info["engine"],
             [
-                f"{told['resolution'][0]}×{told['resolution'][1]}"
-                + (f" at {told['resolution'][2]}%" if told["resolution"][2] != 100 else ""),
-                f"camera {told['camera']}" if told["camera"] else "no active camera",
+                f"{info['resolution'][0]}×{info['resolution'][1]}"
+                + (f" at {info['resolution'][2]}%" if info["resolution"][2] != 100 else ""),
+                f"camera {info['camera']}" if info["camera"] else "no active camera",
             ],
         ),
         joined(
-            f"{sum(told['counts'].values())} objects: {_counts(told['counts'])}"
-            if told["counts"]
+            f"{sum(info['counts'].values())} objects: {_counts(info['counts'])}"
+            if info["counts"]
             else "no objects",
             [
-                f"{told['outside']} more in the file, in no scene" if "outside" in told else "",
-                f"other scenes: {', '.join(told['other_scenes'])}" if "other_scenes" in told else "",
-                f"view layer {told['view_layer']}" if "view_layer" in told else "",
+                f"{info['outside']} more in the file, in no scene" if "outside" in info else "",
+                f"other scenes: {', '.join(info['other_scenes'])}" if "other_scenes" in info else "",
+                f"view layer {info['view_layer']}" if "view_layer" in info else "",
             ],
         ),
     ]
-    if "markers" in told:
-        lines.append("markers: " + ", ".join(told["markers"]))
-    if "libraries" in told:
-        lines.append("libraries: " + ", ".join(told["libraries"]))
+    if "markers" in info:
+        lines.append("markers: " + ", ".join(info["markers"]))
+    if "libraries" in info:
+        lines.append("libraries: " + ", ".join(info["libraries"]))
     lines += [f"! {note}" for note in facts["notes"]]
     return "\n".join(lines)
 
@@ -115,7 +115,7 @@ def _counts(counts: dict[str, Any]) -> str:
 
 
 def collection(entry: Entry, *, names: bool) -> str:
-    """A line of the tree."""
+    """A collection: a line of the tree."""
     indent = "  " * entry["depth"]
     if "again" in entry or "cut" in entry:
         return f"{indent}- {titled(entry)} ({'see above' if 'again' in entry else 'and what is below it'})"
@@ -138,36 +138,36 @@ def collection(entry: Entry, *, names: bool) -> str:
 
 
 def scene_object(entry: Entry) -> str:
-    """An object: a line for itself, one each for modifiers and constraints."""
+    """An object: a line, and one for each modifier and constraint."""
     head = f"- {titled(entry, entry['type'])} in {', '.join(entry['in'])}"
-    lines = [joined(head, [*_place(entry), *_look(entry), *_tags(entry)])]
-    lines += [f"  modifier {_modifier(one)}" for one in entry.get("modifiers", ())]
-    lines += [f"  constraint {_constraint(one)}" for one in entry.get("constraints", ())]
+    lines = [joined(head, [*_placement(entry), *_properties(entry), *_tags(entry)])]
+    lines += [f"  modifier {_modifier(modifier)}" for modifier in entry.get("modifiers", ())]
+    lines += [f"  constraint {_constraint(constraint)}" for constraint in entry.get("constraints", ())]
     return "\n".join(lines)
 
 
-def _place(entry: Entry) -> list[str]:
-    told = [f"at {row(entry['location'])}"]
+def _placement(entry: Entry) -> list[str]:
+    info = [f"at {row(entry['location'])}"]
     if "parent" in entry:
         kind = f" ({entry['parent_type']})" if "parent_type" in entry else ""
-        told.insert(0, f"parent {entry['parent']}{kind}")
+        info.insert(0, f"parent {entry['parent']}{kind}")
     if (turn := entry.get("rotation", [0, 0, 0])) != [0, 0, 0]:
-        told.append(f"rotation {row(turn)}°")
+        info.append(f"rotation {row(turn)}°")
     if (scale := entry.get("scale", [1, 1, 1])) != [1, 1, 1]:
-        told.append(f"scale {row(scale)}")
+        info.append(f"scale {row(scale)}")
     if box := entry.get("extent"):
         about = "about " if box.get("rough") else ""
         size = "×".join(value(length) for length in box["size"])
         word = "each" if "count" in entry else "size"
-        told.append(f"spans {about}({row(box['min'])}) to ({row(box['max'])}), {word} {size}")
-    return told
+        info.append(f"spans {about}({row(box['min'])}) to ({row(box['max'])}), {word} {size}")
+    return info
 
 
-def _look(entry: Entry) -> list[str]:
-    return [write(entry[key]) for key, write in _LOOKS.items() if key in entry]
+def _properties(entry: Entry) -> list[str]:
+    return [write(entry[key]) for key, write in _PROPERTIES.items() if key in entry]
 
 
-_LOOKS: dict[str, Callable[[Any], str]] = {
+_PROPERTIES: dict[str, Callable[[Any], str]] = {
     "vertices": lambda count: f"{value(count)} vertices",
     "evaluated_vertices": lambda count: f"{value(count)} evaluated",
     "faces": lambda count: f"{value(count)} faces",
@@ -179,8 +179,8 @@ _LOOKS: dict[str, Callable[[Any], str]] = {
     "materials": lambda names: f"material {', '.join(str(name) for name in names)}",
     "shares": lambda data: f"shares data {data}",
     "data": lambda data: f"data {data}",
-    "vertex_groups": lambda found: (
-        f"vertex groups {', '.join(found) if isinstance(found, list) else value(found)}"
+    "vertex_groups": lambda groups: (
+        f"vertex groups {', '.join(groups) if isinstance(groups, list) else value(groups)}"
     ),
     "uv_layers": lambda names: f"UV {', '.join(names) or 'none'}",
     "text": lambda body: f'text "{body}"',
@@ -208,12 +208,12 @@ def _constraint(entry: Entry) -> str:
 
 
 def settings(entry: Entry) -> str:
-    """``: key=value, …`` where an entry has settings that are told."""
-    found = entry.get("settings")
-    return f": {pairs(found)}" if found else ""
+    """``: key=value, …`` if the entry has settings."""
+    table = entry.get("settings")
+    return f": {pairs(table)}" if table else ""
 
 
-# Materials and what is seen
+# Materials and the view
 
 
 def material(entry: Entry) -> str:
@@ -256,7 +256,7 @@ def _with_nodes(head: str, entry: Entry, parts: Iterable[str]) -> str:
 
 
 def view(entry: Entry) -> str:
-    """A camera, a light, the world, or the settings of a render."""
+    """A camera, a light, the world, or the render settings."""
     kind = entry["kind"]
     if kind == "world":
         plain = f"color={value(entry['color'])}" if "color" in entry else ""

@@ -1,4 +1,4 @@
-"""``blender_tag_object``: the scene protocol's tags."""
+"""``blender_tag_object``: sets the scene protocol's tags."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _NAME = Field(min_length=1, max_length=255, description="Its name in Blender.")
 
 
 def _without_defaults(schema: dict[str, Any]) -> None:
-    """A tag that is left out stays as it is: no default is to be read from the schema."""
+    """Removes defaults from the schema: a tag that is left out stays as it is."""
     for entry in schema.get("properties", {}).values():
         entry.pop("default", None)
 
@@ -28,9 +28,9 @@ class _Tags(Arguments):
     name: str = _NAME
 
     def for_worker(self) -> tuple[str, dict[str, Any]]:
-        """(name, {property: value, None to remove it})."""
-        given = self.model_dump(include=self.model_fields_set - {"name"})
-        return self.name, {vocabulary.PROTOCOL_ROLE if key == "role" else key: given[key] for key in given}
+        """(name, {property: value; None removes it})."""
+        tags = self.model_dump(include=self.model_fields_set - {"name"})
+        return self.name, {vocabulary.PROTOCOL_ROLE if key == "role" else key: tags[key] for key in tags}
 
 
 class CollectionTags(_Tags):
@@ -51,7 +51,7 @@ class CollectionTags(_Tags):
 
 
 class ObjectTags(_Tags):
-    """Tags of an object of Blender's: a mesh or an Empty."""
+    """Tags of a Blender object: a mesh or an Empty."""
 
     is_object_root: bool | None = Field(default=None, description=meaning_of(vocabulary.IS_OBJECT_ROOT))
     contact_with: list[str] | None = Field(
@@ -78,27 +78,27 @@ class TagArguments(Arguments):
 
 
 DESCRIPTION = """\
-Set the scene protocol's tags, on any number of collections and objects at once. A collection is a *system* (L2, \
+Set the scene protocol's tags on any number of collections and objects at once. A collection is a *system* (L2, \
 directly under the scene: `ground`, `lighting`, `cameras`, a room, …) or an *object* (L3, in a system: all meshes of \
-one logical object, parented to one root Empty). Collections carry `role`, `deformation_kind`, `motion_kind`, \
-`allows_disconnected`; meshes and Empties carry `is_object_root` and `contact_with`. A tag that is left out stays as \
-it is; null removes it. Names must exist. What contradicts the protocol is refused, and nothing is changed then. The \
-reply tells the tags as they now are and what the protocol still misses there. Tags are custom properties and are \
-saved with the file; this tool makes and moves nothing: blender_group makes collections, roots and parents, and tags."""
+one logical object, parented to one root Empty). Collections have `role`, `deformation_kind`, `motion_kind`, \
+`allows_disconnected`; meshes and Empties have `is_object_root` and `contact_with`. A tag that is left out stays as it \
+is; null removes it. Names must exist. If anything contradicts the protocol, the call is refused and nothing changes. \
+The reply lists the tags as they are now and what the protocol still requires there. Tags are custom properties, saved \
+with the file. This tool only tags; blender_group makes collections, roots and parents, and tags them."""
 
 
 def run(context: ToolContext, arguments: TagArguments, call: Call) -> Result:
-    """Tags; tells what the tags are now."""
+    """Sets the tags."""
     scene: dict[str, Any] = {}
     if vocabulary.STRICT_GROUNDING in arguments.model_fields_set:
         scene[vocabulary.STRICT_GROUNDING] = arguments.strict_grounding
     if not (arguments.collections or arguments.objects or scene):
-        raise Refusal("Nothing is named: give collections, objects or strict_grounding.")
+        raise Refusal("There is nothing to tag: give collections, objects or strict_grounding.")
     reply = context.blender.call(
         "tag",
         {
-            "collections": [one.for_worker() for one in arguments.collections],
-            "objects": [one.for_worker() for one in arguments.objects],
+            "collections": [tags.for_worker() for tags in arguments.collections],
+            "objects": [tags.for_worker() for tags in arguments.objects],
             "scene": scene,
         },
         timeout=_SECONDS,
@@ -106,25 +106,25 @@ def run(context: ToolContext, arguments: TagArguments, call: Call) -> Result:
         after="after tagging",
         cancelled=call.cancelled,
     )
-    return Result(_told(reply.value), dict(reply.value))
+    return Result(_text(reply.value), dict(reply.value))
 
 
-def _told(found: dict[str, Any]) -> str:
-    lines = [f"- collection {_line(name, tags)}" for name, tags in found["collections"].items()]
-    lines += [f"- object {_line(name, tags)}" for name, tags in found["objects"].items()]
-    if found["scene"]:
-        lines.append(f"- scene: {_list(found['scene'])}")
-    told = "Tags now:\n" + "\n".join(lines) if lines else "The scene carries no tag now."
-    if found["warnings"]:
-        told += "\n\nThe protocol still misses:\n" + "\n".join(f"- {one}" for one in found["warnings"])
-    return told
+def _text(data: dict[str, Any]) -> str:
+    lines = [f"- collection {_line(name, tags)}" for name, tags in data["collections"].items()]
+    lines += [f"- object {_line(name, tags)}" for name, tags in data["objects"].items()]
+    if data["scene"]:
+        lines.append(f"- scene: {_tags(data['scene'])}")
+    lines = ["Tags now:", *lines] if lines else ["The scene has no tags now."]
+    if data["warnings"]:
+        lines += ["", "The protocol still requires:", *(f"- {warning}" for warning in data["warnings"])]
+    return "\n".join(lines)
 
 
 def _line(name: str, tags: dict[str, Any]) -> str:
-    return f"{name!r}: {_list(tags) or 'none'}"
+    return f"{name!r}: {_tags(tags) or 'none'}"
 
 
-def _list(tags: dict[str, Any]) -> str:
+def _tags(tags: dict[str, Any]) -> str:
     return "; ".join(
         f"{tag} {', '.join(repr(name) for name in value) if isinstance(value, list) else value}"
         for tag, value in tags.items()

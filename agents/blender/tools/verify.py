@@ -1,4 +1,4 @@
-"""``blender_verify``: the open scene, judged by the rules."""
+"""``blender_verify``: checks the open scene against the rules."""
 
 from __future__ import annotations
 
@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from agents.blender.sheets.findings_sheet import draw_findings
-from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from agents.blender.tools.preview_files import new_preview
 from agents.blender.verification import verify_scene
 from agents.protocol.report.report import Checked, as_json, as_text
 from agents.protocol.verify_request import plan_from, rules_named
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from agents.blender.run_folder import RunFolder
     from agents.plan.scene import ScenePlan
     from agents.protocol.rule import Rule
 
@@ -29,44 +27,42 @@ class VerifyArguments(Arguments):
 
     plan: dict[str, Any] | None = Field(
         default=None,
-        description="The scene plan (JSON) that the scene is built to. Without one, the rules that compare with a "
-        "plan are passed over.",
+        description="The scene plan (JSON) that the scene is built to. Without one, rules that compare with a plan "
+        "are skipped.",
     )
     rules: list[str] | None = Field(
         default=None,
         min_length=1,
         description="Families (C layout, G parents, V contact and penetration, W warnings, R against the plan, T "
-        "motion) or rules, as ['C', 'V1']. Default: all.",
+        "motion) or rules, such as ['C', 'V1']. Default: all.",
     )
     image: bool = Field(
         default=False,
-        description="Also a picture: views of the scene with what is at fault coloured, gaps and penetrations marked "
-        "with their size.",
+        description="Also return an image: views of the scene with faulty objects coloured, and gaps and "
+        "penetrations marked with their size.",
     )
 
 
 DESCRIPTION = """\
-Measure what no picture shows: whether the scene holds what its tags and its plan say. Gaps between what is to touch, \
-meshes in each other, objects that stand on nothing, wrong sizes, places, relations and arrangements, motions that are \
-faked, unbaked, late, or never come to rest; the layout of the collections. Each finding names the rule, the objects, \
-what was measured, the tolerance, and what to change. Hard findings are to be mended; soft ones are advice. What could \
-not be decided is told as such. The scene stays as it is; frames of unbaked simulations are stepped through, so bake \
-first. Call it after every change that may have broken something."""
+Measure what no image shows: whether the scene is what its tags and its plan say. It finds gaps between objects that \
+should touch, meshes that intersect, objects without support, wrong sizes, positions, relations and arrangements, \
+motion that is faked, unbaked, late, or never comes to rest, and a wrong layout of collections. Each finding names the \
+rule, the objects, the measured value, the tolerance, and what to change. Hard findings must be fixed; soft ones are \
+advice. What could not be decided is listed too. The scene is not changed; frames of unbaked simulations are stepped \
+through, so bake first. Call it after every change that may have broken something."""
 
 
 def run(context: ToolContext, arguments: VerifyArguments, call: Call) -> Result:
-    """Judges the open scene."""
+    """Checks the open scene."""
     rules, plan = _rules(arguments.rules), _plan(arguments.plan)
     blender = context.blender
     with blender.alone():
-        stands = blender.call(
-            "go_to_frame", {"frame": None}, timeout=_SECONDS, cancelled=call.cancelled
-        ).value
+        position = blender.call("go_to_frame", {"frame": None}, timeout=_SECONDS, cancelled=call.cancelled).value
         report = verify_scene(blender, rules, plan, call)
         checked = Checked(
             rules,
-            scene=str(stands["scene"]),
-            frame=int(stands["frame"]),
+            scene=str(position["scene"]),
+            frame=int(position["frame"]),
             blender=blender.launch.runtime.version,
             plan=plan.title if plan else "",
         )
@@ -76,11 +72,10 @@ def run(context: ToolContext, arguments: VerifyArguments, call: Call) -> Result:
         try:
             png = draw_findings(blender, report, call, checked.title)
         except Refusal as error:
-            return Result(f"{text}\n\nThere is no picture: {error}", data)
-    path = _place(blender.folder)
-    path.write_bytes(png)
-    told = f"{text}\n\nThe picture is saved as {path.relative_to(blender.folder.root)}."
-    return Result(told, data, (SavedImage(png, path),))
+            return Result(f"{text}\n\nNo image could be made: {error}", data)
+    image = new_preview(blender.folder, "findings", png)
+    text += f"\n\nThe image is saved as {image.path.relative_to(blender.folder.root)}."
+    return Result(text, data, (image,))
 
 
 def _rules(wanted: list[str] | None) -> tuple[Rule, ...]:
@@ -90,24 +85,16 @@ def _rules(wanted: list[str] | None) -> tuple[Rule, ...]:
         raise Refusal(str(error)) from error
 
 
-def _plan(given: dict[str, Any] | None) -> ScenePlan | None:
-    """Raises Refusal, with what contradicts itself in it."""
-    if given is None:
+def _plan(data: dict[str, Any] | None) -> ScenePlan | None:
+    """Raises Refusal, which lists the plan's faults."""
+    if data is None:
         return None
-    plan, faults = plan_from(given)
+    plan, faults = plan_from(data)
     if plan is None:
-        told = [f"- {fault}" for fault in faults[:_FAULTS]]
-        told += [f"- … and {len(faults) - _FAULTS} more"] if len(faults) > _FAULTS else []
-        raise Refusal("\n".join(["The plan cannot be used:", *told]))
+        lines = [f"- {fault}" for fault in faults[:_FAULTS]]
+        lines += [f"- … and {len(faults) - _FAULTS} more"] if len(faults) > _FAULTS else []
+        raise Refusal("\n".join(["The plan cannot be used:", *lines]))
     return plan
-
-
-def _place(folder: RunFolder) -> Path:
-    """A fresh path below ``previews``."""
-    previews = folder.root / "previews"
-    previews.mkdir(exist_ok=True)
-    number = 1 + max((int(path.name[:4]) for path in previews.glob("[0-9][0-9][0-9][0-9]-*.png")), default=0)
-    return previews / f"{number:04d}-findings.png"
 
 
 TOOL = BlenderTool("blender_verify", "Verify the scene", DESCRIPTION, VerifyArguments, run, read_only=True)

@@ -36,7 +36,7 @@ def add_package(name, folder):
 
 
 def main(words):
-    """``words``: the module, its packages, ``--``, and what its ``main`` is to be given."""
+    """``words``: the module, its packages, ``--``, and the arguments of its ``main``."""
     middle = words.index("--")
     module, *packages = words[:middle]
     for package in packages:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The wire between the supervisor and its Blender: signed, numbered JSON messages on a socket of their own.
+"""The channel between the supervisor and its Blender: signed, numbered JSON messages on their own socket.
 
 A frame is a head and a body (UTF-8 JSON). The head holds the body's length (4 bytes, big-endian), a tag of sender,
 frame number and length (16 bytes), and an HMAC-SHA256 of sender, frame number and body. Bytes that anybody else writes
-to the socket are known for what they are as soon as a head has come in: a made-up length keeps nobody waiting.
+to the socket are recognised as soon as a head has arrived, so a false length keeps nobody waiting.
 """
 
 import hashlib
@@ -22,11 +22,11 @@ _HEAD = _TAGGED + _SIGNATURE_BYTES
 
 
 class ForgedFrame(Exception):  # noqa: N818 - reads as the state it names
-    """Bytes arrived that the other side has not written, or a body that is no message."""
+    """Bytes were not written by the other side, or a body is not a message."""
 
 
 class TooLarge(Exception):  # noqa: N818 - reads as the state it names
-    """A message is larger than a frame may be."""
+    """A message is too large for a frame."""
 
 
 class Encoder:
@@ -39,11 +39,11 @@ class Encoder:
         self._number = 0
 
     def __call__(self, message):
-        """A message (a dictionary of anything that JSON can say) as bytes. Raises TooLarge."""
+        """A message (a dictionary for JSON) as bytes. Raises TooLarge."""
         body = json.dumps(message, ensure_ascii=False, separators=(",", ":"), default=repr)
         body = body.encode("utf-8", "replace")
         if len(body) > self._largest:
-            raise TooLarge(f"{len(body):,} bytes; {self._largest:,} at most")
+            raise TooLarge(f"{len(body):,} bytes; the limit is {self._largest:,}")
         length = _LENGTH.pack(len(body))
         tag = _sign(self._key, self._sender, self._number, b"head", length)[:_TAG_BYTES]
         signature = _sign(self._key, self._sender, self._number, b"body", body)
@@ -52,7 +52,7 @@ class Encoder:
 
 
 class Decoder:
-    """Puts the frames of one side together again."""
+    """Turns the frames of one side into messages."""
 
     def __init__(self, key, sender):
         self._key = key
@@ -77,9 +77,9 @@ class Decoder:
             messages.append(_message(body))
         return messages
 
-    def _check(self, part, data, found):
+    def _check(self, part, data, tag):
         signature = _sign(self._key, self._sender, self._number, part, data)
-        if not hmac.compare_digest(bytes(found), signature[: len(found)]):
+        if not hmac.compare_digest(bytes(tag), signature[: len(tag)]):
             raise ForgedFrame(f"the {part.decode()} of a frame does not carry the right signature")
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a tool raises when it cannot do as asked."""
+"""The exception of a tool that cannot do what is wanted."""
 
 
 class Refused(Exception):  # noqa: N818 - reads as the state it names
-    """The caller asked for something that cannot be had; the message says why, and what to do."""
+    """The tool cannot do this; the message says why, and what to do."""

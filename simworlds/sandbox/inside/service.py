@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers the supervisor's calls over the channel, one after the other, until it closes.
+"""Answers the supervisor's calls over the channel, one by one, until it closes.
 
 The first bytes on the socket are the key that signs all frames. Standard output and error belong to whatever Blender
 and executed code print; the supervisor reads them.
@@ -14,13 +14,13 @@ import traceback
 from . import channel
 from .refusal import Refused
 
-# Numbers of kept descriptors: code that closes "all" of them up to some small number misses these.
+# Numbers of our descriptors: code that closes "all" low-numbered ones misses these.
 HIGH = 200
 _CHUNK = 1 << 16
 
 
 class Tools:
-    """Tools by name, each loaded when it is first called: name → (module of ``package``, function)."""
+    """Tools by name, each loaded on its first call: name → (module of ``package``, function)."""
 
     def __init__(self, package, table):
         self._package = package
@@ -33,21 +33,21 @@ class Tools:
 
 
 class Guard:
-    """Stands around each call. This one does nothing."""
+    """Runs before and after each call. This one does nothing."""
 
     def before(self):
         """A call begins."""
 
     def after(self):
-        """A call has ended. Returns in words what it left behind that cannot be put back."""
+        """A call has ended. Returns what it left behind that cannot be undone, in words."""
         return []
 
 
 def serve(descriptor, answer, guard=None, largest=channel.LARGEST_BODY):
     """Answers until the supervisor closes the socket, then ends the process.
 
-    ``answer(tool, arguments, report)`` returns what JSON can say, or raises Refused; ``report(done, total, text)``
-    tells progress. An answer may have ``largest`` bytes.
+    ``answer(tool, arguments, report)`` returns a value for JSON, or raises Refused; ``report(done, total, text)`` sends
+    progress. A reply may have ``largest`` bytes.
     """
     wire = _Wire(descriptor, largest)
     guard = guard or Guard()
@@ -120,18 +120,18 @@ def _reply(request, wire, answer, guard):
 
 
 def _after(guard):
-    """What the call left behind; an alarm that executed code has set may ring until it is taken back."""
+    """What the call left behind; retried, since an alarm that executed code has set may interrupt it."""
     for _ in range(100):
         try:
             return guard.after()
         except Exception as error:
             fault = error
-    return [f"an interpreter that cannot be put right ({type(fault).__name__}: {fault})"]
+    return [f"an interpreter that cannot be restored ({type(fault).__name__}: {fault})"]
 
 
 def _send(wire, reply):
     try:
         wire.send(reply)
     except (channel.TooLarge, TypeError, ValueError, RecursionError) as error:
-        unsaid = {"refused": f"The answer cannot be sent: {error}.", "seconds": reply["seconds"]}
-        wire.send({**unsaid, "ticket": reply["ticket"], "left": reply["left"]})
+        refusal = {"refused": f"The reply cannot be sent: {error}.", "seconds": reply["seconds"]}
+        wire.send({**refusal, "ticket": reply["ticket"], "left": reply["left"]})

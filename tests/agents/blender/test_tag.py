@@ -182,7 +182,7 @@ def test_a_root_moves_to_another_empty_in_one_call(session: LiveSession) -> None
             {"objects": [{"name": "Leg", "contact_with": ["Top"]}], "collections": [{"name": ""}]},
             "collections.0.name",
         ),
-        ({}, "Nothing is named"),
+        ({}, "There is nothing to tag"),
         ({"collections": [{"name": "table", "role": "L3"}]}, "'system' or 'object'"),
         ({"collections": [{"name": "table", "motion_kind": "sim_cloth"}]}, "'keyframe', 'bake' or 'none'"),
         ({"collections": [{"name": "table", "is_object_root": True}]}, "Extra inputs"),

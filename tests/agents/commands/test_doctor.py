@@ -104,24 +104,24 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
     assert max(map(len, lines)) <= 80
     assert lines[0].startswith("✓  Blender    ")
     assert "!  Sandbox    none: your files are open to what runs in Blender" in done.stdout
-    assert "- does not keep out: reading and writing files wherever you can" in done.stdout
+    assert "- does not prevent: reading and writing any file that you can" in done.stdout
     assert "→ simworlds kb build" in done.stdout
     assert re.search(
-        r"^✓  Blender can work here, but look at: Sandbox.*Knowledge\.$", done.stdout, re.MULTILINE
+        r"^✓  Blender can work here, but check: Sandbox.*Knowledge\.$", done.stdout, re.MULTILINE
     )
 
 
 def test_what_is_no_blender_is_said_and_exits_with_1(tmp_path: Path) -> None:
     done = run("--blender-exe", "/bin/true", home=tmp_path, COLUMNS="200")
     assert done.returncode == 1
-    assert "✗  Blender    No Blender was found: /bin/true does not say that it is Blender" in done.stdout
+    assert "✗  Blender    No Blender was found: /bin/true is not Blender" in done.stdout
     assert "✗  Blender cannot work here." in done.stdout
     named = run("--json", home=tmp_path, BLENDER_EXE=str(tmp_path))
     assert (named.returncode, json.loads(named.stdout)["works"]) == (1, False)
     assert list(findings(named)) == ["Blender", "Knowledge", "Room"]
     unknown = run("--json", "--blender", "4.9", home=tmp_path)
     assert unknown.returncode == 1
-    assert "no bpy package is known for Blender 4.9" in findings(unknown)["Blender"]["text"]
+    assert "there is no bpy package for Blender 4.9" in findings(unknown)["Blender"]["text"]
 
 
 def test_missing_libraries_are_named_with_their_packages(tmp_path: Path) -> None:
@@ -190,7 +190,7 @@ def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest
     other = doctor_checks._knowledge("3.4.1")
     assert other.state == "poor"
     assert other.advice == "simworlds kb build 3.4"
-    assert other.text == f"no base of Blender 3.4; there is one of {found.data['wanted']}"
+    assert other.text == f"no base for Blender 3.4, only for {found.data['wanted']}"
 
 
 def test_an_installed_blender_is_looked_at(tmp_path: Path) -> None:

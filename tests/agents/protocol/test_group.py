@@ -251,7 +251,7 @@ def test_what_the_protocol_still_misses_is_told(session: LiveSession) -> None:
     build(session, LOOSE)
     found = group(session, CHAIR)
     assert any(one.startswith("C6:") for one in found.data["warnings"])
-    assert "The protocol still misses:" in found.text
+    assert "The protocol still requires:" in found.text
 
 
 @pytest.mark.parametrize(

@@ -123,7 +123,7 @@ def test_a_folder_with_the_executable_in_it_will_do(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("body", "message"),
-    [("echo hello", "does not say that it is Blender"), ("exit 7", "does not say that it is Blender")],
+    [("echo hello", "is not Blender"), ("exit 7", "is not Blender")],
 )
 def test_a_program_that_is_no_blender_is_named(tmp_path: Path, body: str, message: str) -> None:
     with pytest.raises(RuntimeMissing, match=message):

@@ -396,5 +396,5 @@ def test_an_answer_that_executed_code_forged_is_not_believed(own_session: LiveSe
     own_session.run(FALL)
     forged = "motion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}"
     own_session.run(f"from simworlds_worker.motion import motion_sheet\n{forged}")
-    with pytest.raises(ToolBroke, match="cannot be understood"):
+    with pytest.raises(ToolBroke, match="does not have the expected form"):
         own_session.use(TOOL, actors=["Crate"])

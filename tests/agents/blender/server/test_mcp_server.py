@@ -393,7 +393,7 @@ def test_a_signal_leaves_no_process_behind_though_blender_is_busy(home: Path, nu
     ("options", "why"),
     [
         (["--blender-exe", "/nowhere/blender"], "/nowhere/blender"),
-        (["--sessions", "3"], "--sessions goes with --http"),
+        (["--sessions", "3"], "--sessions needs --http"),
         (["--read", "/nowhere"], "/nowhere"),
         (["--http", "--host", "0.0.0.0"], "SIMWORLDS_TOKEN"),
     ],

@@ -98,12 +98,12 @@ async def test_each_stage_can_be_built_and_reviewed_by_itself(client: Client, st
 @pytest.mark.parametrize(
     ("name", "arguments", "reason"),
     [
-        ("make_movie", {}, "There is no prompt 'make_movie'; there are make_scene, edit_scene"),
+        ("make_movie", {}, "There is no prompt 'make_movie'. Available: make_scene, edit_scene"),
         ("make_scene", {}, "make_scene needs the argument 'prompt'"),
         ("make_scene", {"prompt": "  "}, "make_scene needs the argument 'prompt'"),
         ("make_scene", {"prompt": "x" * 30_000}, "has 30000 characters"),
         ("plan", {"prompt": "x", "stage": "uv"}, "plan has no argument 'stage'; it has prompt"),
-        ("stage", {"stage": "baking"}, "There is no stage 'baking'; there are modeling, uv"),
+        ("stage", {"stage": "baking"}, "There is no stage 'baking'. Available: modeling, uv"),
     ],
 )
 async def test_what_cannot_be_had_is_refused_with_what_can(

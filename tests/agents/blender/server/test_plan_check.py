@@ -29,14 +29,14 @@ def test_of_a_sound_plan_it_is_told_what_is_in_it() -> None:
     answer = plan_check.answer({"plan": small_plan()})
     assert not answer.is_error
     assert said(answer).splitlines() == [
-        "The plan 'A ball on a shelf' contradicts itself nowhere.",
+        "The plan 'A ball on a shelf' is valid.",
         "- Objects (3): ground: Floor; static: Shelf; rigid: Ball.",
         "- Relations (3): SupportedBy 2, LeftOf 1.",
         "- Phases (1) of Ball, in frames 1–48 (2 s at 24 fps).",
         "- Stages: modeling, texture, deformation_setup, motion, camera, light, render.",
-        "- Judged from modeling on by C1–C6, G1–G3, V1, V2, W1–W5, R1–R13, R16, R17.",
-        "- Judged from motion on by R15, R18, T1–T7.",
-        "- Judged from camera on by R14.",
+        "- Checked from modeling on: C1–C6, G1–G3, V1, V2, W1–W5, R1–R13, R16, R17.",
+        "- Checked from motion on: R15, R18, T1–T7.",
+        "- Checked from camera on: R14.",
     ]
     assert data(answer) == {"sound": True, "faults": [], "stages": list(_plan().stages)}
 
@@ -54,7 +54,7 @@ def test_rules_of_a_stage_that_is_left_out_begin_with_the_next() -> None:
     )
     lines = plan_check.summary(still).splitlines()
     assert "- Phases: none; the scene is still." in lines
-    assert lines[-1] == "- Judged from camera on by R14, R15, R18, T1–T7."
+    assert lines[-1] == "- Checked from camera on: R14, R15, R18, T1–T7."
 
 
 def test_each_fault_has_its_path_and_a_sentence() -> None:

@@ -111,7 +111,7 @@ def test_what_is_to_be_undone_is_kept_before_however_large(
     monkeypatch.setattr(checkpoints, "PATIENCE", 1e6)
     kept.run(adding("Not yet kept"))
     found = kept.use(TOOL, code=f"{adding('Half')}\n1 / 0", on_error="restore")
-    assert "The scene was put back to checkpoint" in found.text
+    assert "The scene was restored from checkpoint" in found.text
     assert kept.run(NAMES) == ["Kept", "Not yet kept"]
 
 
@@ -126,7 +126,7 @@ def test_the_way_back_says_what_else_it_undoes(kept: LiveSession, monkeypatch: p
     kept.run(adding("One"))
     kept.run(adding("Two"))
     found = kept.use(TOOL, code="1 / 0")
-    assert f"To undo it, and the 2 call(s) before it: blender_load(checkpoint={last.number})." in found.text
+    assert f"To undo it and the 2 calls before it: blender_load(checkpoint={last.number})." in found.text
 
 
 def test_a_checkpoint_is_no_event_to_the_scenes_handlers(kept: LiveSession) -> None:
@@ -300,7 +300,7 @@ def test_what_cannot_be_opened_is_passed_over_and_told(tmp_path: Path) -> None:
         assert last is not None
         assert last.number > int(files[-1].stem)
         # Where Blender stands is the newest now: a crash does not go through the broken ones again.
-        with pytest.raises(Died, match="how the scene was before"):
+        with pytest.raises(Died, match="the scene as it was before"):
             again.use(TOOL, code=CRASH)
         assert again.run(NAMES) == ["One"]
     finally:

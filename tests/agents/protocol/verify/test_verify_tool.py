@@ -230,7 +230,7 @@ def test_where_there_is_nothing_to_see_the_findings_come_without_a_picture(sessi
     result = session.use(VERIFY, image=True)
     assert result.pictures == ()
     assert "The scene has no camera." in result.text
-    assert "There is no picture:" in result.text
+    assert "No image could be made:" in result.text
 
 
 def test_without_findings_the_picture_shows_the_scene_as_it_is(session: LiveSession) -> None:
