@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from bench.audit.untrusted_blend import Means
     from bench.frames.clip_frames import Look
     from bench.scenes.spec import Spec
-    from bench.sweep.sweep_view import View
+    from bench.sweep.sweep_view import SweepLog
     from bench.sweep.systems.system import System
 
 
@@ -65,7 +65,7 @@ def tasks_of(system: System, specs: Sequence[Spec], out: Path, how: How) -> list
     ]
 
 
-def sweep(tasks: Sequence[Task], judge: Judge, crew: Crew, view: View) -> Summary:
+def sweep(tasks: Sequence[Task], judge: Judge, crew: Crew, view: SweepLog) -> Summary:
     """Does the tasks, then judges; all results are on the disk whenever it ends.
 
     Raises Refusal where another sweep works in the folder, BadRecord, OSError.

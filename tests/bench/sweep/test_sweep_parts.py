@@ -16,7 +16,7 @@ from bench.sweep.executor import Done
 from bench.sweep.records import BadRecord, File, SystemInfo, read_record
 from bench.sweep.scene_selection import chosen
 from bench.sweep.scene_task import Task
-from bench.sweep.sweep_view import Lines, Screen
+from bench.sweep.sweep_view import SweepLog, SweepScreen
 from bench.sweep.systems.folder import Folder
 from simworlds.files import write_whole
 
@@ -188,24 +188,24 @@ def test_a_record_names_files_below_its_folder_alone(path: str) -> None:
 # What is seen
 
 
-def test_a_terminal_shows_what_is_being_done_and_nothing_that_would_move_its_cursor(tmp_path: Path) -> None:
+def test_screen_shows_progress_without_control_characters(tmp_path: Path) -> None:
     stream = io.StringIO()
     task = Task(spec_of(SCENE), Folder(INFO, tmp_path), tmp_path)
-    with Screen(Console(file=stream, force_terminal=True, width=80), 2) as view:
+    with SweepScreen(Console(file=stream, force_terminal=True, width=80), 2) as view:
         view.doing(None, "two nodes")
         view.doing(task, "opening")
         view.done(Done(task, None, "crashed over \x1b[2J\x07evil"))
     said = stream.getvalue()
     assert "two nodes" in said
-    assert "cloth_D1_01      could not be done: crashed over  [2J evil" in said
+    assert "cloth_D1_01      could not be done: crashed over \ufffd[2J\ufffdevil" in said
     assert "\x1b[2J" not in said
     assert "\x07" not in said
 
 
-def test_who_reads_the_log_may_be_gone(tmp_path: Path) -> None:
+def test_survives_a_closed_log_reader(tmp_path: Path) -> None:
     class Gone(io.StringIO):
         def write(self, text: str) -> int:
             raise BrokenPipeError
 
-    view = Lines(Gone(), 1)
+    view = SweepLog(Gone(), 1)
     view.done(Done(Task(spec_of(SCENE), Folder(INFO, tmp_path), tmp_path), None, "crashed"))
