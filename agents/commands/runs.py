@@ -231,13 +231,13 @@ def _sit(sit: Callable[[Sitting], Ended], root: Path, given: dict[str, Any]) -> 
     from agents.loop.errors import RunError  # noqa: PLC0415 - not for --help
     from agents.loop.reducer import read_run_state  # noqa: PLC0415
     from agents.loop.session import Sitting, Stop  # noqa: PLC0415
-    from agents.views.live_view import Quiet, make_view  # noqa: PLC0415
+    from agents.views.live_view import RunView, make_view  # noqa: PLC0415
     from agents.views.report.page import write_report  # noqa: PLC0415
 
     stop = Stop(threading.Event())
     try:
         before = read_run_state(root)
-        watched = Quiet(before) if given["quiet"] else make_view(sys.stderr, str(root), before)
+        watched = RunView(before) if given["quiet"] else make_view(sys.stderr, str(root), before)
         with watched as view, _signals(stop):
             ended = sit(Sitting(_limited(given), view, stop))
         report = write_report(root)

@@ -9,13 +9,13 @@ from agents.loop.run_state import ModelCall, ToolCall
 from agents.protocol.report.folding import rows
 from agents.views.formatting import (
     counted,
-    shortened,
+    describe_attempt,
+    describe_source,
+    format_cost,
+    format_time,
     stage_title,
-    told_attempt,
-    told_cost,
-    told_source,
-    told_time,
 )
+from simworlds.terminal.text import shortened
 
 if TYPE_CHECKING:
     from agents.loop.run_state import RunState, StageRun, Step
@@ -29,7 +29,7 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
     stage = run_state.stage(event.stage) if event.stage else run_state.current
     match event:
         case events.RunBegan():
-            source = told_source(run_state)
+            source = describe_source(run_state)
             return [f"{event.mode or 'run'}: {event.prompt}", *([source] if source else [])]
         case events.SessionBegan():
             return [f"Resumed, session {run_state.sessions}."] if run_state.sessions > 1 else []
@@ -46,7 +46,7 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
             return [f"  back to {event.to}"]
         case events.Rendered():
             frames = f", {counted(event.frames, 'frame')}" if event.frames and event.frames > 1 else ""
-            return [f"Rendered: {event.path}{frames}, {told_time(event.seconds)}"]
+            return [f"Rendered: {event.path}{frames}, {format_time(event.seconds)}"]
         case events.FinalReviewed(review=review) if review:
             verdict = "accepted" if review.verdict == "accept" else "needs a fix"
             return [f"Final review: {verdict}: {shortened(review.summary, _WORDS)}"]
@@ -54,8 +54,8 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
             return _edited(event)
         case events.RunEnded():
             why = f": {event.why}" if event.why else ""
-            cost = told_cost(run_state.total)
-            return [f"Run {event.outcome}{why}", f"{told_time(run_state.seconds)} of work, cost: {cost}"]
+            cost = format_cost(run_state.total)
+            return [f"Run {event.outcome}{why}", f"{format_time(run_state.seconds)} of work, cost: {cost}"]
         case _:
             return _stage_lines(event, stage) if stage else []
 
@@ -69,14 +69,14 @@ def _stage_lines(event: events.Event, stage: StageRun) -> list[str]:
             return [f"{name}: skipped, the plan does not need it"]
         case events.StageMoved():
             attempts = counted(len(stage.attempts), "attempt")
-            return [f"{name} closed after {attempts}, {told_time(stage.seconds)}"]
+            return [f"{name} closed after {attempts}, {format_time(stage.seconds)}"]
         case events.AttemptBegan() if last:
             return [f"{name}, attempt {last.number}"]
         case events.Decided(decision=decision) if last:
             reason = decision.reason if decision else event.why
             wanted = f" (it wanted to {decision.transition})" if decision and event.overruled else ""
             return [
-                f"{name}, attempt {last.number} {told_attempt(last)}{wanted}: {shortened(reason, _WORDS)}"
+                f"{name}, attempt {last.number} {describe_attempt(last)}{wanted}: {shortened(reason, _WORDS)}"
             ]
         case _:
             return []
@@ -99,7 +99,7 @@ def _step(step: Step | None) -> list[str]:
             return [f"  coder: {shortened(words, _WORDS)}"]
         case ToolCall(role="coder" | "runner"):
             why = f": {shortened(' '.join(step.texts), _WORDS)}" if step.failed else ""
-            return [f"  {step.name} {'failed' if step.failed else 'done'}, {told_time(step.seconds)}{why}"]
+            return [f"  {step.name} {'failed' if step.failed else 'done'}, {format_time(step.seconds)}{why}"]
         case _:
             return []
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.protocol.report.folding import plain
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from simworlds.llm.spending import Row
 
 
-def told_time(seconds: float | None) -> str:
+def format_time(seconds: float | None) -> str:
     """``0.4 s``, ``42 s``, ``3 min 5 s``, ``2 h 11 min``; "" for none."""
     if seconds is None:
         return ""
@@ -28,41 +28,35 @@ def told_time(seconds: float | None) -> str:
     return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
-def told_clock(seconds: float) -> str:
+def format_clock(seconds: float) -> str:
     """``03:05``, ``2:11:40``."""
     whole = int(seconds)
     hours, minutes = divmod(whole // 60, 60)
     return f"{hours}:{minutes:02}:{whole % 60:02}" if hours else f"{minutes:02}:{whole % 60:02}"
 
 
-def told_money(dollars: float) -> str:
+def format_money(dollars: float) -> str:
     """``$0.42``; ``$0.003`` where cents are too coarse."""
     return f"${dollars:,.2f}" if dollars >= 0.1 or not dollars else f"${dollars:.3f}"
 
 
-def told_count(number: int) -> str:
+def format_count(number: int) -> str:
     """``812``, ``15.2k``, ``1.30M``."""
     if number < 10_000:
         return f"{number:,}"
     return f"{number / 1000:.1f}k" if number < 999_950 else f"{number / 1e6:.2f}M"
 
 
-def told_tokens(usage: Usage) -> str:
+def format_tokens(usage: Usage) -> str:
     """``17.3k in, 410 out``."""
-    return f"{told_count(usage.prompt)} in, {told_count(usage.output)} out"
+    return f"{format_count(usage.prompt)} in, {format_count(usage.output)} out"
 
 
-def told_cost(row: Row) -> str:
+def format_cost(row: Row) -> str:
     """What was paid, and whether that is all: recorded turns cost nothing, some have no known price."""
     if not row.calls and not row.unpriced and not row.cost:
         return "nothing"
-    return told_money(row.cost) + (f" and {row.unpriced} of unknown price" if row.unpriced else "")
-
-
-def shortened(text: str, most: int) -> str:
-    """The text on one line, cut with an ellipsis where it is longer than ``most`` letters."""
-    line = plain(" ".join(text.split()))
-    return line if len(line) <= most else f"{line[: most - 1].rstrip()}…"
+    return format_money(row.cost) + (f" and {row.unpriced} of unknown price" if row.unpriced else "")
 
 
 def counted(number: int, words: str) -> str:
@@ -83,7 +77,7 @@ def _encoded(value: float) -> float:
 # Runs
 
 
-def told_source(run_state: RunState) -> str:
+def describe_source(run_state: RunState) -> str:
     """Where the answers came from, in a sentence that nobody can misread; "" for a live run."""
     source = plain(run_state.source)
     calls = run_state.total.calls
@@ -122,7 +116,7 @@ def stage_title(name: str) -> str:
     return STAGE_TITLES.get(name) or plain(name)
 
 
-def told_attempt(attempt: Attempt) -> str:
+def describe_attempt(attempt: Attempt) -> str:
     """What came of an attempt, in a few words."""
     found = attempt.verification
     taken = attempt.choice.taken if attempt.choice else ""

@@ -16,19 +16,18 @@ from rich.text import Text
 
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.plan.part import STAGES
-from agents.protocol.report.folding import plain
 from agents.views.event_lines import format_findings
 from agents.views.formatting import (
     counted,
-    shortened,
+    describe_attempt,
+    describe_source,
+    format_clock,
+    format_cost,
+    format_time,
+    format_tokens,
     stage_title,
-    told_attempt,
-    told_clock,
-    told_cost,
-    told_source,
-    told_time,
-    told_tokens,
 )
+from simworlds.terminal.text import plain, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -56,7 +55,7 @@ _SAID = 110  # letters of what is being said
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
+class ToolProgress:
     """How far a tool has got."""
 
     done: float
@@ -70,11 +69,11 @@ class Now:
 
     seconds: float
     words: Mapping[str, str] = field(default_factory=dict[str, str])
-    progress: Mapping[str, Progress] = field(default_factory=dict[str, Progress])
+    progress: Mapping[str, ToolProgress] = field(default_factory=dict[str, ToolProgress])
     folder: str = ""
 
 
-def working(run_state: RunState, now: Now, height: int) -> RenderableType:
+def run_in_progress(run_state: RunState, now: Now, height: int) -> RenderableType:
     """The run, and what is being done in it, in at most about ``height`` lines."""
     parts: list[RenderableType] = [_head(run_state), _stages(run_state)]
     if run_state.ending is None:
@@ -82,7 +81,7 @@ def working(run_state: RunState, now: Now, height: int) -> RenderableType:
     stage = run_state.current
     judged = _last_judged(stage.attempts) if stage else None
     if judged and height >= _TALL:
-        told = told_attempt(judged) or "is judged"
+        told = describe_attempt(judged) or "is judged"
         parts += [_line(f"Attempt {judged.number}: {told}", "dim"), *_judged(judged, most=3, is_cut=True)]
     if run_state.ending and run_state.ending.why:
         parts.append(_line(run_state.ending.why, _OUTCOMES.get(run_state.outcome, "")))
@@ -90,7 +89,7 @@ def working(run_state: RunState, now: Now, height: int) -> RenderableType:
     return Group(*parts)
 
 
-def show(run_state: RunState) -> RenderableType:
+def run_summary(run_state: RunState) -> RenderableType:
     """Everything that is worth knowing of a run, for ``simworlds show``."""
     parts: list[RenderableType] = [_head(run_state)]
     if run_state.title != run_state.prompt:
@@ -100,7 +99,7 @@ def show(run_state: RunState) -> RenderableType:
         for attempt in stage.attempts:
             if attempt.choice and attempt.choice.taken != "advance":
                 parts.append(
-                    _line(f"{stage_title(stage.name)}, attempt {attempt.number}: {told_attempt(attempt)}")
+                    _line(f"{stage_title(stage.name)}, attempt {attempt.number}: {describe_attempt(attempt)}")
                 )
                 parts += _judged(attempt, most=5)
     for rendering in run_state.renderings:
@@ -145,7 +144,7 @@ def run_row(name: str, run_state: RunState) -> tuple[Text, ...]:
         )
     when = run_state.latest.astimezone().strftime("%Y-%m-%d %H:%M") if run_state.latest else ""
     total = run_state.total
-    cost = told_cost(total) if total.calls or total.cost else "recorded" if total.recorded else ""
+    cost = format_cost(total) if total.calls or total.cost else "recorded" if total.recorded else ""
     return (
         Text(shortened(name, 60)),
         Text(shortened(run_state.title, _WIDEST)),
@@ -167,7 +166,7 @@ def _head(run_state: RunState) -> RenderableType:
     title = Text(shortened(run_state.title or "A new run", 120), "bold")
     if run_state.outcome != "unfinished":
         title.append(f"  {plain(run_state.outcome)}", _OUTCOMES.get(run_state.outcome, ""))
-    source = told_source(run_state)
+    source = describe_source(run_state)
     return Group(title, _line(source, "yellow")) if source else title
 
 
@@ -185,7 +184,7 @@ def _stages(run_state: RunState) -> RenderableType:
             last = stage.last
             several = counted(len(stage.attempts), "attempt") if len(stage.attempts) > 1 else ""
             running = f"attempt {last.number}" if last and state == "running" else several
-            told = " · ".join(filter(None, [running, told_time(stage.seconds)]))
+            told = " · ".join(filter(None, [running, format_time(stage.seconds)]))
         shown = "bold" if state == "running" else "dim" if state in ("waiting", "skipped") else ""
         table.add_row(
             Text(mark, style), Text(shortened(stage_title(name), 40), shown), Text(told or state, "dim")
@@ -230,10 +229,10 @@ def _step_line(step: Step, now: Now) -> Text:
                 )
             line.append(f"  {shortened(progress.text, 120)}", "dim")
         else:
-            line.append(f"  {told_time(max(0.0, now.seconds - step.began))}", "dim")
+            line.append(f"  {format_time(max(0.0, now.seconds - step.began))}", "dim")
         return line
     words = now.words.get(step.role, "")
-    thinks = f"thinks, {told_time(max(0.0, now.seconds - step.began))}"
+    thinks = f"thinks, {format_time(max(0.0, now.seconds - step.began))}"
     return _spoken(step.role, words) if words.strip() else _spoken(step.role, thinks, "dim")
 
 
@@ -257,15 +256,15 @@ def _judged(attempt: Attempt, most: int, *, is_cut: bool = False) -> list[Render
 
 def _foot(run_state: RunState, now: Now) -> Text:
     total = run_state.total
-    words = [told_clock(now.seconds)]
+    words = [format_clock(now.seconds)]
     if (left := seconds_left(run_state, now.seconds - run_state.seconds)) is not None:
         step = 60 if left >= 90 else 10  # it is no more exact than that
-        words.append(f"about {told_time(max(1, round(left / step)) * step)} left")
+        words.append(f"about {format_time(max(1, round(left / step)) * step)} left")
     words.append(
-        told_cost(total) if total.calls or not total.recorded else "recorded answers, nothing to pay"
+        format_cost(total) if total.calls or not total.recorded else "recorded answers, nothing to pay"
     )
     if total.calls:
-        words.append(told_tokens(total.usage))
+        words.append(format_tokens(total.usage))
     if now.folder:
         words.append(plain(now.folder))
     return Text(" · ".join(words), "dim", no_wrap=True, overflow="ellipsis")

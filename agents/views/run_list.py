@@ -11,7 +11,7 @@ from agents.loop.events import RunEnded
 from agents.loop.journal import NAME
 from agents.loop.reducer import read_run_state
 from agents.loop.run_state import RunState
-from agents.views.rich_views import runs_table, show
+from agents.views.rich_views import run_summary, runs_table
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,4 +42,4 @@ def shown(run: Path) -> RenderableType:
     """How a run stands. Raises NoRun."""
     if not (run / NAME).is_file():
         raise NoRun(f"{run} is no run: it has no {NAME}.")
-    return show(read_run_state(run))
+    return run_summary(read_run_state(run))

@@ -222,17 +222,17 @@ def _executor(given: dict[str, Any]) -> Executor:
 
 
 def _conclude(summaries: Sequence[SweepSummary], out: Path) -> None:
-    from bench.sweep.sweep_view import printable  # noqa: PLC0415 - not for --help
+    from bench.sweep.sweep_view import reason  # noqa: PLC0415 - not for --help
 
     for one in summaries:
         click.echo(f"{_counted(one.asked, 'scene')}: {one.scored} scored, {one.judged} judged")
         for why, count in sorted(one.why_not_scored.items(), key=lambda item: -item[1]):
-            click.echo(f"  {count} not scored: {printable(why)}")
+            click.echo(f"  {count} not scored: {reason(why)}")
         for why, count in sorted(one.why_not_judged.items(), key=lambda item: -item[1]):
-            click.echo(f"  {count} not judged: {printable(why)}")
+            click.echo(f"  {count} not judged: {reason(why)}")
     faults = [fault for one in summaries for fault in one.faults]
     for scene, why in faults:
-        click.echo(f"  {scene} could not be done: {printable(why)}", err=True)
+        click.echo(f"  {scene} could not be done: {reason(why)}", err=True)
     click.echo(f"Tables and page: simworlds bench report {out}")
     sys.exit(1 if faults else 0)
 

@@ -1,58 +1,33 @@
-"""Shows the progress of a sweep: a live view on a terminal, plain lines elsewhere."""
+"""What a person sees of a sweep: a view that is redrawn on a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Protocol, Self, TextIO
+from typing import TYPE_CHECKING, Self
 
 from rich.console import Console, Group
-from rich.live import Live
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
 
+from simworlds.terminal.lines import is_terminal, write_line
+from simworlds.terminal.live_view import LiveView
+from simworlds.terminal.text import shortened
+
 if TYPE_CHECKING:
     from types import TracebackType
+    from typing import TextIO
 
     from bench.sweep.executor import FinishedTask
     from bench.sweep.records import SceneRecord
     from bench.sweep.scene_task import SceneTask
 
 _PER_SECOND = 4
+_LONGEST = 300  # letters of a reason
 
 
-class SweepView(Protocol):
-    """A view of a sweep's progress; a context manager."""
-
-    def doing(self, task: SceneTask | None, what: str) -> None:
-        """Shows the progress of a task; with None, of the sweep."""
-        ...
-
-    def done(self, done: FinishedTask) -> None:
-        """Shows a task that has ended."""
-        ...
-
-    def judged(self, task: SceneTask, record: SceneRecord) -> None:
-        """Shows a scene whose frames were judged, or not."""
-        ...
-
-    def __enter__(self) -> Self: ...
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None: ...
-
-
-def make_view(stream: TextIO, total: int) -> SweepView:
-    """The view that fits where ``stream`` goes; ``total``: how many tasks there are."""
-    console = Console(file=stream)
-    if stream.isatty() and not console.is_dumb_terminal:
-        return SweepScreen(console, total)
-    return SweepLines(stream, total)
-
-
-class SweepLines:
-    """Prints a line for each scene that has ended; for logs."""
+class SweepLog:
+    """A line for each scene that is done."""
 
     def __init__(self, stream: TextIO, total: int) -> None:
         self._stream = stream
@@ -60,18 +35,18 @@ class SweepLines:
         self._count = 0
 
     def doing(self, task: SceneTask | None, what: str) -> None:
-        """See SweepView."""
+        """A task has got so far; with None, the sweep as a whole."""
         if task is None:
             self._write(what)
 
     def done(self, done: FinishedTask) -> None:
-        """See SweepView."""
+        """A task has come to its end."""
         self._count += 1
-        self._write(f"[{self._count}/{self._total}] {describe_scene(done)}")
+        self._write(f"[{self._count}/{self._total}] {format_done(done)}")
 
     def judged(self, task: SceneTask, record: SceneRecord) -> None:
-        """See SweepView."""
-        self._write(describe_judgement(task, record))
+        """A scene's frames have been judged, or not."""
+        self._write(format_judgement(task, record))
 
     def __enter__(self) -> Self:
         return self
@@ -82,53 +57,34 @@ class SweepLines:
         return None
 
     def _write(self, line: str) -> None:
-        try:
-            print(line, file=self._stream, flush=True)
-        except (OSError, UnicodeError):
-            return  # the reader is gone, or its encoding lacks a character: the sweep goes on
+        write_line(self._stream, line)
 
 
-class SweepScreen:
-    """Shows the running tasks above a progress bar; finished ones scroll by."""
+class SweepScreen(LiveView, SweepLog):
+    """What is being worked on, above a bar; what is done scrolls by."""
 
     def __init__(self, console: Console, total: int) -> None:
-        self._console = console
         self._bar = Progress(
             TextColumn("scenes"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console
         )
         self._all = self._bar.add_task("scenes", total=total)
         self._doing: dict[str, tuple[str, float]] = {}
-        self._live = Live(
-            get_renderable=self._drawn, console=console, refresh_per_second=_PER_SECOND, transient=True
-        )
+        LiveView.__init__(self, console, _PER_SECOND, vanishes=True)
 
     def doing(self, task: SceneTask | None, what: str) -> None:
-        """See SweepView."""
-        if task is None:
-            self._console.print(Text(what))
-        else:
+        """See SweepLog."""
+        super().doing(task, what)
+        if task is not None:
             self._doing[task.spec.id] = (what, time.monotonic())
 
     def done(self, done: FinishedTask) -> None:
-        """See SweepView."""
+        """See SweepLog."""
         self._doing.pop(done.task.spec.id, None)
         self._bar.advance(self._all)
-        self._console.print(Text(describe_scene(done)))
+        self._write(format_done(done))
 
-    def judged(self, task: SceneTask, record: SceneRecord) -> None:
-        """See SweepView."""
-        self._console.print(Text(describe_judgement(task, record)))
-
-    def __enter__(self) -> Self:
-        self._live.__enter__()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._live.__exit__(kind, error, trace)
-
-    def _drawn(self) -> Group:
+    def draw(self) -> Group:
+        """See LiveView."""
         rows = Table.grid(padding=(0, 2))
         for scene, (what, since) in sorted(self._doing.items()):
             rows.add_row(
@@ -136,41 +92,45 @@ class SweepScreen:
             )
         return Group(rows, self._bar)
 
+    def _write(self, line: str) -> None:
+        self._console.print(Text(line))
 
-def describe_scene(done: FinishedTask) -> str:
-    """Describes a scene that has ended, in one line."""
+
+def make_view(stream: TextIO, total: int) -> SweepLog:
+    """The view that fits where ``stream`` goes; ``total``: how many tasks there are."""
+    return SweepScreen(Console(file=stream), total) if is_terminal(stream) else SweepLog(stream, total)
+
+
+def format_done(done: FinishedTask) -> str:
+    """A scene that is done, in one line."""
     scene, record = done.task.spec.id, done.record
     if record is None:
-        return f"{scene:<16} could not be done: {printable(done.fault)}"
+        return f"{scene:<16} could not be done: {reason(done.fault)}"
     audited = record.audited
     if audited is None:
         return f"{scene:<16} {record.produced.outcome if record.produced else 'nothing'}"
     if audited.why is not None:
-        return f"{scene:<16} not scored: {printable(audited.why)}"
-    frames = len(record.framed.frames) if record.framed is not None else 0
-    none = (
-        f", no frames: {printable(record.framed.why)}"
-        if record.framed is not None and record.framed.why
-        else ""
-    )
-    return (
-        f"{scene:<16} MPR {format_score(audited.mpr)}  SPR {format_score(audited.spr)}  {frames} frames{none}"
-    )
+        return f"{scene:<16} not scored: {reason(audited.why)}"
+    framed = record.framed
+    frames = len(framed.frames) if framed is not None else 0
+    none = f", no frames: {reason(framed.why)}" if framed is not None and framed.why else ""
+    return f"{scene:<16} MPR {share(audited.mpr)}  SPR {share(audited.spr)}  {frames} frames{none}"
 
 
-def describe_judgement(task: SceneTask, record: SceneRecord) -> str:
-    """Describes a judgement in one line."""
+def format_judgement(task: SceneTask, record: SceneRecord) -> str:
+    """A judgement, in one line."""
     judged = record.judged
     if judged is None or judged.why is not None:
-        return f"{task.spec.id:<16} not judged: {printable(judged.why if judged and judged.why else 'no judgement')}"
-    return f"{task.spec.id:<16} VLM {format_score(judged.score)}"
+        why = reason(judged.why if judged and judged.why else "nothing was")
+        return f"{task.spec.id:<16} not judged: {why}"
+    return f"{task.spec.id:<16} VLM {share(judged.score)}"
 
 
-def format_score(value: float | None) -> str:
-    """Formats a score."""
+def share(value: float | None) -> str:
+    """A score, as a person reads it."""
     return "–" if value is None else f"{value:.3f}"
 
 
-def printable(text: str) -> str:
-    """Untrusted text in one line, without control characters."""
-    return "".join(char if char.isprintable() else " " for char in text)[:300]
+def reason(text: str) -> str:
+    """Words of files and servers in one line, without what a terminal would act on."""
+    return shortened(text, _LONGEST)

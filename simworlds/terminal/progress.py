@@ -1,17 +1,18 @@
-"""How a build shows that it is alive: bars on a terminal, plain lines elsewhere, always on stderr."""
+"""How a build shows its progress: a bar on a terminal, lines elsewhere, always on stderr."""
 
 from __future__ import annotations
 
 import sys
 import time
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
+
+from simworlds.terminal.lines import is_terminal, write_line
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from rich.progress import Progress as Bars
-    from rich.progress import TaskID
+    from rich.progress import Progress as Bar
 
 _LINE_SECONDS = 2.0
 _DRAW_SECONDS = 0.1
@@ -25,66 +26,68 @@ class Progress(Protocol):
 
 
 def silent(label: str, done: int, total: int | None, /) -> None:
-    """Progress that nobody wants to see."""
+    """Shows nothing."""
     del label, done, total
 
 
-class PlainProgress:
+class _Throttle:
+    """Lets through what is new, and what is old once in so many seconds."""
+
+    def __init__(self, seconds: float) -> None:
+        self._seconds = seconds
+        self._last = ("", 0.0)
+
+    def lets(self, label: str) -> bool:
+        label_before, then = self._last
+        now = time.monotonic()
+        if label == label_before and now - then < self._seconds:
+            return False
+        self._last = (label, now)
+        return True
+
+
+class _ProgressLines:
     """A line when something begins, and one every two seconds while it lasts."""
 
     def __init__(self) -> None:
-        self._label = ""
-        self._written = 0.0
+        self._throttle = _Throttle(_LINE_SECONDS)
 
     def __call__(self, label: str, done: int, total: int | None, /) -> None:
-        """Writes a line on stderr, unless the last one is young and about the same thing."""
-        now = time.monotonic()
-        if label == self._label and now - self._written < _LINE_SECONDS:
-            return
-        self._label, self._written = label, now
-        text = f"{label}: {done * 100 // total} %" if total and done else label
-        print(f"{text} ...", file=sys.stderr, flush=True)  # noqa: T201 - this is where lines are for
+        if self._throttle.lets(label):
+            text = f"{label}: {done * 100 // total} %" if total and done else label
+            write_line(sys.stderr, f"{text} ...")
 
 
-class TerminalProgress:
-    """A line with what is being done now and the time since the start; nothing of it stays on the screen."""
+class _ProgressBar:
+    """A bar for what is being done now, redrawn at most ten times a second; it vanishes at the end."""
 
     def __init__(self) -> None:
-        self._bars: Bars | None = None
-        self._task: TaskID | None = None
-        self._label = ""
-        self._drawn = 0.0
+        self._bar: Bar | None = None
+        self._throttle = _Throttle(_DRAW_SECONDS)
 
     def __call__(self, label: str, done: int, total: int | None, /) -> None:
-        """Draws the bar, at most ten times a second."""
-        bars = self._bars or self._start()
-        now = time.monotonic()
-        if self._task is None:
-            self._task = bars.add_task(label, total=total)
-        if label != self._label or done == total or now - self._drawn >= _DRAW_SECONDS:
-            bars.update(self._task, description=label, completed=done, total=total)
-            bars.refresh()
-            self._label, self._drawn = label, now
+        if self._bar is None:
+            from simworlds.terminal.progress_bar import start_bar  # noqa: PLC0415 - slow to load, often not needed
 
-    def _start(self) -> Bars:
-        from simworlds.terminal.progress_columns import make_bars  # noqa: PLC0415 - a build that does nothing draws nothing
-
-        self._bars = make_bars()
-        self._bars.start()
-        return self._bars
+            self._bar = start_bar()
+        if self._throttle.lets(label) or done == total:
+            self._bar.update(
+                self._bar.task_ids[0], description=label, completed=done, total=total, refresh=True
+            )
 
     def close(self) -> None:
-        """Takes the bar off the screen."""
-        if self._bars is not None:
-            self._bars.stop()
-            self._bars = None
+        if self._bar is not None:
+            self._bar.stop()
 
 
 @contextmanager
 def shown_progress() -> Generator[Progress]:
     """The progress that fits where stderr goes."""
-    if not sys.stderr.isatty():
-        yield PlainProgress()
+    if not is_terminal(sys.stderr):
+        yield _ProgressLines()
         return
-    with closing(TerminalProgress()) as progress:
-        yield progress
+    bar = _ProgressBar()
+    try:
+        yield bar
+    finally:
+        bar.close()

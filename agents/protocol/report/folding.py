@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -129,17 +130,6 @@ def _counted(groups: Iterable[list[str]], told: list[list[str]], most: int) -> i
 
 def _more(count: int, most: int) -> list[str]:
     return [f"and {count - most} more"] if count > most else []
-
-
-def plain(text: str) -> str:
-    """The text on one line, without what could steer a terminal or cannot be written as UTF-8."""
-    letters = (
-        letter
-        if unicodedata.category(letter)[0] != "C" or letter == "\u200d"
-        else "\N{REPLACEMENT CHARACTER}"
-        for letter in text
-    )
-    return "".join(letters)
 
 
 # Values

@@ -27,7 +27,8 @@ from agents.plan.relations import (
     SupportedBy,
     SymmetricAbout,
 )
-from agents.protocol.report.folding import folded, plain, told_value
+from agents.protocol.report.folding import folded, told_value
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -132,7 +133,7 @@ def label(card: Card, used: set[str]) -> str:
     return " · ".join([*words, *parts[:_NAMED]])
 
 
-def told_pill(word: str, details: list[str]) -> str:
+def format_pill(word: str, details: list[str]) -> str:
     """``NextTo ×11``."""
     return f"{word} ×{len(details)}" if len(details) > 1 else word
 
@@ -144,7 +145,7 @@ def category_of(relation: Relation) -> str:
 
 def _link(relation: Relation) -> Link:
     is_directed = isinstance(relation, _DIRECTED)
-    return Link(relation.kind, category_of(relation), relation.nodes, told_terms(relation), is_directed)
+    return Link(relation.kind, category_of(relation), relation.nodes, describe_terms(relation), is_directed)
 
 
 def _causes(plan: ScenePlan) -> Iterator[Link]:
@@ -156,7 +157,7 @@ def _causes(plan: ScenePlan) -> Iterator[Link]:
             yield Link("sets off", "motion", nodes, f"{plain(cause.name)} → {plain(phase.name)}")
 
 
-def told_terms(relation: Relation) -> str:
+def describe_terms(relation: Relation) -> str:
     """What a relation says beyond its kind and whom it joins."""
     words = ""
     match relation:
@@ -169,7 +170,7 @@ def told_terms(relation: Relation) -> str:
         case Direction(frame=frame):
             words = f"as the {frame} has it"
         case Distributed():
-            words = _told_pattern(relation)
+            words = _describe_pattern(relation)
         case SymmetricAbout(normal=normal):
             words = f"normal {', '.join(f'{value:g}' for value in normal)}"
         case _:
@@ -177,7 +178,7 @@ def told_terms(relation: Relation) -> str:
     return words
 
 
-def _told_pattern(relation: Distributed) -> str:
+def _describe_pattern(relation: Distributed) -> str:
     words = [relation.pattern]
     if relation.rows or relation.columns:
         words.append(f"{relation.rows or '?'} × {relation.columns or '?'}")

@@ -28,6 +28,7 @@ from agents.views.report.tables import objects_of, relations_of
 from agents.views.report.timeline import draw_timeline
 from simworlds.files import write_whole
 from simworlds.llm.spending import Row as Spent
+from simworlds.terminal.text import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -117,7 +118,7 @@ def make_report(run_state: RunState, run: Path) -> str:
     text = page.render(
         run_state=run_state,
         run=run.resolve().name,
-        source=formatting.told_source(run_state),
+        source=formatting.describe_source(run_state),
         renderings=[_rendering(one, media) for one in run_state.renderings],
         result=_result(run_state, media),
         stages=_stages(run_state, gallery),
@@ -148,15 +149,15 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     made.filters.update(
-        time=formatting.told_time,
-        money=formatting.told_money,
-        tokens=formatting.told_tokens,
-        number=formatting.told_count,
-        cost=formatting.told_cost,
+        time=formatting.format_time,
+        money=formatting.format_money,
+        tokens=formatting.format_tokens,
+        number=formatting.format_count,
+        cost=formatting.format_cost,
         swatch=formatting.swatch,
         stage_title=formatting.stage_title,
         clipped=code.clipped,
-        role=_told_role,
+        role=_format_role,
     )
     return made
 
@@ -165,7 +166,7 @@ def _own(name: str) -> str:
     return (_FOLDER / name).read_text("utf-8")
 
 
-def _told_role(role: str) -> str:
+def _format_role(role: str) -> str:
     return role.replace("_", " ")
 
 
@@ -226,7 +227,7 @@ class _Gallery:
 def _caption(call: ToolCall) -> str:
     name = call.name.removeprefix("blender_").replace("_", " ")
     about = _about(call)
-    return f"{_told_role(call.role)}: {name}" + (f" ({about})" if about else "")
+    return f"{_format_role(call.role)}: {name}" + (f" ({about})" if about else "")
 
 
 def _about(call: ToolCall) -> str:
@@ -238,7 +239,7 @@ def _about(call: ToolCall) -> str:
         for value in call.input.values()
         if isinstance(value, (str, list))
     )
-    return formatting.shortened(", ".join(given), _ABOUT)
+    return shortened(", ".join(given), _ABOUT)
 
 
 def _stages(run_state: RunState, gallery: _Gallery) -> list[ShownStage]:
@@ -274,7 +275,7 @@ def _attempt(attempt: Attempt, before: Sequence[Attempt], gallery: _Gallery) -> 
     made = code.changes(before, attempt) if before else []
     return ShownAttempt(
         attempt=attempt,
-        told=formatting.told_attempt(attempt),
+        told=formatting.describe_attempt(attempt),
         state={"advance": "closed", "abort": "aborted"}.get(taken, "sent-back" if taken else "open"),
         coder=tuple(one for one in coder if one.is_tool or one.words or one.stop),
         others=tuple(others),

@@ -6,10 +6,10 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from agents.protocol.report.folding import plain
-from agents.views.formatting import shortened, swatch
+from agents.views.formatting import swatch
 from agents.views.report.graph_layout import Box, lay_out
-from agents.views.report.links import Card, LinkBox, label, linked, told_pill
+from agents.views.report.links import Card, LinkBox, format_pill, label, linked
+from simworlds.terminal.text import plain, shortened
 
 if TYPE_CHECKING:
     from agents.plan.scene import ScenePlan
@@ -157,7 +157,7 @@ def _between(box: LinkBox, ranks: list[int]) -> int:
 def _pill_texts(box: LinkBox | Card) -> list[tuple[str, str, str]]:
     """(text, category, hint)"""
     return [
-        (told_pill(word, details), category, "; ".join(dict.fromkeys(filter(None, details))))
+        (format_pill(word, details), category, "; ".join(dict.fromkeys(filter(None, details))))
         for (word, category), details in box.pills.items()
     ]
 

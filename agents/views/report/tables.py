@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from agents.plan.relations import Distributed, SymmetricAbout
 from agents.protocol.report.folding import folded
 from agents.views.formatting import swatch
-from agents.views.report.links import category_of, told_terms
+from agents.views.report.links import category_of, describe_terms
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -83,7 +83,7 @@ def relations_of(plan: ScenePlan) -> list[RelationRow]:
     for one in plan.relations:
         others = _ends(one)[1]
         is_shared = shared[one.kind, others] >= _FEWEST_ALIKE
-        alike.setdefault((one.kind, told_terms(one), others if is_shared else ()), []).append(one)
+        alike.setdefault((one.kind, describe_terms(one), others if is_shared else ()), []).append(one)
     return [
         RelationRow(
             kind=kind,

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from agents.protocol.report.folding import plain
-from agents.views.formatting import shortened
+from simworlds.terminal.text import plain, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Callable

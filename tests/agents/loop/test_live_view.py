@@ -16,8 +16,16 @@ from sample_runs import Tape
 from agents.loop.events import read_event
 from agents.loop.reducer import run_state_after
 from agents.loop.run_state import RunState
-from agents.views.live_view import Lines, Quiet, Screen, make_view
-from agents.views.rich_views import Now, Progress, run_row, runs_table, seconds_left, show, working
+from agents.views.live_view import RunLog, RunScreen, RunView, make_view
+from agents.views.rich_views import (
+    Now,
+    ToolProgress,
+    run_in_progress,
+    run_row,
+    run_summary,
+    runs_table,
+    seconds_left,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,7 +52,7 @@ def until(kind: str, nth: int = 1) -> RunState:
 
 def lines_of(tape: Tape) -> list[str]:
     stream = io.StringIO()
-    with Lines(stream) as view:
+    with RunLog(stream) as view:
         for row in tape.rows:
             view.take(read_event(row))
     return stream.getvalue().splitlines()
@@ -84,7 +92,7 @@ def test_a_line_says_that_answers_were_not_live() -> None:
 def test_progress_is_told_now_and_then() -> None:
     now = [0.0]
     stream = io.StringIO()
-    with Lines(stream, clock=lambda: now[0]) as view:
+    with RunLog(stream, clock=lambda: now[0]) as view:
         for second in range(31):
             now[0] = float(second)
             view.progress("blender_bake", second, 30, f"frame {second}")
@@ -94,7 +102,7 @@ def test_progress_is_told_now_and_then() -> None:
 
 def test_lines_go_on_where_a_run_was_left() -> None:
     stream = io.StringIO()
-    with Lines(stream, until("stage.closed")) as view:
+    with RunLog(stream, until("stage.closed")) as view:
         view.take(read_event({"type": "stage.began", "stage": "texture"}))
     assert stream.getvalue() == "01:41  Texture begins\n"
 
@@ -105,13 +113,13 @@ class _Gone(io.StringIO):
 
 
 def test_a_reader_that_has_gone_does_not_end_the_run() -> None:
-    with Lines(_Gone()) as view:
+    with RunLog(_Gone()) as view:
         view.take(read_event(dominoes().rows[0]))
 
 
 def test_letters_that_the_stream_has_no_word_for_are_replaced() -> None:
     raw = io.BytesIO()
-    with Lines(io.TextIOWrapper(raw, "ascii", write_through=True)) as view:
+    with RunLog(io.TextIOWrapper(raw, "ascii", write_through=True)) as view:
         for row in dominoes().rows:
             view.take(read_event(row))
     assert b"Domino.01 ? Domino.12" in raw.getvalue()
@@ -121,7 +129,7 @@ def test_letters_that_the_stream_has_no_word_for_are_replaced() -> None:
 
 
 def test_the_stages_stand_with_their_state() -> None:
-    told = drawn(working(until("attempt.began", 2), Now(70.0), 40))
+    told = drawn(run_in_progress(until("attempt.began", 2), Now(70.0), 40))
     assert re.search(r"▶ +Modeling +attempt 2", told)
     assert re.search(r"– +UV +skipped", told)
     assert re.search(r"· +Texture +waiting", told)
@@ -131,21 +139,23 @@ def test_what_the_coder_does_now_is_shown_with_how_far_it_is() -> None:
     tape = dominoes()
     place = next(n for n, row in enumerate(tape.rows) if row.get("name") == "blender_bake")
     history = run_state_after(tape.rows[: place + 1])
-    now = Now(history.seconds, {}, {"blender_bake": Progress(48, 96, "frame 48 of 96")})
-    told = drawn(working(history, now, 40))
+    now = Now(history.seconds, {}, {"blender_bake": ToolProgress(48, 96, "frame 48 of 96")})
+    told = drawn(run_in_progress(history, now, 40))
     assert "coder A rigid body world." in told
     assert re.search(r"coder blender_bake +━+ 50% +frame 48 of 96", told)
 
 
 def test_streamed_words_are_shown_by_their_end() -> None:
     history = run_state_after([{"type": "model.asked", "n": 1, "role": "coder", "stage": "uv"}])
-    told = drawn(working(history, Now(3.0, {"coder": "beginning " + "and on " * 80 + "to the end"}), 40))
+    told = drawn(
+        run_in_progress(history, Now(3.0, {"coder": "beginning " + "and on " * 80 + "to the end"}), 40)
+    )
     assert "to the end" in told
     assert "beginning" not in told
 
 
 def test_findings_of_the_last_attempt_stay_until_the_next_is_judged() -> None:
-    told = drawn(working(until("attempt.began", 2), Now(70.0), 40))
+    told = drawn(run_in_progress(until("attempt.began", 2), Now(70.0), 40))
     assert "Attempt 1: sent back: 13 hard findings, the reviewer blocks" in told
     assert "V1 ×12 Domino.01 … Domino.12 (12) · Table" in told
     assert "Reviewer blocks: The row is even." in told
@@ -155,7 +165,9 @@ def test_findings_of_the_last_attempt_stay_until_the_next_is_judged() -> None:
 def test_it_fits_a_terminal(height: int) -> None:
     for place in (40, 60, 95, 140):
         history = run_state_after(dominoes().rows[:place])
-        told = drawn(working(history, Now(history.seconds, folder="/a/long/folder"), height), width=80)
+        told = drawn(
+            run_in_progress(history, Now(history.seconds, folder="/a/long/folder"), height), width=80
+        )
         assert len(told.splitlines()) <= max(height, 18)
 
 
@@ -164,7 +176,7 @@ def test_time_left_is_told_once_enough_is_done() -> None:
     assert seconds_left(until("stage.closed", 1)) is None, "one of six stages tells little"
     two = until("stage.closed", 2)
     assert seconds_left(two) == pytest.approx((80.1 + 29.7) / 2 * 4, rel=0.02)
-    assert "02:12 · about 4 min left" in drawn(working(two, Now(132.0), 40))
+    assert "02:12 · about 4 min left" in drawn(run_in_progress(two, Now(132.0), 40))
     left = seconds_left(two, since=1e9)
     assert left
     assert left > 0, "what takes longer than thought is not over"
@@ -172,15 +184,15 @@ def test_time_left_is_told_once_enough_is_done() -> None:
 
 
 def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
-    assert "$1.48 · 640.8k in, 15.2k out" in drawn(working(until("run.ended"), Now(377.0), 40))
-    recorded = drawn(working(run_state_after(dominoes(live=False).rows), Now(377.0), 40))
+    assert "$1.48 · 640.8k in, 15.2k out" in drawn(run_in_progress(until("run.ended"), Now(377.0), 40))
+    recorded = drawn(run_in_progress(run_state_after(dominoes(live=False).rows), Now(377.0), 40))
     assert "recorded answers, nothing to pay" in recorded
     assert "No model was asked" in recorded
 
 
 def test_a_screen_shows_the_last_state_when_it_is_left() -> None:
     console = Console(width=100, height=40, file=io.StringIO(), force_terminal=True, color_system=None)
-    with Screen(io.StringIO(), "/tmp/run", console=console) as view:
+    with RunScreen(console, "/tmp/run") as view:
         for row in dominoes().rows:
             view.take(read_event(row))
             view.saying("coder", "words")
@@ -195,7 +207,7 @@ def test_a_screen_shows_the_last_state_when_it_is_left() -> None:
 def test_rows_words_and_progress_may_come_from_several_threads() -> None:
     console = Console(width=100, height=40, file=io.StringIO(), force_terminal=True, color_system=None)
     tapes = [Tape(), Tape(), Tape(), Tape()]
-    with Screen(io.StringIO(), console=console) as view:
+    with RunScreen(console) as view:
 
         def play(tape: Tape, role: str) -> None:
             for n in range(50):
@@ -229,14 +241,14 @@ def test_a_terminal_gets_a_screen_and_a_pipe_gets_lines(
     terminal: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TERM", "xterm-256color")
-    assert isinstance(make_view(terminal), Screen)
-    assert isinstance(make_view(io.StringIO()), Lines)
+    assert isinstance(make_view(terminal), RunScreen)
+    assert isinstance(make_view(io.StringIO()), RunLog)
     monkeypatch.setenv("TERM", "dumb")
-    assert isinstance(make_view(terminal), Lines)
+    assert isinstance(make_view(terminal), RunLog)
 
 
 def test_a_quiet_view_keeps_the_picture() -> None:
-    with Quiet() as view:
+    with RunView() as view:
         for row in dominoes().rows:
             view.take(read_event(row))
         view.saying("coder", "words")
@@ -248,7 +260,7 @@ def test_a_quiet_view_keeps_the_picture() -> None:
 
 
 def test_a_whole_run_is_shown_with_what_went_wrong_in_it() -> None:
-    told = drawn(show(until("run.ended")))
+    told = drawn(run_summary(until("run.ended")))
     assert "Modeling, attempt 1: sent back: 13 hard findings, the reviewer blocks" in told
     assert "Motion, attempt 1: planned anew: 1 hard finding" in told
     assert "Final review 2: accepted. All fall." in told
@@ -295,11 +307,14 @@ def hostile() -> Tape:
 
 def test_no_control_character_of_theirs_gets_out() -> None:
     tape = hostile()
-    now = Now(1.0, {EVIL: EVIL, "coder": EVIL}, {EVIL: Progress(float("nan"), 3, EVIL)}, EVIL)
+    now = Now(1.0, {EVIL: EVIL, "coder": EVIL}, {EVIL: ToolProgress(float("nan"), 3, EVIL)}, EVIL)
     told = ["\n".join(lines_of(tape))]
-    told += [drawn(working(run_state_after(tape.rows), now, 40)), drawn(show(run_state_after(tape.rows)))]
+    told += [
+        drawn(run_in_progress(run_state_after(tape.rows), now, 40)),
+        drawn(run_summary(run_state_after(tape.rows))),
+    ]
     tape.ended(EVIL, EVIL)
-    told += ["\n".join(lines_of(tape)), drawn(show(run_state_after(tape.rows)))]
+    told += ["\n".join(lines_of(tape)), drawn(run_summary(run_state_after(tape.rows)))]
     told.append(drawn(runs_table([(EVIL, run_state_after(tape.rows))])))
     for text in told:
         assert not _STEERING.search(text), _STEERING.findall(text)
@@ -317,10 +332,12 @@ def test_progress_of_any_numbers_is_drawn() -> None:
         (float("inf"), 2.0),
         (1.0, None),
     ):
-        assert "bake" in drawn(working(history, Now(0.0, {}, {"bake": Progress(done, total, "")}), 40))
+        assert "bake" in drawn(
+            run_in_progress(history, Now(0.0, {}, {"bake": ToolProgress(done, total, "")}), 40)
+        )
         stream = io.StringIO()
         ticks = iter((0.0, 99.0))
-        with Lines(stream, clock=lambda ticks=ticks: next(ticks)) as view:
+        with RunLog(stream, clock=lambda ticks=ticks: next(ticks)) as view:
             view.progress("bake", done, total, "")
             view.progress("bake", done, total, "")
         assert "bake" in stream.getvalue()

@@ -1,4 +1,4 @@
-"""How progress looks on a terminal."""
+"""A progress bar on a terminal."""
 
 from __future__ import annotations
 
@@ -20,24 +20,27 @@ if TYPE_CHECKING:
     from rich.progress_bar import ProgressBar
 
 
-class _BarOfKnownLength(BarColumn):
-    """Nothing where it is not known how much there is to do: a bar that does not move tells lies."""
+class _KnownLengthColumn(BarColumn):
+    """A bar, but only where it is known how much there is to do."""
 
     def render(self, task: Task) -> ProgressBar | Text:  # pyright: ignore[reportIncompatibleMethodOverride]
         """The bar, or nothing."""
         return Text() if task.total is None else super().render(task)
 
 
-def make_bars() -> Progress:
-    """One line on stderr that is drawn when told to, and wiped off at the end."""
-    return Progress(
+def start_bar() -> Progress:
+    """Starts a bar with one task on stderr; it is drawn on request only, and vanishes when it is stopped."""
+    bar = Progress(
         SpinnerColumn(),
         TextColumn("{task.description}"),
-        _BarOfKnownLength(bar_width=30),
+        _KnownLengthColumn(bar_width=30),
         TaskProgressColumn(),
         TimeElapsedColumn(),
         console=Console(stderr=True),
-        # A thread that draws would keep the readers of pages from using a second process.
+        # A drawing thread would make forking unsafe (simworlds.forked), and builds read pages in a second process.
         auto_refresh=False,
         transient=True,
     )
+    bar.add_task("", total=None)
+    bar.start()
+    return bar
