@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Protocol, Self, TextIO
+from typing import TYPE_CHECKING, Self, TextIO
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -21,56 +21,24 @@ if TYPE_CHECKING:
 _PER_SECOND = 4
 
 
-class SweepView(Protocol):
-    """A view of a sweep's progress; a context manager."""
-
-    def doing(self, task: SceneTask | None, what: str) -> None:
-        """Shows the progress of a task; with None, of the sweep."""
-        ...
-
-    def done(self, done: FinishedTask) -> None:
-        """Shows a task that has ended."""
-        ...
-
-    def judged(self, task: SceneTask, record: SceneRecord) -> None:
-        """Shows a scene whose frames were judged, or not."""
-        ...
-
-    def __enter__(self) -> Self: ...
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None: ...
-
-
-def make_view(stream: TextIO, total: int) -> SweepView:
-    """The view that fits where ``stream`` goes; ``total``: how many tasks there are."""
-    console = Console(file=stream)
-    if stream.isatty() and not console.is_dumb_terminal:
-        return SweepScreen(console, total)
-    return SweepLines(stream, total)
-
-
-class SweepLines:
-    """Prints a line for each scene that has ended; for logs."""
+class SweepView:
+    """A context manager that prints a line for each scene that has ended; for logs."""
 
     def __init__(self, stream: TextIO, total: int) -> None:
-        self._stream = stream
-        self._total = total
-        self._count = 0
+        self._stream, self._total, self._count = stream, total, 0
 
     def doing(self, task: SceneTask | None, what: str) -> None:
-        """See SweepView."""
+        """Shows the progress of a task, on a terminal only; with None, of the sweep."""
         if task is None:
             self._write(what)
 
     def done(self, done: FinishedTask) -> None:
-        """See SweepView."""
+        """Shows a task that has ended."""
         self._count += 1
         self._write(f"[{self._count}/{self._total}] {describe_scene(done)}")
 
     def judged(self, task: SceneTask, record: SceneRecord) -> None:
-        """See SweepView."""
+        """Shows a scene whose frames were judged, or not."""
         self._write(describe_judgement(task, record))
 
     def __enter__(self) -> Self:
@@ -88,10 +56,11 @@ class SweepLines:
             return  # the reader is gone, or its encoding lacks a character: the sweep goes on
 
 
-class SweepScreen:
+class LiveSweepView(SweepView):
     """Shows the running tasks above a progress bar; finished ones scroll by."""
 
     def __init__(self, console: Console, total: int) -> None:
+        super().__init__(console.file, total)
         self._console = console
         self._bar = Progress(
             TextColumn("scenes"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console
@@ -104,20 +73,15 @@ class SweepScreen:
 
     def doing(self, task: SceneTask | None, what: str) -> None:
         """See SweepView."""
-        if task is None:
-            self._console.print(Text(what))
-        else:
+        super().doing(task, what)
+        if task is not None:
             self._doing[task.spec.id] = (what, time.monotonic())
 
     def done(self, done: FinishedTask) -> None:
         """See SweepView."""
         self._doing.pop(done.task.spec.id, None)
         self._bar.advance(self._all)
-        self._console.print(Text(describe_scene(done)))
-
-    def judged(self, task: SceneTask, record: SceneRecord) -> None:
-        """See SweepView."""
-        self._console.print(Text(describe_judgement(task, record)))
+        self._write(describe_scene(done))
 
     def __enter__(self) -> Self:
         self._live.__enter__()
@@ -128,6 +92,9 @@ class SweepScreen:
     ) -> None:
         self._live.__exit__(kind, error, trace)
 
+    def _write(self, line: str) -> None:
+        self._console.print(Text(line))
+
     def _drawn(self) -> Group:
         rows = Table.grid(padding=(0, 2))
         for scene, (what, since) in sorted(self._doing.items()):
@@ -135,6 +102,14 @@ class SweepScreen:
                 Text(f"  {scene}"), Text(what), Text(f"{time.monotonic() - since:.0f} s", style="dim")
             )
         return Group(rows, self._bar)
+
+
+def make_view(stream: TextIO, total: int) -> SweepView:
+    """The view that fits ``stream``; ``total``: the number of tasks."""
+    console = Console(file=stream)
+    if stream.isatty() and not console.is_dumb_terminal:
+        return LiveSweepView(console, total)
+    return SweepView(stream, total)
 
 
 def describe_scene(done: FinishedTask) -> str:

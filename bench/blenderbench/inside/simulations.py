@@ -2,19 +2,12 @@
 """The simulations of a scene, and playing those that are not baked."""
 
 import os
+from collections import namedtuple
 
 import bpy
 
-
-class Simulation:
-    """One simulation: ``label`` in words, its ``first`` frame, whether it is ``baked`` and its frames are ``on_disk``.
-
-    ``points``: its point cache, or None for fluids and geometry nodes.
-    """
-
-    def __init__(self, label, first, baked, on_disk=False, points=None):
-        self.label, self.first, self.baked, self.on_disk = label, first, baked, on_disk
-        self.points = points
+# ``label``: in words; ``first``: frame; ``on_disk``: its baked frames are files; ``points``: its point cache, or None.
+Simulation = namedtuple("Simulation", "label first baked on_disk points")
 
 
 def find_simulations(scene):
@@ -61,9 +54,11 @@ def _of_modifier(scene, obj, modifier):
             if surface.is_cache_user:
                 yield _of_points(label, surface.point_cache)
     elif (domain := _domain_of(modifier)) is not None:
-        yield Simulation(label, domain.cache_frame_start, _is_baked(domain), on_disk=True)
+        yield Simulation(label, domain.cache_frame_start, _is_baked(domain), on_disk=True, points=None)
     elif modifier.type == "NODES" and _has_zone(modifier.node_group, set()):
-        yield Simulation(label, scene.frame_start, baked=False)  # no property tells
+        yield Simulation(
+            label, scene.frame_start, baked=False, on_disk=False, points=None
+        )  # no property tells
 
 
 def _domain_of(modifier):

@@ -109,7 +109,7 @@ def test_chooses_the_best_round_by_n_clip_only_on_request(out: Path) -> None:
     assert best["level1/a1"].pl == pytest.approx(0, abs=1e-6)
     text = as_markdown([read_results(out)])
     assert "the round with the best N-CLIP counts" in text
-    assert "other weights than OpenAI's: made up" in text
+    assert "does not use OpenAI's weights: made up" in text
 
 
 def test_the_best_round_without_weights_is_an_error_and_nothing_is_scored(out: Path) -> None:

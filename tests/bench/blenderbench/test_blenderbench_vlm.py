@@ -114,9 +114,7 @@ def test_a_refusal_is_not_a_low_mark(api: FakeMessagesAPI, claude: Provider) -> 
     assert caught.value.reason == "refused"
 
 
-def test_caches_marks_by_pixels(
-    api: FakeMessagesAPI, claude: Provider, tmp_path: Path
-) -> None:
+def test_caches_marks_by_pixels(api: FakeMessagesAPI, claude: Provider, tmp_path: Path) -> None:
     other = RESULT.copy()
     other.putpixel((0, 0), (255, 255, 255))
     first = judge_edit(INSTRUCTION, GOAL, RESULT, claude, tmp_path)
