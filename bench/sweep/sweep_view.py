@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Self, TextIO
+from typing import IO, TYPE_CHECKING, Self
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -24,7 +24,7 @@ _PER_SECOND = 4
 class SweepView:
     """A context manager that prints a line for each scene that has ended; for logs."""
 
-    def __init__(self, stream: TextIO, total: int) -> None:
+    def __init__(self, stream: IO[str], total: int) -> None:
         self._stream, self._total, self._count = stream, total, 0
 
     def doing(self, task: SceneTask | None, what: str) -> None:
@@ -104,7 +104,7 @@ class LiveSweepView(SweepView):
         return Group(rows, self._bar)
 
 
-def make_view(stream: TextIO, total: int) -> SweepView:
+def make_view(stream: IO[str], total: int) -> SweepView:
     """The view that fits ``stream``; ``total``: the number of tasks."""
     console = Console(file=stream)
     if stream.isatty() and not console.is_dumb_terminal:

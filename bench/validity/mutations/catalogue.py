@@ -283,10 +283,11 @@ MUTATIONS: Mapping[str, tuple[Mutation, ...]] = {
     "rigid_positive_mass": (_mutation("set_body", attribute="mass", value=0.0),),
     "particle_system": (_of_modifier("remove_modifier", "PARTICLE_SYSTEM", _PARTICLES, _NO_SOLVER),),
     "particle_type": (
-        _of_modifier(
+        _mutation(
             "set_value",
-            "PARTICLE_SYSTEM",
-            *(_OTHER_ROLE, _changed("static hair has no cache", "particle_cache_baked")),
+            _OTHER_ROLE,
+            _changed("static hair has no cache", "particle_cache_baked"),
+            types=["PARTICLE_SYSTEM"],
             path="particle_system.settings.type",
             given=lambda params, _: {
                 "value": "HAIR" if params.get("type", "EMITTER") == "EMITTER" else "EMITTER"
