@@ -23,7 +23,7 @@ from agents.blender.supervisor import Supervisor
 from bench.markdown_tables import Table
 from bench.setting import REPO, environment, percentile, say, simworlds
 from measurements import verifier_scenes
-from measurements.report import Figure, Part, run_steps
+from measurements.report import ReportPart, TargetFigure, run_steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -59,13 +59,13 @@ class _Check:
         return [f"{one['rule']}: {one['message']}" for one in self.report["findings"]]
 
 
-def measure(setting: Setting) -> Part:
+def measure(setting: Setting) -> ReportPart:
     """Measures all steps, each in a folder of its own."""
     steps = {"growth": _growth, "motion": _motion, "loose": _loose, "mutations": _mutations}
     return run_steps("verifier", {name: partial(_in_a_folder, step, setting) for name, step in steps.items()})
 
 
-def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Part:
+def _in_a_folder(step: Callable[[Setting, Path], ReportPart], setting: Setting) -> ReportPart:
     with tempfile.TemporaryDirectory(prefix="bench-verify-", ignore_cleanup_errors=True) as place:
         return step(setting, Path(place).resolve())
 
@@ -73,7 +73,7 @@ def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Par
 # Cost
 
 
-def _growth(setting: Setting, place: Path) -> Part:
+def _growth(setting: Setting, place: Path) -> ReportPart:
     rows: list[tuple[str, ...]] = []
     costs: dict[int, list[float]] = {}
     judged = ""
@@ -110,14 +110,16 @@ def _growth(setting: Setting, place: Path) -> Part:
         "Blender and opens the file."
     )
     figures = (
-        Figure("verify", percentile(costs[_JUDGED], 0.5), judged),
-        Figure("verify_growth", growth, f"{_SIZES[0]} to {_SIZES[-1]:,} objects of {_TRIANGLES:,} triangles"),
+        TargetFigure("verify", percentile(costs[_JUDGED], 0.5), judged),
+        TargetFigure(
+            "verify_growth", growth, f"{_SIZES[0]} to {_SIZES[-1]:,} objects of {_TRIANGLES:,} triangles"
+        ),
     )
     table = Table("Verifying scenes of many objects", header, tuple(rows), note)
-    return Part("growth", figures, (table,), data={"seconds": costs})
+    return ReportPart("growth", figures, (table,), data={"seconds": costs})
 
 
-def _motion(setting: Setting, place: Path) -> Part:
+def _motion(setting: Setting, place: Path) -> ReportPart:
     say("verifier: a baked motion")
     scene, plan = place / "motion.blend", place / "plan.json"
     told = _built(place, verifier_scenes.motion(_ACTORS, _FRAMES), scene)
@@ -128,17 +130,21 @@ def _motion(setting: Setting, place: Path) -> Part:
     _expect(idle, [])
     times = [check.seconds for check in checks]
     note = f"rigid bodies; {sum(one['state'] == 'holds' for one in checks[0].report['rules'])} rules hold"
-    return Part("motion", (Figure("verify_motion", percentile(times, 0.5), note),), data={"seconds": times})
+    return ReportPart(
+        "motion", (TargetFigure("verify_motion", percentile(times, 0.5), note),), data={"seconds": times}
+    )
 
 
-def _loose(setting: Setting, place: Path) -> Part:
+def _loose(setting: Setting, place: Path) -> ReportPart:
     say("verifier: untagged primitives")
     scene = place / "loose.blend"
     _built(place, verifier_scenes.LOOSE, scene)
     check = _checked(setting, scene)
     rules = sorted({one["rule"] for one in check.report["findings"]})
     note = f"{len(check.found)} findings of {', '.join(rules)}, in {len(rules)} rows"
-    return Part("loose", (Figure("verify_loose", check.whole, note),), data={"seconds": check.seconds})
+    return ReportPart(
+        "loose", (TargetFigure("verify_loose", check.whole, note),), data={"seconds": check.seconds}
+    )
 
 
 def _built(place: Path, script: str, target: Path) -> dict[str, Any]:
@@ -178,7 +184,7 @@ def _expect(findings: list[str], wanted: list[str]) -> None:
 # Findings
 
 
-def _mutations(setting: Setting, _place: Path) -> Part:
+def _mutations(setting: Setting, _place: Path) -> ReportPart:
     count = _FEW if setting.quick else _MUTATIONS
     say(f"verifier: {count} random breaches of valid scenes")
     result = json.loads(_ran([sys.executable, str(_MUTATING), str(count)], setting))
@@ -191,12 +197,12 @@ def _mutations(setting: Setting, _place: Path) -> Part:
         "two rules may find one."
     )
     figures = (
-        Figure("mutations", result["found"] / result["made"], f"{result['found']} of {result['made']}"),
-        Figure(
+        TargetFigure("mutations", result["found"] / result["made"], f"{result['found']} of {result['made']}"),
+        TargetFigure(
             "false_alarms",
             float(len(result["alarms"])),
             f"{result['looks']} checks by {result['rules']} rules",
         ),
     )
     table = Table("Breaches of valid scenes", ("breach", "made", "found", "by"), tuple(rows), note)
-    return Part("mutations", figures, (table,), data=result)
+    return ReportPart("mutations", figures, (table,), data=result)

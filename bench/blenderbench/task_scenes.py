@@ -29,7 +29,7 @@ from simworlds.sandbox.usage import sweep
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from bench.blenderbench.task_set import EditTask
+    from bench.blenderbench.task_set import BenchTask
 
 SAMPLES = 512
 """Of Cycles, as the set's own renders have."""
@@ -73,7 +73,7 @@ class Rendered(BaseModel):
     samples: int
 
 
-def make_start(task: EditTask, blend: Path, settings: RenderSettings) -> tuple[str, ...]:
+def make_start(task: BenchTask, blend: Path, settings: RenderSettings) -> tuple[str, ...]:
     """Runs a task's ``start.py`` on its raw file, and saves the scene as ``blend`` with all that can be packed.
 
     Returns, in words, what could not be packed. Raises TaskFailed for what is the task's fault, CannotStart where no

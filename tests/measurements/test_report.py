@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from measurements.main import main
-from measurements.report import Figure, Part, markdown, targets_table, write
+from measurements.report import ReportPart, TargetFigure, markdown, targets_table, write
 from measurements.targets import TARGETS, Target, format_value
 
 if TYPE_CHECKING:
@@ -31,24 +31,26 @@ def test_a_target_is_reached_on_one_side_only(target: Target, value: float, reac
 
 def test_a_narrow_miss_is_not_rounded_to_reached() -> None:
     assert format_value(0.7496, "share") != "0.75"
-    row = targets_table([Figure("hit1", 0.7496)]).rows[0]
+    row = targets_table([TargetFigure("hit1", 0.7496)]).rows[0]
     assert "NOT reached" in row
 
 
 def test_figures_are_in_the_order_of_targets_and_counted() -> None:
-    found = targets_table([Figure("size", 61.0), Figure("members", 1.0), Figure("hit1", 0.8)])
+    found = targets_table(
+        [TargetFigure("size", 61.0), TargetFigure("members", 1.0), TargetFigure("hit1", 0.8)]
+    )
     assert [row[0] for row in found.rows] == [TARGETS[key].what for key in ("hit1", "members", "size")]
     assert found.note.startswith("1 of 2 targets reached")
 
 
 def test_names_a_skipped_part_with_the_reason() -> None:
-    text = markdown([Part("server", skipped=("simworlds docs failed",))], {"date": "today"})
+    text = markdown([ReportPart("server", skipped=("simworlds docs failed",))], {"date": "today"})
     assert "- server: simworlds docs failed" in text
     assert "- date: today" in text
 
 
 def test_writes_markdown_and_json(tmp_path: Path) -> None:
-    parts = [Part("builds", (Figure("size", 50.0, "just built"),), data={"builds": [1]})]
+    parts = [ReportPart("builds", (TargetFigure("size", 50.0, "just built"),), data={"builds": [1]})]
     text = write(tmp_path / "new" / "reports", parts, {"commit": "abc"})
     folder = tmp_path / "new" / "reports"
     assert (folder / "bench.md").read_text(encoding="utf-8") == text
