@@ -75,7 +75,7 @@ def markdown(parts: Sequence[ReportPart], facts: Mapping[str, str]) -> str:
         if _BUSY in facts.get("machine", ""):
             blocks.append("**The machine was busy at the start: times are longer than on an idle one.**")
     for part in parts:
-        blocks += [table(one) for one in part.tables]
+        blocks += [table(each) for each in part.tables]
     skipped = [f"- {part.name}: {reason}" for part in parts for reason in part.skipped]
     if skipped:
         blocks.append("## Not measured\n\n" + "\n".join(skipped))
@@ -86,7 +86,7 @@ def targets_table(figures: Iterable[TargetFigure]) -> Table:
     """A table of figures with their targets and the peers' figures, in the order of the targets."""
     order = list(TARGETS)
     rows: list[tuple[str, ...]] = []
-    for figure in sorted(figures, key=lambda one: order.index(one.key)):
+    for figure in sorted(figures, key=lambda figure: order.index(figure.key)):
         target = TARGETS[figure.key]
         verdict = _REACHED[target.reached(figure.value)]
         rows.append(

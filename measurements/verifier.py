@@ -122,14 +122,14 @@ def _growth(setting: Setting, place: Path) -> ReportPart:
 def _motion(setting: Setting, place: Path) -> ReportPart:
     say("verifier: a baked motion")
     scene, plan = place / "motion.blend", place / "plan.json"
-    told = _built(place, verifier_scenes.motion(_ACTORS, _FRAMES), scene)
-    plan.write_text(json.dumps(verifier_scenes.motion_plan(_FRAMES, told)))
+    facts = _built(place, verifier_scenes.motion(_ACTORS, _FRAMES), scene)
+    plan.write_text(json.dumps(verifier_scenes.motion_plan(_FRAMES, facts)))
     checks = [_checked(setting, scene, "--plan", str(plan), "--rules", "T") for _ in range(3)]
     _expect(checks[0].found, [])
-    idle = [one["id"] for one in checks[0].report["rules"] if one["state"] != "holds"]
+    idle = [rule["id"] for rule in checks[0].report["rules"] if rule["state"] != "holds"]
     _expect(idle, [])
     times = [check.seconds for check in checks]
-    note = f"rigid bodies; {sum(one['state'] == 'holds' for one in checks[0].report['rules'])} rules hold"
+    note = f"rigid bodies; {sum(rule['state'] == 'holds' for rule in checks[0].report['rules'])} rules hold"
     return ReportPart(
         "motion", (TargetFigure("verify_motion", percentile(times, 0.5), note),), data={"seconds": times}
     )
@@ -140,7 +140,7 @@ def _loose(setting: Setting, place: Path) -> ReportPart:
     scene = place / "loose.blend"
     _built(place, verifier_scenes.LOOSE, scene)
     check = _checked(setting, scene)
-    rules = sorted({one["rule"] for one in check.report["findings"]})
+    rules = sorted({finding["rule"] for finding in check.report["findings"]})
     note = f"{len(check.found)} findings of {', '.join(rules)}, in {len(rules)} rows"
     return ReportPart(
         "loose", (TargetFigure("verify_loose", check.whole, note),), data={"seconds": check.seconds}

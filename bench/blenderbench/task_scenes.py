@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from bench.blenderbench.task_set import BenchTask
 
 SAMPLES = 512
-"""Of Cycles, as the set's own renders have."""
+"""Samples of the set's own renders."""
 _WORKER = Program(
     "bench.blenderbench.inside.task_worker",
     {**AUDITOR.packages, "bench.blenderbench.inside": Path(__file__).parent / "inside"},
@@ -44,10 +44,9 @@ _LISTED = 5
 
 @dataclass(frozen=True, slots=True)
 class RenderSettings:
-    """How scenes are rendered, and in what: Cycles with so many ``samples``.
+    """How scenes are rendered: samples of Cycles, the Blender (by default this environment's) and its limits.
 
-    Which Blender (by default this environment's), how long one step in it may take (seconds), how much memory (bytes;
-    None: three quarters of the machine's).
+    ``seconds``: of one step in it; ``memory``: in bytes (None: three quarters of the machine's).
     """
 
     samples: int = SAMPLES
@@ -58,12 +57,12 @@ class RenderSettings:
 
     @property
     def limits(self) -> Limits:
-        """Of a process."""
+        """The limits of a process."""
         return Limits(memory=self.memory) if self.memory else default_limits()
 
 
 class Rendered(BaseModel):
-    """What a picture was made with: which Blender, through which camera, on CPU or GPU, with how many samples."""
+    """How a picture was rendered: Blender version, camera, CPU or GPU, samples."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 

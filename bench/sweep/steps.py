@@ -211,7 +211,7 @@ def _blend(task: SceneTask, record: SceneRecord) -> Path | None:
 
 
 def _is_gone(record: SceneRecord) -> bool:
-    """Of a scene without a file: whether there was one. Its results stay."""
+    """Whether a scene without a file had one before. Its results are then kept."""
     return record.produced is not None and record.produced.blend is not None
 
 
