@@ -1,1 +1,1 @@
-"""What measures this project: retrieval, latency, servers, builds, Blender, the verifier and audits."""
+"""Measures this project: retrieval, latency, servers, builds, Blender, the verifier and audits."""

@@ -17,7 +17,7 @@ from bench.markdown_tables import Table
 from bench.references.reference_scenes import build, has_reference
 from bench.scenes.spec import specs
 from bench.sweep.command import simworlds_command
-from measurements.report import Figure, Part, run_steps
+from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import environment, percentile, say
 
 if TYPE_CHECKING:
@@ -44,12 +44,12 @@ class _Failed(Exception):  # noqa: N818 - reads as the state it names
     """The command did not score a scene."""
 
 
-def measure(setting: Setting) -> Part:
+def measure(setting: Setting) -> ReportPart:
     """Measures one scene after another, then all on two cores."""
     return run_steps("audits", {"reference scenes": partial(_measured, setting)})
 
 
-def _measured(setting: Setting) -> Part:
+def _measured(setting: Setting) -> ReportPart:
     scenes = [spec.id for spec in specs() if has_reference(spec.id)]
     if setting.quick:
         scenes = [scene for scene in scenes if scene.endswith("_01")]
@@ -64,8 +64,8 @@ def _measured(setting: Setting) -> Part:
     slowest = max(alone, key=lambda audited: audited.seconds)
     times = [audited.seconds for audited in alone]
     figures = (
-        Figure("audit", slowest.seconds, f"{slowest.scene}; median {percentile(times, 0.5):.2f} s"),
-        Figure("audit_all", together, f"{len(scenes)} scenes, {_JOBS} at once"),
+        TargetFigure("audit", slowest.seconds, f"{slowest.scene}; median {percentile(times, 0.5):.2f} s"),
+        TargetFigure("audit_all", together, f"{len(scenes)} scenes, {_JOBS} at once"),
     )
     rows = tuple(
         (
@@ -82,7 +82,7 @@ def _measured(setting: Setting) -> Part:
         "The whole command, with Blender's start: simworlds bench audit. "
         f"Blender may take {_MEMORY} GiB, which is 2 GB: a scene that takes more is not scored."
     )
-    return Part("audits", figures, (Table("Auditing the reference scenes", header, rows, note),))
+    return ReportPart("audits", figures, (Table("Auditing the reference scenes", header, rows, note),))
 
 
 def _built(scene: str, setting: Setting) -> Path:

@@ -27,7 +27,7 @@ from agents.blender.tool_catalogue import BY_NAME
 from bench.markdown_tables import Table
 from bench.sweep.command import simworlds_command
 from measurements.echo import TOOL as ECHO
-from measurements.report import Figure, Part, run_steps
+from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import REPO, environment, percentile, say
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ len(bpy.data.objects)
 """
 
 
-def measure(setting: Setting) -> Part:
+def measure(setting: Setting) -> ReportPart:
     """Measures all that an agent waits for."""
     return run_steps(
         "blender",
@@ -74,7 +74,7 @@ def measure(setting: Setting) -> Part:
 # The worker by itself
 
 
-def _worker(setting: Setting) -> Part:
+def _worker(setting: Setting) -> ReportPart:
     say("blender: start, and restart after a kill")
     starts: list[float] = []
     restarts: list[float] = []
@@ -96,10 +96,10 @@ def _worker(setting: Setting) -> Part:
                 if count != str(_KEPT):
                     raise RuntimeError(f"{count} of {_KEPT} objects were restored")
     figures = (
-        Figure("worker_start", percentile(starts, 0.5), f"median of {len(starts)}"),
-        Figure("restart", percentile(restarts, 0.5), f"slowest {max(restarts):.2f} s"),
+        TargetFigure("worker_start", percentile(starts, 0.5), f"median of {len(starts)}"),
+        TargetFigure("restart", percentile(restarts, 0.5), f"slowest {max(restarts):.2f} s"),
     )
-    return Part("worker", figures, data={"starts": starts, "restarts": restarts})
+    return ReportPart("worker", figures, data={"starts": starts, "restarts": restarts})
 
 
 def _run(blender: Supervisor, code: str) -> str:
@@ -132,15 +132,15 @@ async def _call(client: Client, tool: str, **arguments: Any) -> float:
     return seconds
 
 
-async def _over_mcp(setting: Setting) -> Part:
+async def _over_mcp(setting: Setting) -> ReportPart:
     starts, calls = await _timed(setting, [*simworlds_command(), "mcp"], EXECUTE, **_ONE)
     say("blender: an echo tool for comparison")
     echo_starts, echoes = await _timed(
         setting, [sys.executable, "-m", "measurements.echo"], ECHO, query="1+1"
     )
     figures = (
-        Figure("mcp_start", percentile(starts, 0.5), f"echo here {percentile(echo_starts, 0.5):.2f} s"),
-        Figure("execute_p50", percentile(calls, 0.5), f"echo here {percentile(echoes, 0.5):.1f} ms"),
+        TargetFigure("mcp_start", percentile(starts, 0.5), f"echo here {percentile(echo_starts, 0.5):.2f} s"),
+        TargetFigure("execute_p50", percentile(calls, 0.5), f"echo here {percentile(echoes, 0.5):.1f} ms"),
     )
     rows = tuple(
         (
@@ -157,7 +157,7 @@ async def _over_mcp(setting: Setting) -> Part:
     note = "From before the server's start to the first answer. Every call of blender_execute leaves a checkpoint."
     table = Table("Blender over MCP, on stdio", header, rows, note)
     data = {"starts": starts, "calls": calls, "echo_starts": echo_starts, "echo_calls": echoes}
-    return Part("over MCP", figures, (table,), data=data)
+    return ReportPart("over MCP", figures, (table,), data=data)
 
 
 async def _timed(
@@ -179,10 +179,10 @@ async def _timed(
     return starts, calls
 
 
-async def _scenes(setting: Setting) -> Part:
+async def _scenes(setting: Setting) -> ReportPart:
     say("blender: reading and seeing scenes")
     wanted = {STATE: ("state", _OBJECTS, 1e3), PREVIEW: ("preview", _SEEN, 1.0)}
-    figures: list[Figure] = []
+    figures: list[TargetFigure] = []
     data: dict[str, list[float]] = {}
     for tool, (key, count, unit) in wanted.items():
         if tool not in BY_NAME:
@@ -192,6 +192,8 @@ async def _scenes(setting: Setting) -> Part:
                 await _call(client, EXECUTE, code=_SCENE.replace("COUNT", str(count)))
                 times = [await _call(client, tool) * unit for _ in range(3 if setting.quick else 6)]
         data[tool] = times
-        figures.append(Figure(key, percentile(times[1:], 0.5), f"first {times[0]:.{0 if unit > 1 else 2}f}"))
+        figures.append(
+            TargetFigure(key, percentile(times[1:], 0.5), f"first {times[0]:.{0 if unit > 1 else 2}f}")
+        )
     skipped = tuple(f"there is no {tool}" for tool in wanted if tool not in BY_NAME)
-    return Part("scenes", tuple(figures), skipped=skipped, data=data)
+    return ReportPart("scenes", tuple(figures), skipped=skipped, data=data)

@@ -17,7 +17,7 @@ from bench.markdown_tables import Table
 from bench.sweep.command import simworlds_command
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.sources import find_sources
-from measurements.report import Figure, Part
+from measurements.report import ReportPart, TargetFigure
 from measurements.setting import BLENDER, REPO, corpora, environment, say
 from simworlds.errors import UserError
 from simworlds.settings import base_path
@@ -72,9 +72,9 @@ def _children_cpu() -> float:
     return times.children_user + times.children_system
 
 
-def measure(setting: Setting) -> Part:
+def measure(setting: Setting) -> ReportPart:
     """Builds in temporary folders; ``quick`` skips the full build and the manual from HTML."""
-    figures: list[Figure] = []
+    figures: list[TargetFigure] = []
     rows: list[tuple[str, ...]] = []
     skipped: list[str] = []
     with tempfile.TemporaryDirectory(prefix="simworlds-bench-") as folder:
@@ -90,10 +90,10 @@ def measure(setting: Setting) -> Part:
             except (UserError, FileNotFoundError) as error:
                 skipped.append(f"manual from HTML: {error}")
     if not any(figure.key == "size" for figure in figures):
-        figures.append(Figure("size", setting.base.stat().st_size / 1e6, "the measured base"))
+        figures.append(TargetFigure("size", setting.base.stat().st_size / 1e6, "the measured base"))
     tables = (Table("Builds", _HEADER, tuple(rows)),) if rows else ()
     data: dict[str, Any] = {"builds": [dict(zip(_HEADER, row, strict=True)) for row in rows]}
-    return Part("builds", tuple(figures), tables, tuple(skipped), data)
+    return ReportPart("builds", tuple(figures), tables, tuple(skipped), data)
 
 
 def _again(home: Path, *arguments: str) -> BuildTime:
@@ -113,26 +113,26 @@ def _row(what: str, took: BuildTime, gives: str) -> tuple[str, ...]:
     return what, f"{took.wall:.2f}", f"{took.cpu:.2f}", gives
 
 
-def _api(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> None:
+def _api(folder: Path, figures: list[TargetFigure], rows: list[tuple[str, ...]]) -> None:
     say(f"builds: {BLENDER} without pages")
     home = folder / "api"
     took = run_build(home, "--no-pages")
-    figures.append(Figure("build_api", took.wall, "empty home"))
+    figures.append(TargetFigure("build_api", took.wall, "empty home"))
     rows.append(_row("without pages, empty home", took, _size(home)))
     rows.append(_row("without pages, nothing changed", _again(home, "--no-pages"), "the same base"))
 
 
-def _whole(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> None:
+def _whole(folder: Path, figures: list[TargetFigure], rows: list[tuple[str, ...]]) -> None:
     if corpora() is None:
         raise BuildFailed("there are no documentation sources; set SIMWORLDS_CORPORA to their folder")
     say(f"builds: {BLENDER} with manual and guides")
     home = folder / "whole"
     took = run_build(home, "--require", "manual,guides")
-    figures.append(Figure("build", took.wall, "empty home"))
-    figures.append(Figure("size", base_path(home, BLENDER).stat().st_size / 1e6, "just built"))
+    figures.append(TargetFigure("build", took.wall, "empty home"))
+    figures.append(TargetFigure("size", base_path(home, BLENDER).stat().st_size / 1e6, "just built"))
     rows.append(_row("with manual and guides, empty home", took, _size(home)))
     again = _again(home)
-    figures.append(Figure("build_again", again.wall, "median of 3"))
+    figures.append(TargetFigure("build_again", again.wall, "median of 3"))
     rows.append(_row("with manual and guides, nothing changed", again, "the same base"))
     rows.append(_row("with manual and guides, forced", run_build(home, "--force"), _size(home)))
 
@@ -141,7 +141,7 @@ def _size(home: Path) -> str:
     return f"{base_path(home, BLENDER).stat().st_size / 1e6:.1f} MB"
 
 
-def _html(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> None:
+def _html(folder: Path, figures: list[TargetFigure], rows: list[tuple[str, ...]]) -> None:
     sources = corpora()
     archive = next(iter(sorted(sources.glob(f"{HTML}*"))), None) if sources else None
     if archive is None:
@@ -158,6 +158,6 @@ def _html(folder: Path, figures: list[Figure], rows: list[tuple[str, ...]]) -> N
     between, used = time.perf_counter(), time.process_time() + _children_cpu()
     pages = read_html(html.path, source="manual", version=_HTML_VERSION, jobs=_JOBS)
     took = BuildTime(time.perf_counter() - between, time.process_time() + _children_cpu() - used)
-    figures.append(Figure("html", took.wall, f"{size:,.0f} MB, {_JOBS} processes"))
+    figures.append(TargetFigure("html", took.wall, f"{size:,.0f} MB, {_JOBS} processes"))
     rows.append(_row(f"{archive.name}: unpacking", unpacked, f"{size:,.0f} MB"))
     rows.append(_row(f"{archive.name}: reading", took, f"{len(pages):,} pages"))

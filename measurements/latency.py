@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_serve.knowledge_base import KnowledgeBase
-from measurements.report import Figure, Part
+from measurements.report import ReportPart, TargetFigure
 from measurements.retrieval import NAMED, Query, read_queries
 from measurements.setting import percentile, say
 
@@ -34,7 +34,7 @@ PASSES = 5
 EXACT = frozenset({"exact", "member"})
 
 
-def measure(setting: Setting) -> Part:
+def measure(setting: Setting) -> ReportPart:
     """Measures percentiles over the first set of queries."""
     queries = read_queries(setting.queries[0])
     fresh: dict[str, list[float]] = {}
@@ -68,12 +68,12 @@ def measure(setting: Setting) -> Part:
     )
     header = ("queries", "n", "p50", "p95", "slowest", "again p50")
     figures = [
-        Figure(f"{name}_p{round(100 * share)}", percentile(groups[name][0], share), f"{passes} passes")
+        TargetFigure(f"{name}_p{round(100 * share)}", percentile(groups[name][0], share), f"{passes} passes")
         for name, share in (("exact", 0.5), ("ranked", 0.5), ("ranked", 0.95))
         if name in groups
     ]
     data = {name: {"fresh_ms": times, "again_ms": repeated} for name, (times, repeated) in groups.items()}
-    return Part(
+    return ReportPart(
         "latency", tuple(figures), (Table("Latency in process", header, tuple(rows), note),), (), data
     )
 

@@ -62,7 +62,7 @@ def _base(home: Path) -> Path:
     return base
 
 
-def measure(name: str, setting: Setting) -> report.Part:
+def measure(name: str, setting: Setting) -> report.ReportPart:
     """Measures one part; its modules are loaded only then."""
     from importlib import import_module  # noqa: PLC0415 - a part that is left out costs nothing
 
@@ -72,7 +72,7 @@ def measure(name: str, setting: Setting) -> report.Part:
     if hasattr(os, "sync"):
         os.sync()
     part = import_module(f"measurements.{name}").measure(setting)
-    assert isinstance(part, report.Part)
+    assert isinstance(part, report.ReportPart)
     return part
 
 

@@ -28,7 +28,7 @@ _REACHED = {True: "reached", False: "NOT reached", None: ""}
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class TargetFigure:
     """A measured value of the target ``key``, in its unit; ``note`` says how it was measured."""
 
     key: str
@@ -37,20 +37,20 @@ class Figure:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class ReportPart:
     """The results of one part. ``skipped``: what could not be measured, and why."""
 
     name: str
-    figures: tuple[Figure, ...] = ()
+    figures: tuple[TargetFigure, ...] = ()
     tables: tuple[Table, ...] = ()
     skipped: tuple[str, ...] = ()
     data: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
-def run_steps(name: str, steps: Mapping[str, Callable[[], Part]]) -> Part:
+def run_steps(name: str, steps: Mapping[str, Callable[[], ReportPart]]) -> ReportPart:
     """Measures a part step by step. A step that fails is skipped, with the reason."""
     parts = [_run_step(each, step) for each, step in steps.items()]
-    return Part(
+    return ReportPart(
         name,
         tuple(figure for part in parts for figure in part.figures),
         tuple(table for part in parts for table in part.tables),
@@ -59,14 +59,14 @@ def run_steps(name: str, steps: Mapping[str, Callable[[], Part]]) -> Part:
     )
 
 
-def _run_step(name: str, step: Callable[[], Part]) -> Part:
+def _run_step(name: str, step: Callable[[], ReportPart]) -> ReportPart:
     try:
         return step()
     except Exception as error:  # a broken server, Blender or command may raise anything
-        return Part(name, skipped=(brief(error),))
+        return ReportPart(name, skipped=(brief(error),))
 
 
-def markdown(parts: Sequence[Part], facts: Mapping[str, str]) -> str:
+def markdown(parts: Sequence[ReportPart], facts: Mapping[str, str]) -> str:
     """The whole report."""
     blocks = ["# SimWorlds, measured", _facts(facts)]
     figures = [figure for part in parts for figure in part.figures]
@@ -75,18 +75,18 @@ def markdown(parts: Sequence[Part], facts: Mapping[str, str]) -> str:
         if _BUSY in facts.get("machine", ""):
             blocks.append("**The machine was busy at the start: times are longer than on an idle one.**")
     for part in parts:
-        blocks += [table(one) for one in part.tables]
+        blocks += [table(each) for each in part.tables]
     skipped = [f"- {part.name}: {reason}" for part in parts for reason in part.skipped]
     if skipped:
         blocks.append("## Not measured\n\n" + "\n".join(skipped))
     return "\n\n".join(blocks) + "\n"
 
 
-def targets_table(figures: Iterable[Figure]) -> Table:
+def targets_table(figures: Iterable[TargetFigure]) -> Table:
     """A table of figures with their targets and the peers' figures, in the order of the targets."""
     order = list(TARGETS)
     rows: list[tuple[str, ...]] = []
-    for figure in sorted(figures, key=lambda one: order.index(one.key)):
+    for figure in sorted(figures, key=lambda figure: order.index(figure.key)):
         target = TARGETS[figure.key]
         verdict = _REACHED[target.reached(figure.value)]
         rows.append(
@@ -190,7 +190,7 @@ def _lines(path: Path) -> Iterator[str]:
 # Files
 
 
-def as_json(parts: Sequence[Part], facts: Mapping[str, str]) -> dict[str, Any]:
+def as_json(parts: Sequence[ReportPart], facts: Mapping[str, str]) -> dict[str, Any]:
     """The report as data: every figure with its target, and the data of each part."""
     figures = [
         {
@@ -211,7 +211,7 @@ def as_json(parts: Sequence[Part], facts: Mapping[str, str]) -> dict[str, Any]:
     return {"facts": dict(facts), "figures": figures, "skipped": skipped, "parts": data}
 
 
-def write(folder: Path, parts: Sequence[Part], facts: Mapping[str, str]) -> str:
+def write(folder: Path, parts: Sequence[ReportPart], facts: Mapping[str, str]) -> str:
     """Writes ``bench.md`` and ``bench.json`` into ``folder``; returns the Markdown."""
     folder.mkdir(parents=True, exist_ok=True)
     text = markdown(parts, facts)

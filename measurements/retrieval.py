@@ -19,7 +19,7 @@ from kb_serve.answer.budget import tokens
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.rank import search
 from kb_serve.reader import BaseReader
-from measurements.report import Figure, Part
+from measurements.report import ReportPart, TargetFigure
 from measurements.setting import corpora, percentile, say
 
 if TYPE_CHECKING:
@@ -210,7 +210,7 @@ def compared(base: Path, home: Path, *, quick: bool) -> Iterator[tuple[str, Call
 # The part
 
 
-def measure(setting: Setting) -> Part:
+def measure(setting: Setting) -> ReportPart:
     """Every system on every set. The first set is judged."""
     sets = {path.stem: read_queries(path) for path in setting.queries}
     results: dict[str, dict[str, list[Outcome]]] = {}
@@ -221,7 +221,7 @@ def measure(setting: Setting) -> Part:
     judged = next(iter(sets))
     unknown = [label for queries in sets.values() for label in unknown_labels(queries, setting.base)]
     skipped = [f"labels that this base does not know: {', '.join(unknown)}"] if unknown else []
-    return Part(
+    return ReportPart(
         "retrieval",
         (*_figures(ours[judged], judged), *_promises(setting.base, sets[judged])),
         (_systems_table(results), _kinds_table(ours)),
@@ -230,7 +230,7 @@ def measure(setting: Setting) -> Part:
     )
 
 
-def _figures(outcomes: Sequence[Outcome], title: str) -> Iterator[Figure]:
+def _figures(outcomes: Sequence[Outcome], title: str) -> Iterator[TargetFigure]:
     groups = {
         "hit1": ([o for o in outcomes if o.query.kind != TASK], 1),
         "hit5": ([o for o in outcomes if o.query.kind != TASK], 5),
@@ -239,12 +239,12 @@ def _figures(outcomes: Sequence[Outcome], title: str) -> Iterator[Figure]:
     }
     for key, (group, first) in groups.items():
         if group:
-            yield Figure(
+            yield TargetFigure(
                 key, share(group, first), f"{title}: {sum(o.hit(first) for o in group)} of {len(group)}"
             )
 
 
-def _promises(base: Path, queries: Sequence[Query]) -> Iterator[Figure]:
+def _promises(base: Path, queries: Sequence[Query]) -> Iterator[TargetFigure]:
     """What holds for every answer: names resolve, and none is longer than its budget."""
     with closing(BaseReader(base)) as reader:
         members = reader.rows(
@@ -254,11 +254,11 @@ def _promises(base: Path, queries: Sequence[Query]) -> Iterator[Figure]:
     with KnowledgeBase(base) as knowledge:
         found = [ids_of(knowledge.query(path, limit=1))[:1] == [path] for path in sample]
         if found:
-            yield Figure(
+            yield TargetFigure(
                 "members", sum(found) / len(found), f"{sum(found)} of {len(found)}, sampled from this base"
             )
         longest = max(tokens(knowledge.query(query.query).text) for query in queries)
-    yield Figure("longest", longest, "a token for every 3 bytes")
+    yield TargetFigure("longest", longest, "a token for every 3 bytes")
 
 
 def _cells(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
@@ -337,7 +337,7 @@ def _rows(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def misses(part: Part) -> str:
+def misses(part: ReportPart) -> str:
     """The queries without a right id among the first five, with what was found and what was expected."""
     lines = ["## Misses", ""]
     for title, found in part.data.get("queries", {}).items():

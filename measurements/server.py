@@ -24,7 +24,7 @@ from bench.sweep.command import simworlds_command
 from measurements import load
 from measurements.echo import TOOL as ECHO
 from measurements.memory import children, resident_mb
-from measurements.report import Figure, Part, run_steps
+from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.retrieval import read_queries
 from measurements.setting import BLENDER, REPO, environment, percentile, say
 
@@ -49,17 +49,17 @@ class _Stdio:
     memory: list[float] = field(default_factory=list[float])
 
 
-def measure(setting: Setting) -> Part:
+def measure(setting: Setting) -> ReportPart:
     """Measures all that a client or a shell experiences."""
     if reason := _unusable(setting):
-        return Part("server", skipped=(reason,))
+        return ReportPart("server", skipped=(reason,))
     steps = {"over stdio": _over_stdio, "simworlds docs": _cold, "under HTTP load": _under_load}
     part = run_steps("server", {name: partial(step, setting) for name, step in steps.items()})
     memory = sorted((size, name) for name, data in part.data.items() for size in data.get("resident_mb", ()))
-    return replace(part, figures=(*part.figures, *(Figure("memory", *most) for most in memory[-1:])))
+    return replace(part, figures=(*part.figures, *(TargetFigure("memory", *most) for most in memory[-1:])))
 
 
-def _over_stdio(setting: Setting) -> Part:
+def _over_stdio(setting: Setting) -> ReportPart:
     queries = [query.query for query in read_queries(setting.queries[0])]
     say("server: calls over stdio")
     ours = anyio.run(_stdio, _serve(), TOOL, queries, setting)
@@ -67,21 +67,28 @@ def _over_stdio(setting: Setting) -> Part:
     echo = anyio.run(_stdio, [sys.executable, "-m", "measurements.echo"], ECHO, queries, setting)
     data = {"simworlds": asdict(ours), "echo": asdict(echo), "resident_mb": ours.memory}
     figures = (
-        Figure("mcp_p50", percentile(ours.calls, 0.5), f"echo here {percentile(echo.calls, 0.5):.1f} ms"),
-        Figure("start", percentile(ours.starts, 0.5), f"echo here {percentile(echo.starts, 0.5):.2f} s"),
+        TargetFigure(
+            "mcp_p50", percentile(ours.calls, 0.5), f"echo here {percentile(echo.calls, 0.5):.1f} ms"
+        ),
+        TargetFigure(
+            "start", percentile(ours.starts, 0.5), f"echo here {percentile(echo.starts, 0.5):.2f} s"
+        ),
     )
     tables = (_stdio_table({"simworlds serve": ours, "echo tool": echo}),)
-    return Part("over stdio", figures, tables, data=data)
+    return ReportPart("over stdio", figures, tables, data=data)
 
 
-def _under_load(setting: Setting) -> Part:
+def _under_load(setting: Setting) -> ReportPart:
     """Sends the queries of all sets: more than the server caches."""
     queries = dict.fromkeys(query.query for path in setting.queries for query in read_queries(path))
     result, resident = load.measure(setting, _serve(), list(queries))
     note = f"of {len(result.times):,} calls"
-    figures = Figure("load_errors", len(result.errors), note), Figure("load_wrong", len(result.wrong), note)
+    figures = (
+        TargetFigure("load_errors", len(result.errors), note),
+        TargetFigure("load_wrong", len(result.wrong), note),
+    )
     data = load.as_data(result) | {"resident_mb": [resident] if resident is not None else []}
-    return Part("under HTTP load", figures, (load.table(result, resident),), data=data)
+    return ReportPart("under HTTP load", figures, (load.table(result, resident),), data=data)
 
 
 def _serve() -> list[str]:
@@ -109,7 +116,7 @@ def _docs(setting: Setting, query: str) -> None:
     )  # fmt: skip
 
 
-def _cold(setting: Setting) -> Part:
+def _cold(setting: Setting) -> ReportPart:
     """Measures seconds of whole processes."""
     say("server: simworlds docs, cold")
     times: dict[str, list[float]] = {query: [] for query in _COLD}
@@ -119,7 +126,9 @@ def _cold(setting: Setting) -> Part:
             _docs(setting, query)
             seconds.append(time.perf_counter() - began)
     named, question = (percentile(times[query], 0.5) for query in _COLD)
-    return Part("simworlds docs", (Figure("docs", named, f"a question {question:.2f} s"),), data=times)
+    return ReportPart(
+        "simworlds docs", (TargetFigure("docs", named, f"a question {question:.2f} s"),), data=times
+    )
 
 
 async def _stdio(command: Sequence[str], tool: str, queries: Sequence[str], setting: Setting) -> _Stdio:

@@ -23,7 +23,7 @@ from agents.blender.supervisor import Supervisor
 from bench.markdown_tables import Table
 from bench.sweep.command import simworlds_command
 from measurements import verifier_scenes
-from measurements.report import Figure, Part, run_steps
+from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import REPO, environment, percentile, say
 
 if TYPE_CHECKING:
@@ -60,13 +60,13 @@ class _Check:
         return [f"{one['rule']}: {one['message']}" for one in self.report["findings"]]
 
 
-def measure(setting: Setting) -> Part:
+def measure(setting: Setting) -> ReportPart:
     """Measures all steps, each in a folder of its own."""
     steps = {"growth": _growth, "motion": _motion, "loose": _loose, "mutations": _mutations}
     return run_steps("verifier", {name: partial(_in_a_folder, step, setting) for name, step in steps.items()})
 
 
-def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Part:
+def _in_a_folder(step: Callable[[Setting, Path], ReportPart], setting: Setting) -> ReportPart:
     with tempfile.TemporaryDirectory(prefix="bench-verify-", ignore_cleanup_errors=True) as place:
         return step(setting, Path(place).resolve())
 
@@ -74,7 +74,7 @@ def _in_a_folder(step: Callable[[Setting, Path], Part], setting: Setting) -> Par
 # Cost
 
 
-def _growth(setting: Setting, place: Path) -> Part:
+def _growth(setting: Setting, place: Path) -> ReportPart:
     rows: list[tuple[str, ...]] = []
     costs: dict[int, list[float]] = {}
     judged = ""
@@ -111,35 +111,41 @@ def _growth(setting: Setting, place: Path) -> Part:
         "Blender and opens the file."
     )
     figures = (
-        Figure("verify", percentile(costs[_JUDGED], 0.5), judged),
-        Figure("verify_growth", growth, f"{_SIZES[0]} to {_SIZES[-1]:,} objects of {_TRIANGLES:,} triangles"),
+        TargetFigure("verify", percentile(costs[_JUDGED], 0.5), judged),
+        TargetFigure(
+            "verify_growth", growth, f"{_SIZES[0]} to {_SIZES[-1]:,} objects of {_TRIANGLES:,} triangles"
+        ),
     )
     table = Table("Verifying scenes of many objects", header, tuple(rows), note)
-    return Part("growth", figures, (table,), data={"seconds": costs})
+    return ReportPart("growth", figures, (table,), data={"seconds": costs})
 
 
-def _motion(setting: Setting, place: Path) -> Part:
+def _motion(setting: Setting, place: Path) -> ReportPart:
     say("verifier: a baked motion")
     scene, plan = place / "motion.blend", place / "plan.json"
-    told = _built(place, verifier_scenes.motion(_ACTORS, _FRAMES), scene)
-    plan.write_text(json.dumps(verifier_scenes.motion_plan(_FRAMES, told)))
+    facts = _built(place, verifier_scenes.motion(_ACTORS, _FRAMES), scene)
+    plan.write_text(json.dumps(verifier_scenes.motion_plan(_FRAMES, facts)))
     checks = [_checked(setting, scene, "--plan", str(plan), "--rules", "T") for _ in range(3)]
     _expect(checks[0].found, [])
-    idle = [one["id"] for one in checks[0].report["rules"] if one["state"] != "holds"]
+    idle = [rule["id"] for rule in checks[0].report["rules"] if rule["state"] != "holds"]
     _expect(idle, [])
     times = [check.seconds for check in checks]
-    note = f"rigid bodies; {sum(one['state'] == 'holds' for one in checks[0].report['rules'])} rules hold"
-    return Part("motion", (Figure("verify_motion", percentile(times, 0.5), note),), data={"seconds": times})
+    note = f"rigid bodies; {sum(rule['state'] == 'holds' for rule in checks[0].report['rules'])} rules hold"
+    return ReportPart(
+        "motion", (TargetFigure("verify_motion", percentile(times, 0.5), note),), data={"seconds": times}
+    )
 
 
-def _loose(setting: Setting, place: Path) -> Part:
+def _loose(setting: Setting, place: Path) -> ReportPart:
     say("verifier: untagged primitives")
     scene = place / "loose.blend"
     _built(place, verifier_scenes.LOOSE, scene)
     check = _checked(setting, scene)
-    rules = sorted({one["rule"] for one in check.report["findings"]})
+    rules = sorted({finding["rule"] for finding in check.report["findings"]})
     note = f"{len(check.found)} findings of {', '.join(rules)}, in {len(rules)} rows"
-    return Part("loose", (Figure("verify_loose", check.whole, note),), data={"seconds": check.seconds})
+    return ReportPart(
+        "loose", (TargetFigure("verify_loose", check.whole, note),), data={"seconds": check.seconds}
+    )
 
 
 def _built(place: Path, script: str, target: Path) -> dict[str, Any]:
@@ -179,7 +185,7 @@ def _expect(findings: list[str], wanted: list[str]) -> None:
 # Findings
 
 
-def _mutations(setting: Setting, _place: Path) -> Part:
+def _mutations(setting: Setting, _place: Path) -> ReportPart:
     count = _FEW if setting.quick else _MUTATIONS
     say(f"verifier: {count} random breaches of valid scenes")
     result = json.loads(_ran([sys.executable, str(_MUTATING), str(count)], setting))
@@ -192,12 +198,12 @@ def _mutations(setting: Setting, _place: Path) -> Part:
         "two rules may find one."
     )
     figures = (
-        Figure("mutations", result["found"] / result["made"], f"{result['found']} of {result['made']}"),
-        Figure(
+        TargetFigure("mutations", result["found"] / result["made"], f"{result['found']} of {result['made']}"),
+        TargetFigure(
             "false_alarms",
             float(len(result["alarms"])),
             f"{result['looks']} checks by {result['rules']} rules",
         ),
     )
     table = Table("Breaches of valid scenes", ("breach", "made", "found", "by"), tuple(rows), note)
-    return Part("mutations", figures, (table,), data=result)
+    return ReportPart("mutations", figures, (table,), data=result)

@@ -183,38 +183,38 @@ told = {}
 
 
 def furniture(count: int, triangles: int) -> str:
-    """So many objects, a floor among them, each of two meshes and about so many triangles; all is right."""
+    """A valid scene of ``count`` objects with a floor, each of two meshes with about so many triangles."""
     return _TAGGED + _FURNITURE.format(count=count, triangles=triangles)
 
 
 def motion(actors: int, frames: int) -> str:
-    """So many crates, baked: a third falls, a third is pushed by the last third, which is keyed. Tells of each."""
+    """Baked crates: a third falls, a third is pushed by the last third, which is keyed."""
     return _TAGGED + _MOTION.format(third=actors // 3, frames=frames)
 
 
-def motion_plan(frames: int, told: dict[str, Any]) -> dict[str, Any]:
-    """The plan of :func:`motion`, after what it told: crates fall, push or are pushed, and lie still in the end."""
+def motion_plan(frames: int, facts: dict[str, Any]) -> dict[str, Any]:
+    """The plan of :func:`motion`, from the facts of its scene: crates fall, push or are pushed, then rest."""
     crates: list[dict[str, Any]] = []
     phases: list[dict[str, Any]] = []
-    for name, one in told.items():
+    for name, crate in facts.items():
         kind, _, number = name.partition(" ")
-        extent = math.hypot(*one["way"])
+        extent = math.hypot(*crate["way"])
         role = "keyframed" if kind == "Pusher" else "rigid"
         crates.append(
-            {"name": name, "systems": ["set"], "dimensions": [0.4] * 3, "position": one["at"], "role": role}
+            {"name": name, "systems": ["set"], "dimensions": [0.4] * 3, "position": crate["at"], "role": role}
         )
         phases += [
             {
                 "name": name,
                 "actor": name,
                 "kind": "fall" if kind == "Falling" else "translate",
-                "start": one["start"],
-                "end": one["end"],
-                "direction": one["way"],
+                "start": crate["start"],
+                "end": crate["end"],
+                "direction": crate["way"],
                 "extent": extent,
                 "cause": f"Pusher {number}" if kind == "Pushed" else None,
             },
-            {"name": f"{name} rests", "actor": name, "kind": "settle", "start": one["end"], "end": frames},
+            {"name": f"{name} rests", "actor": name, "kind": "settle", "start": crate["end"], "end": frames},
         ]
     floor = {
         "name": "Floor",

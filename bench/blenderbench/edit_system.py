@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from bench.blenderbench.results import TaskFolder
-    from bench.blenderbench.task_set import EditTask
+    from bench.blenderbench.task_set import BenchTask
 
     Tell = Callable[[str], object]
 
@@ -57,7 +57,7 @@ class EditSystem(Protocol):
         """Whether it only copies results of others, which may have changed: it then runs every time."""
         ...
 
-    def make(self, task: EditTask, place: TaskFolder, tell: Tell) -> EditOutput:
+    def make(self, task: BenchTask, place: TaskFolder, tell: Tell) -> EditOutput:
         """Edits a scene and returns its renders. Raises TaskFailed, EditSystemNotReady, CannotStart."""
         ...
 
@@ -72,7 +72,7 @@ class PreparedStart(BaseModel):
 
 
 def prepare_start(
-    task: EditTask, place: TaskFolder, rendering: RenderSettings, tell: Tell
+    task: BenchTask, place: TaskFolder, rendering: RenderSettings, tell: Tell
 ) -> tuple[PreparedStart, float | None]:
     """Makes the start scene if it is missing. Returns it, and the PL of its render against the set's own."""
     if place.started.is_file():

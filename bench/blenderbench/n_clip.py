@@ -1,9 +1,9 @@
-"""N-CLIP: how far a render is from the goal for CLIP ViT-B/32 (paper, "BlenderBench Setup").
+"""N-CLIP: the distance of a render from the goal by CLIP ViT-B/32 (paper, "BlenderBench Setup").
 
-The vision tower runs in numpy: a forward pass over two pictures takes a quarter of a second, and PyTorch, which has
-gigabytes, is not needed. Weights are read under the names that ``openai/clip-vit-base-patch32`` gives them. Pictures
-are prepared as CLIP's own processor does on Pillow: the shorter side to 224 pixels (bicubic, rounded to 8 bits), the
-middle, values in [0, 1], mean and deviation of its training set. ``tests/bench/blenderbench`` holds this against the
+The vision tower runs in numpy, in a quarter of a second for two pictures. Libraries that load the published safetensors
+weights need PyTorch, which is gigabytes large. Weights have the names of ``openai/clip-vit-base-patch32``. Pictures are
+prepared as by CLIP's own processor on Pillow: the shorter side to 224 pixels (bicubic, rounded to 8 bits), the middle,
+values in [0, 1], mean and deviation of its training set. ``tests/bench/blenderbench`` compares all this with the
 reference implementation.
 """
 

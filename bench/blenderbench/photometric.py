@@ -12,7 +12,7 @@ from PIL import Image
 
 Convention = Literal["paper", "peer"]
 SCALE: dict[Convention, float] = {"paper": 100.0, "peer": 1.0}
-"""What distances are multiplied by: the paper reports them × 100, the peer's own scripts as they are."""
+"""Factors of distances: the paper reports them × 100, the peer's scripts unscaled."""
 
 
 def photometric_loss(render: Image.Image, goal: Image.Image, convention: Convention = "paper") -> float:

@@ -10,7 +10,6 @@ OUT/level1/TASK/scores.json      distances and marks; rewritten by each scoring
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -109,51 +108,19 @@ class Score(_Kept):
     provenance: Provenance
 
 
-@dataclass(frozen=True, slots=True)
 class TaskFolder:
-    """A task's folder in the results."""
+    """The paths of a task's folder in the results."""
 
-    root: Path
-
-    @property
-    def goal(self) -> Path:
-        """The copy of the goal's render."""
-        return self.root / "goal.png"
-
-    @property
-    def start(self) -> Path:
-        """The scene to be edited, in a folder of its own."""
-        return self.root / "start" / "start.blend"
-
-    @property
-    def start_picture(self) -> Path:
-        """Its render."""
-        return self.root / "start.png"
-
-    @property
-    def started(self) -> Path:
-        """Written when both exist."""
-        return self.root / "start.json"
-
-    @property
-    def edit(self) -> Path:
-        """The folder of the edit's run."""
-        return self.root / "edit"
-
-    @property
-    def record(self) -> Path:
-        """Its record."""
-        return self.root / "record.json"
-
-    @property
-    def scores(self) -> Path:
-        """Its scores."""
-        return self.root / "scores.json"
-
-    @property
-    def renders(self) -> Path:
-        """The folder of the rounds."""
-        return self.root / "renders"
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.goal = root / "goal.png"  # the copy of the goal's render
+        self.start = root / "start" / "start.blend"  # the start scene, in a folder of its own
+        self.start_picture = root / "start.png"
+        self.started = root / "start.json"  # written when both exist
+        self.edit = root / "edit"  # the folder of the edit's run
+        self.record = root / "record.json"
+        self.scores = root / "scores.json"
+        self.renders = root / "renders"  # the rounds
 
 
 def round_file(number: int) -> str:

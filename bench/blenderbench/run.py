@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
     from bench.blenderbench.edit_system import EditSystem
     from bench.blenderbench.results import TaskFolder
-    from bench.blenderbench.task_set import EditTask, TaskSet
+    from bench.blenderbench.task_set import BenchTask, TaskSet
     from bench.sweep.records import Provenance
 
 
 def run(  # noqa: PLR0913
     task_set: TaskSet,
-    tasks: Sequence[EditTask],
+    tasks: Sequence[BenchTask],
     system: EditSystem,
     out: Path,
     *,
@@ -72,7 +72,7 @@ def _begin(task_set: TaskSet, setup: RunSetup, out: Path) -> None:
     write(out / "run.json", SetRun(setup=setup, tasks=ids, faults=task_set.faults, provenance=_provenance()))
 
 
-def _kept(task: EditTask, system: EditSystem, out: Path, tell: Callable[[str], object]) -> TaskRecord:
+def _kept(task: BenchTask, system: EditSystem, out: Path, tell: Callable[[str], object]) -> TaskRecord:
     """The record of a task: the kept one, or a new one."""
     place = task_folder(out, task.id)
     inputs = digests(task.folder, _files(task))
@@ -90,7 +90,7 @@ def _kept(task: EditTask, system: EditSystem, out: Path, tell: Callable[[str], o
     return record
 
 
-def _files(task: EditTask) -> list[Path]:
+def _files(task: BenchTask) -> list[Path]:
     """The files that a task consists of."""
     return [task.blend, task.folder / "start.py", task.folder / "task.txt", task.goal]
 
@@ -103,7 +103,7 @@ def _clear(place: TaskFolder) -> None:
 
 
 def _done(
-    task: EditTask,
+    task: BenchTask,
     inputs: dict[str, str],
     system: EditSystem,
     place: TaskFolder,
@@ -135,4 +135,4 @@ def _done(
 
 
 def _provenance(blender: str | None = None) -> Provenance:
-    return provenance(code_of(__name__, "blenderbench/inside/*.py", "audit/inside/opening.py"), blender)
+    return provenance(code_of(__name__, "blenderbench/inside/*.py", "audit/inside/*.py"), blender)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from agents.loop.run_state import RunState
     from bench.blenderbench.edit_system import Tell
     from bench.blenderbench.results import TaskFolder
-    from bench.blenderbench.task_set import EditTask
+    from bench.blenderbench.task_set import BenchTask
 
 Reference = Literal["goal", "visprompt"]
 BUDGET = (
@@ -60,7 +60,7 @@ class SimWorldsEdit:
         }
         return {**settings, "budget": BUDGET}
 
-    def make(self, task: EditTask, place: TaskFolder, tell: Tell) -> EditOutput:
+    def make(self, task: BenchTask, place: TaskFolder, tell: Tell) -> EditOutput:
         """Edits, or resumes an interrupted edit; renders the result."""
         before = _history(place)
         ended = before is not None and before.outcome in _ENDED
@@ -87,7 +87,7 @@ class SimWorldsEdit:
         notes = (*started.notes, *notes)
         return EditOutput((round_file(1),), loss, rendered, dict(history.models), cost, notes)
 
-    def _run(self, task: EditTask, place: TaskFolder) -> None:
+    def _run(self, task: BenchTask, place: TaskFolder) -> None:
         reference = task.visprompt if self.reference == "visprompt" and task.visprompt else task.goal
         if (place.edit / JOURNAL).exists():
             words = ["resume", *self.limits, "--quiet", "--", str(place.edit)]

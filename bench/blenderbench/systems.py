@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from bench.blenderbench.results import TaskFolder
     from bench.blenderbench.simworlds_edit import Reference
     from bench.blenderbench.task_scenes import RenderSettings
-    from bench.blenderbench.task_set import EditTask
+    from bench.blenderbench.task_set import BenchTask
 
 MOST_ROUNDS = 100
 _FOLDER = "folder="
@@ -42,7 +42,7 @@ class UneditedStart:
         """Settings of the renders."""
         return {"samples": self.rendering.samples}
 
-    def make(self, task: EditTask, place: TaskFolder, tell: Tell) -> EditOutput:
+    def make(self, task: BenchTask, place: TaskFolder, tell: Tell) -> EditOutput:
         """Renders the start scene."""
         started, loss = prepare_start(task, place, self.rendering, tell)
         shutil.copyfile(place.start_picture, place.root / round_file(1))
@@ -68,7 +68,7 @@ class RendersFolder:
         """The folder."""
         return {"folder": str(self.root)}
 
-    def make(self, task: EditTask, place: TaskFolder, tell: Tell) -> EditOutput:
+    def make(self, task: BenchTask, place: TaskFolder, tell: Tell) -> EditOutput:
         """Copies the rounds, in natural order of their names."""
         tell("copying renders")
         folder = self.root / task.level / task.name

@@ -30,10 +30,10 @@ from simworlds.sandbox.usage import empty_folder
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from bench.blenderbench.task_set import EditTask
+    from bench.blenderbench.task_set import BenchTask
 
 SAMPLES = 512
-"""Of Cycles, as the set's own renders have."""
+"""Samples of the set's own renders."""
 _WORKER = Program(
     "bench.blenderbench.inside.task_worker",
     {**AUDITOR.packages, "bench.blenderbench.inside": Path(__file__).parent / "inside"},
@@ -45,10 +45,9 @@ _LISTED = 5
 
 @dataclass(frozen=True, slots=True)
 class RenderSettings:
-    """How scenes are rendered, and in what: Cycles with so many ``samples``.
+    """How scenes are rendered: samples of Cycles, the Blender (by default this environment's) and its limits.
 
-    Which Blender (by default this environment's), how long one step in it may take (seconds), how much memory (bytes;
-    None: three quarters of the machine's).
+    ``seconds``: of one step in it; ``memory``: in bytes (None: three quarters of the machine's).
     """
 
     samples: int = SAMPLES
@@ -59,12 +58,12 @@ class RenderSettings:
 
     @property
     def limits(self) -> ResourceLimits:
-        """Of a process."""
+        """The limits of a process."""
         return ResourceLimits(memory=self.memory) if self.memory else default_limits()
 
 
 class Rendered(BaseModel):
-    """What a picture was made with: which Blender, through which camera, on CPU or GPU, with how many samples."""
+    """How a picture was rendered: Blender version, camera, CPU or GPU, samples."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -74,7 +73,7 @@ class Rendered(BaseModel):
     samples: int
 
 
-def make_start(task: EditTask, blend: Path, settings: RenderSettings) -> tuple[str, ...]:
+def make_start(task: BenchTask, blend: Path, settings: RenderSettings) -> tuple[str, ...]:
     """Runs a task's ``start.py`` on its raw file, and saves the scene as ``blend`` with all that can be packed.
 
     Returns, in words, what could not be packed. Raises TaskFailed for what is the task's fault, CannotStart where no

@@ -37,7 +37,7 @@ class _Fault(Exception):  # noqa: N818 - reads as what it is
 
 
 @dataclass(frozen=True, slots=True)
-class EditTask:
+class BenchTask:
     """A usable task. ``size``: the goal's, in pixels. ``start``, ``visprompt``: None where missing."""
 
     level: str
@@ -62,7 +62,7 @@ class TaskSet:
     """The tasks of a folder in order, and in words the faults of others, each with its path."""
 
     root: Path
-    tasks: tuple[EditTask, ...]
+    tasks: tuple[BenchTask, ...]
     faults: tuple[str, ...]
 
 
@@ -74,7 +74,7 @@ def read_set(root: Path) -> TaskSet:
     levels = [root / level for level in LEVELS if (root / level).is_dir()]
     if not levels:
         raise NoTasks(f"{root} is not a BlenderBench: it has none of {', '.join(LEVELS)}.")
-    tasks: list[EditTask] = []
+    tasks: list[BenchTask] = []
     faults: list[str] = []
     for folder in (folder for level in levels for folder in _folders(level)):
         try:
@@ -86,7 +86,7 @@ def read_set(root: Path) -> TaskSet:
     return TaskSet(root, tuple(tasks), tuple(faults))
 
 
-def select_tasks(task_set: TaskSet, names: Sequence[str]) -> tuple[EditTask, ...]:
+def select_tasks(task_set: TaskSet, names: Sequence[str]) -> tuple[BenchTask, ...]:
     """The tasks with these levels (``level2``) or ids (``level1/attic``); all without names. Raises NoTasks."""
     if not names:
         return task_set.tasks
@@ -111,7 +111,7 @@ def _folders(level: Path) -> Iterator[Path]:
     yield from sorted(folders, key=lambda path: natural_key(path.name))
 
 
-def _task(root: Path, folder: Path) -> EditTask:
+def _task(root: Path, folder: Path) -> BenchTask:
     if not _NAME.fullmatch(folder.name):
         raise _Fault(f"{str(folder)!r} cannot be a task's name: use letters, digits, spaces and .()+-")
     goal = _within(root, folder / "renders" / "goal" / "render1.png")
@@ -125,7 +125,7 @@ def _task(root: Path, folder: Path) -> EditTask:
         raise _Fault(str(error)) from error
     if min(size) < _SHORTEST_SIDE:
         raise _Fault(f"{goal} is {size[0]} × {size[1]}; a goal has at least {_SHORTEST_SIDE} pixels a side.")
-    return EditTask(
+    return BenchTask(
         folder.parent.name,
         folder.name,
         folder,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from bench.sweep.scene_task import SceneTask, Tell
-    from bench.sweep.steps import DueStep, Step
+    from bench.sweep.steps import DueStep, ScoringStep
 
 
 def do_scene(task: SceneTask, tell: Tell) -> SceneRecord:
@@ -49,7 +49,7 @@ def is_done(task: SceneTask) -> bool:
         return False
 
 
-def _steps(task: SceneTask) -> Iterator[Step]:
+def _steps(task: SceneTask) -> Iterator[ScoringStep]:
     return (step for name, step in STEPS.items() if name in task.steps)
 
 

@@ -36,7 +36,7 @@ class DueStep:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ScoringStep:
     """``due`` returns None if the step's result is still valid. ``do`` returns the fields of the record's part."""
 
     field: str
@@ -211,7 +211,7 @@ def _blend(task: SceneTask, record: SceneRecord) -> Path | None:
 
 
 def _is_gone(record: SceneRecord) -> bool:
-    """Of a scene without a file: whether there was one. Its results stay."""
+    """Whether a scene without a file had one before. Its results are then kept."""
     return record.produced is not None and record.produced.blend is not None
 
 
@@ -232,8 +232,8 @@ def _is_unchanged(task: SceneTask, result: Audited | Framed) -> bool:
         return False
 
 
-STEPS: dict[str, Step] = {
-    "produce": Step("produced", Produced, _produce_due, _produce),
-    "audit": Step("audited", Audited, _audit_due, _audit),
-    "frames": Step("framed", Framed, _frames_due, _frames),
+STEPS: dict[str, ScoringStep] = {
+    "produce": ScoringStep("produced", Produced, _produce_due, _produce),
+    "audit": ScoringStep("audited", Audited, _audit_due, _audit),
+    "frames": ScoringStep("framed", Framed, _frames_due, _frames),
 }

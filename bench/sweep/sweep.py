@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from bench.audit.untrusted_blend import Means
     from bench.frames.clip_frames import Look
     from bench.scenes.spec import Spec
-    from bench.sweep.sweep_view import SweepLog
+    from bench.sweep.sweep_view import SweepView
     from bench.sweep.systems.system import SceneSystem
 
 
@@ -67,7 +67,7 @@ def make_tasks(system: SceneSystem, specs: Sequence[Spec], out: Path, how: Scori
     ]
 
 
-def sweep(tasks: Sequence[SceneTask], judge: SweepJudge, executor: Executor, view: SweepLog) -> SweepSummary:
+def sweep(tasks: Sequence[SceneTask], judge: SweepJudge, executor: Executor, view: SweepView) -> SweepSummary:
     """Runs the tasks, then judges. All results are on the disk whenever it ends.
 
     Raises Refusal where another sweep works in the folder, BadSceneRecord, OSError.

@@ -26,7 +26,7 @@ _PER_SECOND = 4
 _LONGEST = 300  # letters of a reason
 
 
-class SweepLog:
+class SweepView:
     """A line for each scene that is done."""
 
     def __init__(self, stream: TextIO, total: int) -> None:
@@ -60,7 +60,7 @@ class SweepLog:
         write_line(self._stream, line)
 
 
-class SweepScreen(LiveView, SweepLog):
+class LiveSweepView(LiveView, SweepView):
     """What is being worked on, above a bar; what is done scrolls by."""
 
     def __init__(self, console: Console, total: int) -> None:
@@ -72,13 +72,13 @@ class SweepScreen(LiveView, SweepLog):
         LiveView.__init__(self, console, _PER_SECOND, vanishes=True)
 
     def doing(self, task: SceneTask | None, what: str) -> None:
-        """See SweepLog."""
+        """See SweepView."""
         super().doing(task, what)
         if task is not None:
             self._doing[task.spec.id] = (what, time.monotonic())
 
     def done(self, done: FinishedTask) -> None:
-        """See SweepLog."""
+        """See SweepView."""
         self._doing.pop(done.task.spec.id, None)
         self._bar.advance(self._all)
         self._write(format_done(done))
@@ -96,9 +96,9 @@ class SweepScreen(LiveView, SweepLog):
         self._console.print(Text(line))
 
 
-def make_view(stream: TextIO, total: int) -> SweepLog:
+def make_view(stream: TextIO, total: int) -> SweepView:
     """The view that fits where ``stream`` goes; ``total``: how many tasks there are."""
-    return SweepScreen(Console(file=stream), total) if is_terminal(stream) else SweepLog(stream, total)
+    return LiveSweepView(Console(file=stream), total) if is_terminal(stream) else SweepView(stream, total)
 
 
 def format_done(done: FinishedTask) -> str:

@@ -29,7 +29,7 @@ NODE = labelled("bpy.types.ShaderNodeBsdfPrincipled")
         (NODE, 'bpy.types.ShaderNodeBsdfPrincipled.inputs["Socket: #2"]'),
     ],
 )
-def test_an_id_that_the_label_names_or_holds_is_a_hit(query: Query, identifier: str) -> None:
+def test_an_id_that_the_label_names_or_contains_is_a_hit(query: Query, identifier: str) -> None:
     assert is_hit(query, [identifier])
 
 
@@ -44,7 +44,7 @@ def test_an_id_that_the_label_names_or_holds_is_a_hit(query: Query, identifier: 
         (NODE, 'bpy.types.ShaderNodeBsdfDiffuse.inputs["Color"]'),
     ],
 )
-def test_an_id_that_is_only_near_the_label_is_no_hit(query: Query, identifier: str) -> None:
+def test_a_similar_id_is_not_a_hit(query: Query, identifier: str) -> None:
     assert not is_hit(query, [identifier])
 
 
@@ -53,22 +53,22 @@ def test_a_label_may_name_an_enum_item_itself() -> None:
     assert not is_hit(labelled("bpy.types.ParticleSettings.type:HAIR"), ["bpy.types.ParticleSettings.type"])
 
 
-def test_only_the_first_ids_are_looked_at() -> None:
+def test_counts_only_the_first_ids() -> None:
     outcome = Outcome(CLOTH, ("a", "b", "bpy.types.ClothSettings.quality"), 1.0)
     assert not outcome.hit(1)
     assert not outcome.hit(2)
     assert outcome.hit(3)
 
 
-def test_the_share_counts_queries_not_ids() -> None:
+def test_the_share_is_of_queries() -> None:
     right, wrong = Outcome(NODE, ("bpy.types.ShaderNodeBsdfPrincipled",) * 2, 1.0), Outcome(NODE, (), 1.0)
     assert share([right, wrong, wrong, wrong], 5) == 0.25
 
 
-def test_no_answer_is_no_hit() -> None:
+def test_no_answer_is_not_a_hit() -> None:
     assert not is_hit(CLOTH, [])
 
 
 @pytest.mark.parametrize(("part", "value"), [(0.5, 3.0), (0.95, 5.0), (1.0, 5.0), (0.0, 1.0), (0.2, 1.0)])
-def test_percentiles_are_values_that_occurred(part: float, value: float) -> None:
+def test_percentiles_are_measured_values(part: float, value: float) -> None:
     assert percentile([5.0, 1.0, 4.0, 2.0, 3.0], part) == value

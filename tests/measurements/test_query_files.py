@@ -55,14 +55,14 @@ def test_every_label_is_in_the_base_that_was_built(path: Path) -> None:
         ('{"id": "x", "query": "y", "kind": "natural", "expect_any": null, "expect_pages": []}', "line 2"),
     ],
 )
-def test_a_broken_line_is_named(tmp_path: Path, line: str, said: str) -> None:
+def test_names_a_broken_line(tmp_path: Path, line: str, said: str) -> None:
     file = tmp_path / "set.jsonl"
     file.write_text(f"\n{line}\n", encoding="utf-8")
     with pytest.raises(BadQueries, match=said):
         read_queries(file)
 
 
-def test_a_file_that_is_absent_or_empty_is_named(tmp_path: Path) -> None:
+def test_names_a_missing_or_empty_file(tmp_path: Path) -> None:
     with pytest.raises(BadQueries, match=r"absent\.jsonl: cannot be read"):
         read_queries(tmp_path / "absent.jsonl")
     empty = tmp_path / "empty.jsonl"

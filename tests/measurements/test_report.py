@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from measurements.main import main
-from measurements.report import Figure, Part, markdown, targets_table, write
+from measurements.report import ReportPart, TargetFigure, markdown, targets_table, write
 from measurements.targets import TARGETS, Target, format_value
 
 if TYPE_CHECKING:
@@ -25,32 +25,32 @@ if TYPE_CHECKING:
         (Target("a", "a", "ms"), 4000.0, None),
     ],
 )
-def test_a_target_is_reached_on_its_good_side_only(
-    target: Target, value: float, reached: bool | None
-) -> None:
+def test_a_target_is_reached_on_one_side_only(target: Target, value: float, reached: bool | None) -> None:
     assert target.reached(value) is reached
 
 
-def test_what_is_just_missed_does_not_look_reached() -> None:
+def test_a_narrow_miss_is_not_rounded_to_reached() -> None:
     assert format_value(0.7496, "share") != "0.75"
-    row = targets_table([Figure("hit1", 0.7496)]).rows[0]
+    row = targets_table([TargetFigure("hit1", 0.7496)]).rows[0]
     assert "NOT reached" in row
 
 
-def test_figures_stand_in_the_order_of_the_targets_and_are_counted() -> None:
-    found = targets_table([Figure("size", 61.0), Figure("members", 1.0), Figure("hit1", 0.8)])
+def test_figures_are_in_the_order_of_targets_and_counted() -> None:
+    found = targets_table(
+        [TargetFigure("size", 61.0), TargetFigure("members", 1.0), TargetFigure("hit1", 0.8)]
+    )
     assert [row[0] for row in found.rows] == [TARGETS[key].what for key in ("hit1", "members", "size")]
     assert found.note.startswith("1 of 2 targets reached")
 
 
-def test_a_part_that_was_skipped_is_named_with_its_reason() -> None:
-    text = markdown([Part("server", skipped=("simworlds docs failed",))], {"date": "today"})
+def test_names_a_skipped_part_with_the_reason() -> None:
+    text = markdown([ReportPart("server", skipped=("simworlds docs failed",))], {"date": "today"})
     assert "- server: simworlds docs failed" in text
     assert "- date: today" in text
 
 
-def test_the_report_is_written_as_markdown_and_as_data(tmp_path: Path) -> None:
-    parts = [Part("builds", (Figure("size", 50.0, "just built"),), data={"builds": [1]})]
+def test_writes_markdown_and_json(tmp_path: Path) -> None:
+    parts = [ReportPart("builds", (TargetFigure("size", 50.0, "just built"),), data={"builds": [1]})]
     text = write(tmp_path / "new" / "reports", parts, {"commit": "abc"})
     folder = tmp_path / "new" / "reports"
     assert (folder / "bench.md").read_text(encoding="utf-8") == text
@@ -62,14 +62,14 @@ def test_the_report_is_written_as_markdown_and_as_data(tmp_path: Path) -> None:
     assert data["parts"]["builds"] == {"builds": [1]}
 
 
-def test_an_unknown_part_is_refused_with_those_that_exist(capsys: pytest.CaptureFixture[str]) -> None:
+def test_rejects_an_unknown_part_and_lists_parts(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["--only", "retrieval,speed"])
     assert ended.value.code == 2
-    assert "speed: parts are retrieval, latency" in capsys.readouterr().err
+    assert "speed: the parts are retrieval, latency" in capsys.readouterr().err
 
 
-def test_a_file_that_is_no_base_is_an_error_without_a_traceback(
+def test_an_invalid_base_is_an_error_without_traceback(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "kb").mkdir()

@@ -7,7 +7,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from .simulations import play_to_current_frame
+from .playback import play_to_current_frame
 
 _GPUS = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
 _IMAGE = {

@@ -7,7 +7,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from .simulations import find_simulations
+from .playback import fluid_domains, point_caches
 
 
 def save(path):
@@ -24,14 +24,16 @@ def save(path):
             _pack(block)
     with contextlib.suppress(RuntimeError):
         bpy.ops.file.make_paths_absolute()
-    outside = [
-        f"cache of {each.label}"
-        for scene in bpy.data.scenes
-        for each in find_simulations(scene)
-        if each.baked and each.on_disk
-    ]
     paths = set(bpy.utils.blend_paths(absolute=True, packed=False, local=True))
-    outside += [f"file {path}" for path in sorted(paths) if path]
+    for scene in bpy.data.scenes:
+        paths |= {each.cache_directory for each in fluid_domains(scene) if each.has_cache_baked_data}
+    outside = [f"file {path}" for path in sorted(paths) if path]
+    outside += [
+        f"point cache of {cache.id_data.name!r}"
+        for scene in bpy.data.scenes
+        for cache in point_caches(scene)
+        if cache.is_baked and (cache.use_disk_cache or cache.use_external)
+    ]
     try:
         bpy.ops.wm.save_as_mainfile(filepath=path, copy=True, check_existing=False, relative_remap=False)
     except RuntimeError as error:

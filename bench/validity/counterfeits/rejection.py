@@ -72,12 +72,12 @@ class _Appearance:
         self.noise = self._noise() if self._cycles else 0.0
 
     def difference(self, path: Path) -> float:
-        """Of a variant from the scene."""
+        """The difference of a variant from the scene."""
         self._builder.render(path, cycles=self._cycles)
         return self._builder.difference(self._builder.original, path)
 
     def _noise(self) -> float:
-        """Of the scene from itself, with another seed."""
+        """The difference of the scene from itself with another seed."""
         again = self._builder.original.with_stem("again")
         shutil.copy2(self._builder.original, again)
         self._builder.render(again, cycles=True, seed=1)

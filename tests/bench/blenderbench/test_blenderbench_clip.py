@@ -108,7 +108,7 @@ def test_reads_a_folder_of_weights_and_its_digest(tmp_path: Path, tower: Tower) 
     for asked in (tmp_path, tmp_path / FILE):
         clip = load_clip(str(asked), silent)
         digest = hashlib.sha256((tmp_path / FILE).read_bytes()).hexdigest()
-        assert clip.told == {"source": str(tmp_path / FILE), "sha256": digest, "openai": False}
+        assert clip.identity == {"source": str(tmp_path / FILE), "sha256": digest, "openai": False}
     assert set(clip.tower.weights) == set(SHAPES)
     for name, values in clip.tower.weights.items():
         assert values.dtype == np.float32

@@ -184,7 +184,7 @@ def test_selects_tasks_by_level_or_id_and_lists_known_names(tmp_path: Path) -> N
     found = read_set(tmp_path)
     assert [task.id for task in select_tasks(found, ["level2", "level1/b"])] == ["level1/b", "level2/a"]
     assert select_tasks(found, []) == found.tasks
-    with pytest.raises(NoTasks, match=r"has no level9.*level1/a, level1/b, level2/a"):
+    with pytest.raises(NoTasks, match=r"has no usable level9.*level1/a, level1/b, level2/a"):
         select_tasks(found, ["level9"])
 
 

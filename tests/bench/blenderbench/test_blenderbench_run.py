@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from bench.blenderbench.task_scenes import RenderSettings
-    from bench.blenderbench.task_set import EditTask, TaskSet
+    from bench.blenderbench.task_set import BenchTask, TaskSet
 
 pytestmark = pytest.mark.blender
 
@@ -47,7 +47,7 @@ def record_of(out: Path, task: str) -> TaskRecord:
     return read(task_folder(out, task).record, TaskRecord)
 
 
-def task_of(found: TaskSet, name: str) -> EditTask:
+def task_of(found: TaskSet, name: str) -> BenchTask:
     return next(task for task in found.tasks if task.id == name)
 
 

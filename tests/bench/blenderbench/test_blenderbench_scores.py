@@ -20,7 +20,7 @@ from bench.blenderbench.results import Score, read, task_folder
 from bench.blenderbench.run import run
 from bench.blenderbench.score import ScoringRule, score
 from bench.blenderbench.systems import RendersFolder
-from bench.blenderbench.task_set import LEVELS, EditTask, TaskSet
+from bench.blenderbench.task_set import LEVELS, BenchTask, TaskSet
 from bench.blenderbench.weights import Clip
 from simworlds.cli import main
 
@@ -37,7 +37,7 @@ def bench(*words: object) -> Any:
 @pytest.fixture
 def found(tmp_path: Path) -> TaskSet:
     """A set whose goals are grey; nobody opens its scenes."""
-    tasks: list[EditTask] = []
+    tasks: list[BenchTask] = []
     for level, name in (("level1", "a1"), ("level1", "a2"), ("level2", "b1"), ("level3", "c1")):
         folder = tmp_path / "set" / level / name
         goal = folder / "renders" / "goal" / "render1.png"
@@ -46,7 +46,7 @@ def found(tmp_path: Path) -> TaskSet:
         for file in ("blender_file.blend", "start.py", "task.txt"):
             (folder / file).write_bytes(b"BLENDER")
         tasks.append(
-            EditTask(level, name, folder, folder / "blender_file.blend", "", f"Do {name}.", goal, (32, 16))
+            BenchTask(level, name, folder, folder / "blender_file.blend", "", f"Do {name}.", goal, (32, 16))
         )
     return TaskSet(tmp_path / "set", tuple(tasks), ("level1/a3/task.txt is missing.",))
 
@@ -109,7 +109,7 @@ def test_chooses_the_best_round_by_n_clip_only_on_request(out: Path) -> None:
     assert best["level1/a1"].pl == pytest.approx(0, abs=1e-6)
     text = as_markdown([read_results(out)])
     assert "the round with the best N-CLIP counts" in text
-    assert "other weights than OpenAI's: made up" in text
+    assert "does not use OpenAI's weights: made up" in text
 
 
 def test_the_best_round_without_weights_is_an_error_and_nothing_is_scored(out: Path) -> None:

@@ -16,7 +16,7 @@ from bench.sweep.executor import FinishedTask
 from bench.sweep.records import BadSceneRecord, File, SystemInfo, read_record
 from bench.sweep.scene_selection import select_scenes
 from bench.sweep.scene_task import SceneTask
-from bench.sweep.sweep_view import SweepLog, SweepScreen
+from bench.sweep.sweep_view import LiveSweepView, SweepView
 from bench.sweep.systems.folder import FolderSystem
 from simworlds.files import write_whole
 
@@ -189,7 +189,7 @@ def test_a_record_rejects_paths_outside_its_folder(path: str) -> None:
 def test_screen_shows_progress_without_control_characters(tmp_path: Path) -> None:
     stream = io.StringIO()
     task = SceneTask(spec_of(SCENE), FolderSystem(INFO, tmp_path), tmp_path)
-    with SweepScreen(Console(file=stream, force_terminal=True, width=80), 2) as view:
+    with LiveSweepView(Console(file=stream, force_terminal=True, width=80), 2) as view:
         view.doing(None, "two nodes")
         view.doing(task, "opening")
         view.done(FinishedTask(task, None, "crashed over \x1b[2J\x07evil"))
@@ -205,5 +205,7 @@ def test_survives_a_closed_log_reader(tmp_path: Path) -> None:
         def write(self, text: str) -> int:
             raise BrokenPipeError
 
-    view = SweepLog(Gone(), 1)
-    view.done(FinishedTask(SceneTask(spec_of(SCENE), FolderSystem(INFO, tmp_path), tmp_path), None, "crashed"))
+    view = SweepView(Gone(), 1)
+    view.done(
+        FinishedTask(SceneTask(spec_of(SCENE), FolderSystem(INFO, tmp_path), tmp_path), None, "crashed")
+    )

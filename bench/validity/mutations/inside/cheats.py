@@ -44,10 +44,7 @@ def add_mesh_cache(objects):
 
 def add_bake(objects):
     """Bakes a rigid-body world, then removes its only body."""
-    del objects
-    obj = _some_mesh()
-    bpy.context.view_layer.objects.active = obj
-    bpy.ops.rigidbody.object_add(type="PASSIVE")
+    [obj] = add_body(objects)
     world = bpy.context.scene.rigidbody_world
     with bpy.context.temp_override(point_cache=world.point_cache):
         bpy.ops.ptcache.bake(bake=True)
