@@ -1,4 +1,4 @@
-"""What a person sees of a sweep: a view that is redrawn on a terminal, lines elsewhere."""
+"""Shows the progress of a sweep: a live view on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from bench.sweep.scene_task import SceneTask
 
 _PER_SECOND = 4
-_LONGEST = 300  # letters of a reason
+_LONGEST = 300  # characters of a reason
 
 
 class SweepView:
-    """A line for each scene that is done."""
+    """Prints a line for each scene that has ended; for logs."""
 
     def __init__(self, stream: TextIO, total: int) -> None:
         self._stream = stream
@@ -35,17 +35,17 @@ class SweepView:
         self._count = 0
 
     def doing(self, task: SceneTask | None, what: str) -> None:
-        """A task has got so far; with None, the sweep as a whole."""
+        """Shows the progress of a task, on a terminal only; with None, of the sweep."""
         if task is None:
             self._write(what)
 
     def done(self, done: FinishedTask) -> None:
-        """A task has come to its end."""
+        """Shows a task that has ended."""
         self._count += 1
         self._write(f"[{self._count}/{self._total}] {format_done(done)}")
 
     def judged(self, task: SceneTask, record: SceneRecord) -> None:
-        """A scene's frames have been judged, or not."""
+        """Shows a scene whose frames were judged, or not."""
         self._write(format_judgement(task, record))
 
     def __enter__(self) -> Self:
@@ -61,7 +61,7 @@ class SweepView:
 
 
 class LiveSweepView(LiveView, SweepView):
-    """What is being worked on, above a bar; what is done scrolls by."""
+    """Shows the running tasks above a progress bar; finished ones scroll by."""
 
     def __init__(self, console: Console, total: int) -> None:
         self._bar = Progress(
@@ -97,12 +97,12 @@ class LiveSweepView(LiveView, SweepView):
 
 
 def make_view(stream: TextIO, total: int) -> SweepView:
-    """The view that fits where ``stream`` goes; ``total``: how many tasks there are."""
+    """The view that fits ``stream``; ``total``: the number of tasks."""
     return LiveSweepView(Console(file=stream), total) if is_terminal(stream) else SweepView(stream, total)
 
 
 def format_done(done: FinishedTask) -> str:
-    """A scene that is done, in one line."""
+    """Describes a scene that has ended, in one line."""
     scene, record = done.task.spec.id, done.record
     if record is None:
         return f"{scene:<16} could not be done: {reason(done.fault)}"
@@ -118,19 +118,19 @@ def format_done(done: FinishedTask) -> str:
 
 
 def format_judgement(task: SceneTask, record: SceneRecord) -> str:
-    """A judgement, in one line."""
+    """Describes a judgement in one line."""
     judged = record.judged
     if judged is None or judged.why is not None:
-        why = reason(judged.why if judged and judged.why else "nothing was")
+        why = reason(judged.why if judged and judged.why else "no judgement")
         return f"{task.spec.id:<16} not judged: {why}"
     return f"{task.spec.id:<16} VLM {share(judged.score)}"
 
 
 def share(value: float | None) -> str:
-    """A score, as a person reads it."""
+    """Formats a score."""
     return "–" if value is None else f"{value:.3f}"
 
 
 def reason(text: str) -> str:
-    """Words of files and servers in one line, without what a terminal would act on."""
+    """Untrusted text in one short line, without control characters."""
     return shortened(text, _LONGEST)

@@ -156,7 +156,7 @@ def test_the_digest_of_a_step_covers_only_the_code_that_it_imports(
 
     def code() -> str:
         origin.code_of.cache_clear()
-        return origin.code_of("bench.audit", "inside/*.py")
+        return origin.code_of("bench.audit.audit", "inside/*.py")
 
     before = code()
     (bench / "other.py").write_text("changed = True")
