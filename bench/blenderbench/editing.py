@@ -39,7 +39,7 @@ class SimWorlds:
     """``simworlds edit`` with the instruction and the goal; its scene, rendered. One round: the finished scene.
 
     ``reference``: which picture it is given; where a task has no visprompt, the goal. ``options``: further ones of
-    the command, as of its model; ``limits``: of one sitting at it.
+    the command, as of its model; ``limits``: of one session at it.
     """
 
     look: Look

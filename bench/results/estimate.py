@@ -88,7 +88,7 @@ def _measured(results: Results) -> dict[str, dict[str, float]]:
 
 
 def _seconds(scene: Scored) -> Iterator[tuple[str, float]]:
-    """What a system took itself is in its minutes: it may have worked in several sittings."""
+    """What a system took itself is in its minutes: it may have worked in several sessions."""
     record = scene.record
     if record.produced is not None:
         minutes = record.produced.minutes

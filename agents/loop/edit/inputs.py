@@ -1,4 +1,4 @@
-"""What an edit is given: a .blend and, maybe, a picture; whether they are what they should be."""
+"""Checks the inputs of an edit: a .blend and, optionally, a reference picture."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BLEND = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, and packed by 
 
 
 def check_inputs(options: Options) -> None:
-    """Raises Unusable for files that no Blender and no model could make anything of."""
+    """Checks that the files are a .blend and a picture. Raises Unusable."""
     if options.mode != "edit":
         return
     if options.file is None:
@@ -36,7 +36,7 @@ def check_inputs(options: Options) -> None:
     except OSError as error:
         raise Unusable(f"{options.file} cannot be read: {error.strerror or error}.") from error
     if not start.startswith(_BLEND):
-        raise Unusable(f"{options.file} is no .blend: it does not begin as one.")
+        raise Unusable(f"{options.file} is not a .blend file: its first bytes are not those of one.")
     if options.reference is not None:
         picture(options.reference)
 
@@ -51,7 +51,7 @@ def picture(path: Path) -> Picture:
                 upright = ImageOps.exif_transpose(opened)
                 plain = upright.copy() if upright.mode in _MODES else upright.convert("RGBA")
     except UnidentifiedImageError as error:
-        raise Unusable(f"{path} is no picture that can be shown: give a PNG, JPEG or WebP.") from error
+        raise Unusable(f"{path} is not a readable picture: give a PNG, JPEG or WebP.") from error
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
         raise Unusable(f"{path} has too many pixels; give a smaller picture.") from error
     except (OSError, ValueError, SyntaxError) as error:  # what Pillow raises for broken files

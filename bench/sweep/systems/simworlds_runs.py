@@ -39,7 +39,7 @@ _TOKENS = ("input", "output", "cache_read", "cache_write")
 
 @dataclass(frozen=True)
 class _Runs:
-    """``options``: further words of the command that begins a run; ``limits``: those of every sitting at it."""
+    """``options``: further words of the command that begins a run; ``limits``: those of every session at it."""
 
     info: SystemInfo
     options: tuple[str, ...] = ()
@@ -174,7 +174,7 @@ def _beneath(run: Path, name: Any) -> Path | None:
 
 
 def _worked(rows: Sequence[Mapping[str, Any]]) -> float:
-    """Seconds that somebody sat at it: from row to row, but for the time between two sittings."""
+    """Seconds that somebody sat at it: from row to row, but for the time between two sessions."""
     seconds = 0.0
     for before, row in pairwise(rows):
         if row["type"] != "sitting.began":

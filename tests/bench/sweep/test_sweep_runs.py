@@ -70,11 +70,11 @@ def run(tmp_path: Path) -> Callable[..., Any]:
 def test_a_run_that_is_done_is_not_begun_again_and_tells_what_it_took(
     run: Callable[..., Any], tmp_path: Path
 ) -> None:
-    sitting = {"t": "2026-01-01T10:30:00+00:00", "type": "sitting.began"}
+    session = {"t": "2026-01-01T10:30:00+00:00", "type": "sitting.began"}
     rows = [
         began(),
         answered(3, 0.25),
-        sitting,
+        session,
         answered(31, 0.5),
         ended(33, "done", "scene.blend", "video.mp4"),
     ]
@@ -115,10 +115,10 @@ def test_a_scene_that_no_session_belongs_to_is_missing(tmp_path: Path) -> None:
 
 
 def test_every_session_is_of_a_scene_that_there_is() -> None:
-    from agents.loop.answer_source import sessions
+    from agents.loop.answer_source import transcripts
 
     assert all(spec_of(scene) for scene in SESSIONS)
-    assert {*SESSIONS.values()} == {*sessions()} - {"edit"}
+    assert {*SESSIONS.values()} == {*transcripts()} - {"edit"}
 
 
 # Real runs, against a model that does not help
