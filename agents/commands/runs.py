@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator
     from types import FrameType
 
-    from agents.loop.session import Ended, Sitting, Stop
+    from agents.loop.session import Ended, RunSession, Stop
 
     Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -36,15 +36,15 @@ def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Comm
 
 _limits = _options(
     click.option(
-        "--max-cost", type=click.FloatRange(0), metavar="USD", help="Stop before it would cost more."
+        "--max-cost", type=click.FloatRange(0), metavar="USD", help="Stop before the run costs more."
     ),
-    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help="Stop after so long."),
-    click.option("--quiet", is_flag=True, help="Say nothing but how it ended."),
+    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help="Stop after this time."),
+    click.option("--quiet", is_flag=True, help="Print only the outcome."),
 )
 _model = _options(
     click.option("--model", metavar="NAME", help="The model for all roles.  [default: claude-opus-5-5]"),
     click.option(
-        "--role-model", multiple=True, metavar="ROLE=NAME", help=f"Another one for {', '.join(_ROLES)}."
+        "--role-model", multiple=True, metavar="ROLE=NAME", help=f"Another model for {', '.join(_ROLES)}."
     ),
 )
 _blender = _options(
@@ -62,7 +62,7 @@ _blender = _options(
         "--sandbox", type=click.Choice(["bubblewrap", "landlock", "none"]), help="What confines Blender."
     ),
     click.option(
-        "--render-minutes", type=click.FloatRange(0, min_open=True), help="A time for the rendering."
+        "--render-minutes", type=click.FloatRange(0, min_open=True), help="Time budget of the rendering."
     ),
     click.option(
         "--samples", type=click.IntRange(1), help="Samples of the rendering, instead of the plan's."
@@ -111,7 +111,7 @@ def edit(file: Path, instruction: str, reference: Path | None, **given: Any) -> 
 @_limits
 @_blender
 def demo(name: str | None, **given: Any) -> None:
-    """Play a session that was written by hand against a real Blender; needs no key. Without a name: list them.
+    """Play a hand-written transcript against a real Blender; needs no key. Without a name: list them.
 
     What the roles say was written by people for this program; Blender, verifier, baking and rendering are real.
     """
@@ -152,27 +152,27 @@ def replay(run: Path, **given: Any) -> None:
 @click.argument("run", type=_FOLDER)
 @_limits
 def resume(run: Path, **given: Any) -> None:
-    """Go on with a run that was stopped, or killed. Nothing that was done or paid for is done again."""
+    """Resume a run that was stopped or killed. Nothing that was done or paid for is done again."""
     from agents.loop.session import resume as go_on  # noqa: PLC0415 - not for --help
 
-    _sit(lambda sitting: go_on(run, sitting), run, given)
+    _work(lambda session: go_on(run, session), run, given)
 
 
 @click.command()
 def runs() -> None:
-    """List the runs there are, newest first."""
+    """List the runs, newest first."""
     from rich.console import Console  # noqa: PLC0415 - not for --help
 
-    from agents.views.run_list import table_of_runs  # noqa: PLC0415
+    from agents.views.run_list import list_runs  # noqa: PLC0415
 
-    Console().print(table_of_runs())
+    Console().print(list_runs())
 
 
 @click.command()
 @click.argument("run", type=_FOLDER)
-@click.option("--report", is_flag=True, help="Write report.html anew.")
+@click.option("--report", is_flag=True, help="Write report.html again.")
 def show(run: Path, *, report: bool) -> None:
-    """Show how a run stands, or what became of it."""
+    """Show the state or the outcome of a run."""
     from rich.console import Console  # noqa: PLC0415 - not for --help
 
     from agents.loop.errors import RunError  # noqa: PLC0415
@@ -197,9 +197,9 @@ def _of_model(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _limited(given: dict[str, Any]) -> Any:
-    from agents.loop.options import Limits  # noqa: PLC0415 - not for --help
+    from agents.loop.options import RunLimits  # noqa: PLC0415 - not for --help
 
-    return Limits(max_cost=given["max_cost"], max_minutes=given["max_minutes"])
+    return RunLimits(max_cost=given["max_cost"], max_minutes=given["max_minutes"])
 
 
 def _root(given: dict[str, Any]) -> Path:
@@ -224,13 +224,13 @@ def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
         wrong = "; ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
         raise click.UsageError(wrong) from error
     root = _root(given)
-    _sit(lambda sitting: begin(root, options, sitting), root, given)
+    _work(lambda session: begin(root, options, session), root, given)
 
 
-def _sit(sit: Callable[[Sitting], Ended], root: Path, given: dict[str, Any]) -> None:
+def _work(work: Callable[[RunSession], Ended], root: Path, given: dict[str, Any]) -> None:
     from agents.loop.errors import RunError  # noqa: PLC0415 - not for --help
     from agents.loop.reducer import read_run_state  # noqa: PLC0415
-    from agents.loop.session import Sitting, Stop  # noqa: PLC0415
+    from agents.loop.session import RunSession, Stop  # noqa: PLC0415
     from agents.views.live_view import RunView, make_view  # noqa: PLC0415
     from agents.views.report.page import write_report  # noqa: PLC0415
 
@@ -239,7 +239,7 @@ def _sit(sit: Callable[[Sitting], Ended], root: Path, given: dict[str, Any]) -> 
         before = read_run_state(root)
         watched = RunView(before) if given["quiet"] else make_view(sys.stderr, str(root), before)
         with watched as view, _signals(stop):
-            ended = sit(Sitting(_limited(given), view, stop))
+            ended = work(RunSession(_limited(given), view, stop))
         report = write_report(root)
     except RunError as error:
         click.echo(f"Error: {error}", err=True)
@@ -250,7 +250,7 @@ def _sit(sit: Callable[[Sitting], Ended], root: Path, given: dict[str, Any]) -> 
         if path is not None and path.exists():
             click.echo(path)
     if ended.how in ("stopped", "failed") and ended.again:
-        click.echo(f"Go on with: simworlds resume {root}", err=True)
+        click.echo(f"Continue with: simworlds resume {root}", err=True)
     sys.exit(EXITS[ended.how])
 
 
@@ -263,7 +263,10 @@ def _signals(stop: Stop) -> Generator[None]:
             stop.now()
             raise KeyboardInterrupt
         stop.event.set()
-        click.echo("\nStopping at the next safe point. Once more: now. The run can be resumed.", err=True)
+        click.echo(
+            "\nStopping at the next safe point. Press Ctrl-C again to stop now. The run can be resumed.",
+            err=True,
+        )
 
     before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

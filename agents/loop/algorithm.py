@@ -1,4 +1,4 @@
-"""The paper's algorithm: plan once, build stage by stage, render, review, mend once."""
+"""The paper's algorithm: plan once, build stage by stage, render, review, fix once."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 from agents.loop.events import PlanMade, StageMoved
 from agents.loop.reducer import run_state_after
-from agents.loop.rendering import fixed, render, reviewed
+from agents.loop.rendering import fix, render, review
 from agents.loop.run import START, plan_file
 from agents.loop.stage import StageLoop
-from agents.loop.task import Task
+from agents.loop.task import RunTask
 from agents.plan.part import STAGES
-from agents.roles.planner import Planner, told
+from agents.roles.planner import Planner, format_plan
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from agents.loop.rendering import Rendering
+    from agents.loop.rendering import RenderResult
     from agents.loop.run import Run
     from agents.plan.part import Stage
     from agents.plan.scene import Render, ScenePlan
@@ -29,23 +29,25 @@ This run has no stages. What is called the stage "light" here is everything at o
 deforms, motion, camera and light, in one pass from an empty scene."""
 
 
-def make(run: Run) -> Rendering:
+def make(run: Run) -> RenderResult:
     """From the prompt to a rendered scene (paper, Algorithm 1). Raises RunError, ModelError."""
     run.save("modeling", START, run.checkpoints)
-    planner = Planner(run.desk)
+    planner = Planner(run.context)
     plan = planner.strategic(run.options.prompt)
     run.write("plan.json", plan_file(plan))
     run.journal.note(PlanMade(plan=plan))
     staged = run.options.stages
-    task = Task(told(plan) if staged else f"{_WITHOUT_STAGES}\n\n{told(plan)}", plan, _actors(plan))
+    task = RunTask(
+        format_plan(plan) if staged else f"{_WITHOUT_STAGES}\n\n{format_plan(plan)}", plan, _actors(plan)
+    )
     run.task = task
     wanted = plan.stages if staged else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
     return finish(run, task, plan.render, last)
 
 
-def build(run: Run, planner: Planner, task: Task, wanted: Sequence[Stage]) -> str:
-    """Closes the stages that are ``wanted``, in order; the name of the last that was. Raises Aborted, ModelError."""
+def build(run: Run, planner: Planner, task: RunTask, wanted: Sequence[Stage]) -> str:
+    """Closes the ``wanted`` stages in order; the name of the last one. Raises Aborted, ModelError."""
     last = START
     for stage in STAGES[:-1]:
         if stage not in wanted:
@@ -59,18 +61,18 @@ def build(run: Run, planner: Planner, task: Task, wanted: Sequence[Stage]) -> st
     return last
 
 
-def finish(run: Run, task: Task, plan: Render | None, last: str) -> Rendering:
-    """Renders, has it reviewed, and mends it once if need be; the scene is saved. Raises RunError, ModelError."""
+def finish(run: Run, task: RunTask, plan: Render | None, last: str) -> RenderResult:
+    """Renders the scene, has it reviewed, fixes it once if needed, and saves it. Raises RunError, ModelError."""
     rendering = render(run, plan, 1)
-    review = reviewed(run, task, rendering, 1)
-    if review.verdict == "needs_fix" and fixed(run, task, review, last):
+    verdict = review(run, task, rendering, 1)
+    if verdict.verdict == "needs_fix" and fix(run, task, verdict, last):
         rendering = render(run, plan, 2)
     run.save("render", "scene", run.root, verify=True)
     return rendering
 
 
 def result_so_far(run: Run) -> Path | None:
-    """The file of the last stage that was closed."""
+    """The file of the stage that was closed last."""
     closed = [stage.file for stage in run_state_after(run.journal.rows).stages if stage.state == "closed"]
     return run.root / closed[-1] if closed else None
 

@@ -1,4 +1,4 @@
-"""Who answers for the roles in a sitting: what the journal has heard already, then a live model or another record."""
+"""The model of a session: it plays back what the journal holds, then asks a live model or another record."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ TRANSCRIPTS = Path(str(files("agents") / "transcripts"))
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
-    """The line to a live model: ``tell`` hears of every retry, ``pause`` waits before it, ``closing`` ends it."""
+class LiveOptions:
+    """What a live model needs: ``tell`` gets each retry, ``pause`` waits before it, ``closing`` ends it."""
 
     spending: Spending
     tell: Callable[[Retry], object]
@@ -38,26 +38,26 @@ class Line:
     closing: ExitStack
 
 
-def answering(root: Path, options: Options, journal: Journal, line: Line) -> Model:
-    """The model of a sitting; its answers are journalled, and counted where they are paid for.
+def make_model(root: Path, options: Options, journal: Journal, live: LiveOptions) -> Model:
+    """The model of a session; its answers are journalled, and counted where they are paid for.
 
-    Raises ModelError (no key, a record that is none), NoRun.
+    Raises ModelError (no key, a broken record), NoRun.
     """
-    for one in heard(journal.rows):
-        if one.turn.live:
-            line.spending.carry(one.role, one.stage, one.turn)
-    rows = _led_on(journal.rows)
+    for answer in heard(journal.rows):
+        if answer.turn.live:
+            live.spending.carry(answer.role, answer.stage, answer.turn)
+    rows = _without_failed_end(journal.rows)
     folders = {str(root): "run"}
-    skip = Counter((one.role, one.stage) for one in heard(rows))
-    source = _source(options, folders, skip, line)
+    skip = Counter((answer.role, answer.stage) for answer in heard(rows))
+    source = _source(options, folders, skip, live)
     first = max((row["n"] for row in journal.rows if row["type"] in _MODEL), default=0) + 1
     return Recorded(
         rows, folders=folders, then=Recording(source, journal.append_row, folders=folders, first=first)
     )
 
 
-def _led_on(rows: Iterable[Row]) -> list[Row]:
-    """A journal's questions and answers, but for answers over which a sitting failed: to go on is to ask anew."""
+def _without_failed_end(rows: Iterable[Row]) -> list[Row]:
+    """A journal's questions and answers, without an answer on which a session failed: resuming asks again."""
     kept: list[Row] = []
     first = 0  # of those in kept between which nothing else was written
     for row in rows:
@@ -75,33 +75,33 @@ def _source(
     options: Options,
     folders: dict[str, str],
     skip: Mapping[tuple[str, str], int],
-    line: Line,
+    live: LiveOptions,
 ) -> Model:
     match options.origin:
         case "session":
             return Recorded(TRANSCRIPTS / options.source, skip=skip)
         case "replay":
             other = Path(options.source)
-            rows = _led_on(read_rows(other / NAME))
+            rows = _without_failed_end(read_rows(other / NAME))
             return Recorded(rows, folders=folders | {str(other): "run"}, skip=skip)
         case _:
 
-            def told(retry: Retry) -> Any:
-                line.spending.before_retry(retry)
-                line.tell(retry)
+            def on_retry(retry: Retry) -> Any:
+                live.spending.before_retry(retry)
+                live.tell(retry)
 
-            claude = Claude(tell=told, pause=line.pause)
-            line.closing.callback(claude.close)
-            return Metered(claude, line.spending)
+            claude = Claude(tell=on_retry, pause=live.pause)
+            live.closing.callback(claude.close)
+            return Metered(claude, live.spending)
 
 
-def sessions() -> list[str]:
-    """The names of the sessions that come with the package."""
+def transcripts() -> list[str]:
+    """The names of the transcripts that come with the package."""
     return sorted(path.parent.name for path in TRANSCRIPTS.glob("*/session.toml"))
 
 
-def session_folder(name: str) -> Path:
-    """The folder of one. Raises NoRun."""
-    if name not in sessions():
-        raise NoRun(f"There is no session {name!r}; there are {', '.join(sessions())}.")
+def transcript_folder(name: str) -> Path:
+    """The folder of a transcript. Raises NoRun."""
+    if name not in transcripts():
+        raise NoRun(f"There is no demo {name!r}. Choose one of {', '.join(transcripts())}.")
     return TRANSCRIPTS / name

@@ -1,4 +1,4 @@
-"""Runs that need no key: sessions that come with the package, and records of other runs."""
+"""Runs that need no key: transcripts that come with the package, and records of other runs."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import tomllib
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.blender_sessions import SessionSetup
-from agents.loop.answer_source import session_folder, sessions
+from agents.loop.answer_source import transcript_folder, transcripts
 from agents.loop.errors import NoRun, RunError
 from agents.loop.reducer import read_run_state
-from agents.loop.toolbox import Toolbox
+from agents.loop.tool_client import ToolClient
 from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
@@ -21,25 +21,25 @@ _LOG = logging.getLogger(__name__)
 
 
 def listed() -> str:
-    """The sessions, a line each."""
-    lines = ["Sessions written by hand; each plays against a real Blender, without a key:", ""]
-    for name in sessions():
-        told = _told(name)
-        lines.append(f"  simworlds demo {name:12} about {told['minutes']:g} min   {told['about']}")
+    """The demos, a line each."""
+    lines = ["Hand-written transcripts; each plays against a real Blender, without a key:", ""]
+    for name in transcripts():
+        settings = _settings(name)
+        lines.append(f"  simworlds demo {name:12} about {settings['minutes']:g} min   {settings['about']}")
     return "\n".join(lines)
 
 
 def demo_options(name: str, made: Path) -> dict[str, Any]:
-    """The options of a session's run. The file that an edit begins with is built as ``made``. Raises NoRun."""
-    folder = session_folder(name)
-    told = _told(name)
+    """The options of a demo's run. The file that an edit starts from is built as ``made``. Raises NoRun."""
+    folder = transcript_folder(name)
+    settings = _settings(name)
     asked: dict[str, Any] = {
         "origin": "session",
         "source": name,
-        "prompt": told.get("instruction", told["prompt"]),
+        "prompt": settings.get("instruction", settings["prompt"]),
     }
-    if "file" in told:
-        _build(folder / told["file"], made)
+    if "file" in settings:
+        _build(folder / settings["file"], made)
         asked |= {"mode": "edit", "file": made}
     return asked
 
@@ -52,16 +52,16 @@ def replay_options(run: Path) -> dict[str, Any]:
     return {**options, "origin": "replay", "source": str(run)}
 
 
-def _told(name: str) -> Mapping[str, Any]:
-    return tomllib.loads((session_folder(name) / "session.toml").read_text("utf-8"))
+def _settings(name: str) -> Mapping[str, Any]:
+    return tomllib.loads((transcript_folder(name) / "session.toml").read_text("utf-8"))
 
 
 def _build(script: Path, made: Path) -> None:
     """Runs a script in a Blender of its own, confined as always, and saves the scene."""
     work = made.with_suffix("")
-    with Toolbox(SessionSetup(best_sandbox(), run=work, tell=_LOG.info)) as toolbox:
-        code = toolbox.call("blender_execute", {"code": script.read_text("utf-8"), "timeout": 300})
-        saved = toolbox.call("blender_save", {"name": made.stem})
+    with ToolClient(SessionSetup(best_sandbox(), run=work, tell=_LOG.info)) as tools:
+        code = tools.call("blender_execute", {"code": script.read_text("utf-8"), "timeout": 300})
+        saved = tools.call("blender_save", {"name": made.stem})
     for outcome in (code, saved):
         if outcome.failed:
             raise RunError(f"The scene to edit could not be built: {outcome.text}")

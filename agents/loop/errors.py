@@ -1,25 +1,25 @@
 """How a run may end early.
 
 RunError
-├── NoRun         there is no run in that folder, or none that can be gone on with
-├── Unusable      what was given to work on cannot be worked on; to go on would come to the same
-├── Stopping      the run is to stop here: a limit is reached, or somebody has asked for it; it can be taken up again
-└── Aborted       a stage, or the model, cannot be got past (paper, Algorithm 1: retries and replans exhausted)
+├── NoRun         the folder does not hold a run that can be continued
+├── Unusable      an input file cannot be used; resuming would fail again
+├── Stopping      the run stops here: a limit is reached, or the user asked for it; it can be resumed
+└── Aborted       a stage could not be closed (paper, Algorithm 1: retries and replans exhausted)
 """
 
 from __future__ import annotations
 
 
 class RunError(Exception):
-    """Anything below. The message says what was wrong, and what can be done."""
+    """Base of all of them. The message says what was wrong, and what to do."""
 
 
 class NoRun(RunError):  # noqa: N818 - these read as the states they name
-    """There is no run in that folder, or none that can be gone on with."""
+    """The folder does not hold a run that can be continued."""
 
 
 class Unusable(RunError):  # noqa: N818
-    """What was given to work on cannot be worked on."""
+    """An input file cannot be used."""
 
 
 class Stopping(RunError):  # noqa: N818

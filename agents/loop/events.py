@@ -263,7 +263,7 @@ class ToolAnswered(Event):
     checkpoint: Int | None = None
 
 
-class Rendered(Event):
+class SceneRendered(Event):
     """``path`` is the still or video; ``pictures`` are frames of it."""
 
     type: Literal["rendered"] = "rendered"
@@ -307,7 +307,7 @@ KnownEvent = Annotated[
     RunBegan | SessionBegan | SceneRestored | RunEnded | PlanMade | ReferenceKept
     | StageMoved | TacticMade | AttemptBegan | AttemptEnded
     | Verified | Reviewed | Decided | RolledBack | ModelAsked | ModelAnswered
-    | ToolCalled | ToolAnswered | Rendered | FinalReviewed | Edited,
+    | ToolCalled | ToolAnswered | SceneRendered | FinalReviewed | Edited,
     Field(discriminator="type"),
 ]  # fmt: skip
 _KNOWN: TypeAdapter[Event] = TypeAdapter(KnownEvent)

@@ -1,4 +1,4 @@
-"""What is found out about an attempt: the verifier and the reviewer, side by side, and what may come of it."""
+"""Judges an attempt: the verifier and the reviewer side by side, and whether the stage may advance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from agents.loop.run import Run
-    from agents.loop.task import Finding, Task
+    from agents.loop.task import Finding, RunTask
     from agents.plan.part import Stage
     from agents.plan.tactical import Decision, TacticalPlan
     from agents.roles.reviewer import Reviewer
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
 _MOST_ACTORS = 6
 _SEEN_BY_CAMERA: tuple[Stage, ...] = ("camera", "light")
 _STILL = {"kind": "still", "name": "look", "width": 480, "samples": 16, "denoise": True}
-_OFF = "It is left out in this run."
+_OFF = "The verifier is switched off in this run."
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
-    """The verifier's: ``ok`` unless a hard rule is broken, undecided or failed; ``told`` is for models."""
+class VerifierVerdict:
+    """The verifier's: ``ok`` unless a hard rule is broken, undecided or failed; ``text`` is for models."""
 
     ok: bool
-    told: str
+    text: str
     findings: tuple[Finding, ...] = ()
 
     @property
@@ -45,18 +45,18 @@ class Verdict:
         return sum(finding["severity"] == "hard" for finding in self.findings)
 
 
-def verify(run: Run, stage: Stage, task: Task) -> Verdict:
-    """Judges the scene by the rules of the stage. Findings that were known before are none."""
+def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
+    """Judges the scene by the rules of the stage. Findings that were there before the edit do not count."""
     if not run.options.verifier:
-        return Verdict(True, _OFF)
+        return VerifierVerdict(True, _OFF)
     outcome = run.use(VERIFIER, stage, VERIFY, {}, task.verification(stage))
     if outcome.failed or "findings" not in outcome.data:
         return _undecided(outcome.text, task)
     findings = new_findings(task.known, outcome.data["findings"])
-    told = _listed(findings) if task.known else outcome.text
+    text = _listed(findings) if task.known else outcome.text
     if task.declared and moves(stage) and (untagged := undeclared(run, stage, task.declared)):
-        findings, told = [*untagged, *findings], f"{_listed(untagged)}\n{told}"
-    return Verdict(all(one["severity"] != "hard" for one in findings), told, tuple(findings))
+        findings, text = [*untagged, *findings], f"{_listed(untagged)}\n{text}"
+    return VerifierVerdict(all(one["severity"] != "hard" for one in findings), text, tuple(findings))
 
 
 def moves(stage: Stage) -> bool:
@@ -64,8 +64,8 @@ def moves(stage: Stage) -> bool:
     return STAGES.index(stage) >= STAGES.index("motion")
 
 
-def _undecided(why: str, task: Task) -> Verdict:
-    """A scene that cannot be judged stays where it is, unless the file could not be judged before it was edited."""
+def _undecided(why: str, task: RunTask) -> VerifierVerdict:
+    """A scene that cannot be judged blocks the stage, unless the file could not be judged before the edit either."""
     before = any(finding["rule"] == VERIFIER for finding in task.known)
     finding: Finding = {
         "rule": VERIFIER,
@@ -75,13 +75,13 @@ def _undecided(why: str, task: Task) -> Verdict:
         "fix": "",
         "outcome": "error",
     }
-    told = "It could not judge the scene" + (", as it could not before the edit" if before else "")
-    return Verdict(before, f"{told}: {why}", (finding,))
+    text = "The verifier could not judge the scene" + (", as it could not before the edit" if before else "")
+    return VerifierVerdict(before, f"{text}: {why}", (finding,))
 
 
 def _listed(findings: Sequence[Finding]) -> str:
     if not findings:
-        return "Nothing is at fault that was not before."
+        return "No findings that were not there before the edit."
     return "\n".join(
         f"- {one['rule']} ({one['severity']}) {', '.join(one['objects'])}: {one['message']} {one['fix']}".rstrip()
         for one in findings
@@ -92,7 +92,7 @@ def _listed(findings: Sequence[Finding]) -> str:
 
 
 def review(run: Run, reviewer: Reviewer, tactic: TacticalPlan, actors: Sequence[str]) -> Review:
-    """What the reviewer says; one who declines, or gives nothing that fits, has not reviewed: that blocks."""
+    """The reviewer's verdict. A reviewer that declines, or gives no valid answer, blocks."""
     try:
         return reviewer.review(tactic, run.attempt or 1, evidence(run, tactic.stage, actors))
     except (Refused, Misfit) as error:
@@ -100,7 +100,7 @@ def review(run: Run, reviewer: Reviewer, tactic: TacticalPlan, actors: Sequence[
 
 
 def evidence(run: Run, stage: Stage, actors: Sequence[str]) -> list[Block | str]:
-    """What there is to see of a stage: the layout, the readout, the motion, the camera's view."""
+    """What the reviewer sees of a stage: the layout, the readout, the motion, the camera's view."""
     shown: list[Block | str] = []
     calls: list[tuple[str, Mapping[str, Any]]] = [("blender_scene_layout_preview", {})]
     if actors:
@@ -118,10 +118,14 @@ def evidence(run: Run, stage: Stage, actors: Sequence[str]) -> list[Block | str]
 # Together
 
 
-def judged(
-    run: Run, stage: Stage, attempt: int, verifying: Callable[[], Verdict], reviewing: Callable[[], Review]
-) -> tuple[Verdict, Review]:
-    """Both, side by side: while the model thinks, Blender measures. What they found is written down."""
+def judge(
+    run: Run,
+    stage: Stage,
+    attempt: int,
+    verifying: Callable[[], VerifierVerdict],
+    reviewing: Callable[[], Review],
+) -> tuple[VerifierVerdict, Review]:
+    """Both at the same time: while the model thinks, Blender measures. Their verdicts are journalled."""
     with ThreadPoolExecutor(1, thread_name_prefix="verifier") as pool:
         verified = pool.submit(verifying)
         review = reviewing()
@@ -131,8 +135,8 @@ def judged(
     return verdict, review
 
 
-def note_verdict(run: Run, stage: Stage, attempt: int, verdict: Verdict) -> None:
-    """Writes down what the verifier found."""
+def note_verdict(run: Run, stage: Stage, attempt: int, verdict: VerifierVerdict) -> None:
+    """Journals the verifier's verdict."""
     run.journal.note(
         Verified(
             stage=stage,
@@ -145,8 +149,8 @@ def note_verdict(run: Run, stage: Stage, attempt: int, verdict: Verdict) -> None
     )
 
 
-def in_words(review: Review) -> str:
-    """A review as the other roles read it."""
+def format_review(review: Review) -> str:
+    """The review in words, for the other roles."""
     lines = [f"{'Blocking' if review.blocking else 'Not blocking'}: {review.summary}"]
     lines += [
         f"- {'yes' if one.holds else 'NO'}: {one.question} ({one.evidence})" for one in review.judgements
@@ -154,7 +158,7 @@ def in_words(review: Review) -> str:
     return "\n".join(lines)
 
 
-def overruled(decision: Decision, how: str, verdict: Verdict, review: Review) -> str:
+def overruled(decision: Decision, how: str, verdict: VerifierVerdict, review: Review) -> str:
     """Why a decision to advance is not followed; "" if it may be (paper, "Per-Stage Execution Loop")."""
     if decision.transition != "advance":
         return ""

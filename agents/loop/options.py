@@ -1,4 +1,4 @@
-"""What a run is asked to do. It is written down at its beginning, and holds for every sitting of it."""
+"""What a run is asked to do. It is written down at its beginning, and holds for every session of it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 
 
 class Options(BaseModel):
-    """What does not change from sitting to sitting.
+    """What does not change from session to session.
 
     ``origin``: where answers come from: a live model, a ``session`` (its name) written by hand, or the ``replay`` of
     another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
@@ -46,7 +46,7 @@ class Options(BaseModel):
         return self.models.get(role, self.model)
 
     @property
-    def told(self) -> str:
+    def source_text(self) -> str:
         """Where the answers come from, in words."""
         match self.origin:
             case "session":
@@ -57,8 +57,8 @@ class Options(BaseModel):
                 return "live"
 
 
-class Limits(BaseModel):
-    """What one sitting may use: dollars (over the whole run), and minutes."""
+class RunLimits(BaseModel):
+    """What one session may use: dollars (over the whole run), and minutes."""
 
     model_config = ConfigDict(frozen=True)
 

@@ -68,7 +68,7 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
             return _model_answered(state, event)
         case events.ToolAnswered():
             return _tool_answered(state, event)
-        case events.Rendered():
+        case events.SceneRendered():
             return _rendered(state, event)
         case events.FinalReviewed():
             return _final_reviewed(state, event)
@@ -242,7 +242,7 @@ def _tool_answered(state: RunState, event: events.ToolAnswered) -> RunState:
 # The run
 
 
-def _rendered(state: RunState, event: events.Rendered) -> RunState:
+def _rendered(state: RunState, event: events.SceneRendered) -> RunState:
     number = event.round or len(state.renderings) + 1
     rendering = Rendering(
         number, event.kind, event.path, event.frames, event.seconds, event.samples, event.pictures

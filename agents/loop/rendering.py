@@ -1,4 +1,4 @@
-"""The last stage: what the camera sees, rendered, judged once, and mended once (paper, "Final Render and Review")."""
+"""The last stage: renders, has the result reviewed, and fixes it once (paper, "Final Render and Review")."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.blender.render.image_checks import preview_png
 from agents.loop.errors import RunError
-from agents.loop.events import FinalReviewed, Rendered
+from agents.loop.events import FinalReviewed, SceneRendered
 from agents.loop.judging import note_verdict, verify
 from agents.loop.run import RUNNER
 from agents.plan.tactical import FinalReview
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from agents.loop.run import Run
-    from agents.loop.task import Task
+    from agents.loop.task import RunTask
     from agents.plan.scene import Render
     from simworlds.llm.messages import Block
 
@@ -32,15 +32,15 @@ _ENGINES = {"CYCLES": "cycles", "BLENDER_EEVEE": "eevee", "BLENDER_WORKBENCH": "
 
 
 @dataclass(frozen=True, slots=True)
-class Rendering:
+class RenderResult:
     """What was rendered: a ``video`` and its frames, or a still; ``path`` is the file in the run's folder."""
 
     path: Path
     frames: tuple[Path, ...]
-    told: str
+    text: str
 
 
-def render(run: Run, plan: Render | None, number: int) -> Rendering:
+def render(run: Run, plan: Render | None, number: int) -> RenderResult:
     """Renders the scene as planned (None: by the scene's own settings). Raises RunError."""
     run.attempt = number
     asked: dict[str, Any] = {"kind": plan.kind if plan else "still"}
@@ -60,7 +60,7 @@ def render(run: Run, plan: Render | None, number: int) -> Rendering:
     if made.is_file():
         _link(made, result)
     run.journal.note(
-        Rendered(
+        SceneRendered(
             round=number,
             kind=data["kind"],
             path=result.name,
@@ -70,30 +70,30 @@ def render(run: Run, plan: Render | None, number: int) -> Rendering:
             pictures=tuple(run.keep(Picture(preview_png(path))) for path in _spread(frames)),
         )
     )
-    return Rendering(result, frames, outcome.text)
+    return RenderResult(result, frames, outcome.text)
 
 
-def reviewed(run: Run, task: Task, rendering: Rendering, number: int) -> FinalReview:
-    """The final reviewer's verdict. One who declines has no objection, which the verdict says."""
-    content: list[Block | str] = [Text(rendering.told)]
+def review(run: Run, task: RunTask, rendering: RenderResult, number: int) -> FinalReview:
+    """The final reviewer's verdict. A reviewer that declines counts as accepting, and the summary says so."""
+    content: list[Block | str] = [Text(rendering.text)]
     for place, path in enumerate(_spread(rendering.frames)):
         content += [Text(f"Frame {path.stem} ({25 * place} %):"), Picture(preview_png(path))]
     try:
-        review = final_review(run.desk, task.told, content, edit=task.edit)
+        review = final_review(run.context, task.plan_text, content, edit=task.edit)
     except (Refused, Misfit) as error:
         review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
     run.journal.note(FinalReviewed(round=number, review=review))
     return review
 
 
-def fixed(run: Run, task: Task, review: FinalReview, last: str) -> bool:
-    """One fix of what the final reviewer wants, from the last checkpoint on; whether it holds.
+def fix(run: Run, task: RunTask, review: FinalReview, last: str) -> bool:
+    """Fixes once what the final reviewer wants, from the last checkpoint on; whether the fix stands.
 
     A fix that is not finished, or breaks a hard rule, is undone: the result is never worse for it.
     """
     run.attempt = 2
     run.roll_back("render", 1, last)
-    coder = Coder(run.desk, "render", task.told, edit=task.edit)
+    coder = Coder(run.context, "render", task.plan_text, edit=task.edit)
     worked = run.attempted("render", 2, lambda: coder.fix(review.instructions, run.state("render")))
     verdict = verify(run, "render", task)
     note_verdict(run, "render", 2, verdict)

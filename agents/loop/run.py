@@ -1,4 +1,4 @@
-"""A run: its folder, its journal, its tools, and what may still be used up.
+"""A run: its folder, its journal, its tools and its limits.
 
 The folder holds ``journal.jsonl``, ``plan.json``, ``checkpoints/STAGE.blend``, ``pictures/`` (what the roles saw, by
 content), ``blender/`` (the worker's own), and in the end ``scene.blend``, ``video.mp4`` or ``still.png``, and
@@ -26,9 +26,9 @@ from agents.loop.events import (
     ToolAnswered,
     ToolCalled,
 )
-from agents.loop.toolbox import Outcome
+from agents.loop.tool_client import ToolOutcome
 from agents.roles import coder, reviewer
-from agents.roles.base import Desk
+from agents.roles.base import RoleContext
 from simworlds.files import write_whole
 from simworlds.llm.messages import Picture, Text, ToolResult
 
@@ -37,11 +37,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from agents.loop.journal import Journal
-    from agents.loop.options import Limits, Options
-    from agents.loop.task import Task
-    from agents.loop.toolbox import Toolbox
+    from agents.loop.options import Options, RunLimits
+    from agents.loop.task import RunTask
+    from agents.loop.tool_client import ToolClient
     from agents.plan.part import Stage
-    from agents.roles.base import Worked
+    from agents.roles.base import WorkResult
     from simworlds.llm.messages import Model, Tool, ToolUse
 
 RUNNER, VERIFIER = "runner", "verifier"
@@ -52,27 +52,27 @@ _LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
 
 @dataclass
 class Run:
-    """What the loop works with. Calls may come from two threads at once."""
+    """What the loop works with. Two threads may call at the same time."""
 
     root: Path
     options: Options
-    limits: Limits
+    limits: RunLimits
     journal: Journal
-    toolbox: Toolbox
+    tools: ToolClient
     model: Model
     saying: Callable[[str, str], object]
     stop: threading.Event = field(default_factory=threading.Event)
     attempt: int | None = None
-    task: Task | None = None
+    task: RunTask | None = None
     _began: float = field(default_factory=time.monotonic)
     _calls: Counter[tuple[str, str]] = field(default_factory=Counter[tuple[str, str]])
     _aligned: bool = False
     _door: threading.RLock = field(default_factory=threading.RLock)
 
     @cached_property
-    def desk(self) -> Desk:
+    def context(self) -> RoleContext:
         """What the roles work with."""
-        return Desk(
+        return RoleContext(
             self.model,
             self.options.model,
             tools=lambda role, stage: RoleTools(self, role, stage),
@@ -83,18 +83,18 @@ class Run:
 
     @property
     def checkpoints(self) -> Path:
-        """The folder of the stages' files, out of every tool's reach but to read."""
+        """The folder of the stages' files, which tools can only read."""
         return self.root / "checkpoints"
 
     def safe(self) -> None:
-        """Called before everything that costs time or money. Raises Stopping."""
+        """A safe point: called before everything that costs time or money. Raises Stopping."""
         if self.stop.is_set():
-            raise Stopping("You asked it to stop.")
+            raise Stopping("You asked the run to stop.")
         most = self.limits.max_minutes
         if most is not None and time.monotonic() - self._began > most * 60:
             raise Stopping(f"The limit of {most:g} minutes is reached.")
 
-    # Tools
+    # ToolSet
 
     def use(
         self,
@@ -103,7 +103,7 @@ class Run:
         name: str,
         arguments: Mapping[str, Any],
         known: Mapping[str, Any] | None = None,
-    ) -> Outcome:
+    ) -> ToolOutcome:
         """Calls a tool, or takes what the journal has of this call.
 
         ``known`` are arguments that follow from the run, which ``arguments`` may replace.
@@ -118,7 +118,7 @@ class Run:
         self._align()
         self.journal.note(ToolCalled(**about, name=name, input=dict(arguments)))
         outcome = self._called(name, {**(known or {}), **arguments})
-        kept = None if self.toolbox.only_looks(name) else self.toolbox.checkpoint()
+        kept = None if self.tools.is_read_only(name) else self.tools.checkpoint()
         self.journal.note(
             ToolAnswered(
                 **about,
@@ -132,20 +132,20 @@ class Run:
         )
         return outcome
 
-    def _called(self, name: str, arguments: Mapping[str, Any]) -> Outcome:
-        if name in self.toolbox.names:
-            return self.toolbox.call(name, arguments)
-        known = ", ".join(self.toolbox.names)
-        return Outcome((Text(f"There is no tool {name[:80]!r}; there are {known}."),), failed=True)
+    def _called(self, name: str, arguments: Mapping[str, Any]) -> ToolOutcome:
+        if name in self.tools.names:
+            return self.tools.call(name, arguments)
+        known = ", ".join(self.tools.names)
+        return ToolOutcome((Text(f"There is no tool {name[:80]!r}; there are {known}."),), failed=True)
 
     def _align(self) -> None:
-        """Before the first call of a sitting: Blender is put where the journal says that it stands."""
+        """Before the first call of a session, puts Blender back to the checkpoint that the journal names last."""
         with self._door:
             if self._aligned:
                 return
             wanted = self.journal.last("checkpoint")
             if wanted is not None:
-                now = self.toolbox.stand_at(wanted)
+                now = self.tools.restore(wanted)
                 if now != wanted:
                     self.journal.append(SceneRestored(**{"from": wanted}, checkpoint=now))
             self._aligned = True
@@ -158,7 +158,7 @@ class Run:
         return PicturePart(path=self.keep(block), media_type=block.media_type)
 
     def keep(self, picture: Picture) -> str:
-        """Writes a picture down; its path in the run's folder."""
+        """Saves a picture; its path in the run's folder."""
         name = f"pictures/{hashlib.sha256(picture.data).hexdigest()[:16]}.png"
         path = self.root / name
         try:
@@ -168,7 +168,7 @@ class Run:
             raise RunError(f"{path} cannot be written: {error.strerror or error}.") from error
         return name
 
-    def _recalled(self, answered: ToolAnswered) -> Outcome:
+    def _recalled(self, answered: ToolAnswered) -> ToolOutcome:
         """What a call came to. Raises NoRun."""
         if answered.content is None:
             raise NoRun(f"{self.journal.path}, row {answered.i}: not a valid 'tool.answered' row.")
@@ -181,9 +181,9 @@ class Run:
             )
         except OSError as error:
             raise NoRun(
-                f"{error.filename}, which the run has seen, cannot be read: {error.strerror}."
+                f"{error.filename}, a picture of an earlier answer, cannot be read: {error.strerror}."
             ) from error
-        return Outcome(content, answered.data, answered.failed, answered.seconds or 0.0)
+        return ToolOutcome(content, answered.data, answered.failed, answered.seconds or 0.0)
 
     # The scene
 
@@ -196,7 +196,7 @@ class Run:
         outcome = self.use(RUNNER, stage, "blender_save", {"name": name, "verify": verify})
         target = folder / f"{name}.blend"
         made = self.root / "blender" / f"{name}.blend"
-        if made.exists() and not target.exists():  # it may have been moved in an earlier sitting
+        if made.exists() and not target.exists():  # it may have been moved in an earlier session
             folder.mkdir(exist_ok=True)
             caches = f"blendcache_{name}"
             if (made.parent / caches).is_dir():
@@ -213,12 +213,12 @@ class Run:
             raise RunError(f"{file} cannot be opened: {outcome.text}")
 
     def roll_back(self, stage: Stage, attempt: int, to: str) -> None:
-        """Puts the scene back to a closed stage, or to the START, which is written down."""
+        """Puts the scene back to a closed stage, or to the START, and journals that."""
         self.load(stage, self.checkpoints / f"{to}.blend")
         self.journal.note(RolledBack(stage=stage, attempt=attempt, to=to))
 
-    def attempted(self, stage: Stage, attempt: int, code: Callable[[], Worked]) -> Worked:
-        """Lets a coder work; that it began and how it ended is written down."""
+    def attempted(self, stage: Stage, attempt: int, code: Callable[[], WorkResult]) -> WorkResult:
+        """Lets a coder work, and journals the beginning and end of the attempt."""
         self.attempt = attempt
         about: dict[str, Any] = {"stage": stage, "attempt": attempt}
         self.journal.note(AttemptBegan(**about))
@@ -229,7 +229,7 @@ class Run:
     # Files
 
     def write(self, name: str, text: str) -> Path:
-        """Writes a file into the run's folder, whole or not at all. Raises RunError."""
+        """Writes a file atomically into the run's folder. Raises RunError."""
         path = self.root / name
         try:
             write_whole(path, text, durable=False)
@@ -239,7 +239,7 @@ class Run:
 
 
 class RoleTools:
-    """The tools of one role in one stage: the coder has all, who reviews only looks (paper, "Agents")."""
+    """The tools of one role in one stage: the coder has all, the reviewer those that only read (paper, "Agents")."""
 
     def __init__(self, run: Run, role: str, stage: Stage) -> None:
         self._run = run
@@ -248,23 +248,23 @@ class RoleTools:
         self._names: Sequence[str] = ()
         if role == coder.NAME:
             without = () if run.options.verifier else (VERIFY,)
-            self._names = [name for name in run.toolbox.names if name not in without]
+            self._names = [name for name in run.tools.names if name not in without]
         elif role == reviewer.NAME:
             self._names = [
                 name
-                for name in run.toolbox.names
-                if run.toolbox.only_looks(name) and any(word in name for word in _LOOKS)
+                for name in run.tools.names
+                if run.tools.is_read_only(name) and any(word in name for word in _LOOKS)
             ]
 
     @property
     def offered(self) -> tuple[Tool, ...]:
         """What the model is told of them."""
-        return self._run.toolbox.offered(self._names)
+        return self._run.tools.offered(self._names)
 
     def use(self, call: ToolUse) -> ToolResult:
         """Calls one, for the model."""
-        if call.name not in self._names and call.name in self._run.toolbox.names:
-            text = f"{call.name} is not yours to call; you have {', '.join(self._names)}."
+        if call.name not in self._names and call.name in self._run.tools.names:
+            text = f"{call.name} is not available to your role; you have {', '.join(self._names)}."
             return ToolResult(call.id, (Text(text),), failed=True)
         task = self._run.task if call.name == VERIFY else None
         known = task.verification(self._stage) if task else None

@@ -1,7 +1,7 @@
 """What happened in a run, as a picture that never changes: stages, their attempts, and every step of those.
 
 It is made from the rows of a journal alone, see ``reducer``. What a journal does not say, or says in no sensible way,
-is left out: None, or nothing. Times are in seconds of work; pauses between the sittings do not count.
+is left out: None, or nothing. Times are in seconds of work; pauses between the sessions do not count.
 """
 
 from __future__ import annotations

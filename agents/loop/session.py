@@ -1,4 +1,4 @@
-"""One sitting at a run: from its beginning, or from where it stands, to its end or to a safe point."""
+"""A session: one process's work on a run, from its beginning or where it stands, to its end or a safe point."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from pydantic import ValidationError
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.algorithm import make, result_so_far
-from agents.loop.answer_source import Line, answering
+from agents.loop.answer_source import LiveOptions, make_model
 from agents.loop.edit.edit_mode import edit
 from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
 from agents.loop.events import RunBegan, RunEnded, SessionBegan
 from agents.loop.journal import NAME, Journal
-from agents.loop.options import ROLES, Limits, Options
+from agents.loop.options import ROLES, Options, RunLimits
 from agents.loop.reducer import read_run_state
 from agents.loop.run import Run
-from agents.loop.toolbox import Toolbox
+from agents.loop.tool_client import ToolClient
 from simworlds.folder_lock import locked
 from simworlds.llm.errors import ModelError, OverBudget
 from simworlds.llm.spending import Spending
@@ -43,26 +43,26 @@ How = Literal["done", "aborted", "stopped", "failed"]
 
 
 class Watcher(Protocol):
-    """Somebody who looks on."""
+    """Gets what happens in a session. May be called from any thread."""
 
     def take(self, event: Event) -> None:
         """An event was written to the journal."""
         ...
 
     def saying(self, role: str, text: str) -> None:
-        """A model says something, as it comes."""
+        """The next words of a model, as they come."""
         ...
 
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
-        """A tool has got so far."""
+        """How far a tool has got."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """How a sitting ended. ``file`` is the .blend that stands, ``shown`` the video or still.
+    """How a session ended. ``file`` is the .blend, ``shown`` the video or still.
 
-    ``again``: whether another sitting could come further.
+    ``again``: whether resuming may help.
     """
 
     how: How
@@ -74,52 +74,54 @@ class Ended:
 
 @dataclass(slots=True)
 class Stop:
-    """Asks a sitting to end: at the next safe point, or now."""
+    """Asks a session to end: at the next safe point, or now."""
 
     event: threading.Event
-    toolbox: Toolbox | None = None
+    tools: ToolClient | None = None
 
     def now(self) -> None:
-        """Gives up what runs. From any thread."""
+        """Cancels running tool calls. From any thread."""
         self.event.set()
-        if self.toolbox is not None:
-            self.toolbox.give_up()
+        if self.tools is not None:
+            self.tools.cancel_calls()
 
 
 @dataclass(frozen=True, slots=True)
-class Sitting:
-    """What a sitting may use, who looks on, and how it is asked to stop."""
+class RunSession:
+    """A session's limits, its watcher, and how it is asked to stop."""
 
-    limits: Limits
+    limits: RunLimits
     watcher: Watcher
     stop: Stop
 
 
-def begin(root: Path, options: Options, sitting: Sitting) -> Ended:
+def begin(root: Path, options: Options, session: RunSession) -> Ended:
     """Begins a run in ``root``, a folder that is new or empty. Raises NoRun; Unusable, then there is no folder."""
     check_inputs(options)
     try:
         root.mkdir(parents=True, exist_ok=True)
         if any(root.iterdir()):
             raise NoRun(
-                f"{root} is not empty. Choose another folder, or go on with 'simworlds resume {root}'."
+                f"{root} is not empty. Choose another folder, or continue with 'simworlds resume {root}'."
             )
     except OSError as error:
-        raise NoRun(f"{root} cannot be the folder of a run: {error.strerror or error}.") from error
-    return _sit(root, options, sitting)
+        raise NoRun(f"{root} cannot be used as the folder of a run: {error.strerror or error}.") from error
+    return _work(root, options, session)
 
 
-def resume(root: Path, sitting: Sitting) -> Ended:
-    """Goes on with the run in ``root``. Raises NoRun."""
+def resume(root: Path, session: RunSession) -> Ended:
+    """Continues the run in ``root``. Raises NoRun."""
     if not (root / NAME).is_file():
-        raise NoRun(f"{root} is no run: it has no {NAME}.")
+        raise NoRun(f"{root} is not a run: it has no {NAME}.")
     ending = read_run_state(root).ending
     if ending and ending.outcome == "done":
-        return Ended("done", "It was done already.", root / (ending.file or ""), root / (ending.video or ""))
-    return _sit(root, None, sitting)
+        return Ended(
+            "done", "The run was finished already.", root / (ending.file or ""), root / (ending.video or "")
+        )
+    return _work(root, None, session)
 
 
-def _sit(root: Path, options: Options | None, sitting: Sitting) -> Ended:
+def _work(root: Path, options: Options | None, session: RunSession) -> Ended:
     root = root.resolve()
     with ExitStack() as stack:
         try:
@@ -130,22 +132,22 @@ def _sit(root: Path, options: Options | None, sitting: Sitting) -> Ended:
             raise NoRun(f"{root} cannot be written: {error.strerror or error}.") from error
         journal = Journal(root / NAME)
         stack.callback(journal.close)
-        journal.listen(sitting.watcher.take)
+        journal.listen(session.watcher.take)
         asked = options or _options(journal)
-        ended = _ended(lambda: _run(root, asked, journal, sitting))
+        ended = _ended(lambda: _run(root, asked, journal, session))
         file, video = _within(root, ended.file), _within(root, ended.shown)
         journal.append(RunEnded(outcome=ended.how, why=ended.why, file=file, video=video))
         return ended
 
 
 def _ended(run: Callable[[], Ended]) -> Ended:
-    """Whatever ends a sitting, in words."""
+    """Runs a session; what ends it early becomes its outcome."""
     try:
         return run()
     except (Stopping, OverBudget) as stopping:
         return Ended("stopped", str(stopping))
     except KeyboardInterrupt:
-        return Ended("stopped", "You interrupted it.")
+        return Ended("stopped", "You interrupted the run.")
     except Aborted as aborted:
         return Ended("aborted", str(aborted))
     except Unusable as error:
@@ -154,14 +156,14 @@ def _ended(run: Callable[[], Ended]) -> Ended:
         return Ended("failed", str(error))
 
 
-def _run(root: Path, options: Options, journal: Journal, sitting: Sitting) -> Ended:
-    stop = sitting.stop
+def _run(root: Path, options: Options, journal: Journal, session: RunSession) -> Ended:
+    stop = session.stop
     journal.note(
         RunBegan(
             version=metadata.version("simworlds"),
             mode=options.mode,
             prompt=options.prompt,
-            source=options.told,
+            source=options.source_text,
             models={role: options.model_of(role) for role in ROLES},
             blender=find_blender(options.blender, options.blender_exe).version,
             options=options.model_dump(mode="json"),
@@ -179,18 +181,18 @@ def _run(root: Path, options: Options, journal: Journal, sitting: Sitting) -> En
     )
     with ExitStack() as stack:
         pause = stop.event.wait  # asked to stop, nobody waits for an overloaded server
-        line = Line(Spending(sitting.limits.max_cost), _retrying(sitting), pause, stack)
-        model = answering(root, options, journal, line)
-        toolbox = stack.enter_context(Toolbox(setup, _same_blender(options), sitting.watcher.progress))
-        stop.toolbox = toolbox
-        saying = sitting.watcher.saying
-        run = Run(root, options, sitting.limits, journal, toolbox, model, saying, stop.event)
+        live = LiveOptions(Spending(session.limits.max_cost), _retrying(session), pause, stack)
+        model = make_model(root, options, journal, live)
+        tools = stack.enter_context(ToolClient(setup, _same_blender(options), session.watcher.progress))
+        stop.tools = tools
+        saying = session.watcher.saying
+        run = Run(root, options, session.limits, journal, tools, model, saying, stop.event)
         try:
             rendering = (edit if options.mode == "edit" else make)(run)
         except Aborted as aborted:
             return Ended("aborted", str(aborted), result_so_far(run))
         finally:
-            stop.toolbox = None
+            stop.tools = None
     return Ended("done", "", root / "scene.blend", rendering.path)
 
 
@@ -198,7 +200,7 @@ def _options(journal: Journal) -> Options:
     began = journal.find(RunBegan())
     if began is None:
         raise NoRun(
-            f"{journal.path} does not say what the run is: it was killed before it began. Start anew."
+            f"{journal.path} does not say what the run is: it was killed before it began. Start a new run."
         )
     try:
         return Options.model_validate(began.options)
@@ -211,16 +213,16 @@ def _readable(options: Options) -> tuple[Path, ...]:
 
 
 def _same_blender(options: Options) -> list[str]:
-    """The options by which ``simworlds serve`` answers for the Blender that is worked with."""
+    """The options of ``simworlds serve`` for the Blender of this run."""
     given = {"--blender": options.blender, "--blender-exe": options.blender_exe}
     return [word for name, value in given.items() if value is not None for word in (name, str(value))]
 
 
-def _retrying(sitting: Sitting) -> Callable[[Retry], object]:
+def _retrying(session: RunSession) -> Callable[[Retry], object]:
     def tell(retry: Retry) -> None:
-        if sitting.stop.event.is_set():
-            raise Stopping("You asked it to stop.")
-        sitting.watcher.saying(retry.ask.role, f"\n[{retry}]\n")
+        if session.stop.event.is_set():
+            raise Stopping("You asked the run to stop.")
+        session.watcher.saying(retry.ask.role, f"\n[{retry}]\n")
 
     return tell
 

@@ -1,4 +1,4 @@
-"""One stage: plan, code, verify, review, decide, until it is closed or cannot be got past (paper, Algorithm 1)."""
+"""One stage: plan, code, verify, review, decide, until it is closed or given up (paper, Algorithm 1)."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Literal
 
 from agents.loop.errors import Aborted
 from agents.loop.events import Decided, StageMoved, TacticMade
-from agents.loop.judging import in_words, judged, moves, overruled, review, verify
+from agents.loop.judging import format_review, judge, moves, overruled, review, verify
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from agents.loop.judging import Verdict
+    from agents.loop.judging import VerifierVerdict
     from agents.loop.run import Run
-    from agents.loop.task import Task
+    from agents.loop.task import RunTask
     from agents.plan.part import Stage
     from agents.plan.tactical import Decision, Review, TacticalPlan
-    from agents.roles.base import Worked
+    from agents.roles.base import WorkResult
     from agents.roles.planner import Planner
 
 MAX_RETRIES_PER_STAGE = 10
@@ -31,14 +31,14 @@ Taken = Literal["advance", "retry", "replan", "abort"]
 class StageLoop:
     """Builds one stage. ``before`` is the stage that was closed last (START: none)."""
 
-    def __init__(self, run: Run, planner: Planner, task: Task, stage: Stage, before: str) -> None:
+    def __init__(self, run: Run, planner: Planner, task: RunTask, stage: Stage, before: str) -> None:
         self._run = run
         self._planner = planner
         self._task = task
         self._stage: Stage = stage
         self._before = before
-        self._coder = Coder(run.desk, stage, task.told, edit=task.edit)
-        self._reviewer = Reviewer(run.desk, stage, task.told, edit=task.edit)
+        self._coder = Coder(run.context, stage, task.plan_text, edit=task.edit)
+        self._reviewer = Reviewer(run.context, stage, task.plan_text, edit=task.edit)
         self._retries = self._replans = 0
         self._overruled = ""
 
@@ -58,7 +58,7 @@ class StageLoop:
             attempt += 1
             if taken == "retry":
                 self._retries += 1
-                mend = (why or decision.instructions, verdict.told, in_words(review))
+                mend = (why or decision.instructions, verdict.text, format_review(review))
                 worked = self._run.attempted(self._stage, attempt, partial(self._coder.again, *mend))
             else:
                 self._replans += 1
@@ -67,8 +67,8 @@ class StageLoop:
                 tactic, worked = self._fresh(attempt, self._coder.replanned, why)
 
     def _fresh(
-        self, attempt: int, code: Callable[[TacticalPlan, str], Worked], why: str = ""
-    ) -> tuple[TacticalPlan, Worked]:
+        self, attempt: int, code: Callable[[TacticalPlan, str], WorkResult], why: str = ""
+    ) -> tuple[TacticalPlan, WorkResult]:
         """A tactical plan, and the first attempt to realise it."""
         run, stage = self._run, self._stage
         run.attempt = attempt
@@ -77,10 +77,10 @@ class StageLoop:
         run.journal.note(TacticMade(stage=stage, attempt=attempt, plan=tactic))
         return tactic, run.attempted(stage, attempt, partial(code, tactic, state))
 
-    def _judged(self, attempt: int, tactic: TacticalPlan) -> tuple[Verdict, Review]:
+    def _judged(self, attempt: int, tactic: TacticalPlan) -> tuple[VerifierVerdict, Review]:
         run, task, stage = self._run, self._task, self._stage
         actors = task.actors if moves(stage) else ()
-        return judged(
+        return judge(
             run,
             stage,
             attempt,
@@ -89,17 +89,17 @@ class StageLoop:
         )
 
     def _decided(
-        self, attempt: int, worked: Worked, verdict: Verdict, review: Review
+        self, attempt: int, worked: WorkResult, verdict: VerifierVerdict, review: Review
     ) -> tuple[Decision, Taken, str]:
-        """The planner's decision, what is done, which is never to advance over what blocks, and why not the former."""
+        """The planner's decision, what is done instead where something blocks, and why."""
         retries, replans = MAX_RETRIES_PER_STAGE - self._retries, MAX_REPLANS_PER_STAGE - self._replans
         decision = self._planner.decide(
             self._stage,
             attempt,
             how=worked.how,
             report=worked.said,
-            verified=verdict.told,
-            reviewed=in_words(review),
+            verified=verdict.text,
+            reviewed=format_review(review),
             left=f"{self._overruled}{retries} retries and {replans} replans are left.",
         )
         taken: Taken = decision.transition

@@ -18,15 +18,15 @@ Finding = Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
-    """``told`` is the whole plan in words; ``plan`` the scene plan that the verifier compares with.
+class RunTask:
+    """``plan_text`` is the whole plan in words; ``plan`` the scene plan that the verifier compares with.
 
     An ``edit`` has no scene plan; it is judged without what was ``known`` of the file before, and, unless the file is
     ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
     of an edit, ``declared`` says by what.
     """
 
-    told: str
+    plan_text: str
     plan: ScenePlan | None = None
     actors: tuple[str, ...] = ()
     edit: bool = False

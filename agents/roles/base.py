@@ -32,7 +32,7 @@ _TRIES = 4  # for an answer that must fit a schema
 How = Literal["done", "circles", "too many calls", "refused", "cut short"]
 
 
-class Tools(Protocol):
+class ToolSet(Protocol):
     """The tools that a role may call."""
 
     @property
@@ -46,7 +46,7 @@ class Tools(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Desk:
+class RoleContext:
     """What a role works with.
 
     ``name`` is the model's, unless ``names`` has another for a role; ``tools`` makes the tools for a role and stage;
@@ -56,7 +56,7 @@ class Desk:
 
     model: Model
     name: str
-    tools: Callable[[str, Stage], Tools]
+    tools: Callable[[str, Stage], ToolSet]
     saying: Callable[[str, str], object]
     safe: Callable[[], object]
     names: Mapping[str, str] = field(default_factory=dict[str, str])
@@ -70,7 +70,7 @@ class Desk:
 
 
 @dataclass(frozen=True, slots=True)
-class Worked:
+class WorkResult:
     """How a stretch of work with tools ended; ``said`` are the model's last words."""
 
     how: How
@@ -80,13 +80,15 @@ class Worked:
 
 
 class Conversation:
-    """A conversation of one role, kept within the desk's limits.
+    """A conversation of one role, kept within the context's limits.
 
     What is ``pinned`` in a request is in it, whatever had to go.
     """
 
-    def __init__(self, desk: Desk, role: str, system: tuple[str, ...], tools: Tools | None = None) -> None:
-        self._desk = desk
+    def __init__(
+        self, context: RoleContext, role: str, system: tuple[str, ...], tools: ToolSet | None = None
+    ) -> None:
+        self._context = context
         self._role = role
         self._system = system
         self._tools = tools
@@ -105,7 +107,7 @@ class Conversation:
         self._hear(said, pinned)
         return self._read_on(stage, reader, self._messages)
 
-    def work(self, stage: str, *said: Block | str, pinned: Sequence[str] = ()) -> Worked:
+    def work(self, stage: str, *said: Block | str, pinned: Sequence[str] = ()) -> WorkResult:
         """Lets the model work with its tools until it says something without calling any. Raises ModelError."""
         assert self._tools is not None
         self._hear(said, pinned)
@@ -113,23 +115,25 @@ class Conversation:
         repeats = _Repeats()
         while True:
             try:
-                turn = self._desk.answer(self._ask(stage, self._messages), self._say)
+                turn = self._context.answer(self._ask(stage, self._messages), self._say)
             except Refused as refused:
-                return Worked("refused", str(refused), calls, refused.turn)
+                return WorkResult("refused", str(refused), calls, refused.turn)
             except CutShort as cut:
                 cuts += 1
                 if cuts == _CUTS:
-                    return Worked("cut short", str(cut), calls, cut.turn)
+                    return WorkResult("cut short", str(cut), calls, cut.turn)
                 self._cut(cut)
                 continue
             self._messages = (*self._messages, turn.message())
             if not turn.calls:
-                return Worked("done", turn.text, calls, turn)
+                return WorkResult("done", turn.text, calls, turn)
             results = [self._used(call, repeats) for call in turn.calls]
             calls += len(results)
             self._hear(results, pinned)
             if repeats.most >= _CIRCLES or calls >= MAX_CALLS:
-                return Worked("circles" if calls < MAX_CALLS else "too many calls", turn.text, calls, turn)
+                return WorkResult(
+                    "circles" if calls < MAX_CALLS else "too many calls", turn.text, calls, turn
+                )
 
     def work_then_data(
         self, stage: str, reader: Reader[T], *said: Block | str, pinned: Sequence[str] = ()
@@ -148,7 +152,7 @@ class Conversation:
             return self._read_on(stage, reader, (*whole, complaint(worked.turn, misfit)))
 
     def _read_on(self, stage: str, reader: Reader[T], messages: tuple[Message, ...]) -> T:
-        found = ask_for(self._desk, self._ask(stage, messages), reader, tries=_TRIES, on_text=self._say)
+        found = ask_for(self._context, self._ask(stage, messages), reader, tries=_TRIES, on_text=self._say)
         self._messages = (*self._messages, replace(found.turn, content=_words(found.turn)).message())
         return found.value
 
@@ -159,15 +163,15 @@ class Conversation:
             self._messages = (*self._messages[:-1], replace(last, content=(*last.content, *message.content)))
         else:
             self._messages = (*self._messages, message)
-        self._messages = fit(self._messages, self._desk.limits, pinned=pinned, frame=self._frame)
+        self._messages = fit(self._messages, self._context.limits, pinned=pinned, frame=self._frame)
 
     def _ask(self, stage: str, messages: tuple[Message, ...]) -> Ask:
-        desk = self._desk
-        name = desk.names.get(self._role, desk.name)
-        return Ask(self._role, stage, name, self._system, messages, self._offered, desk.max_tokens)
+        context = self._context
+        name = context.names.get(self._role, context.name)
+        return Ask(self._role, stage, name, self._system, messages, self._offered, context.max_tokens)
 
     def _say(self, words: str) -> None:
-        self._desk.saying(self._role, words)
+        self._context.saying(self._role, words)
 
     def _cut(self, cut: CutShort) -> None:
         """The call that was cut off is gone; the model is to go on in smaller steps."""
@@ -180,7 +184,7 @@ class Conversation:
 
     def _used(self, call: ToolUse, repeats: _Repeats) -> ToolResult:
         assert self._tools is not None
-        self._desk.safe()
+        self._context.safe()
         result = self._tools.use(call)
         times = repeats.count(call, result)
         if times < _SAME_CALLS:
@@ -217,6 +221,6 @@ def _sure(turn: Turn | None) -> Turn:
     return turn
 
 
-def as_json(value: Any) -> str:
+def plan_json(value: Any) -> str:
     """A part of a plan as a model reads it: without what is left at its default."""
     return json.dumps(value.model_dump(mode="json", exclude_defaults=True), ensure_ascii=False)

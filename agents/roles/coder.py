@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.roles.base import Conversation, Worked, as_json
+from agents.roles.base import Conversation, WorkResult, plan_json
 from agents.roles.prompts import system_prompt
 
 if TYPE_CHECKING:
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from agents.plan.part import Stage
     from agents.plan.tactical import TacticalPlan
-    from agents.roles.base import Desk
+    from agents.roles.base import RoleContext
 
 NAME = "coder"
 _BEGIN = """\
@@ -62,33 +62,35 @@ Mend just that; what moves must be baked again. End with a short report."""
 class Coder:
     """One stage's coder. Everything raises ModelError."""
 
-    def __init__(self, desk: Desk, stage: Stage, plan: str, *, edit: bool = False) -> None:
+    def __init__(self, context: RoleContext, stage: Stage, plan: str, *, edit: bool = False) -> None:
         """``plan`` is what the whole run is held to, in words."""
         self._stage = stage
         self._plan = plan
-        self._talk = Conversation(desk, NAME, system_prompt(NAME, stage, edit=edit), desk.tools(NAME, stage))
+        self._talk = Conversation(
+            context, NAME, system_prompt(NAME, stage, edit=edit), context.tools(NAME, stage)
+        )
         self._tactic = ""
 
-    def begin(self, tactic: TacticalPlan, state: str) -> Worked:
+    def begin(self, tactic: TacticalPlan, state: str) -> WorkResult:
         """The first attempt."""
-        self._tactic = as_json(tactic)
+        self._tactic = plan_json(tactic)
         words = _BEGIN.format(plan=self._plan, stage=self._stage, tactic=self._tactic, state=state)
         return self._work(words)
 
-    def again(self, instructions: str, verified: str, reviewed: str) -> Worked:
+    def again(self, instructions: str, verified: str, reviewed: str) -> WorkResult:
         """A retry, in the scene as it stands."""
         words = _AGAIN.format(instructions=instructions, verified=verified, reviewed=reviewed)
         return self._work(words, verified)
 
-    def replanned(self, tactic: TacticalPlan, state: str) -> Worked:
+    def replanned(self, tactic: TacticalPlan, state: str) -> WorkResult:
         """An attempt by a new plan, in the scene as it was before the stage."""
-        self._tactic = as_json(tactic)
+        self._tactic = plan_json(tactic)
         return self._work(_REPLANNED.format(tactic=self._tactic, state=state))
 
-    def fix(self, instructions: str, state: str) -> Worked:
+    def fix(self, instructions: str, state: str) -> WorkResult:
         """What the final reviewer wants mended."""
         return self._work(_FIX.format(plan=self._plan, instructions=instructions, state=state))
 
-    def _work(self, words: str, *open_findings: str) -> Worked:
+    def _work(self, words: str, *open_findings: str) -> WorkResult:
         pinned: Sequence[str] = (self._plan, *filter(None, [self._tactic]), *open_findings)
         return self._talk.work(self._stage, words, pinned=pinned)

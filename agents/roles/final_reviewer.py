@@ -12,7 +12,7 @@ from simworlds.llm.structured import fits
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.roles.base import Desk
+    from agents.roles.base import RoleContext
     from simworlds.llm.messages import Block
 
 NAME = "final_reviewer"
@@ -22,7 +22,9 @@ _LOOK = """\
 The result, rendered. Judge it against the plan, and give your verdict, as one JSON object."""
 
 
-def final_review(desk: Desk, plan: str, shown: Sequence[Block | str], *, edit: bool = False) -> FinalReview:
+def final_review(
+    context: RoleContext, plan: str, shown: Sequence[Block | str], *, edit: bool = False
+) -> FinalReview:
     """The verdict on frames of the rendering. Raises ModelError; Misfit when no answer fits."""
-    talk = Conversation(desk, NAME, system_prompt(NAME, edit=edit))
+    talk = Conversation(context, NAME, system_prompt(NAME, edit=edit))
     return talk.data("render", fits(FinalReview), _LOOK.format(plan=plan), *shown)

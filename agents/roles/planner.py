@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from agents.plan.check import read_plan
 from agents.plan.edit import EditPlan, unknown_targets
 from agents.plan.tactical import Decision, TacticalPlan
-from agents.roles.base import Conversation, as_json
+from agents.roles.base import Conversation, plan_json
 from agents.roles.prompts import system_prompt
 from simworlds.llm.structured import fits
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from agents.plan.part import Stage
     from agents.plan.scene import ScenePlan
-    from agents.roles.base import Desk
+    from agents.roles.base import RoleContext
     from simworlds.llm.messages import Picture
 
 NAME = "planner"
@@ -58,8 +58,8 @@ mended unless the instruction asks for it:"""
 class Planner:
     """Keeps its session over all stages. Everything raises ModelError; Misfit when no answer fits."""
 
-    def __init__(self, desk: Desk, *, edit: bool = False) -> None:
-        self._talk = Conversation(desk, NAME, system_prompt(NAME, edit=edit))
+    def __init__(self, context: RoleContext, *, edit: bool = False) -> None:
+        self._talk = Conversation(context, NAME, system_prompt(NAME, edit=edit))
         self._plan: tuple[str, ...] = ()
 
     def strategic(self, prompt: str) -> ScenePlan:
@@ -128,14 +128,14 @@ def _sound_plan(data: Any) -> tuple[ScenePlan | None, Sequence[object]]:
     return read_plan(data)
 
 
-def told(plan: ScenePlan) -> str:
+def format_plan(plan: ScenePlan) -> str:
     """The scene plan as every other role reads it."""
-    return f"The scene plan:\n{as_json(plan)}"
+    return f"The scene plan:\n{plan_json(plan)}"
 
 
-def told_edit(plan: EditPlan, prompt: str, known: Sequence[str] = ()) -> str:
+def format_edit_plan(plan: EditPlan, prompt: str, known: Sequence[str] = ()) -> str:
     """The plan of an edit as every other role reads it. ``known``: what was at fault before it."""
-    parts = [f"The instruction: {prompt}", f"The edit plan:\n{as_json(plan)}"]
+    parts = [f"The instruction: {prompt}", f"The edit plan:\n{plan_json(plan)}"]
     if known:
         left = [f"- … and {len(known) - _KNOWN} more"] if len(known) > _KNOWN else []
         listed = "\n".join([*(f"- {one}" for one in known[:_KNOWN]), *left])

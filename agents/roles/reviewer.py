@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from agents.plan.tactical import Review
-from agents.roles.base import Conversation, as_json
+from agents.roles.base import Conversation, plan_json
 from agents.roles.prompts import system_prompt
 from simworlds.llm.structured import fits
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from agents.plan.part import Stage
     from agents.plan.tactical import TacticalPlan
-    from agents.roles.base import Desk
+    from agents.roles.base import RoleContext
     from simworlds.llm.messages import Block
 
 NAME = "reviewer"
@@ -30,10 +30,12 @@ What there is to see; look closer with your tools where you need to. Then give y
 class Reviewer:
     """One stage's reviewer. Raises ModelError; Misfit when no answer fits."""
 
-    def __init__(self, desk: Desk, stage: Stage, plan: str, *, edit: bool = False) -> None:
+    def __init__(self, context: RoleContext, stage: Stage, plan: str, *, edit: bool = False) -> None:
         self._stage = stage
         self._plan = plan
-        self._talk = Conversation(desk, NAME, system_prompt(NAME, stage, edit=edit), desk.tools(NAME, stage))
+        self._talk = Conversation(
+            context, NAME, system_prompt(NAME, stage, edit=edit), context.tools(NAME, stage)
+        )
 
     def review(self, tactic: TacticalPlan, attempt: int, evidence: Sequence[Block | str]) -> Review:
         """The judgement on an attempt, by previews and readouts."""
@@ -45,5 +47,5 @@ class Reviewer:
                 return None, [f"judgements: {asked} questions were asked, {given} are answered."]
             return review, problems
 
-        words = _LOOK.format(plan=self._plan, attempt=attempt, stage=self._stage, tactic=as_json(tactic))
+        words = _LOOK.format(plan=self._plan, attempt=attempt, stage=self._stage, tactic=plan_json(tactic))
         return self._talk.work_then_data(self._stage, reader, words, *evidence, pinned=(self._plan,))

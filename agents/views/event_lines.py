@@ -44,9 +44,9 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
             return [f"  reviewer {verdict}: {shortened(review.summary, _WORDS)}"]
         case events.RolledBack():
             return [f"  back to {event.to}"]
-        case events.Rendered():
+        case events.SceneRendered():
             frames = f", {counted(event.frames, 'frame')}" if event.frames and event.frames > 1 else ""
-            return [f"Rendered: {event.path}{frames}, {format_time(event.seconds)}"]
+            return [f"SceneRendered: {event.path}{frames}, {format_time(event.seconds)}"]
         case events.FinalReviewed(review=review) if review:
             verdict = "accepted" if review.verdict == "accept" else "needs a fix"
             return [f"Final review: {verdict}: {shortened(review.summary, _WORDS)}"]

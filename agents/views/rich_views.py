@@ -90,7 +90,7 @@ def run_in_progress(run_state: RunState, now: Now, height: int) -> RenderableTyp
 
 
 def run_summary(run_state: RunState) -> RenderableType:
-    """Everything that is worth knowing of a run, for ``simworlds show``."""
+    """A summary of the run, for ``simworlds show``."""
     parts: list[RenderableType] = [_head(run_state)]
     if run_state.title != run_state.prompt:
         parts.append(_line(run_state.prompt, "italic", most=_WIDEST * 4))
@@ -120,7 +120,7 @@ def runs_table(runs: Iterable[tuple[str, RunState]]) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("Run", no_wrap=True)
     table.add_column("What", ratio=1, overflow="ellipsis", no_wrap=True)
-    table.add_column("Outcome", no_wrap=True)
+    table.add_column("ToolOutcome", no_wrap=True)
     table.add_column("Stage", no_wrap=True)
     table.add_column("Cost", justify="right", no_wrap=True)
     table.add_column("When", no_wrap=True)

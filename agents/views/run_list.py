@@ -1,4 +1,4 @@
-"""Which runs there are, and how one stands."""
+"""The list of runs, and the state of one."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def new_root(runs: Path) -> Path:
     return next(path for path in roots(runs) if not path.exists())
 
 
-def table_of_runs() -> Table:
+def list_runs() -> Table:
     """All runs that have a journal, newest first; of one that cannot be read, just that."""
     found = sorted(runs_folder().glob(f"*/{NAME}"), key=lambda path: path.stat().st_mtime, reverse=True)
     return runs_table((path.parent.name, _known_of(path.parent)) for path in found)
@@ -41,5 +41,5 @@ def _known_of(run: Path) -> RunState:
 def shown(run: Path) -> RenderableType:
     """How a run stands. Raises NoRun."""
     if not (run / NAME).is_file():
-        raise NoRun(f"{run} is no run: it has no {NAME}.")
+        raise NoRun(f"{run} is not a run: it has no {NAME}.")
     return run_summary(read_run_state(run))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _ROLES = "planner, coder, reviewer, final_reviewer"
 _BOTH = "simworlds, replay:"
-# Options that the commands of a system take too: what results depend on, and what ends a sitting at a run.
+# Options that the commands of a system take too: what results depend on, and what ends a session at a run.
 _SETTINGS = ("model", "samples", "render_minutes", "blender", "blender_exe")
 _LIMITS = ("max_cost", "max_minutes")
 

@@ -57,7 +57,9 @@ def run(context: ToolContext, arguments: VerifyArguments, call: Call) -> Result:
     rules, plan = _rules(arguments.rules), _plan(arguments.plan)
     blender = context.blender
     with blender.alone():
-        position = blender.call("go_to_frame", {"frame": None}, timeout=_SECONDS, cancelled=call.cancelled).value
+        position = blender.call(
+            "go_to_frame", {"frame": None}, timeout=_SECONDS, cancelled=call.cancelled
+        ).value
         report = verify_scene(blender, rules, plan, call)
         checked = Checked(
             rules,

@@ -28,7 +28,7 @@ def new_findings(known: Iterable[Finding], findings: Sequence[Finding]) -> list[
         if as_bad:
             same.remove(min(as_bad, key=_badness))
         elif same:
-            found[place] = {**finding, "message": _told_worse(finding, max(same, key=_badness))}
+            found[place] = {**finding, "message": _worse_message(finding, max(same, key=_badness))}
         else:
             found[place] = finding
     return [found[place] for place in sorted(found)]
@@ -54,7 +54,7 @@ def _is_no_worse(now: Finding, before: Finding) -> bool:
     return _badness(now) <= _badness(before) * (1 + _SLACK) + _LEAST
 
 
-def _told_worse(now: Finding, before: Finding) -> str:
+def _worse_message(now: Finding, before: Finding) -> str:
     if now.get("measured") is None or before.get("measured") is None:
         return f"{now['message']} Before the edit: {before['message']}"
     unit = f" {now['unit']}" if now.get("unit") else ""

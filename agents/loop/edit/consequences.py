@@ -47,7 +47,7 @@ class Consequences:
         self.reasons: dict[str, str] = {}
         self._find()
 
-    def told(self, key: str) -> str:
+    def explain(self, key: str) -> str:
         """Why a data-block was changed, in a few words; of one that nobody asked for, what is known."""
         if key in self.reasons:
             return self.reasons[key]

@@ -1,4 +1,4 @@
-"""Whether what an edit sets in motion says by what: without tags, R15 (faked physics) has nothing to judge."""
+"""Whether an edit tags what it sets in motion with its mechanism: without tags, R15 (faked physics) cannot judge."""
 
 from __future__ import annotations
 

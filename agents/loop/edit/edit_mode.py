@@ -1,4 +1,4 @@
-"""Edit mode: the same loop on a scene that is there; what the request does not name stays (paper, "Edit Mode")."""
+"""Edit mode: the same loop on an existing scene; what the request does not name stays (paper, "Edit Mode")."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from agents.loop.errors import Unusable
 from agents.loop.events import PlanMade, ReferenceKept
 from agents.loop.judging import verify
 from agents.loop.run import RUNNER, START, plan_file
-from agents.loop.task import Task
-from agents.roles.planner import Planner, told_edit
+from agents.loop.task import RunTask
+from agents.roles.planner import Planner, format_edit_plan
 from simworlds.llm.messages import Picture
 
 if TYPE_CHECKING:
     from agents.loop.edit.untouched import Blocks
-    from agents.loop.rendering import Rendering
+    from agents.loop.rendering import RenderResult
     from agents.loop.run import Run
     from agents.plan.edit import EditPlan
     from agents.plan.part import Stage
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 _FIRST: Stage = "modeling"
 
 
-def edit(run: Run) -> Rendering:
+def edit(run: Run) -> RenderResult:
     """From a .blend and an instruction to the edited scene, rendered. Raises Unusable, RunError, ModelError."""
     options = run.options
     reference = _reference(run)
     before = _opened(run)
     state = run.state(_FIRST)
     seen = run.use(RUNNER, _FIRST, "blender_scene_layout_preview", {})
-    planner = Planner(run.desk, edit=True)
+    planner = Planner(run.context, edit=True)
     plan = planner.edit(options.prompt, state, before.names, seen.pictures, reference)
     run.write("plan.json", plan_file(plan))
     run.journal.note(PlanMade(edit=plan))
@@ -46,7 +46,7 @@ def edit(run: Run) -> Rendering:
 
 
 def _opened(run: Run) -> Blocks:
-    """Opens the file that is to be edited, which is only read, and keeps what is in it as the start of the run."""
+    """Opens the file to edit, and saves a copy of it as the start of the run."""
     file = run.options.file
     assert file is not None
     opened = run.use(RUNNER, _FIRST, "blender_load", {"path": str(file)})
@@ -68,10 +68,12 @@ def _reference(run: Run) -> Picture | None:
     return Picture((run.root / kept.path).read_bytes(), kept.media_type)
 
 
-def _task(run: Run, plan: EditPlan, before: Blocks) -> Task:
+def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:
     """What the edit is held to: its plan, and not to leave the file worse than it was."""
     actors = tuple(actor.name for actor in plan.actors)
-    bare = Task("", None, actors, edit=True, tagged=before.tagged)
+    bare = RunTask("", None, actors, edit=True, tagged=before.tagged)
     known = verify(run, "light", bare).findings
     told = [f"{one['rule']} {', '.join(one['objects'])}: {one['message']}" for one in known]
-    return replace(bare, told=told_edit(plan, run.options.prompt, told), known=known, declared=plan.actors)
+    return replace(
+        bare, plan_text=format_edit_plan(plan, run.options.prompt, told), known=known, declared=plan.actors
+    )

@@ -1,4 +1,4 @@
-"""What an edit is given: a .blend and, maybe, a picture; whether they are what they should be."""
+"""Checks the inputs of an edit: a .blend and, optionally, a reference picture."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _BLEND = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, and packed by 
 
 
 def check_inputs(options: Options) -> None:
-    """Raises Unusable for files that no Blender and no model could make anything of."""
+    """Checks that the files are a .blend and a picture. Raises Unusable."""
     if options.mode != "edit":
         return
     if options.file is None:
@@ -28,7 +28,7 @@ def check_inputs(options: Options) -> None:
     except OSError as error:
         raise Unusable(f"{options.file} cannot be read: {error.strerror or error}.") from error
     if not start.startswith(_BLEND):
-        raise Unusable(f"{options.file} is no .blend: it does not begin as one.")
+        raise Unusable(f"{options.file} is not a .blend file: its first bytes are not those of one.")
     if options.reference is not None:
         picture(options.reference)
 

@@ -1,4 +1,4 @@
-"""What an edit has changed and what it has left alone, data-block by data-block, and what of that nobody asked for."""
+"""Which data-blocks an edit changed or left alone, and which changes the plan did not ask for."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def blocks(run: Run, stage: Stage) -> Blocks:
     outcome = run.use(RUNNER, stage, "blender_scene_state", {"sections": ["data_blocks"]})
     data = outcome.data
     if not isinstance(data.get("data_blocks"), dict):
-        raise RunError(f"The scene's data-blocks cannot be told apart: {outcome.text}")
+        raise RunError(f"The scene's data-blocks cannot be compared: {outcome.text}")
     return Blocks(
         data["data_blocks"], data["data_block_parts"], data["data_block_uses"], bool(data["tagged"])
     )
@@ -59,16 +59,16 @@ def compared(before: Blocks, after: Blocks, plan: EditPlan) -> Edited:
     removed = before.digests.keys() - after.digests.keys()
     changed = {name for name in both if before.digests[name] != after.digests[name]}
     parts = {name: _differing(before.parts.get(name, {}), after.parts.get(name, {})) for name in changed}
-    found = Consequences(before.uses, after.uses, plan, added=added, removed=removed, changed=parts)
+    consequences = Consequences(before.uses, after.uses, plan, added=added, removed=removed, changed=parts)
     touched = added | removed | changed
     return Edited(
         added=tuple(sorted(added)),
         removed=tuple(sorted(removed)),
         changed=tuple(sorted(changed)),
         unchanged=tuple(sorted(both - changed)),
-        outside=tuple(sorted(touched - found.reasons.keys())),
+        outside=tuple(sorted(touched - consequences.reasons.keys())),
         parts={name: parts[name] for name in sorted(changed)},
-        why={name: found.told(name) for name in sorted(touched)},
+        why={name: consequences.explain(name) for name in sorted(touched)},
     )
 
 

@@ -26,7 +26,7 @@ _LEXERS: dict[str, type[Lexer]] = {"python": PythonLexer, "diff": DiffLexer, "js
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ScriptChange:
     """A script, as a difference to the one that it came from; ``is_new``: it came from none."""
 
     diff: str
@@ -52,10 +52,10 @@ def _formatter() -> HtmlFormatter[str]:
     return HtmlFormatter(nowrap=True)
 
 
-def changes(before: Sequence[Attempt], attempt: Attempt) -> list[Change]:
+def changes(before: Sequence[Attempt], attempt: Attempt) -> list[ScriptChange]:
     """The scripts of an attempt that worked, each against the one of earlier attempts that is most like it."""
     earlier = [script for one in before for script in _scripts(one)]
-    made: list[Change] = []
+    made: list[ScriptChange] = []
     for script in _scripts(attempt):
         likeness, model = max(((_alike(one, script), one) for one in earlier), default=(0.0, ""))
         if likeness < 1.0:
@@ -72,7 +72,7 @@ def _alike(one: str, other: str) -> float:
     return difflib.SequenceMatcher(None, lines, others, autojunk=True).ratio()
 
 
-def _change(model: str, script: str) -> Change:
+def _change(model: str, script: str) -> ScriptChange:
     lines = list(
         difflib.unified_diff(
             model.splitlines()[:_LINES], script.splitlines()[:_LINES], "before", "now", lineterm="", n=3
@@ -80,4 +80,4 @@ def _change(model: str, script: str) -> Change:
     )[2:]
     added = sum(line.startswith("+") for line in lines)
     removed = sum(line.startswith("-") for line in lines)
-    return Change("\n".join(lines), added, removed, not model)
+    return ScriptChange("\n".join(lines), added, removed, not model)

@@ -20,7 +20,7 @@ _ACROSS, _BETWEEN, _PASSING = 30.0, 38.0, 14.0  # pixels: beside each other, ran
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class LayoutBox:
     """Something to be placed; sizes in pixels."""
 
     width: float
@@ -29,7 +29,7 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class GraphLayout:
     """``centres`` of the boxes, and ``lines`` of points, one for each edge, in the order in which they were given."""
 
     centres: tuple[Point, ...]
@@ -38,10 +38,10 @@ class Layout:
     height: float
 
 
-def lay_out(boxes: list[Box], edges: list[tuple[int, int]]) -> Layout:
+def lay_out(boxes: list[LayoutBox], edges: list[tuple[int, int]]) -> GraphLayout:
     """Places ``boxes``; ``edges`` join two of them, of different ranks, by their places in the list."""
     if not boxes:
-        return Layout((), (), 0.0, 0.0)
+        return GraphLayout((), (), 0.0, 0.0)
     nodes, chains = _with_passages(boxes, edges)
     beside = _neighbours(chains, len(nodes))
     ranks = _ordered(nodes, beside)
@@ -52,10 +52,12 @@ def lay_out(boxes: list[Box], edges: list[tuple[int, int]]) -> Layout:
     width = max(x + node.width / 2 for (x, _), node in zip(points, nodes, strict=True))
     height = max(y + node.height / 2 for (_, y), node in zip(points, nodes, strict=True))
     lines = _lines(chains, nodes, points)
-    return Layout(tuple(points[: len(boxes)]), lines, width, height)
+    return GraphLayout(tuple(points[: len(boxes)]), lines, width, height)
 
 
-def _with_passages(boxes: list[Box], edges: list[tuple[int, int]]) -> tuple[list[Box], list[list[int]]]:
+def _with_passages(
+    boxes: list[LayoutBox], edges: list[tuple[int, int]]
+) -> tuple[list[LayoutBox], list[list[int]]]:
     """The boxes, and room in every rank that a line passes; each line as the chain of those that it joins."""
     nodes, chains = list(boxes), list[list[int]]()
     for start, end in edges:
@@ -64,7 +66,7 @@ def _with_passages(boxes: list[Box], edges: list[tuple[int, int]]) -> tuple[list
         chain = [start]
         for rank in range(low + step, high, step):
             chain.append(len(nodes))
-            nodes.append(Box(_PASSING, 0.0, rank))
+            nodes.append(LayoutBox(_PASSING, 0.0, rank))
         chains.append([*chain, end])
     return nodes, chains
 
@@ -78,7 +80,7 @@ def _neighbours(chains: list[list[int]], count: int) -> list[list[int]]:
     return beside
 
 
-def _ordered(nodes: list[Box], beside: list[list[int]]) -> list[list[int]]:
+def _ordered(nodes: list[LayoutBox], beside: list[list[int]]) -> list[list[int]]:
     """The nodes of each rank, from left to right."""
     by_rank: defaultdict[int, list[int]] = defaultdict(list)
     for place, node in enumerate(nodes):
@@ -113,7 +115,7 @@ def _crossings(ranks: list[list[int]], beside: list[list[int]]) -> int:
     return count
 
 
-def _across(nodes: list[Box], ranks: list[list[int]], beside: list[list[int]]) -> list[float]:
+def _across(nodes: list[LayoutBox], ranks: list[list[int]], beside: list[list[int]]) -> list[float]:
     """Where each node's centre is, from left to right."""
     across = [0.0] * len(nodes)
     for rank in ranks:
@@ -130,7 +132,7 @@ def _across(nodes: list[Box], ranks: list[list[int]], beside: list[list[int]]) -
     return across
 
 
-def _pool(rank: list[int], wanted: list[float], nodes: list[Box], across: list[float]) -> None:
+def _pool(rank: list[int], wanted: list[float], nodes: list[LayoutBox], across: list[float]) -> None:
     """Puts the nodes of a rank as near as can be to where they are wanted, without overlap and in their order."""
     offsets = [0.0]
     for one, other in pairwise(rank):
@@ -147,7 +149,7 @@ def _pool(rank: list[int], wanted: list[float], nodes: list[Box], across: list[f
         across[node] = start + offset
 
 
-def _down(nodes: list[Box], ranks: list[list[int]]) -> dict[int, float]:
+def _down(nodes: list[LayoutBox], ranks: list[list[int]]) -> dict[int, float]:
     """Where the boxes of each rank stand, as a distance from the top."""
     down: dict[int, float] = {}
     y = 0.0
@@ -158,7 +160,9 @@ def _down(nodes: list[Box], ranks: list[list[int]]) -> dict[int, float]:
     return down
 
 
-def _lines(chains: list[list[int]], nodes: list[Box], points: list[Point]) -> tuple[tuple[Point, ...], ...]:
+def _lines(
+    chains: list[list[int]], nodes: list[LayoutBox], points: list[Point]
+) -> tuple[tuple[Point, ...], ...]:
     """From box to box; what leaves a box by the same side leaves it side by side, in the order of where it goes."""
     leaving: defaultdict[tuple[int, bool], list[tuple[float, int, bool]]] = defaultdict(list)
     for number, chain in enumerate(chains):

@@ -50,7 +50,7 @@ _NAMED = 2  # objects on a line's end
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class RelationLink:
     """A relation, or a phase that sets off another. ``nodes`` are as the plan names them, the one it is about first."""
 
     word: str
@@ -61,7 +61,7 @@ class Link:
 
 
 @dataclass(slots=True)
-class Card:
+class ObjectCard:
     """Objects that are alike. ``pills`` are the links that join nothing else: (word, category) → details."""
 
     objects: list[PlannedObject]
@@ -87,15 +87,15 @@ class LinkBox:
 
 
 @dataclass(frozen=True, slots=True)
-class Linked:
+class LinkGraph:
     """All of it. ``held`` are pairs of cards: what is held, what holds it."""
 
-    cards: list[Card]
+    cards: list[ObjectCard]
     boxes: list[LinkBox]
     held: list[tuple[int, int]]
 
 
-def linked(plan: ScenePlan) -> Linked:
+def make_link_graph(plan: ScenePlan) -> LinkGraph:
     """The plan's objects and relations, folded. What names an object that the plan does not have is left out."""
     cards = _cards(plan)
     card_of = {one.name: place for place, card in enumerate(cards) for one in card.objects}
@@ -122,10 +122,10 @@ def linked(plan: ScenePlan) -> Linked:
         for child, bearer in held_by(relation)
         if owner_of(child) in card_of and owner_of(bearer) in card_of
     }
-    return Linked(cards, list(boxes.values()), sorted(pair for pair in held if pair[0] != pair[1]))
+    return LinkGraph(cards, list(boxes.values()), sorted(pair for pair in held if pair[0] != pair[1]))
 
 
-def label(card: Card, used: set[str]) -> str:
+def label(card: ObjectCard, used: set[str]) -> str:
     """Which of a card's objects and parts a line leads to; "" for all of them as a whole."""
     owners = {owner_of(node) for node in used}
     parts = sorted({plain(node.partition("/")[2]) for node in used} - {""})
@@ -143,18 +143,20 @@ def category_of(relation: Relation) -> str:
     return next((name for name, kinds in _CATEGORIES if isinstance(relation, kinds)), "placement")
 
 
-def _link(relation: Relation) -> Link:
+def _link(relation: Relation) -> RelationLink:
     is_directed = isinstance(relation, _DIRECTED)
-    return Link(relation.kind, category_of(relation), relation.nodes, describe_terms(relation), is_directed)
+    return RelationLink(
+        relation.kind, category_of(relation), relation.nodes, describe_terms(relation), is_directed
+    )
 
 
-def _causes(plan: ScenePlan) -> Iterator[Link]:
+def _causes(plan: ScenePlan) -> Iterator[RelationLink]:
     by_name = {phase.name: phase for phase in plan.motion.phases}
     for phase in plan.motion.phases:
         cause = by_name.get(phase.cause or "")
         if cause and cause is not phase:
             nodes = (cause.actor, phase.actor)
-            yield Link("sets off", "motion", nodes, f"{plain(cause.name)} → {plain(phase.name)}")
+            yield RelationLink("sets off", "motion", nodes, f"{plain(cause.name)} → {plain(phase.name)}")
 
 
 def describe_terms(relation: Relation) -> str:
@@ -193,7 +195,7 @@ def _describe_pattern(relation: Distributed) -> str:
     return ", ".join(words)
 
 
-def _cards(plan: ScenePlan) -> list[Card]:
+def _cards(plan: ScenePlan) -> list[ObjectCard]:
     """Members of a group, or of a numbered series, that have the same role share a card."""
     grouped: dict[str, tuple[str, ...]] = {}
     for place, group in enumerate(plan.groups):
@@ -202,7 +204,7 @@ def _cards(plan: ScenePlan) -> list[Card]:
     series: defaultdict[tuple[object, ...], list[PlannedObject]] = defaultdict(list)
     for one in plan.objects:
         series[(grouped.get(one.name) or ("stem", _stem(one.name)), one.role)].append(one)
-    cards: list[Card] = []
+    cards: list[ObjectCard] = []
     placed: set[str] = set()
     for one in plan.objects:
         key = (grouped.get(one.name) or ("stem", _stem(one.name)), one.role)
@@ -210,7 +212,7 @@ def _cards(plan: ScenePlan) -> list[Card]:
             continue
         members = series[key] if len(series[key]) >= _FEWEST_ALIKE else [one]
         placed.update(member.name for member in members)
-        cards.append(Card(members))
+        cards.append(ObjectCard(members))
     return cards
 
 

@@ -30,7 +30,7 @@ _VIDEOS: Mapping[str, str] = {".mp4": "video/mp4", ".webm": "video/webm"}
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class MediaItem:
     """A picture or video: ``src`` is its data or where it is, ``link`` leads to its file in the run's folder."""
 
     src: str
@@ -44,17 +44,17 @@ class Media:
 
     def __init__(self, run: Path) -> None:
         self._run = run
-        self._known: dict[str, Shown | None] = {}
+        self._known: dict[str, MediaItem | None] = {}
         self._used = 0
 
-    def picture(self, name: str) -> Shown | None:
+    def picture(self, name: str) -> MediaItem | None:
         """The picture, scaled down where it is large; None where there is none."""
         if name not in self._known:
             path = self._path(name)
             self._known[name] = self._made(name, path) if path else None
         return self._known[name]
 
-    def video(self, name: str) -> Shown | None:
+    def video(self, name: str) -> MediaItem | None:
         """The video, in the page if it is small; None where there is none."""
         path = self._path(name)
         kind = _VIDEOS.get(path.suffix.lower()) if path else None
@@ -62,8 +62,8 @@ class Media:
             return None
         try:
             if path.stat().st_size > LARGEST_VIDEO:
-                return Shown(_link(name), _link(name))
-            return Shown(_data(kind, path.read_bytes()), _link(name))
+                return MediaItem(_link(name), _link(name))
+            return MediaItem(_data(kind, path.read_bytes()), _link(name))
         except OSError:
             return None
 
@@ -83,7 +83,7 @@ class Media:
         except (OSError, RuntimeError, ValueError):
             return None
 
-    def _made(self, name: str, path: Path) -> Shown | None:
+    def _made(self, name: str, path: Path) -> MediaItem | None:
         try:
             with warnings.catch_warnings(action="error"), Image.open(path, formats=_FORMATS) as image:
                 if math.prod(image.size) > _MOST_PIXELS:
@@ -97,8 +97,8 @@ class Media:
             return None
         self._used += made.tell()
         if self._used > LARGEST_PAGE:
-            return Shown(_link(name), _link(name), width, height)
-        return Shown(_data("image/webp", made.getvalue()), _link(name), small.width, small.height)
+            return MediaItem(_link(name), _link(name), width, height)
+        return MediaItem(_data("image/webp", made.getvalue()), _link(name), small.width, small.height)
 
 
 def _data(kind: str, content: bytes) -> str:

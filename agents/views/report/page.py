@@ -22,7 +22,7 @@ from agents.protocol.rules.catalogue import RULES
 from agents.views import formatting
 from agents.views.report import code
 from agents.views.report.links import CATEGORIES
-from agents.views.report.media import Media, Shown
+from agents.views.report.media import Media, MediaItem
 from agents.views.report.relation_graph import draw_graph
 from agents.views.report.tables import objects_of, relations_of
 from agents.views.report.timeline import draw_timeline
@@ -47,16 +47,16 @@ _UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\u202a-\u202e\u206
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class GalleryPicture:
     """A picture that a role saw, with its number on the page."""
 
     number: int
-    shown: Shown
+    shown: MediaItem
     caption: str
 
 
 @dataclass(frozen=True, slots=True)
-class ShownStep:
+class StepView:
     """What a role said, or a tool that it used."""
 
     step: Step
@@ -75,21 +75,21 @@ class ShownStep:
 
 
 @dataclass(frozen=True, slots=True)
-class ShownAttempt:
+class AttemptView:
     """An attempt, with all there is to see of it."""
 
     attempt: Attempt
     told: str
     state: str
-    coder: tuple[ShownStep, ...]
-    others: tuple[ShownStep, ...]
-    pictures: tuple[Seen, ...]
-    changes: tuple[tuple[code.Change, Markup], ...]
+    coder: tuple[StepView, ...]
+    others: tuple[StepView, ...]
+    pictures: tuple[GalleryPicture, ...]
+    changes: tuple[tuple[code.ScriptChange, Markup], ...]
     findings: tuple[Row, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class ShownStage:
+class StageView:
     """A stage, with its attempts and what it cost."""
 
     name: str
@@ -97,9 +97,9 @@ class ShownStage:
     state: str
     run: StageRun | None = None
     spent: Spent = field(default_factory=lambda: Spent("", ""))
-    attempts: tuple[ShownAttempt, ...] = ()
-    before: tuple[ShownStep, ...] = ()
-    pictures: tuple[Seen, ...] = ()
+    attempts: tuple[AttemptView, ...] = ()
+    before: tuple[StepView, ...] = ()
+    pictures: tuple[GalleryPicture, ...] = ()
 
 
 def write_report(run: Path) -> Path:
@@ -208,9 +208,9 @@ class _Gallery:
         self._media = media
         self._count = 0
 
-    def of(self, steps: Sequence[Step]) -> tuple[tuple[Seen, ...], dict[str, int]]:
+    def of(self, steps: Sequence[Step]) -> tuple[tuple[GalleryPicture, ...], dict[str, int]]:
         """The pictures of these steps, and their numbers by path."""
-        seen: list[Seen] = []
+        seen: list[GalleryPicture] = []
         numbers: dict[str, int] = {}
         for step in steps:
             if not isinstance(step, ToolCall):
@@ -220,7 +220,7 @@ class _Gallery:
                 if shown:
                     self._count += 1
                     numbers[path] = self._count
-                    seen.append(Seen(self._count, shown, _caption(step)))
+                    seen.append(GalleryPicture(self._count, shown, _caption(step)))
         return tuple(seen), numbers
 
 
@@ -242,17 +242,17 @@ def _about(call: ToolCall) -> str:
     return shortened(", ".join(given), _ABOUT)
 
 
-def _stages(run_state: RunState, gallery: _Gallery) -> list[ShownStage]:
+def _stages(run_state: RunState, gallery: _Gallery) -> list[StageView]:
     names = [*STAGES, *(one.name for one in run_state.stages if one.name not in STAGES)]
     if run_state.mode == "edit" and run_state.edit:
         names = [name for name in names if name in run_state.planned or run_state.stage(name)]
-    shown: list[ShownStage] = []
+    shown: list[StageView] = []
     for name in names:
         run = run_state.stage(name)
         spent = sum((row for row in run_state.spending if row.stage == name), Spent("", name))
         state = run_state.state_of(name)
         if run is None:
-            shown.append(ShownStage(name, formatting.stage_title(name), state))
+            shown.append(StageView(name, formatting.stage_title(name), state))
             continue
         pictures, numbers = gallery.of(run.steps)
         before = tuple(_step(step, numbers) for step in run.steps if isinstance(step, ToolCall))
@@ -260,12 +260,12 @@ def _stages(run_state: RunState, gallery: _Gallery) -> list[ShownStage]:
             _attempt(attempt, run.attempts[:place], gallery) for place, attempt in enumerate(run.attempts)
         )
         shown.append(
-            ShownStage(name, formatting.stage_title(name), state, run, spent, attempts, before, pictures)
+            StageView(name, formatting.stage_title(name), state, run, spent, attempts, before, pictures)
         )
     return shown
 
 
-def _attempt(attempt: Attempt, before: Sequence[Attempt], gallery: _Gallery) -> ShownAttempt:
+def _attempt(attempt: Attempt, before: Sequence[Attempt], gallery: _Gallery) -> AttemptView:
     pictures, numbers = gallery.of(attempt.steps)
     coder = [_step(step, numbers) for step in attempt.steps if step.role == "coder"]
     others = [
@@ -273,7 +273,7 @@ def _attempt(attempt: Attempt, before: Sequence[Attempt], gallery: _Gallery) -> 
     ]
     taken = attempt.choice.taken if attempt.choice else ""
     made = code.changes(before, attempt) if before else []
-    return ShownAttempt(
+    return AttemptView(
         attempt=attempt,
         told=formatting.describe_attempt(attempt),
         state={"advance": "closed", "abort": "aborted"}.get(taken, "sent-back" if taken else "open"),
@@ -285,15 +285,15 @@ def _attempt(attempt: Attempt, before: Sequence[Attempt], gallery: _Gallery) -> 
     )
 
 
-def _step(step: Step, numbers: dict[str, int]) -> ShownStep:
+def _step(step: Step, numbers: dict[str, int]) -> StepView:
     if isinstance(step, ModelCall):
         if step.turn is None:
-            return ShownStep(step, stop="unreadable" if step.is_answered else "never answered")
+            return StepView(step, stop="unreadable" if step.is_answered else "never answered")
         stop = "" if step.turn.stop_reason in _PLAIN_STOPS else step.turn.stop_reason
-        return ShownStep(step, words=step.turn.text.strip(), stop=stop)
+        return StepView(step, words=step.turn.text.strip(), stop=stop)
     rest = {name: value for name, value in step.input.items() if not (name == "code" and step.code)}
     told = json.dumps(rest, ensure_ascii=False, indent=2)
-    return ShownStep(
+    return StepView(
         step,
         about=_about(step),
         code=code.highlighted(step.code, "python") if step.code else None,

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from agents.views.formatting import swatch
-from agents.views.report.graph_layout import Box, lay_out
-from agents.views.report.links import Card, LinkBox, format_pill, label, linked
+from agents.views.report.graph_layout import LayoutBox, lay_out
+from agents.views.report.links import LinkBox, ObjectCard, format_pill, label, make_link_graph
 from simworlds.terminal.text import plain, shortened
 
 if TYPE_CHECKING:
     from agents.plan.scene import ScenePlan
     from agents.views.report.graph_layout import Point
-    from agents.views.report.links import Linked
+    from agents.views.report.links import LinkGraph
 
 MOST = 160  # cards and boxes that one can still read
 _MARGIN = 14.0
@@ -36,7 +36,7 @@ class Pill:
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class GraphShape:
     """A card (with ``title`` and ``note``) or a box of relations, by its top left. ``layers``: it stands for many."""
 
     x: float
@@ -53,7 +53,7 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class GraphLine:
     """A line between a card and a box of relations, as an SVG path. ``at`` is where its label stands."""
 
     path: str
@@ -64,25 +64,25 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Drawing:
+class GraphDrawing:
     """A drawing of that size in pixels."""
 
     width: float
     height: float
-    cards: tuple[Shape, ...]
-    boxes: tuple[Shape, ...]
-    lines: tuple[Line, ...]
+    cards: tuple[GraphShape, ...]
+    boxes: tuple[GraphShape, ...]
+    lines: tuple[GraphLine, ...]
 
 
-def draw_graph(plan: ScenePlan) -> Drawing | None:
+def draw_graph(plan: ScenePlan) -> GraphDrawing | None:
     """The drawing; None where there are more cards and boxes than one can read."""
-    graph = linked(plan)
+    graph = make_link_graph(plan)
     if len(graph.cards) + len(graph.boxes) > MOST:
         return None
     ranks = _ranks(graph)
     sizes = [_card_size(card) for card in graph.cards] + [_box_size(box) for box in graph.boxes]
     ranks += [_between(box, ranks) for box in graph.boxes]
-    boxes = [Box(*size, rank) for size, rank in zip(sizes, ranks, strict=True)]
+    boxes = [LayoutBox(*size, rank) for size, rank in zip(sizes, ranks, strict=True)]
     first = len(graph.cards)
     ends = [(place, card) for place, box in enumerate(graph.boxes) for card in box.cards]
     laid = lay_out(boxes, [(card, first + place) for place, card in ends])
@@ -91,7 +91,7 @@ def draw_graph(plan: ScenePlan) -> Drawing | None:
         (x, y), box = laid.centres[place], boxes[place]
         return (x - box.width / 2 + _MARGIN, y - box.height / 2 + _MARGIN)
 
-    return Drawing(
+    return GraphDrawing(
         laid.width + 2 * _MARGIN,
         laid.height + 2 * _MARGIN,
         tuple(_card(card, corner(place), sizes[place]) for place, card in enumerate(graph.cards)),
@@ -108,7 +108,7 @@ def draw_graph(plan: ScenePlan) -> Drawing | None:
 # Ranks
 
 
-def _ranks(graph: Linked) -> list[int]:
+def _ranks(graph: LinkGraph) -> list[int]:
     """Even ranks: what is held stands above what holds it, what is not held beside those it is related to."""
     bearers: defaultdict[int, set[int]] = defaultdict(set)
     borne: defaultdict[int, set[int]] = defaultdict(set)
@@ -154,7 +154,7 @@ def _between(box: LinkBox, ranks: list[int]) -> int:
 # Shapes
 
 
-def _pill_texts(box: LinkBox | Card) -> list[tuple[str, str, str]]:
+def _pill_texts(box: LinkBox | ObjectCard) -> list[tuple[str, str, str]]:
     """(text, category, hint)"""
     return [
         (format_pill(word, details), category, "; ".join(dict.fromkeys(filter(None, details))))
@@ -166,21 +166,21 @@ def _pill_width(text: str) -> float:
     return len(text) * _SMALL_LETTER + 16
 
 
-def _pills(box: LinkBox | Card, left: float, top: float) -> tuple[Pill, ...]:
+def _pills(box: LinkBox | ObjectCard, left: float, top: float) -> tuple[Pill, ...]:
     return tuple(
         Pill(left, top + place * _ROW, _pill_width(text), text, category, hint)
         for place, (text, category, hint) in enumerate(_pill_texts(box))
     )
 
 
-def _card_words(card: Card) -> tuple[str, str]:
+def _card_words(card: ObjectCard) -> tuple[str, str]:
     one = card.objects[0]
     sizes = {other.dimensions for other in card.objects}
     note = " × ".join(f"{size:g}" for size in one.dimensions) + " m" if len(sizes) == 1 else "sizes differ"
     return shortened(card.name, _LONGEST), f"{one.role} · {note}"
 
 
-def _card_size(card: Card) -> Point:
+def _card_size(card: ObjectCard) -> Point:
     title, note = _card_words(card)
     widest = max(
         [len(title) * _LETTER, len(note) * _SMALL_LETTER, *(_pill_width(t) for t, _, _ in _pill_texts(card))]
@@ -191,10 +191,10 @@ def _card_size(card: Card) -> Point:
     )
 
 
-def _card(card: Card, corner: Point, size: Point) -> Shape:
+def _card(card: ObjectCard, corner: Point, size: Point) -> GraphShape:
     title, note = _card_words(card)
     one = card.objects[0]
-    return Shape(
+    return GraphShape(
         *corner, *size,
         pills=_pills(card, 12, 46),
         title=title,
@@ -210,12 +210,12 @@ def _box_size(box: LinkBox) -> Point:
     return (max(_pill_width(text) for text, _, _ in _pill_texts(box)), _ROW * len(box.pills) - (_ROW - _PILL))
 
 
-def _box(box: LinkBox, corner: Point, size: Point) -> Shape:
+def _box(box: LinkBox, corner: Point, size: Point) -> GraphShape:
     pills = _pills(box, 0, 0)
-    return Shape(*corner, *size, pills=pills)
+    return GraphShape(*corner, *size, pills=pills)
 
 
-def _drawn_line(graph: Linked, box: LinkBox, card: int, points: tuple[Point, ...]) -> Line:
+def _drawn_line(graph: LinkGraph, box: LinkBox, card: int, points: tuple[Point, ...]) -> GraphLine:
     placed = [(x + _MARGIN, y + _MARGIN) for x, y in points]
     (x, y), *rest = placed
     path = f"M{x:.1f} {y:.1f}"
@@ -225,7 +225,7 @@ def _drawn_line(graph: Linked, box: LinkBox, card: int, points: tuple[Point, ...
         path += f" C{before[0]:.1f} {bend:.1f} {x:.1f} {bend:.1f} {x:.1f} {y:.1f}"
         before = (x, y)
     near, far = placed[0], placed[1]
-    return Line(
+    return GraphLine(
         path=path,
         category=next(category for _, category in box.pills),
         is_directed=box.subject is not None and card != box.subject,

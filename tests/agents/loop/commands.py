@@ -17,7 +17,7 @@ REPO = HERE.parent.parent.parent
 _SECONDS = 240.0
 _MAIN = """\
 import pytest
-from sittings import make_small
+from run_sessions import make_small
 from simworlds.cli import main
 
 with pytest.MonkeyPatch.context() as patch:

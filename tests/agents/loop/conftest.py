@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 import teams
 from commands import Command
-from sittings import answered, asked_of, sit
+from run_sessions import answered, asked_of, sit
 from team import Team
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fake_messages_api import FakeMessagesAPI
-    from sittings import Played
+    from run_sessions import Played
 
 
 @pytest.fixture(scope="session")

@@ -106,7 +106,7 @@ UNSURE = finding("R18", "Finger", "Its way could not be measured.", outcome="und
 
 
 def dominoes(folder: Path | None = None, *, live: bool = True) -> Tape:
-    """A whole run: a first attempt sent back, a replan, skipped stages, two sittings, a fix after the final review."""
+    """A whole run: a first attempt sent back, a replan, skipped stages, two sessions, a fix after the final review."""
     tape = Tape(folder, live=live)
     tape.began()
     tape.says("planner", "", json.dumps(domino_plan()), seconds=20.0, cost=0.21)
@@ -164,7 +164,7 @@ def _motion(tape: Tape) -> None:
     code = "scene = bpy.context.scene\nbpy.ops.rigidbody.world_add()\n"
     tape.codes(stage, 2, "A rigid body world.", code, "Rigid body world added.")
     tape.pause(3600.0)
-    tape.sitting()
+    tape.session()
     tape.uses("coder", stage, 2, "blender_bake", {}, "Baked frames 1–96.", seconds=14.0)
     tape.looks("coder", stage, 2, "blender_motion_sheet_preview", "Domino.01")
     tape.add("attempt.ended", stage=stage, attempt=2, report="The cascade runs to the end.", ended="done")

@@ -1,4 +1,4 @@
-"""Sittings that are killed at the first event at which none was killed before: by turns before and behind it."""
+"""Sessions that are killed at the first event at which none was killed before: by turns before and behind it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from sittings import at_home, go_on, sit
+from run_sessions import at_home, go_on, sit
 
 from agents.loop.journal import KEYS, NAME, Journal
 
@@ -48,7 +48,7 @@ def events(rows: Iterable[Mapping[str, Any]]) -> list[Event]:
 def killed_at_every_event(root: Path, home: Path, url: str, **options: Any) -> list[tuple[Event, str]]:
     """Plays a run to its end; (event, "before" or "behind") of every death."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([__name__])  # so that a sitting need not import everything anew
+    context.set_forkserver_preload([__name__])  # so that a session need not import everything anew
     deaths = root.with_name("deaths.jsonl")
     deaths.touch()
     for number in count():
@@ -59,7 +59,7 @@ def killed_at_every_event(root: Path, home: Path, url: str, **options: Any) -> l
             patch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
             process.start()
         process.join(_SECONDS)
-        assert process.exitcode in (0, -signal.SIGKILL), f"sitting {number} ended with {process.exitcode}"
+        assert process.exitcode in (0, -signal.SIGKILL), f"session {number} ended with {process.exitcode}"
         if process.exitcode == 0:
             break
     return [(tuple(event), where) for event, where in _died(deaths)]

@@ -55,9 +55,9 @@ class Tape:
             "options": {"max_cost": 5.0},
         }
         self.add("run.began", 0.0, **{**given, **fields})
-        self.sitting()
+        self.session()
 
-    def sitting(self) -> None:
+    def session(self) -> None:
         self.add("sitting.began", 0.0, pid=4242)
 
     def says(

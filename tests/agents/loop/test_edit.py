@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import crates
 import pytest
 from PIL import Image
-from sittings import answered, asked_of, scenes, sit
+from run_sessions import answered, asked_of, scenes, sit
 from team import DONE, Team, reply, run, words_of
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.errors import Unusable
 from agents.loop.events import read_event
 from agents.loop.reducer import read_run_state
-from agents.loop.toolbox import Toolbox
+from agents.loop.tool_client import ToolClient
 from agents.views.event_lines import format_event
 from simworlds.sandbox.confined_command import best_sandbox
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from sittings import Played
+    from run_sessions import Played
 
 pytestmark = pytest.mark.blender
 
@@ -134,9 +134,9 @@ bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath("//kitchen.blend"), copy=T
 
 def build(folder: Path, code: str) -> Path:
     """A file made by code, with a texture beside it."""
-    with Toolbox(SessionSetup(best_sandbox(), run=folder / "work")) as toolbox:
+    with ToolClient(SessionSetup(best_sandbox(), run=folder / "work")) as tools:
         Image.new("RGB", (4, 4), (20, 90, 30)).save(folder / "work" / "workspace" / "leaf.png")
-        made = toolbox.call("blender_execute", {"code": code + _SAVE})
+        made = tools.call("blender_execute", {"code": code + _SAVE})
         assert not made.failed, made.text
     mine = folder / "mine"
     mine.mkdir()
@@ -340,4 +340,4 @@ def test_the_command_says_what_is_wrong_with_a_file_and_nothing_of_resuming(tmp_
     code = "from simworlds.cli import main; main()"
     done = subprocess.run([sys.executable, "-c", code, *given], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"Error: {path} is no .blend: it does not begin as one.\n"
+    assert done.stderr == f"Error: {path} is not a .blend file: its first bytes are not those of one.\n"

@@ -6,11 +6,11 @@ from itertools import combinations
 
 import pytest
 
-from agents.views.report.graph_layout import Box, lay_out
+from agents.views.report.graph_layout import LayoutBox, lay_out
 
 
 def test_higher_ranks_are_higher_and_nothing_overlaps() -> None:
-    boxes = [Box(80, 40, rank) for rank in (0, 1, 1, 1, 2, 2, 2)]
+    boxes = [LayoutBox(80, 40, rank) for rank in (0, 1, 1, 1, 2, 2, 2)]
     edges = [(0, 1), (0, 2), (0, 3), (1, 6), (2, 5), (3, 4)]
     laid = lay_out(boxes, edges)
     for (one, (x, y)), (other, (u, v)) in combinations(zip(boxes, laid.centres, strict=True), 2):
@@ -21,21 +21,28 @@ def test_higher_ranks_are_higher_and_nothing_overlaps() -> None:
 
 
 def test_crossings_are_undone() -> None:
-    boxes = [Box(50, 20, 0), Box(50, 20, 0), Box(50, 20, 0), Box(50, 20, 1), Box(50, 20, 1), Box(50, 20, 1)]
+    boxes = [
+        LayoutBox(50, 20, 0),
+        LayoutBox(50, 20, 0),
+        LayoutBox(50, 20, 0),
+        LayoutBox(50, 20, 1),
+        LayoutBox(50, 20, 1),
+        LayoutBox(50, 20, 1),
+    ]
     edges = [(0, 5), (1, 4), (2, 3)]
     laid = lay_out(boxes, edges)
     assert all(line[0][0] == pytest.approx(line[-1][0]) for line in laid.lines), "all lines run straight"
 
 
 def test_a_line_past_a_rank_keeps_clear_of_its_boxes() -> None:
-    boxes = [Box(60, 20, 0), Box(60, 20, 1), Box(60, 20, 2)]
+    boxes = [LayoutBox(60, 20, 0), LayoutBox(60, 20, 1), LayoutBox(60, 20, 2)]
     laid = lay_out(boxes, [(0, 1), (1, 2), (0, 2)])
     passing = laid.lines[2][1]
     assert abs(passing[0] - laid.centres[1][0]) > boxes[1].width / 2
 
 
 def test_lines_begin_and_end_at_the_sides_of_their_boxes() -> None:
-    boxes = [Box(60, 20, 0), Box(60, 30, 1)]
+    boxes = [LayoutBox(60, 20, 0), LayoutBox(60, 30, 1)]
     (start, end), _ = lay_out(boxes, [(0, 1), (0, 1)]).lines
     (_, low), (_, high) = lay_out(boxes, [(0, 1), (0, 1)]).centres
     assert start[1] == low - 10
@@ -43,7 +50,9 @@ def test_lines_begin_and_end_at_the_sides_of_their_boxes() -> None:
 
 
 def test_lines_that_leave_a_box_together_leave_it_side_by_side() -> None:
-    laid = lay_out([Box(200, 20, 0), *(Box(40, 20, 1) for _ in range(4))], [(0, n) for n in range(1, 5)])
+    laid = lay_out(
+        [LayoutBox(200, 20, 0), *(LayoutBox(40, 20, 1) for _ in range(4))], [(0, n) for n in range(1, 5)]
+    )
     starts = [line[0][0] for line in laid.lines]
     assert len(set(starts)) == 4
     ends = [line[-1][0] for line in laid.lines]
@@ -51,7 +60,7 @@ def test_lines_that_leave_a_box_together_leave_it_side_by_side() -> None:
 
 
 def test_everything_is_within_the_drawing() -> None:
-    boxes = [Box(30.0 + 7 * n % 50, 20, n % 4) for n in range(30)]
+    boxes = [LayoutBox(30.0 + 7 * n % 50, 20, n % 4) for n in range(30)]
     edges = [(a, b) for a in range(30) for b in range(a) if (a * b) % 7 == 3 and a % 4 != b % 4]
     laid = lay_out(boxes, edges)
     for box, (x, y) in zip(boxes, laid.centres, strict=True):

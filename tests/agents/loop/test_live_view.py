@@ -61,7 +61,7 @@ def lines_of(tape: Tape) -> list[str]:
 # Lines
 
 
-def test_lines_tell_the_run_in_order() -> None:
+def test_log_lines_follow_the_run() -> None:
     told = "\n".join(lines_of(dominoes()))
     for words in (
         "00:00  make: Twelve wooden dominoes",
@@ -100,7 +100,7 @@ def test_progress_is_told_now_and_then() -> None:
     assert [line.split("bake")[1] for line in told] == [" 33 % frame 10", " 67 % frame 20", " 100 % frame 30"]
 
 
-def test_lines_go_on_where_a_run_was_left() -> None:
+def test_log_continues_a_resumed_run() -> None:
     stream = io.StringIO()
     with RunLog(stream, until("stage.closed")) as view:
         view.take(read_event({"type": "stage.began", "stage": "texture"}))
@@ -112,12 +112,12 @@ class _Gone(io.StringIO):
         raise BrokenPipeError
 
 
-def test_a_reader_that_has_gone_does_not_end_the_run() -> None:
+def test_survives_a_closed_log_reader() -> None:
     with RunLog(_Gone()) as view:
         view.take(read_event(dominoes().rows[0]))
 
 
-def test_letters_that_the_stream_has_no_word_for_are_replaced() -> None:
+def test_letters_the_stream_cannot_encode_are_replaced() -> None:
     raw = io.BytesIO()
     with RunLog(io.TextIOWrapper(raw, "ascii", write_through=True)) as view:
         for row in dominoes().rows:
@@ -171,7 +171,7 @@ def test_it_fits_a_terminal(height: int) -> None:
         assert len(told.splitlines()) <= max(height, 18)
 
 
-def test_time_left_is_told_once_enough_is_done() -> None:
+def test_time_left_is_shown_once_enough_is_done() -> None:
     assert seconds_left(until("stage.began")) is None
     assert seconds_left(until("stage.closed", 1)) is None, "one of six stages tells little"
     two = until("stage.closed", 2)
@@ -190,7 +190,7 @@ def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
     assert "No model was asked" in recorded
 
 
-def test_a_screen_shows_the_last_state_when_it_is_left() -> None:
+def test_screen_shows_the_last_state_when_it_closes() -> None:
     console = Console(width=100, height=40, file=io.StringIO(), force_terminal=True, color_system=None)
     with RunScreen(console, "/tmp/run") as view:
         for row in dominoes().rows:
@@ -247,7 +247,7 @@ def test_a_terminal_gets_a_screen_and_a_pipe_gets_lines(
     assert isinstance(make_view(terminal), RunLog)
 
 
-def test_a_quiet_view_keeps_the_picture() -> None:
+def test_quiet_view_keeps_the_state() -> None:
     with RunView() as view:
         for row in dominoes().rows:
             view.take(read_event(row))
@@ -275,7 +275,7 @@ def test_runs_are_listed_with_how_they_stand() -> None:
         [("first", until("run.ended")), ("second", run_state_after(stopped.rows)), ("third", RunState())]
     )
     told = [re.split(r"  +", line.strip()) for line in drawn(table).splitlines() if line.strip()]
-    assert told[0] == ["Run", "What", "Outcome", "Stage", "Cost", "When"]
+    assert told[0] == ["Run", "What", "ToolOutcome", "Stage", "Cost", "When"]
     assert told[2][:4] == ["first", "Twelve dominoes", "done", "$1.48"]
     assert told[3][:4] == ["second", "A cloth falls over a table", "stopped", "Motion"]
     assert told[4][:2] == ["third", "unfinished"]
@@ -305,7 +305,7 @@ def hostile() -> Tape:
     return tape
 
 
-def test_no_control_character_of_theirs_gets_out() -> None:
+def test_control_characters_are_never_printed() -> None:
     tape = hostile()
     now = Now(1.0, {EVIL: EVIL, "coder": EVIL}, {EVIL: ToolProgress(float("nan"), 3, EVIL)}, EVIL)
     told = ["\n".join(lines_of(tape))]

@@ -56,7 +56,7 @@ def test_it_says_what_was_asked_and_what_came_of_it(page: BeautifulSoup) -> None
     assert words(page.h1) == "Twelve dominoes"
     assert "the cascade runs to the end" in words(page.select_one(".prompt"))
     assert words(page.select_one(".badge")) == "done"
-    assert "6 min 17 s in 2 sittings" in words(page.select_one("header"))
+    assert "6 min 17 s in 2 sessions" in words(page.select_one("header"))
     assert page.select_one('header a[href="./scene.blend"]')
 
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import crates
 import pytest
 import teams
-from sittings import scenes
+from run_sessions import scenes
 from team import ADVANCE, DONE, FINE, REPLAN, RETRY, Team, run, turn_of, whose, words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from sittings import Played
+    from run_sessions import Played
 
 pytestmark = pytest.mark.blender
 
@@ -70,7 +70,7 @@ def test_the_reviewer_cannot_call_what_changes_the_scene(mended: Played) -> None
     assert "blender_scene_state" in offered
     assert not offered & {"blender_execute", "blender_load", "blender_bake", "blender_docs", "blender_verify"}
     refused = words_of(of_role(mended, "reviewer", "modeling")[1])
-    assert "blender_execute is not yours to call" in refused
+    assert "blender_execute is not available to your role" in refused
     assert not mended.of("tool.called", role="reviewer")
 
 

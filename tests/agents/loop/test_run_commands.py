@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner, Result
-from sittings import answered, at_home
+from run_sessions import answered, at_home
 from team import ABORT, Team
 
 from agents.loop.journal import NAME
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from commands import Command
-    from sittings import Played
+    from run_sessions import Played
 
 pytestmark = pytest.mark.blender
 
@@ -75,7 +75,7 @@ def test_a_limit_that_is_reached_is_exit_code_3(
         words = ("--max-cost", 0, "--quiet")
         code, _, err = command("make", "A crate", "--run", root, *words, url=api.base_url).end()
         assert code == 3, err
-        assert f"Go on with: simworlds resume {root}" in err
+        assert f"Continue with: simworlds resume {root}" in err
         assert command("resume", root, *words, url=api.base_url).end()[0] == 3
         assert not api.requests
 
@@ -87,25 +87,25 @@ def test_a_limit_that_is_reached_is_exit_code_3(
         (("make", "A crate", "--role-model", "painter=x"), "--role-model takes ROLE=NAME"),
         (("make", "A crate", "--max-cost", "-1"), "--max-cost"),
         (("make", "A crate", "--max-minutes", "0"), "--max-minutes"),
-        (("demo", "no-such"), "There is no session 'no-such'"),
-        (("resume", "/nowhere/at/all"), "is no run"),
+        (("demo", "no-such"), "There is no demo 'no-such'"),
+        (("resume", "/nowhere/at/all"), "is not a run"),
         (("replay", "/nowhere/at/all"), "does not hold a record"),
-        (("show", "/nowhere/at/all"), "is no run"),
-        (("make", "A crate", "--run", "/proc/nothing"), "cannot be the folder of a run"),
+        (("show", "/nowhere/at/all"), "is not a run"),
+        (("make", "A crate", "--run", "/proc/nothing"), "cannot be used as the folder of a run"),
     ],
 )
-def test_what_cannot_be_is_told_without_a_trace(alone: None, words: tuple[str, ...], says: str) -> None:
+def test_errors_are_shown_without_a_traceback(alone: None, words: tuple[str, ...], says: str) -> None:
     result = said(*words)
     assert result.exit_code == 2
     assert says in " ".join(result.output.split())
     assert "Traceback" not in result.output
 
 
-def test_demo_without_a_name_lists_the_sessions(alone: None) -> None:
+def test_demo_without_a_name_lists_the_demos(alone: None) -> None:
     result = said("demo")
     assert result.exit_code == 0
     assert "simworlds demo dominoes" in result.stdout
-    assert "written by hand" in result.stdout
+    assert "Hand-written transcripts" in result.stdout
 
 
 def test_resume_of_a_finished_run_says_where_its_result_is(mended: Played, alone: None) -> None:

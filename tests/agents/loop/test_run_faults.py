@@ -11,19 +11,19 @@ import crates
 import pytest
 import teams
 from fake_messages_api import Reply, Status
-from sittings import MESSAGES, answered, asked_of, go_on, sit
+from run_sessions import MESSAGES, answered, asked_of, go_on, sit
 from team import ABORT, DONE, Team, calls, last_words, reply, run, turn_of, use, whose, words_of
 
 from agents.loop import run as run_module
-from agents.roles.base import Desk
-from simworlds.llm.context import ResourceLimits as Kept
+from agents.roles.base import RoleContext
+from simworlds.llm.context import Limits as Kept
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
     from fake_messages_api import FakeMessagesAPI
-    from sittings import Played
+    from run_sessions import Played
 
 pytestmark = pytest.mark.blender
 
@@ -217,7 +217,7 @@ def crowded(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Played:
     turns = _talkative()
     team = Team(coder={"modeling": (lambda params: next(turns),)}, decisions={"camera": (ABORT,)})
     with pytest.MonkeyPatch.context() as patch, answered(home, team) as api:
-        patch.setattr(run_module, "Desk", partial(Desk, limits=Kept(budget=45_000, pictures=4)))
+        patch.setattr(run_module, "RoleContext", partial(RoleContext, limits=Kept(budget=45_000, pictures=4)))
         played = sit(tmp_path_factory.mktemp("crowded") / "run")
         return replace(played, requests=asked_of(api))
 

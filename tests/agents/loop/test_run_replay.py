@@ -7,7 +7,7 @@ import shutil
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from sittings import at_home, go_on, scenes, seat, sit
+from run_sessions import at_home, go_on, scenes, seat, sit
 
 from agents.loop.demos import replay_options
 from agents.loop.errors import NoRun
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from sittings import Played
+    from run_sessions import Played
 
 pytestmark = pytest.mark.blender
 

@@ -14,7 +14,7 @@ import teams
 from killing import events, killed_at_every_event
 from PIL import Image, ImageChops
 from processes import becomes, of_run
-from sittings import MESSAGES, answered, go_on, scenes, seat, sit
+from run_sessions import MESSAGES, answered, go_on, scenes, seat, sit
 from team import ABORT, DONE, NEEDS_FIX, Team, call, run
 
 from agents.loop import journal as journal_module
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fake_messages_api import FakeMessagesAPI
-    from sittings import Played
+    from run_sessions import Played
 
 pytestmark = pytest.mark.blender
 
@@ -45,7 +45,7 @@ VARYING = ("seconds", "checkpoint", "i", "t", "n", "pictures")  # a picture hold
 
 
 def plain(rows: list[dict[str, Any]]) -> set[str]:
-    """What the rows say of the run, without what no two sittings have in common."""
+    """What the rows say of the run, without what no two sessions have in common."""
     told = (
         "plan",
         "tactic",
@@ -64,7 +64,7 @@ def plain(rows: list[dict[str, Any]]) -> set[str]:
 
 
 @pytest.mark.timeout(900)
-def test_a_run_that_is_killed_at_every_event_ends_as_one_that_never_was(home: Path, tmp_path: Path) -> None:
+def test_run_killed_at_every_event_ends_like_an_undisturbed_one(home: Path, tmp_path: Path) -> None:
     with answered(home, at_once()) as api:
         whole = sit(tmp_path / "whole", stages=False)
     assert whole.ended.how == "done"
@@ -131,7 +131,7 @@ def stopped(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         at = seat()
         at.watcher.on_row = lambda row: at.stop.event.set() if row["type"] == "plan" else None  # type: ignore[attr-defined]
         played = sit(tmp_path_factory.mktemp("stopped") / "run", at)
-    assert (played.ended.how, played.ended.why) == ("stopped", "You asked it to stop.")
+    assert (played.ended.how, played.ended.why) == ("stopped", "You asked the run to stop.")
     return played.root
 
 
@@ -166,7 +166,7 @@ def test_a_torn_last_line_is_cut_off(api: FakeMessagesAPI, copy: Path) -> None:
         ("\x00" * 40 + "\n{}\n", "line 1: not a row"),
     ],
 )
-def test_a_journal_of_nonsense_is_told_and_left_alone(tmp_path: Path, text: str, says: str) -> None:
+def test_broken_journal_is_reported_and_left_alone(tmp_path: Path, text: str, says: str) -> None:
     (tmp_path / NAME).write_text(text)
     with pytest.raises(NoRun, match=says):
         go_on(tmp_path)
@@ -192,7 +192,7 @@ def _changed(root: Path, kind: str, change: Callable[[dict[str, Any]], object]) 
         ),
     ],
 )
-def test_rows_that_lack_what_they_should_tell_end_the_sitting_in_words(
+def test_broken_rows_end_the_session_with_an_error(
     api: FakeMessagesAPI, copy: Path, kind: str, change: Callable[[dict[str, Any]], object], says: str
 ) -> None:
     _changed(copy, kind, change)
@@ -202,18 +202,18 @@ def test_rows_that_lack_what_they_should_tell_end_the_sitting_in_words(
     assert not api.requests
 
 
-def test_a_picture_that_is_gone_is_told(api: FakeMessagesAPI, copy: Path) -> None:
+def test_missing_picture_is_reported(api: FakeMessagesAPI, copy: Path) -> None:
     picture = {"type": "picture", "path": "pictures/0.png", "media_type": "image/png"}
     _changed(copy, "tool.answered", lambda row: row.update(content=[picture]))
     played = go_on(copy)
     assert played.ended.how == "failed"
-    assert "pictures/0.png, which the run has seen, cannot be read" in played.ended.why
+    assert "pictures/0.png, a picture of an earlier answer, cannot be read" in played.ended.why
 
 
-def test_a_folder_that_is_no_run_is_told(tmp_path: Path) -> None:
-    with pytest.raises(NoRun, match="is no run"):
+def test_folder_without_a_run_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(NoRun, match="is not a run"):
         go_on(tmp_path)
-    with pytest.raises(NoRun, match="is no run"):
+    with pytest.raises(NoRun, match="is not a run"):
         go_on(tmp_path / "nowhere")
 
 
@@ -221,19 +221,19 @@ def test_a_run_needs_a_folder_of_its_own(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(NoRun, match="is not empty"):
         sit(tmp_path)
-    with pytest.raises(NoRun, match="cannot be the folder of a run"):
+    with pytest.raises(NoRun, match="cannot be used as the folder of a run"):
         sit(tmp_path / "notes.txt")
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 
 
-def test_a_second_process_on_a_run_is_told(copy: Path) -> None:
+def test_run_in_use_by_another_process_is_reported(copy: Path) -> None:
     before = (copy / NAME).read_bytes()
     with locked(copy), pytest.raises(NoRun, match="in use by another"):
         go_on(copy)
     assert (copy / NAME).read_bytes() == before
 
 
-def test_a_folder_that_vanishes_ends_the_sitting_in_words(api: FakeMessagesAPI, tmp_path: Path) -> None:
+def test_deleted_folder_ends_the_session_with_an_error(api: FakeMessagesAPI, tmp_path: Path) -> None:
     root = tmp_path / "run"
 
     def vanish(row: Any) -> None:
@@ -249,7 +249,7 @@ def test_a_folder_that_vanishes_ends_the_sitting_in_words(api: FakeMessagesAPI, 
 
 
 @pytest.mark.parametrize("room", [9, 23])
-def test_a_full_disk_ends_the_sitting_and_once_there_is_room_the_run_goes_on(
+def test_run_resumes_after_a_full_disk(
     api: FakeMessagesAPI, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: int
 ) -> None:
     api.answer = Team(decisions={"modeling": (ABORT,)})

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from PIL import Image
-from sittings import PROMPT, scenes
+from run_sessions import PROMPT, scenes
 from team import whose
 
 from agents.plan.scene import ScenePlan
@@ -15,7 +15,7 @@ from agents.plan.scene import ScenePlan
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sittings import Played
+    from run_sessions import Played
 
 pytestmark = pytest.mark.blender
 

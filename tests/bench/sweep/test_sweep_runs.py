@@ -72,11 +72,11 @@ def run(tmp_path: Path) -> Callable[..., Any]:
 def test_a_finished_run_is_not_repeated_and_its_costs_are_read(
     run: Callable[..., Any], tmp_path: Path
 ) -> None:
-    sitting = {"t": "2026-01-01T10:30:00+00:00", "type": "sitting.began"}
+    session = {"t": "2026-01-01T10:30:00+00:00", "type": "sitting.began"}
     rows = [
         began(),
         answered(3, 0.25),
-        sitting,
+        session,
         answered(31, 0.5),
         ended(33, "done", "scene.blend", "video.mp4"),
     ]
@@ -117,10 +117,10 @@ def test_a_scene_without_a_transcript_is_missing(tmp_path: Path) -> None:
 
 
 def test_every_transcript_has_an_existing_scene() -> None:
-    from agents.loop.answer_source import sessions
+    from agents.loop.answer_source import transcripts
 
     assert all(spec_of(scene) for scene in TRANSCRIPTS)
-    assert {*TRANSCRIPTS.values()} == {*sessions()} - {"edit"}
+    assert {*TRANSCRIPTS.values()} == {*transcripts()} - {"edit"}
 
 
 # Real runs, against a model that does not help

@@ -1,4 +1,4 @@
-"""Sittings at runs, as a person has them, but with small pictures; and what is left of them."""
+"""Sessions at runs, as a person has them, but with small pictures; and what is left of them."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from agents.blender.blender_sessions import SessionSetup
 from agents.blender.tools import previews
 from agents.loop import answer_source, judging
 from agents.loop.journal import NAME, Row, read_rows
-from agents.loop.options import Options, ResourceLimits
-from agents.loop.session import Ended, Sitting, Stop, begin, resume
-from agents.loop.toolbox import Toolbox
+from agents.loop.options import Options, RunLimits
+from agents.loop.session import Ended, RunSession, Stop, begin, resume
+from agents.loop.tool_client import ToolClient
 from simworlds.llm.claude import Claude
 from simworlds.sandbox.confined_command import best_sandbox
 
@@ -79,7 +79,7 @@ class Onlooker:
 
 @dataclass
 class Played:
-    """A run after a sitting. ``requests`` are the bodies of what the model was asked."""
+    """A run after a session. ``requests`` are the bodies of what the model was asked."""
 
     root: Path
     ended: Ended
@@ -105,24 +105,24 @@ class Played:
 
 
 def seat(
-    limits: ResourceLimits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None
-) -> Sitting:
-    return Sitting(limits or ResourceLimits(), Onlooker(on_row), stop or Stop(threading.Event()))
+    limits: RunLimits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None
+) -> RunSession:
+    return RunSession(limits or RunLimits(), Onlooker(on_row), stop or Stop(threading.Event()))
 
 
-def sit(root: Path, at: Sitting | None = None, **options: Any) -> Played:
+def sit(root: Path, at: RunSession | None = None, **options: Any) -> Played:
     """Begins a run."""
     at = at or seat()
     return _played(root, begin(root, Options(**{"prompt": PROMPT, **options}), at), at)
 
 
-def go_on(root: Path, at: Sitting | None = None) -> Played:
+def go_on(root: Path, at: RunSession | None = None) -> Played:
     """Takes a run up again."""
     at = at or seat()
     return _played(root, resume(root, at), at)
 
 
-def _played(root: Path, ended: Ended, at: Sitting) -> Played:
+def _played(root: Path, ended: Ended, at: RunSession) -> Played:
     assert isinstance(at.watcher, Onlooker)
     return Played(root, ended, at.watcher)
 
@@ -135,10 +135,10 @@ def scenes(folder: Path, *files: Path) -> list[dict[str, str]]:
     """{"Object Cube": digest, …} of all that is in each file."""
     read = tuple({file.parent for file in files})
     found: list[dict[str, str]] = []
-    with Toolbox(SessionSetup(best_sandbox(), run=folder, read=read)) as toolbox:
+    with ToolClient(SessionSetup(best_sandbox(), run=folder, read=read)) as tools:
         for file in files:
-            loaded = toolbox.call("blender_load", {"path": str(file)})
+            loaded = tools.call("blender_load", {"path": str(file)})
             assert not loaded.failed, loaded.text
-            state = toolbox.call("blender_scene_state", {"sections": ["data_blocks"]})
+            state = tools.call("blender_scene_state", {"sections": ["data_blocks"]})
             found.append(dict(state.data["data_blocks"]))
     return found

@@ -30,7 +30,7 @@ def whole(rows: list[dict[str, Any]]) -> RunState:
     return run_state_after(rows)
 
 
-def test_stages_are_told_with_their_state_and_attempts(whole: RunState) -> None:
+def test_stages_have_their_state_and_attempts(whole: RunState) -> None:
     found = {stage.name: (stage.state, len(stage.attempts)) for stage in whole.stages}
     assert found == {
         "modeling": ("closed", 2),
@@ -44,7 +44,7 @@ def test_stages_are_told_with_their_state_and_attempts(whole: RunState) -> None:
     }
 
 
-def test_an_attempt_that_was_sent_back_has_all_that_led_to_it(whole: RunState) -> None:
+def test_rejected_attempt_keeps_findings_review_and_decision(whole: RunState) -> None:
     stage = whole.stage("modeling")
     assert stage
     first, second = stage.attempts
@@ -62,7 +62,7 @@ def test_an_attempt_that_was_sent_back_has_all_that_led_to_it(whole: RunState) -
     assert second.choice.taken == "advance"
 
 
-def test_a_replan_has_a_plan_of_its_own_and_what_was_gone_back_to(whole: RunState) -> None:
+def test_replan_has_its_own_plan_and_rollback(whole: RunState) -> None:
     stage = whole.stage("motion")
     assert stage
     first, second = stage.attempts
@@ -71,7 +71,7 @@ def test_a_replan_has_a_plan_of_its_own_and_what_was_gone_back_to(whole: RunStat
     assert second.tactic.goal.startswith("No keys")
 
 
-def test_steps_keep_their_order_and_belong_to_their_attempt(whole: RunState) -> None:
+def test_steps_keep_order_within_their_attempt(whole: RunState) -> None:
     stage = whole.stage("modeling")
     assert stage
     assert stage.attempts[0].tactic
@@ -105,7 +105,7 @@ def test_costs_are_counted_by_role_and_stage(whole: RunState, rows: list[dict[st
     assert by_key["coder", "modeling"].calls == 6
 
 
-def test_what_was_lost_on_the_way_to_an_answer_is_paid_for_too() -> None:
+def test_lost_tokens_are_counted() -> None:
     tape = Tape()
     tape.says("coder", "motion", "Hello")
     tape.rows[-1]["turn"]["lost"] = {"input": 5, "output": 7, "cache_read": 0, "cache_write": 0}
@@ -115,7 +115,7 @@ def test_what_was_lost_on_the_way_to_an_answer_is_paid_for_too() -> None:
     assert total.unpriced == 1
 
 
-def test_recorded_answers_cost_nothing_and_are_called_what_they_are() -> None:
+def test_recorded_answers_cost_nothing() -> None:
     history = run_state_after(dominoes(live=False).rows)
     assert history.answers == "hand-written"
     assert history.total.cost == 0
@@ -140,7 +140,7 @@ def test_played_back_answers_of_a_model_are_recorded_ones() -> None:
     assert run_state_after(tape.rows).answers == "recorded"
 
 
-def test_the_pause_between_two_sittings_is_no_work(whole: RunState) -> None:
+def test_pause_between_sessions_is_not_counted_as_work(whole: RunState) -> None:
     assert whole.sessions == 2
     assert whole.began
     assert whole.latest
@@ -150,13 +150,13 @@ def test_the_pause_between_two_sittings_is_no_work(whole: RunState) -> None:
     assert motion.seconds < 600
 
 
-def test_a_call_that_is_answered_in_the_next_sitting_is_one_call() -> None:
+def test_call_answered_in_the_next_session_is_one_call() -> None:
     tape = Tape()
     tape.began()
     tape.says("coder", "motion", "words")
     answered = tape.rows.pop()
     tape.pause(1000)
-    tape.sitting()
+    tape.session()
     assert len(run_state_after(tape.rows).pending) == 1
     history = run_state_after([*tape.rows, answered])
     assert not history.pending
@@ -180,7 +180,7 @@ def test_two_calls_at_a_time_get_their_own_answers() -> None:
     }
 
 
-def test_a_run_that_goes_on_has_not_ended() -> None:
+def test_resumed_run_has_not_ended() -> None:
     tape = Tape()
     tape.began()
     tape.add("stage.began", stage="modeling")
@@ -190,12 +190,12 @@ def test_a_run_that_goes_on_has_not_ended() -> None:
     assert stopped.state_of("modeling") == "stopped"
     failed = after(stopped, read_event({"type": "run.ended", "outcome": "failed"}))
     assert failed.state_of("modeling") == "failed"
-    tape.sitting()
+    tape.session()
     assert run_state_after(tape.rows).outcome == "unfinished"
     assert run_state_after(tape.rows).state_of("modeling") == "running"
 
 
-def test_a_given_up_stage_is_aborted_and_the_closed_ones_stand() -> None:
+def test_aborted_stage_leaves_closed_stages() -> None:
     tape = Tape()
     tape.began()
     tape.simple_stage("modeling")
@@ -226,7 +226,7 @@ def test_both_renders_have_their_review(whole: RunState) -> None:
     assert len(whole.renderings[1].pictures) == 5
 
 
-def test_an_edit_tells_what_it_changed() -> None:
+def test_edit_lists_its_changes() -> None:
     tape = Tape()
     task = {"kind": "modify", "stage": "light", "targets": ["Key"], "instruction": "Dim it."}
     tape.add("plan", edit={"title": "Dimmer", "tasks": [task], "render": {"kind": "still"}})
@@ -242,7 +242,7 @@ def test_an_edit_tells_what_it_changed() -> None:
 # Whatever is in it
 
 
-def test_fed_row_by_row_it_is_the_same(rows: list[dict[str, Any]], whole: RunState) -> None:
+def test_reducing_row_by_row_gives_the_same_state(rows: list[dict[str, Any]], whole: RunState) -> None:
     history = RunState()
     for row in rows:
         before = history
@@ -279,7 +279,7 @@ def test_no_field_is_trusted(rows: list[dict[str, Any]], junk: Any) -> None:
 @pytest.mark.parametrize(
     "time", ["0001-01-01T00:00:00+14:00", "9999-12-31T23:59:59-12:00", "noon", "2026-99-01"]
 )
-def test_times_that_are_none_do_not_count(time: str) -> None:
+def test_invalid_times_are_ignored(time: str) -> None:
     tape = Tape()
     tape.began()
     history = run_state_after([{"type": "x", "t": time}, *tape.rows, {"type": "x", "t": time}])
@@ -288,13 +288,13 @@ def test_times_that_are_none_do_not_count(time: str) -> None:
     assert len(run_row("run", history)) == 6
 
 
-def test_rows_of_other_types_are_passed_over(rows: list[dict[str, Any]], whole: RunState) -> None:
+def test_unknown_row_types_are_ignored(rows: list[dict[str, Any]], whole: RunState) -> None:
     others: list[dict[str, Any]] = [{"type": "scene.restored", "from": 3}, {"type": ["x"]}, {}]
     mixed = run_state_after([row for one in rows for row in (one, *others)])
     assert mixed.stages == whole.stages
 
 
-def test_a_torn_last_line_is_left_out(tmp_path: Path, whole: RunState) -> None:
+def test_torn_last_line_is_ignored(tmp_path: Path, whole: RunState) -> None:
     path = write(dominoes(), tmp_path)
     with path.open("a") as file:
         file.write('{"i": 999, "type": "stage.beg')
@@ -305,7 +305,7 @@ def test_a_folder_without_a_journal_is_an_empty_run(tmp_path: Path) -> None:
     assert read_run_state(tmp_path) == RunState()
 
 
-def test_a_finding_that_is_none_is_left_out() -> None:
+def test_invalid_finding_is_ignored() -> None:
     tape = Tape()
     tape.add("stage.began", stage="uv")
     good = finding("V1", "A", "It floats.")

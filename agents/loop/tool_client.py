@@ -1,6 +1,6 @@
-"""The tool suite as any MCP client has it: a live Blender, and blender_docs beside it.
+"""A client of the MCP tools: a live Blender, and blender_docs.
 
-The server runs in this process and in a thread of its own; what is asked and answered goes through the protocol.
+The server runs in a thread of this process; calls and answers go through the protocol.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ Progress = "Callable[[str, float, float | None, str], object]"
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
-    """What came of a call: what a model sees, the same as ``data``, and how long it took."""
+class ToolOutcome:
+    """The result of a call: what a model sees, the same as ``data``, and how long it took."""
 
     content: tuple[Text | Picture, ...]
     data: Mapping[str, Any] = field(default_factory=dict[str, Any])
@@ -55,7 +55,7 @@ class Outcome:
         return tuple(block for block in self.content if isinstance(block, Picture))
 
 
-class Toolbox:
+class ToolClient:
     """Works between entering and leaving. ``progress`` gets (tool, done, total, text) from another thread."""
 
     def __init__(
@@ -87,8 +87,8 @@ class Toolbox:
         if DOCS not in self._tools:
             self._stack.close()
             raise RunError(
-                "The knowledge base does not answer, without which nothing can be built. Build it with "
-                "'simworlds kb build', or look for what is wrong with 'simworlds serve'."
+                "The knowledge base does not answer. Build it with 'simworlds kb build', or run 'simworlds serve' "
+                "to see what is wrong."
             )
         return self
 
@@ -107,8 +107,8 @@ class Toolbox:
         found = (self._tools[name] for name in names)
         return tuple(Tool(one.name, one.description or "", dict(one.input_schema)) for one in found)
 
-    def only_looks(self, name: str) -> bool:
-        """Whether a tool leaves the scene as it is; one that there is not does."""
+    def is_read_only(self, name: str) -> bool:
+        """Whether a tool leaves the scene as it is; unknown tools do."""
         tool = self._tools.get(name)
         if tool is None or name == DOCS:
             return True
@@ -118,7 +118,7 @@ class Toolbox:
         """The number of the worker's checkpoint that holds the scene as it is, made if need be. Raises RunError."""
         return self._number("blender_save", {})
 
-    def stand_at(self, checkpoint: int) -> int:
+    def restore(self, checkpoint: int) -> int:
         """Puts the scene where a checkpoint of the worker's stands; the number of it as it is now. Raises RunError."""
         kept = self.call("blender_load", {}).data.get("checkpoints") or [0]
         return (
@@ -128,15 +128,15 @@ class Toolbox:
     def _number(self, name: str, arguments: Mapping[str, Any]) -> int:
         outcome = self.call(name, arguments)
         if outcome.failed:
-            raise RunError(f"Blender's state cannot be kept: {outcome.text}")
+            raise RunError(f"Blender's state could not be saved: {outcome.text}")
         return int(outcome.data["checkpoint"])
 
-    def give_up(self) -> None:
-        """From any thread: whatever runs is given up, and Blender is put back."""
+    def cancel_calls(self) -> None:
+        """Cancels running calls, from any thread; Blender goes back to its state before them."""
         for future in tuple(self._running):
             future.cancel()
 
-    def call(self, name: str, arguments: Mapping[str, Any]) -> Outcome:
+    def call(self, name: str, arguments: Mapping[str, Any]) -> ToolOutcome:
         """Calls a tool. An interrupt (Ctrl-C) gives the call up, and Blender is put back. Raises Stopping."""
         began = time.monotonic()
 
@@ -152,9 +152,9 @@ class Toolbox:
         try:
             result = future.result()
         except MCPError as error:
-            return Outcome((Text(str(error)),), failed=True, seconds=time.monotonic() - began)
+            return ToolOutcome((Text(str(error)),), failed=True, seconds=time.monotonic() - began)
         except CancelledError as error:
-            raise Stopping(f"{name} was given up.") from error
+            raise Stopping(f"{name} was cancelled.") from error
         except BaseException:
             future.cancel()
             raise
@@ -162,7 +162,7 @@ class Toolbox:
             self._running.discard(future)
         content = tuple(block for one in result.content if (block := _block(one)) is not None)
         data = result.structured_content or {}
-        return Outcome(content, data, bool(result.is_error), time.monotonic() - began)
+        return ToolOutcome(content, data, bool(result.is_error), time.monotonic() - began)
 
 
 def _block(given: types.ContentBlock) -> Text | Picture | None:
