@@ -27,7 +27,7 @@ from simworlds.sandbox.usage import remove_since
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from simworlds.sandbox.blender_process import Progress, Reply
+    from simworlds.sandbox.blender_process import Progress, WorkerReply
     from simworlds.sandbox.launch import Launch
 
 OPEN_SECONDS = 120.0
@@ -127,7 +127,7 @@ class Supervisor:
         always_keep: bool = False,
         progress: Progress | None = None,
         cancelled: threading.Event | None = None,
-    ) -> Reply:
+    ) -> WorkerReply:
         """Runs a tool in Blender; ``what`` names it in errors.
 
         ``changes``: it may change the scene, so a checkpoint may be due, described by ``after``; ``always_keep``: take
@@ -136,7 +136,7 @@ class Supervisor:
         with self._lock:
             since = self.launch.usage.last_within_limits
 
-            def attempt() -> Reply:
+            def attempt() -> WorkerReply:
                 return self._running().call(
                     tool, arguments, timeout=timeout, what=what, progress=progress, cancelled=cancelled
                 )
@@ -304,7 +304,7 @@ class Supervisor:
         what = f"opening {checkpoint or 'an empty scene'}"
         process.call("open", arguments, timeout=OPEN_SECONDS, what=what, limited=False)
 
-    def _check_left(self, reply: Reply, what: str) -> None:
+    def _check_left(self, reply: WorkerReply, what: str) -> None:
         """Raises LeftBehind for a call that returned, but not whole."""
         if reply.left:
             assert self._process is not None

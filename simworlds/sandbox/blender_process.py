@@ -67,7 +67,7 @@ _NO_MEMORY = (
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class WorkerReply:
     """What a tool returned, what was printed meanwhile, and how many seconds it ran.
 
     ``left``: what it left behind and cannot be undone, in words.
@@ -153,7 +153,7 @@ class BlenderProcess:
         limited: bool = True,
         progress: Progress | None = None,
         cancelled: threading.Event | None = None,
-    ) -> Reply:
+    ) -> WorkerReply:
         """Runs one tool; ``timeout`` in seconds, ``what`` names it in errors. ``progress`` gets (done, total, text).
 
         ``limited``: Blender is killed if it exceeds the limits of disk, memory and threads.
@@ -197,7 +197,7 @@ class BlenderProcess:
             raise
         raise AssertionError("messages end with an exception")
 
-    def _reply(self, message: dict[str, Any]) -> Reply:
+    def _reply(self, message: dict[str, Any]) -> WorkerReply:
         """Raises Refusal, ToolBroke, and LookupError, TypeError or ValueError for a malformed reply."""
         if "missing" in message:
             raise MissingModule(str(message["missing"])[:_LONGEST_TEXT])
@@ -206,7 +206,9 @@ class BlenderProcess:
         if "failed" in message:
             raise ToolBroke(str(message["failed"])[:_LONGEST_TEXT], str(message["traceback"])[:_LONGEST_TEXT])
         left = tuple(str(item)[:_LONGEST_TEXT] for item in message["left"])
-        return Reply(message["value"], self._stdout.text, self._stderr.text, float(message["seconds"]), left)
+        return WorkerReply(
+            message["value"], self._stdout.text, self._stderr.text, float(message["seconds"]), left
+        )
 
     def _send(self, request: bytes, what: str, timeout: float) -> None:
         try:

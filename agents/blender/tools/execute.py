@@ -12,7 +12,7 @@ from simworlds.sandbox.errors import Untrustworthy
 
 if TYPE_CHECKING:
     from agents.blender.checkpoints import Checkpoint
-    from simworlds.sandbox.blender_process import Reply
+    from simworlds.sandbox.blender_process import WorkerReply
 
 LONGEST_CODE = 400_000
 _LONGEST_PRINT = 8_000
@@ -104,7 +104,9 @@ def _title(code: str) -> str:
     return first if len(lines) < 2 and len(first) <= _LONGEST_TITLE else f"{first[:_LONGEST_TITLE]} …"
 
 
-def _outcome(context: ToolContext, reply: Reply, title: str, before: Checkpoint | None) -> dict[str, Any]:
+def _outcome(
+    context: ToolContext, reply: WorkerReply, title: str, before: Checkpoint | None
+) -> dict[str, Any]:
     """The worker's report; the scene is restored if it is malformed, since its state is unknown."""
     try:
         return _Outcome.model_validate(reply.value, strict=True).model_dump()
@@ -123,7 +125,7 @@ def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     return f" To undo it{calls}: blender_load(checkpoint={before.number})."
 
 
-def _text(data: dict[str, Any], reply: Reply) -> str:
+def _text(data: dict[str, Any], reply: WorkerReply) -> str:
     parts: list[str] = []
     if error := data["error"]:
         parts.append(f"**{error['type']}**: {error['message']}")
@@ -167,6 +169,5 @@ TOOL = BlenderTool(
     DESCRIPTION,
     ExecuteArguments,
     run,
-    read_only=False,
     destructive=True,
 )

@@ -7,14 +7,14 @@ import secrets
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from agents.blender.saved_files import validated
 from agents.blender.sheets.contact_sheet import GAP
 from agents.blender.sheets.motion_reply import ActorMotion, Frame, MotionReply, PhaseMotion
 from agents.blender.sheets.motion_sheet_image import WIDTH, draw_sheets
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.preview_files import FOLDER
-from simworlds.sandbox.errors import ToolBroke
 from simworlds.sandbox.usage import remove
 
 if TYPE_CHECKING:
@@ -96,8 +96,8 @@ def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Re
     """Measures and draws. Raises BlenderError."""
     folder = context.blender.folder
     tiles = f".motion-{secrets.token_hex(4)}"
-    place = folder.workspace / tiles
-    place.mkdir()
+    tiles_folder = folder.workspace / tiles
+    tiles_folder.mkdir()
     try:
         reply = context.blender.call(
             "motion_sheet",
@@ -105,7 +105,7 @@ def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Re
                 "actors": arguments.actors,
                 "phases": [phase.model_dump() for phase in arguments.phases],
                 "frames": arguments.frames,
-                "folder": str(place),
+                "folder": str(tiles_folder),
                 "width": WIDTH,
                 "gap": GAP,
             },
@@ -113,15 +113,10 @@ def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Re
             progress=call.progress,
             cancelled=call.cancelled,
         )
-        try:
-            motion = MotionReply.model_validate(reply.value)
-        except ValidationError as error:
-            raise ToolBroke(
-                f"Blender's reply does not have the expected form: {error.error_count()} faults", str(error)
-            ) from error
+        motion = validated(MotionReply, reply.value)
         sheets = draw_sheets(motion, lambda name: folder.open_made(f"{tiles}/{name}"))
     finally:
-        remove(place)
+        remove(tiles_folder)
     pictures = tuple(SavedImage(png, _save(folder.root / FOLDER, png)) for png in sheets)
     data = _data(motion)
     data["pictures"] = [str(picture.path.relative_to(folder.root)) for picture in pictures]

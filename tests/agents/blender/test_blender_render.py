@@ -167,7 +167,7 @@ def test_rendering_leaves_the_scene_and_its_settings_as_they_were(session: LiveS
     assert session.run(_STATE) == before
 
 
-def test_cameras_on_markers_take_their_turns_unless_one_is_asked_for(session: LiveSession) -> None:
+def test_cameras_bound_to_markers_are_used_unless_one_is_named(session: LiveSession) -> None:
     session.run(
         SCENE + "high = bpy.data.objects.new('High', camera.data.copy())\n"
         "high.location, high.rotation_euler = (0, -10, 2), camera.rotation_euler\n"
@@ -189,7 +189,7 @@ def test_without_a_camera_it_says_how_to_add_one(session: LiveSession) -> None:
     assert session.use(TOOL, **SMALL).data["camera"] == "Camera"
 
 
-def test_a_camera_that_is_none_is_refused_with_the_names_of_those_there_are(session: LiveSession) -> None:
+def test_wrong_camera_is_refused_with_existing_names(session: LiveSession) -> None:
     session.run(SCENE)
     with pytest.raises(Refusal, match=r"'Cube' is not a camera.*'Camera'"):
         session.use(TOOL, camera="Cube")
@@ -197,7 +197,7 @@ def test_a_camera_that_is_none_is_refused_with_the_names_of_those_there_are(sess
         session.use(TOOL, camera="Nobody")
 
 
-def test_the_only_camera_is_taken_where_none_is_set_and_that_is_told(session: LiveSession) -> None:
+def test_uses_the_only_camera_with_a_note(session: LiveSession) -> None:
     session.run(SCENE + "scene.camera = None")
     found = session.use(TOOL, **SMALL)
     assert any("'Camera', the only camera" in note for note in found.data["notes"])
@@ -224,7 +224,7 @@ def test_what_does_not_fit_is_refused(session: LiveSession, given: dict[str, Any
         session.use(TOOL, **given)
 
 
-def test_a_size_follows_the_scene_and_what_is_asked(session: LiveSession) -> None:
+def test_size_follows_scene_and_arguments(session: LiveSession) -> None:
     session.run(SCENE + "scene.render.resolution_x, scene.render.resolution_y = 200, 100")
 
     def size(**given: int) -> tuple[int, int]:
@@ -245,7 +245,7 @@ def test_a_black_picture_is_told(session: LiveSession) -> None:
 # Films
 
 
-def test_a_film_moves_and_can_be_read_back(session: LiveSession) -> None:
+def test_video_moves_and_can_be_read_back(session: LiveSession) -> None:
     session.run(MOVING + "scene.render.fps = 12")
     progress: list[tuple[float, float | None]] = []
     call = Call(lambda done, total, text: progress.append((done, total)))
@@ -271,14 +271,14 @@ def test_a_film_moves_and_can_be_read_back(session: LiveSession) -> None:
     assert colour == pytest.approx([1, 0, 0], abs=0.06)
 
 
-def test_frames_that_are_skipped_are_held_in_the_film(session: LiveSession) -> None:
+def test_skipped_frames_are_repeated_in_the_video(session: LiveSession) -> None:
     session.run(MOVING)
     found = session.use(TOOL, **FILM, name="held", step=2)
     assert [*frame_files(session, "held")] == ["0001.png", "0003.png", "0005.png"]
     assert found.data["video"]["frames"] == 5
 
 
-def test_frames_that_are_there_are_kept_until_the_scene_or_a_setting_changes(session: LiveSession) -> None:
+def test_frames_are_reused_until_scene_or_settings_change(session: LiveSession) -> None:
     session.run(MOVING)
     session.use(TOOL, **FILM, frame_end=2, video=False)
     first = frame_files(session)
@@ -297,7 +297,7 @@ def test_frames_that_are_there_are_kept_until_the_scene_or_a_setting_changes(ses
     assert found.data["discarded"]["why"] == "samples 1 → 2"
 
 
-def test_a_frame_that_is_not_whole_is_made_again(session: LiveSession) -> None:
+def test_incomplete_frames_are_rendered_again(session: LiveSession) -> None:
     session.run(MOVING)
     session.use(TOOL, **FILM, name="torn", frame_end=2, video=False)
     torn = session.blender.folder.root / "frames" / "torn" / "0001.png"
@@ -308,7 +308,7 @@ def test_a_frame_that_is_not_whole_is_made_again(session: LiveSession) -> None:
     assert where(torn)[0] == pytest.approx(-2, abs=0.1)
 
 
-def test_given_up_it_stops_between_frames_and_goes_on_when_called_again(session: LiveSession) -> None:
+def test_cancelled_render_stops_between_frames_and_can_continue(session: LiveSession) -> None:
     session.run(MOVING)
     process = session.blender.pid
     found = session.use(TOOL, stopped_after(2), **FILM, name="cancelled")
@@ -325,7 +325,7 @@ def test_given_up_it_stops_between_frames_and_goes_on_when_called_again(session:
 # Simulations
 
 
-def test_what_is_not_baked_is_stepped_through_and_told(session: LiveSession) -> None:
+def test_unbaked_physics_is_stepped_and_reported(session: LiveSession) -> None:
     session.run(FALLING)
     still = session.blender.folder.root / "renders" / "still.png"
     found = session.use(TOOL, **SMALL, frame=16)
@@ -335,7 +335,7 @@ def test_what_is_not_baked_is_stepped_through_and_told(session: LiveSession) -> 
     assert where(still)[1] == pytest.approx(3 - 9.81 / 2 * (15 / 24) ** 2, abs=0.15)
 
 
-def test_frames_that_were_jumped_to_before_do_not_spoil_a_simulation(session: LiveSession) -> None:
+def test_earlier_jumps_do_not_spoil_a_simulation(session: LiveSession) -> None:
     session.run(
         SCENE + "scene.render.engine = 'BLENDER_EEVEE'\ncube.hide_render = True\n"
         "bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=2, location=(0, 0, 3))\n"
@@ -359,7 +359,7 @@ def test_frames_that_were_jumped_to_before_do_not_spoil_a_simulation(session: Li
 # What goes wrong
 
 
-def test_blender_lost_over_a_frame_is_started_again_and_the_film_is_the_same(
+def test_survives_a_lost_blender_with_the_same_frames(
     own_session: LiveSession,
 ) -> None:
     own_session.run(FALLING)
@@ -383,7 +383,7 @@ def test_blender_lost_over_a_frame_is_started_again_and_the_film_is_the_same(
     assert own_session.run("bpy.context.scene.frame_current") == 1
 
 
-def test_a_blender_that_dies_again_and_again_leaves_what_is_there(own_session: LiveSession) -> None:
+def test_repeated_crashes_keep_finished_frames(own_session: LiveSession) -> None:
     own_session.run(MOVING)
     over = threading.Event()
 
@@ -487,7 +487,7 @@ def test_a_first_frame_that_waited_does_not_make_samples_free() -> None:
     assert LEAST <= (budget.samples or 0) <= 100
 
 
-def test_samples_are_lowered_alike_for_all_frames() -> None:
+def test_all_frames_get_the_same_lowered_samples() -> None:
     clock = Clock(0.5, 0.05)
     made = paced(clock, 60, 256, 20)
     assert made == [made[0]] * 20
@@ -495,7 +495,7 @@ def test_samples_are_lowered_alike_for_all_frames() -> None:
     assert 45 < clock.now <= 63
 
 
-def test_frames_are_left_out_only_when_samples_can_sink_no_further() -> None:
+def test_frames_are_dropped_only_at_the_least_samples() -> None:
     clock = Clock(2.0, 0.1)
     made = paced(clock, 30, 256, 24)
     assert set(made) == {LEAST}
@@ -535,7 +535,7 @@ def test_large_pictures_are_shown_smaller_and_small_ones_as_they_are(tmp_path: P
     assert preview_png(small) == small.read_bytes()
 
 
-def test_pictures_that_show_nothing_or_do_not_change_are_told(tmp_path: Path) -> None:
+def test_reports_empty_or_unchanging_images(tmp_path: Path) -> None:
     paths = {name: tmp_path / f"{name}.png" for name in ("plain", "scene", "again")}
     Image.new("RGB", (20, 20), (90, 90, 90)).save(paths["plain"])
     scene = Image.linear_gradient("L")

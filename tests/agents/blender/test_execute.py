@@ -28,7 +28,7 @@ def test_names_do_not_outlive_a_call_but_the_scene_does(session: LiveSession) ->
     assert session.use(TOOL, code="kept").data["error"]["type"] == "NameError"
 
 
-def test_what_changed_is_told_by_kind(session: LiveSession) -> None:
+def test_reports_changes_by_kind(session: LiveSession) -> None:
     made = session.use(
         TOOL,
         code="bpy.ops.mesh.primitive_cube_add()\nbpy.context.object.modifiers.new('Smooth', 'SUBSURF')",
@@ -76,7 +76,7 @@ def test_an_error_names_what_to_look_up(session: LiveSession, code: str, ask: st
     assert session.use(TOOL, code=code).data["error"]["ask"].startswith(ask)
 
 
-def test_a_name_that_is_not_there_is_answered_with_those_that_are(session: LiveSession) -> None:
+def test_unknown_attribute_lists_existing_names(session: LiveSession) -> None:
     session.run("for name in ('Chair', 'Table'): bpy.data.objects.new(name, None)")
     found = session.use(TOOL, code="bpy.data.objects['Tabel']")
     assert found.data["error"]["there"] == ["Table", "Chair"]
@@ -89,7 +89,7 @@ def test_a_name_that_is_not_there_is_answered_with_those_that_are(session: LiveS
     assert socket.data["error"]["there"][0] == "Roughness"
 
 
-def test_an_error_whose_text_cannot_be_had_is_told(session: LiveSession) -> None:
+def test_reports_an_error_whose_text_fails(session: LiveSession) -> None:
     found = session.use(
         TOOL, code="class E(Exception):\n    def __str__(self): raise ValueError('no')\nraise E()"
     )
@@ -98,7 +98,7 @@ def test_an_error_whose_text_cannot_be_had_is_told(session: LiveSession) -> None
     assert "str() failed" in error["message"]
 
 
-def test_an_error_of_python_asks_the_documentation_nothing(session: LiveSession) -> None:
+def test_python_errors_are_not_looked_up(session: LiveSession) -> None:
     assert session.use(TOOL, code="1 / 0").data["error"]["ask"] == ""
 
 
@@ -138,13 +138,13 @@ def test_exit_is_an_error_like_any_other(session: LiveSession) -> None:
 
 
 @pytest.mark.parametrize("code", ["this is no code", "def f(:", "\x00", "return 1"])
-def test_what_is_no_code_is_told_with_its_line(session: LiveSession, code: str) -> None:
+def test_reports_the_line_of_a_syntax_error(session: LiveSession, code: str) -> None:
     found = session.use(TOOL, code=code)
     assert found.data["error"]["type"] in {"SyntaxError", "ValueError"}
     assert session.run("1 + 1") == 2
 
 
-def test_what_is_no_text_is_refused(session: LiveSession) -> None:
+def test_refuses_code_that_is_not_text(session: LiveSession) -> None:
     with pytest.raises(Refusal, match="code"):
         session.use(TOOL, code="\ud800")
 
@@ -186,7 +186,7 @@ def test_output_of_c_and_of_closed_streams_is_kept_apart(session: LiveSession) -
         "bpy.ops.wm.read_homefile(use_empty=True)",
     ],
 )
-def test_one_call_does_not_poison_the_next(session: LiveSession, poison: str) -> None:
+def test_one_call_does_not_affect_the_next(session: LiveSession, poison: str) -> None:
     session.use(TOOL, code=poison)
     found = session.use(
         TOOL, code="import json\nbpy.ops.mesh.primitive_cube_add()\nprint(len('abc'))\njson.dumps(1)"
@@ -196,12 +196,12 @@ def test_one_call_does_not_poison_the_next(session: LiveSession, poison: str) ->
     assert "Cube" in found.data["changed"]["objects"]["added"]
 
 
-def test_a_value_whose_repr_fails_is_told(session: LiveSession) -> None:
+def test_reports_a_value_whose_repr_fails(session: LiveSession) -> None:
     found = session.use(TOOL, code="class A:\n    def __repr__(self): raise ValueError('no')\nA()")
     assert "repr() failed" in found.data["value"]
 
 
-def test_numbers_that_are_none_reach_the_scene_as_they_are(session: LiveSession) -> None:
+def test_nan_and_infinity_reach_the_scene(session: LiveSession) -> None:
     found = session.use(
         TOOL, code="bpy.ops.mesh.primitive_cube_add()\nbpy.context.object.location.x = float('nan')"
     )

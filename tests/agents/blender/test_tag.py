@@ -82,7 +82,7 @@ def properties(session: LiveSession) -> dict[str, dict[str, Any]]:
     )
 
 
-def test_the_words_of_the_vocabulary_are_the_ones_that_can_be_said() -> None:
+def test_schema_offers_exactly_the_vocabulary() -> None:
     assert set(vocabulary.ROLES) == set(get_args(vocabulary.Role))
     assert set(vocabulary.DEFORMATION_KINDS) == set(get_args(vocabulary.DeformationKind))
     assert set(vocabulary.MOTION_KINDS) == set(get_args(vocabulary.MotionKind))
@@ -115,7 +115,7 @@ def test_tags_survive_a_fresh_process(make_session: Callable[[str], LiveSession]
     assert len(before) == 7
 
 
-def test_what_is_left_out_stays_and_null_removes(session: LiveSession) -> None:
+def test_omitted_tags_stay_and_null_removes(session: LiveSession) -> None:
     session.run(ROOM)
     session.use(TOOL, **TAGGED)
     found = session.use(
@@ -190,7 +190,7 @@ def test_a_root_moves_to_another_empty_in_one_call(session: LiveSession) -> None
         ({"objects": [{"name": "Leg", "contact_with": "Top"}]}, "valid list"),
     ],
 )
-def test_what_contradicts_the_protocol_is_refused_and_changes_nothing(
+def test_contradictions_are_refused_and_change_nothing(
     session: LiveSession, tags: dict[str, Any], because: str
 ) -> None:
     session.run(ROOM)
@@ -231,7 +231,7 @@ def test_one_wrong_target_leaves_the_right_ones_untouched(session: LiveSession) 
         ("put(bpy.data.objects['Leg'], room)", TAGGED, ["C3: 'Leg' is in no object"]),
     ],
 )  # fmt: skip
-def test_what_the_protocol_misses_is_told(
+def test_reports_what_the_protocol_still_requires(
     session: LiveSession, change: str, tags: dict[str, Any], missing: list[str]
 ) -> None:
     session.run(ROOM + change)
@@ -251,7 +251,7 @@ def test_warnings_of_a_large_scene_are_bounded(session: LiveSession) -> None:
     assert found[-1].startswith("… and 101 more")
 
 
-def test_what_code_has_put_there_is_told_and_can_be_put_right(session: LiveSession) -> None:
+def test_reports_wrong_tags_set_by_code(session: LiveSession) -> None:
     session.run(
         ROOM
         + "for name, value in (('Leg', 'Slap'), ('Top', 7)): bpy.data.objects[name]['contact_with'] = value"

@@ -111,7 +111,7 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
     )
 
 
-def test_what_is_no_blender_is_said_and_exits_with_1(tmp_path: Path) -> None:
+def test_wrong_executable_exits_with_1(tmp_path: Path) -> None:
     done = run("--blender-exe", "/bin/true", home=tmp_path, COLUMNS="200")
     assert done.returncode == 1
     assert "✗  Blender    No Blender was found: /bin/true is not Blender" in done.stdout
@@ -167,7 +167,7 @@ def test_the_packages_are_those_that_the_readme_installs() -> None:
     assert set(listed) <= set(doctor_checks.PACKAGES.values())
 
 
-def test_a_sandbox_that_does_not_hold_what_it_says_is_found_out(tmp_path: Path) -> None:
+def test_detects_a_sandbox_that_does_not_hold(tmp_path: Path) -> None:
     """Here, one that only limits amounts passes itself off as one that closes files."""
     works("landlock")
     open_one, told = best_sandbox("none"), best_sandbox("landlock")
@@ -193,7 +193,7 @@ def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest
     assert other.text == f"no base for Blender 3.4, only for {found.data['wanted']}"
 
 
-def test_an_installed_blender_is_looked_at(tmp_path: Path) -> None:
+def test_checks_an_installed_blender(tmp_path: Path) -> None:
     if not DEBIANS.exists():
         pytest.skip(f"there is no {DEBIANS}")
     done = run("--json", home=tmp_path, BLENDER_EXE=str(DEBIANS))
@@ -205,7 +205,7 @@ def test_an_installed_blender_is_looked_at(tmp_path: Path) -> None:
     assert found["Fluids"]["state"] == "good"
 
 
-def test_checks_that_are_given_up_end_blender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stopping_the_checks_ends_blender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
     each = doctor_checks.checks(doctor_checks.BlenderChoice())

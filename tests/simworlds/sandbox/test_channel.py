@@ -53,7 +53,7 @@ def test_messages_arrive_whole_and_in_order_however_they_are_cut() -> None:
 
 
 @pytest.mark.parametrize("place", [0, 3, 4, 19, 20, 51, 52, -1])
-def test_no_bit_of_a_frame_can_be_turned(place: int) -> None:
+def test_detects_any_flipped_bit(place: int) -> None:
     encode, decoder = pair()
     frame = bytearray(encode({"value": "what Blender said"}))
     frame[place] ^= 1
@@ -61,20 +61,20 @@ def test_no_bit_of_a_frame_can_be_turned(place: int) -> None:
         decoder.feed(bytes(frame))
 
 
-def test_bytes_of_somebody_else_are_known_before_a_body_is_waited_for() -> None:
+def test_rejects_foreign_bytes_at_the_head() -> None:
     _, decoder = pair()
     with pytest.raises(ForgedFrame):
         decoder.feed(struct.pack(">I", 1_000_000) + b"\0" * 16)
 
 
-def test_fewer_bytes_than_a_head_spoil_the_next_frame() -> None:
+def test_rejects_a_frame_after_stray_bytes() -> None:
     encode, decoder = pair()
     assert decoder.feed(b"x") == []
     with pytest.raises(ForgedFrame):
         decoder.feed(encode({"value": 1}))
 
 
-def test_a_frame_counts_once_and_in_its_place() -> None:
+def test_rejects_repeated_and_reordered_frames() -> None:
     encode, decoder = pair()
     first, second = encode({"number": 1}), encode({"number": 2})
     assert decoder.feed(first) == [{"number": 1}]
@@ -85,12 +85,12 @@ def test_a_frame_counts_once_and_in_its_place() -> None:
         fresh.feed(second)
 
 
-def test_what_one_side_said_cannot_be_sent_back_to_it() -> None:
+def test_rejects_reflected_frames() -> None:
     with pytest.raises(ForgedFrame):
         Decoder(KEY, SUPERVISOR).feed(Encoder(KEY, WORKER)({"value": 1}))
 
 
-def test_without_the_key_nothing_can_be_said() -> None:
+def test_rejects_frames_with_another_key() -> None:
     _, decoder = pair()
     with pytest.raises(ForgedFrame):
         decoder.feed(Encoder(bytes(32), WORKER)({"value": 1}))
@@ -101,24 +101,24 @@ def test_without_the_key_nothing_can_be_said() -> None:
     [b"[1]", b'"text"', b"{", b"\xff\xfe", b"[" * 200_000],
     ids=["list", "text", "cut", "bytes", "deep"],
 )
-def test_a_signed_body_that_is_no_message_is_refused(body: bytes) -> None:
+def test_rejects_a_signed_body_that_is_not_a_message(body: bytes) -> None:
     _, decoder = pair()
     with pytest.raises(ForgedFrame, match="does not hold"):
         decoder.feed(by_hand(body))
 
 
-def test_the_format_is_the_one_that_is_written_down() -> None:
+def test_frame_format_is_as_documented() -> None:
     encode, _ = pair()
     assert encode({"value": 1}) == by_hand(b'{"value":1}')
 
 
-def test_a_message_too_large_is_told_of_and_spoils_nothing() -> None:
+def test_too_large_message_raises_and_changes_nothing() -> None:
     encode, decoder = pair()
     with pytest.raises(channel.TooLarge, match="the limit is"):
         encode({"text": "x" * (LARGEST_BODY + 1)})
     assert decoder.feed(encode({"value": 1})) == [{"value": 1}]
 
 
-def test_what_json_cannot_say_is_shown_as_text() -> None:
+def test_encodes_other_objects_as_text() -> None:
     encode, decoder = pair()
     assert decoder.feed(encode({"value": {1, 2}, "text": "\ud800"})) == [{"value": "{1, 2}", "text": "?"}]

@@ -79,7 +79,7 @@ def answer(
         *("io_uring_setup", "bpf", "keyctl", "userfaultfd", "perf_event_open", "setrlimit", "seccomp"),
     ],
 )
-def test_what_reaches_out_of_the_process_is_refused(machine: str, call: str) -> None:
+def test_refuses_calls_that_reach_other_processes(machine: str, call: str) -> None:
     assert answer(machine, call, files=False) == REFUSED
 
 
@@ -123,7 +123,7 @@ def test_limits_can_be_read_but_not_set(machine: str) -> None:
         ("ioctl", (3, 0x5421), (3, 0x8901)),
     ],
 )
-def test_single_uses_of_useful_calls_are_refused(
+def test_refuses_dangerous_arguments_of_allowed_calls(
     machine: str, call: str, harmless: tuple[int, ...], harmful: tuple[int, ...]
 ) -> None:
     assert answer(machine, call, *harmless) == ALLOWED
@@ -131,7 +131,7 @@ def test_single_uses_of_useful_calls_are_refused(
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-def test_what_landlock_leaves_open_is_closed_beside_it_and_only_there(machine: str) -> None:
+def test_closes_what_landlock_leaves_open_only_with_landlock(machine: str) -> None:
     for call, beside_landlock in (
         ("truncate", REFUSED),
         ("fchownat", REFUSED),
@@ -165,12 +165,12 @@ def test_calls_by_another_architectures_numbers_are_not_answered(machine: str) -
     [(0, 63), (1, 64), (9, 222), (59, 221), (202, 98), (231, 94)],
     ids=["read", "write", "mmap", "execve", "futex", "exit_group"],
 )
-def test_what_every_program_does_is_allowed(column: int, numbers: tuple[int, int]) -> None:
+def test_allows_ordinary_calls(column: int, numbers: tuple[int, int]) -> None:
     machine = next(name for name, row in ARCHITECTURES.items() if row[0] == column)
     assert answer(machine, numbers[column]) == ALLOWED
 
 
-def test_no_number_stands_for_two_calls() -> None:
+def test_call_numbers_are_unique() -> None:
     for column in (0, 1):
         numbers = [both[column] for both in NUMBERS.values() if both[column] is not None]
         assert len(numbers) == len(set(numbers))
@@ -211,7 +211,7 @@ def confined(code: str, **rights: object) -> subprocess.CompletedProcess[str]:
 
 
 @linux
-def test_limits_hold_and_are_errors_not_deaths(tmp_path: Path) -> None:
+def test_exceeding_a_limit_is_an_error(tmp_path: Path) -> None:
     code = (
         "try: bytearray(1 << 30)\nexcept MemoryError: print('memory')\n"
         f"file = open({str(tmp_path / 'file')!r}, 'wb', buffering=0)\n"
@@ -223,7 +223,7 @@ def test_limits_hold_and_are_errors_not_deaths(tmp_path: Path) -> None:
 
 
 @linux
-def test_a_limit_above_what_one_may_have_is_that_limit() -> None:
+def test_limits_are_capped_at_the_hard_limit() -> None:
     words = (
         f"ulimit -f 8; exec {sys.executable} -I -S {confine_self.__file__} \"$1\" -- /bin/sh -c 'ulimit -f'"
     )
@@ -242,7 +242,7 @@ def test_capabilities_are_gone_for_good() -> None:
 
 
 @linux
-def test_it_is_the_first_that_the_kernel_takes_for_its_memory() -> None:
+def test_is_killed_first_when_memory_runs_out() -> None:
     assert confined("print(open('/proc/self/oom_score_adj').read())").stdout.strip() == "1000"
 
 
@@ -280,7 +280,7 @@ os.utime(path, (1, 1))
 
 
 @linux
-def test_what_cannot_be_confined_does_not_run(tmp_path: Path) -> None:
+def test_does_not_run_unconfined(tmp_path: Path) -> None:
     done = confined("print('ran')", file_size="many")
     assert done.returncode != 0
     assert "ran" not in done.stdout

@@ -116,7 +116,7 @@ def test_an_executable_of_another_version_is_refused(tmp_path: Path) -> None:
         find_runtime("5.1", home=tmp_path, blender_exe=executable)
 
 
-def test_a_folder_with_the_executable_in_it_will_do(tmp_path: Path) -> None:
+def test_accepts_the_folder_of_an_executable(tmp_path: Path) -> None:
     executable = fake_blender(tmp_path, "echo 'Blender 4.2.3 LTS'")
     assert find_runtime("4.2", home=tmp_path, blender_exe=tmp_path).executable == executable
 
@@ -125,22 +125,22 @@ def test_a_folder_with_the_executable_in_it_will_do(tmp_path: Path) -> None:
     ("body", "message"),
     [("echo hello", "is not Blender"), ("exit 7", "is not Blender")],
 )
-def test_a_program_that_is_no_blender_is_named(tmp_path: Path, body: str, message: str) -> None:
+def test_names_a_program_that_is_not_blender(tmp_path: Path, body: str, message: str) -> None:
     with pytest.raises(RuntimeMissing, match=message):
         find_runtime("5.1", home=tmp_path, blender_exe=fake_blender(tmp_path, body))
 
 
-def test_an_executable_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_names_a_missing_executable(tmp_path: Path) -> None:
     with pytest.raises(RuntimeMissing, match=r"there is no Blender executable at .*nowhere"):
         find_runtime("5.1", home=tmp_path, blender_exe=tmp_path / "nowhere")
 
 
-def test_a_version_without_a_package_is_answered_with_those_that_have_one(tmp_path: Path) -> None:
+def test_unknown_version_lists_versions_with_a_package(tmp_path: Path) -> None:
     with pytest.raises(RuntimeMissing, match=r"(?s)2\.79.*4\.2.*5\.2.*BLENDER_EXE"):
         find_runtime("2.79", home=tmp_path)
 
 
-def test_what_is_no_version_is_refused(tmp_path: Path) -> None:
+def test_refuses_an_invalid_version(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="is not a Blender version"):
         find_runtime("latest; rm -rf", home=tmp_path)
 
@@ -233,7 +233,7 @@ def test_a_missing_system_library_is_explained(tmp_path: Path) -> None:
         run_script(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")
 
 
-def test_output_that_is_no_text_does_no_harm(tmp_path: Path) -> None:
+def test_survives_output_that_is_not_text(tmp_path: Path) -> None:
     text = "import os, sys; os.write(1, bytes(range(256))); sys.exit(5)"
     with pytest.raises(ProgramFailed, match="exit code 5"):
         run_script(HERE, script(tmp_path, text), [], timeout=60, log=tmp_path / "run.log")

@@ -302,7 +302,7 @@ def test_fluids_lie_in_the_workspace_wherever_they_were_to_lie(session: LiveSess
     ) == ["//", "//"]
 
 
-def test_bakes_of_long_ago_are_removed(session: LiveSession) -> None:
+def test_old_bakes_are_removed(session: LiveSession) -> None:
     session.run(f"{PARTS}\ntank('Vat')")
     for _ in range(5):
         session.use(TOOL, frame_end=2)
@@ -333,7 +333,7 @@ def test_edit_mode_is_left_for_a_bake(session: LiveSession) -> None:
     assert one(found)["moved"] > 0.5
 
 
-def test_a_bake_given_up_half_way_leaves_the_last_one_and_blender_well(session: LiveSession) -> None:
+def test_cancelled_bake_keeps_the_last_one(session: LiveSession) -> None:
     session.run(f"{PARTS}\ntank()")
     session.use(TOOL, frame_end=6)
     read = f"{PARTS}\nlowest('Tank', 2), lowest('Tank', 6)"

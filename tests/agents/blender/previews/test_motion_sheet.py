@@ -225,7 +225,7 @@ def test_an_object_collection_moves_as_one_and_goes_by_its_name(session: LiveSes
     assert motion["contacts"][0]["frames"][0][0] >= 48
 
 
-def test_an_empty_is_measured_by_what_hangs_on_it_or_by_itself(session: LiveSession) -> None:
+def test_empty_is_measured_by_its_children_or_itself(session: LiveSession) -> None:
     session.run(
         SLIDE + "e = bpy.data.objects.new('Root', None)\ns.collection.objects.link(e)\no.parent = e\n"
         "f = bpy.data.objects.new('Lone', None)\ns.collection.objects.link(f)\n"
@@ -311,7 +311,7 @@ def test_a_fluid_that_only_a_bake_brings_is_told(session: LiveSession) -> None:
     assert any("Not baked: liquid of 'Tank'" in note for note in tank["notes"])
 
 
-def test_motion_that_is_not_the_same_twice_is_told(session: LiveSession) -> None:
+def test_reports_motion_that_is_not_reproducible(session: LiveSession) -> None:
     session.run(
         SLIDE + "o.animation_data_clear()\ncalls = [0]\ndef wander(scene, graph=None):\n    calls[0] += 1\n"
         "    bpy.data.objects['Sledge'].location.x = calls[0]\n"
@@ -321,13 +321,13 @@ def test_motion_that_is_not_the_same_twice_is_told(session: LiveSession) -> None
     assert any("not repeatable" in note for note in notes)
 
 
-def test_what_cannot_be_seen_is_told(session: LiveSession) -> None:
+def test_reports_what_cannot_be_seen(session: LiveSession) -> None:
     session.run(SLIDE + "o.hide_render = True")
     notes = actor(session.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")["notes"]
     assert notes == ["Not in the pictures: 'Sledge': hidden from renders."]
 
 
-def test_places_that_are_no_numbers_are_no_places(session: LiveSession) -> None:
+def test_ignores_positions_that_are_not_finite(session: LiveSession) -> None:
     session.run(SLIDE + "o.animation_data_clear()\no.location.x = float('nan')")
     found = actor(session.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")
     assert not found["phases"][0]["present"]
@@ -392,7 +392,7 @@ def test_what_is_not_in_the_view_layer_is_refused(session: LiveSession) -> None:
         session.use(TOOL, actors=["Attic"])
 
 
-def test_an_answer_that_executed_code_forged_is_not_believed(own_session: LiveSession) -> None:
+def test_rejects_a_forged_reply(own_session: LiveSession) -> None:
     own_session.run(FALL)
     forged = "motion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}"
     own_session.run(f"from simworlds_worker.motion import motion_sheet\n{forged}")

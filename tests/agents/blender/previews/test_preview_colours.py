@@ -89,7 +89,7 @@ def test_a_material_of_the_object_wins_over_that_of_the_mesh(session: LiveSessio
     assert is_coloured(Views(session, "mesh", "Crate").middle("front"), "blue")
 
 
-def test_a_picture_is_laid_on_as_its_coordinates_say(session: LiveSession) -> None:
+def test_textures_follow_uv_coordinates(session: LiveSession) -> None:
     build(
         session,
         "bpy.ops.mesh.primitive_plane_add(size=2); o = paint(bpy.context.object, 1, 1, 1)\n"

@@ -93,7 +93,7 @@ box('Lost', (0, 0, -700))
 """
 
 
-def test_ground_sky_and_what_is_lost_do_not_make_dots_of_the_rest(session: LiveSession) -> None:
+def test_distant_objects_do_not_shrink_the_rest(session: LiveSession) -> None:
     build(session, CROWD)
     views = Views(session, "scene")
     assert views.extent == pytest.approx([6, 1, 1])
@@ -115,7 +115,7 @@ for frame in range(1, 6): bpy.context.scene.frame_set(frame)
 """
 
 
-def test_what_copies_are_made_of_may_stand_aside(session: LiveSession) -> None:
+def test_instance_sources_do_not_enlarge_the_view(session: LiveSession) -> None:
     build(session, RAIN)
     views = Views(session, "scene")
     assert views.extent[0] == pytest.approx(4)
@@ -151,7 +151,7 @@ box('Stone', (.3, 0, .3), (.3, .3, .3), (.8, 0, 0))
 """
 
 
-def test_a_liquid_is_its_surface_and_no_room(own_session: LiveSession) -> None:
+def test_liquid_is_shown_and_not_cut_open(own_session: LiveSession) -> None:
     build(own_session, POOL)
     own_session.use(bake.TOOL, frame_start=1, frame_end=3)
     views = Views(own_session, "scene", frame=2)

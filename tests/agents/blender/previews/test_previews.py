@@ -50,7 +50,7 @@ def test_the_views_come_one_after_the_other_with_progress(session: LiveSession) 
 # What is shown
 
 
-def test_each_side_shows_what_is_there_as_large_as_itis_coloured(session: LiveSession) -> None:
+def test_each_view_shows_objects_at_their_size(session: LiveSession) -> None:
     build(session, "box('Crate', place=(40, -7, 3), size=(1, 2, 3))")
     views = Views(session, "mesh", "Crate")
     assert views.seen("front") == pytest.approx((1, 3), abs=0.04)
@@ -177,7 +177,7 @@ def test_another_frame_is_shown_and_left_again(session: LiveSession) -> None:
     assert session.run("bpy.context.scene.frame_current, bpy.context.scene.frame_subframe") == (3, 0.25)
 
 
-def test_what_was_moved_and_not_keyed_stays_where_itis_coloured(session: LiveSession) -> None:
+def test_unkeyed_changes_stay(session: LiveSession) -> None:
     build(session, "o = box('Lift'); o.keyframe_insert('location', frame=1); o.location = (7, 0, 0)")
     Views(session, "mesh", "Lift", frame=5)
     assert session.run("tuple(bpy.data.objects['Lift'].location)") == (7, 0, 0)
@@ -197,7 +197,7 @@ graph = bpy.context.evaluated_depsgraph_get()
 """
 
 
-def test_a_simulation_is_shown_where_it_stands_and_goes_on_as_if_nobody_had_looked(
+def test_preview_does_not_disturb_a_simulation(
     session: LiveSession,
 ) -> None:
     build(session, DRAPE)
@@ -260,7 +260,7 @@ def test_an_empty_scene_is_refused(session: LiveSession) -> None:
         session.use(previews.SCENE_LAYOUT)
 
 
-def test_one_broken_thing_does_not_hide_the_others(session: LiveSession) -> None:
+def test_one_broken_object_does_not_hide_others(session: LiveSession) -> None:
     build(
         session,
         "box('Good'); box('Bad').location.x = float('nan'); box('Shut', (3, 0, 0)).hide_set(True)\n"

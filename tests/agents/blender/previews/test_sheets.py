@@ -113,7 +113,7 @@ def test_a_picture_is_read_over_a_colour() -> None:
 
 
 @pytest.mark.parametrize("data", [b"", b"no picture", b"\x89PNG\r\n\x1a\n" + b"\0" * 100])
-def test_what_is_no_picture_is_refused(data: bytes) -> None:
+def test_refuses_files_that_are_not_images(data: bytes) -> None:
     with pytest.raises(Refusal, match="cannot be read"):
         contact_sheet.read_png(io.BytesIO(data))
 
@@ -137,7 +137,7 @@ def test_a_round_length_is_the_largest_that_fits(longest: float, length: float) 
     ("metres", "said"),
     [(0, "0 m"), (0.2, "0.2 m"), (1.0, "1 m"), (100.0, "100 m"), (2.345, "2.35 m"), (0.01234, "0.0123 m")],
 )
-def test_lengths_are_told_in_metres(metres: float, said: str) -> None:
+def test_formats_lengths_in_metres(metres: float, said: str) -> None:
     assert format_length(metres) == said
 
 

@@ -125,7 +125,7 @@ async def test_two_clients_at_once_each_have_a_scene_of_their_own(server: OverHt
         assert len(folders) == 2
 
 
-async def test_too_many_clients_are_told_so_and_let_in_when_one_has_left(server: OverHttp) -> None:
+async def test_refuses_clients_beyond_the_limit_until_one_leaves(server: OverHttp) -> None:
     async with Client(server.url) as stays, Client(server.url) as waits:
         async with Client(server.url) as leaves:
             assert [await value(client, "1") for client in (stays, leaves)] == ["1", "1"]
@@ -145,7 +145,7 @@ async def test_a_client_that_ends_its_session_leaves_no_blender_behind(server: O
     assert have_ended(its_own)
 
 
-async def test_a_client_that_leaves_while_blender_works_leaves_none_behind(server: OverHttp) -> None:
+async def test_closing_a_busy_session_ends_its_blender(server: OverHttp) -> None:
     async with httpx2.AsyncClient(timeout=60) as http, anyio.create_task_group() as calls:
         session = await Session.begin(http, server.url)
         before = blenders(server.process.pid)
@@ -164,7 +164,7 @@ async def test_a_cancelled_call_is_undone(server: OverHttp) -> None:
         assert await value(client, "bpy.context.scene['kept']") == "1"
 
 
-async def test_an_idle_blender_is_closed_and_the_session_goes_on_where_it_stood(home: Path) -> None:
+async def test_closes_an_idle_blender_and_continues_its_run_later(home: Path) -> None:
     with OverHttp(home, "--idle", "0.01") as server:
         async with Client(server.url) as client:
             await run(client, "bpy.ops.mesh.primitive_cone_add()\nbpy.context.object.name = 'Left'")
@@ -174,7 +174,7 @@ async def test_an_idle_blender_is_closed_and_the_session_goes_on_where_it_stood(
             assert blenders(server.process.pid) - first
 
 
-async def test_a_folder_that_was_named_is_one_clients(home: Path, tmp_path: Path) -> None:
+async def test_named_run_folder_serves_one_client(home: Path, tmp_path: Path) -> None:
     with OverHttp(home, "--run", str(tmp_path / "run")) as server:
         async with Client(server.url) as second:
             async with Client(server.url) as first:
@@ -188,14 +188,14 @@ async def test_a_folder_that_was_named_is_one_clients(home: Path, tmp_path: Path
 # Who is let in
 
 
-def test_without_a_session_nothing_is_done(server: OverHttp) -> None:
+def test_requests_without_a_session_are_refused(server: OverHttp) -> None:
     ask = {"jsonrpc": "2.0", "id": 1, "method": "tools/call", "params": {"name": "blender_execute"}}
     for headers in ({}, {"Mcp-Session-Id": "0" * 32}):
         answer = httpx2.post(server.url, json=ask, headers={**ACCEPT, **headers})
         assert answer.status_code in {400, 404}
 
 
-async def test_a_client_that_speaks_only_the_protocol_without_sessions_learns_which_are_served(
+async def test_sessionless_protocol_is_refused_with_supported_versions(
     server: OverHttp,
 ) -> None:
     async with Client(server.url, mode="2026-07-28") as client:
@@ -212,7 +212,7 @@ async def test_a_client_that_speaks_only_the_protocol_without_sessions_learns_wh
         ({"Origin": "http://localhost:3000"}, 200),
     ],
 )
-def test_foreign_names_and_pages_are_kept_out(server: OverHttp, headers: dict[str, str], status: int) -> None:
+def test_refuses_foreign_hosts_and_origins(server: OverHttp, headers: dict[str, str], status: int) -> None:
     answer = httpx2.post(server.url, json=HELLO, headers={**ACCEPT, **headers})
     assert answer.status_code == status
     if status == 200:
@@ -220,7 +220,7 @@ def test_foreign_names_and_pages_are_kept_out(server: OverHttp, headers: dict[st
         assert httpx2.delete(server.url, headers={**ACCEPT, **session}).status_code == 200
 
 
-async def test_with_a_token_only_who_sends_it_is_let_in(home: Path) -> None:
+async def test_requires_the_token(home: Path) -> None:
     with OverHttp(home, "--host", "0.0.0.0", SIMWORLDS_TOKEN=TOKEN) as server:
         url = server.url.replace("0.0.0.0", "127.0.0.1")
         for wrong in ({}, {"Authorization": f"Bearer {TOKEN}x"}):
@@ -235,7 +235,7 @@ async def test_with_a_token_only_who_sends_it_is_let_in(home: Path) -> None:
 # The end
 
 
-async def test_a_signal_ends_the_server_and_its_blender_though_it_is_busy(home: Path, tmp_path: Path) -> None:
+async def test_signal_ends_the_server_and_a_busy_blender(home: Path, tmp_path: Path) -> None:
     with OverHttp(home, "--run", str(tmp_path)) as server:
         async with httpx2.AsyncClient(timeout=60) as http, anyio.create_task_group() as calls:
             session = await Session.begin(http, server.url)

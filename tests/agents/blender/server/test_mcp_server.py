@@ -94,7 +94,7 @@ async def test_every_argument_is_described_to_the_model(client: Client) -> None:
         assert "$ref" not in json.dumps(tool.input_schema)
 
 
-async def test_hints_tell_what_a_call_may_do(client: Client) -> None:
+async def test_annotations_say_what_a_call_may_do(client: Client) -> None:
     listed = {tool.name: tool for tool in (await client.list_tools()).tools}
     for tool in TOOLS:
         hints = listed[tool.name].annotations
@@ -105,7 +105,7 @@ async def test_hints_tell_what_a_call_may_do(client: Client) -> None:
     assert listed["blender_execute"].annotations.destructive_hint  # pyright: ignore[reportOptionalMemberAccess]
 
 
-async def test_the_handshake_teaches_tools_that_exist(client: Client) -> None:
+async def test_instructions_name_only_existing_tools(client: Client) -> None:
     listed = {tool.name for tool in (await client.list_tools()).tools}
     assert client.instructions is not None
     named = {
@@ -166,7 +166,7 @@ async def test_an_unknown_tool_is_refused_with_those_that_there_are(client: Clie
         await client.call_tool("blender_explode", {})
 
 
-async def test_blender_that_dies_is_told_with_its_last_words_and_works_again(client: Client) -> None:
+async def test_reports_a_crash_with_its_output_and_restarts(client: Client) -> None:
     answer = await run(client, "import os\nprint('last words')\nos._exit(7)")
     assert answer.is_error
     assert "exit code 7" in said(answer)
@@ -205,7 +205,7 @@ async def test_a_call_that_is_cancelled_is_undone_and_the_next_one_works(client:
     assert time.monotonic() - began < 60  # far from the deadline of 100 s
 
 
-async def test_what_waits_behind_a_cancelled_call_is_not_lost_and_what_is_cancelled_never_runs(
+async def test_cancelling_a_waiting_call_affects_no_other_call(
     client: Client,
 ) -> None:
     await run(client, "bpy.context.scene['ran'] = ''")
@@ -241,7 +241,7 @@ async def test_resources_of_the_documentation_are_passed_on(client: Client) -> N
         await client.read_resource("blender://5.1/nothing")
 
 
-async def test_progress_reaches_who_asks_for_it_but_not_more_than_a_few_times_a_second(
+async def test_progress_is_reported_at_a_limited_rate(
     client: Client,
 ) -> None:
     await run(
@@ -310,7 +310,7 @@ def test_a_documentation_server_that_was_killed_is_started_again(home: Path) -> 
 # Beginning and end
 
 
-def test_at_the_start_it_says_what_blender_may_do_which_holds(home: Path, tmp_path: Path) -> None:
+def test_describes_its_sandbox_truthfully_at_start(home: Path, tmp_path: Path) -> None:
     for name in ("assets", "private"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "note.txt").write_text(name)
@@ -345,7 +345,7 @@ def test_a_run_goes_on_in_the_next_server(home: Path, tmp_path: Path) -> None:
         assert wire.run("[thing.name for thing in bpy.data.objects]") == "['Ring']"
 
 
-def test_a_client_that_goes_away_has_heard_only_messages_and_leaves_no_process_behind(home: Path) -> None:
+def test_stdout_has_only_messages_and_no_process_stays(home: Path) -> None:
     with ByHand(home) as wire:
         for _ in range(5):
             assert (
@@ -361,7 +361,7 @@ def test_a_client_that_goes_away_has_heard_only_messages_and_leaves_no_process_b
     assert place.is_dir(), "the run is kept"
 
 
-def test_a_run_that_nobody_has_used_leaves_no_folder(tmp_path: Path) -> None:
+def test_unused_run_leaves_no_folder(tmp_path: Path) -> None:
     with ByHand(tmp_path) as wire:
         wire.hang_up()
         assert wire.process.wait(10) == 0
@@ -398,7 +398,7 @@ def test_a_signal_leaves_no_process_behind_though_blender_is_busy(home: Path, nu
         (["--http", "--host", "0.0.0.0"], "SIMWORLDS_TOKEN"),
     ],
 )
-def test_what_cannot_be_served_is_told_at_once(tmp_path: Path, options: list[str], why: str) -> None:
+def test_reports_startup_errors_at_once(tmp_path: Path, options: list[str], why: str) -> None:
     done = subprocess.run(
         [*COMMAND, *options],
         env=environment(tmp_path),

@@ -69,7 +69,7 @@ async def test_every_prompt_ends_with_what_the_user_asked_for(client: Client, pr
     assert wanted in told[-400:]
 
 
-async def test_to_make_a_scene_all_roles_and_stages_are_told(client: Client) -> None:
+async def test_make_scene_prompt_has_all_roles_and_stages(client: Client) -> None:
     told = await text(client, "make_scene", prompt="A ball rolls off a shelf.")
     assert told.startswith(team_text())
     for role in ("planner", "coder", "reviewer", "final_reviewer"):
@@ -78,7 +78,7 @@ async def test_to_make_a_scene_all_roles_and_stages_are_told(client: Client) -> 
         assert stage_text(stage) in told
 
 
-async def test_to_edit_a_scene_the_file_and_what_is_left_alone_are_told(client: Client) -> None:
+async def test_edit_scene_prompt_names_the_file_and_what_stays(client: Client) -> None:
     told = await text(client, "edit_scene", instruction="Make the ball blue.", file="room.blend")
     assert told.startswith(team_text(edit=True))
     assert role_text("coder", edit=True) in told
@@ -106,7 +106,7 @@ async def test_each_stage_can_be_built_and_reviewed_by_itself(client: Client, st
         ("stage", {"stage": "baking"}, "There is no stage 'baking'. Available: modeling, uv"),
     ],
 )
-async def test_what_cannot_be_had_is_refused_with_what_can(
+async def test_unknown_prompts_and_arguments_are_refused_with_the_valid_ones(
     client: Client, name: str, arguments: dict[str, str], reason: str
 ) -> None:
     with pytest.raises(MCPError, match=reason):
@@ -137,13 +137,13 @@ async def test_a_plan_is_checked(client: Client) -> None:
     assert empty.is_error
 
 
-async def test_the_plan_that_is_sound_is_one_that_the_verifier_takes(client: Client) -> None:
+async def test_valid_plan_is_accepted_by_the_verifier(client: Client) -> None:
     answer = await client.call_tool("blender_verify", {"plan": small_plan(), "rules": ["R1"]})
     assert answer.structured_content is not None
     assert {finding["rule"] for finding in answer.structured_content["findings"]} == {"R1"}
 
 
-async def test_a_server_for_a_caller_with_roles_of_its_own_has_none_of_this(tmp_path: Path) -> None:
+async def test_server_without_team_offers_no_prompts_or_plan_check(tmp_path: Path) -> None:
     blender_sessions = BlenderSessions(SessionSetup(best_sandbox(), run=tmp_path / "run"))
     async with Client(served.make_server(blender_sessions, DocsClient())) as connected:
         assert connected.server_capabilities.prompts is None

@@ -25,7 +25,7 @@ def data(answer: CallToolResult) -> dict[str, Any]:
     return answer.structured_content
 
 
-def test_of_a_sound_plan_it_is_told_what_is_in_it() -> None:
+def test_summarises_a_valid_plan() -> None:
     answer = plan_check.answer({"plan": small_plan()})
     assert not answer.is_error
     assert said(answer).splitlines() == [
@@ -45,7 +45,7 @@ def _plan(**more: Any) -> ScenePlan:
     return ScenePlan.model_validate(small_plan() | more)
 
 
-def test_rules_of_a_stage_that_is_left_out_begin_with_the_next() -> None:
+def test_rules_of_a_skipped_stage_apply_from_the_next_one() -> None:
     still = _plan(
         motion={"phases": []},
         render={"kind": "still"},
@@ -94,7 +94,7 @@ def test_a_plan_in_a_string_is_read_too() -> None:
 
 
 @pytest.mark.parametrize("plan", ["", "{", "[1]", "null", "\ud800", "[" * 100_000, "x" * 3_000_000])
-def test_what_is_no_plan_is_told_so(plan: str) -> None:
+def test_rejects_what_is_not_a_plan(plan: str) -> None:
     answer = plan_check.answer({"plan": plan})
     assert data(answer)["sound"] is False
     assert len(data(answer)["faults"]) == 1

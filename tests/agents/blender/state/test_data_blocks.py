@@ -75,7 +75,7 @@ def scene(session: LiveSession) -> LiveSession:
     return session
 
 
-def test_everything_that_a_file_keeps_is_told_and_nothing_else(scene: LiveSession) -> None:
+def test_digests_cover_exactly_what_a_file_keeps(scene: LiveSession) -> None:
     found = scene.use(TOOL, sections=["data_blocks"])
     assert {
         "Object Cube", "Mesh Cube", "Material Glaze", "Object Lamp", "Light Lamp", "Camera Camera", "Scene Scene",
@@ -113,7 +113,7 @@ def test_digests_are_not_cut_however_short_the_readout(session: LiveSession) -> 
     ],
     ids=["frames", "selecting", "selecting vertices", "a text's cursor", "updating", "the 3D cursor"],
 )  # fmt: skip
-def test_looking_about_changes_no_digest(scene: LiveSession, code: str) -> None:
+def test_reading_changes_no_digest(scene: LiveSession, code: str) -> None:
     before = blocks(scene)
     scene.run(code)
     assert not changed(before, blocks(scene))

@@ -640,7 +640,7 @@ def test_two_thousand_objects_fit_folded(session: LiveSession, detail: str) -> N
         assert "Brick.001 … Brick.1200 (1200)" in found.text
 
 
-def test_what_was_left_out_is_counted_and_the_named_call_brings_it(session: LiveSession) -> None:
+def test_left_out_entries_are_counted_and_the_named_call_shows_them(session: LiveSession) -> None:
     session.run(CROWD)
     seen: list[str] = []
     call: dict[str, Any] = {"objects": ["Brick.*"], "sections": ["objects"], "max_tokens": 20_000}
@@ -765,7 +765,7 @@ def test_arguments_that_do_not_fit_are_refused(arguments: dict[str, Any]) -> Non
 # What must not break it
 
 
-def test_numbers_that_are_none_are_told_and_stay_json(session: LiveSession) -> None:
+def test_nan_and_infinity_are_reported_as_json(session: LiveSession) -> None:
     found = read(
         session,
         CUBE.format("")

@@ -64,7 +64,7 @@ def full_disk() -> Iterator[None]:
 # When
 
 
-def test_a_small_scene_is_kept_after_every_call_that_may_change_it(kept: LiveSession) -> None:
+def test_keeps_a_small_scene_after_every_changing_call(kept: LiveSession) -> None:
     before = numbers(kept)[0]
     kept.run(adding("One"))
     kept.run(adding("Two"))
@@ -75,9 +75,7 @@ def test_a_small_scene_is_kept_after_every_call_that_may_change_it(kept: LiveSes
     assert last.path.read_bytes()[:7] in {b"BLENDER", b"\x28\xb5\x2f\xfd" + last.path.read_bytes()[4:7]}
 
 
-def test_a_large_scene_waits_until_the_work_is_worth_it(
-    kept: LiveSession, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_keeps_a_large_scene_less_often(kept: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
     """A real scene of a million vertices, which takes a while to write; nothing is cheap any more."""
     monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 0.0)
     kept.run(
@@ -103,7 +101,7 @@ def test_a_large_scene_waits_until_the_work_is_worth_it(
     assert kept.run(NAMES) == ["Large", "Quick", "Quick, too"]
 
 
-def test_what_is_to_be_undone_is_kept_before_however_large(
+def test_keeps_even_large_scenes_before_code_to_be_undone(
     kept: LiveSession, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept.run(adding("Kept"))
@@ -115,7 +113,9 @@ def test_what_is_to_be_undone_is_kept_before_however_large(
     assert kept.run(NAMES) == ["Kept", "Not yet kept"]
 
 
-def test_the_way_back_says_what_else_it_undoes(kept: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_undo_hint_counts_the_calls_that_it_undoes(
+    kept: LiveSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
     last = kept.blender.checkpoints.last
     assert last is not None
     found = kept.use(TOOL, code="1 / 0")
@@ -129,14 +129,14 @@ def test_the_way_back_says_what_else_it_undoes(kept: LiveSession, monkeypatch: p
     assert f"To undo it and the 2 calls before it: blender_load(checkpoint={last.number})." in found.text
 
 
-def test_a_checkpoint_is_no_event_to_the_scenes_handlers(kept: LiveSession) -> None:
+def test_checkpoints_run_no_save_handlers(kept: LiveSession) -> None:
     code = "def never(*_):\n    while True: pass\nbpy.app.handlers.save_pre.append(never)\n" + adding("Kept")
     kept.use(TOOL, code=code)
     assert kept.blender.keep("a handler that never returns").number == numbers(kept)[0]
     assert kept.run("len(bpy.app.handlers.save_pre)") == 1
 
 
-def test_nothing_is_kept_twice(kept: LiveSession) -> None:
+def test_keeps_an_unchanged_scene_only_once(kept: LiveSession) -> None:
     first = kept.blender.keep("once")
     assert kept.blender.keep("twice") == first
 
@@ -144,7 +144,7 @@ def test_nothing_is_kept_twice(kept: LiveSession) -> None:
 # What is kept
 
 
-def test_the_newest_are_kept(kept: LiveSession) -> None:
+def test_keeps_the_newest_checkpoints(kept: LiveSession) -> None:
     for number in range(KEPT + 3):
         kept.run(adding(str(number)))
     assert len(numbers(kept)) == KEPT
@@ -156,7 +156,7 @@ def test_the_newest_are_kept(kept: LiveSession) -> None:
         kept.blender.restore(gone)
 
 
-def test_large_ones_are_fewer(kept: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_keeps_fewer_large_checkpoints(kept: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
     kept.run(adding("One"))
     last = kept.blender.checkpoints.last
     assert last is not None
@@ -168,7 +168,7 @@ def test_large_ones_are_fewer(kept: LiveSession, monkeypatch: pytest.MonkeyPatch
     assert len(numbers(kept)) == checkpoints.KEPT_LEAST
 
 
-def test_going_back_is_a_step_of_its_own(kept: LiveSession) -> None:
+def test_going_back_makes_a_new_checkpoint(kept: LiveSession) -> None:
     kept.run(adding("One"))
     one = kept.blender.keep("one")
     kept.run(adding("Two"))
@@ -182,7 +182,7 @@ def test_going_back_is_a_step_of_its_own(kept: LiveSession) -> None:
     assert kept.run(NAMES) == ["One", "Two"]
 
 
-def test_a_state_comes_back_as_it_was(kept: LiveSession) -> None:
+def test_restores_the_whole_state(kept: LiveSession) -> None:
     """Paths, the frame, the mode's object, data without users and what was packed."""
     look = (
         "s = bpy.context.scene\n(s.frame_current, s.render.filepath, bpy.data.images['i'].filepath,"
@@ -205,7 +205,7 @@ def test_a_state_comes_back_as_it_was(kept: LiveSession) -> None:
     assert kept.run(look) == before
 
 
-def test_relative_paths_still_lead_there_when_code_has_saved_elsewhere(kept: LiveSession) -> None:
+def test_relative_paths_survive_saving_elsewhere(kept: LiveSession) -> None:
     kept.run(
         "import os\nos.makedirs('sub', exist_ok=True)\n"
         "bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath('sub/other.blend'))\n"
@@ -222,7 +222,7 @@ def test_relative_paths_still_lead_there_when_code_has_saved_elsewhere(kept: Liv
 # When it fails
 
 
-def test_a_full_disk_costs_one_checkpoint_and_is_told_beside_the_result(kept: LiveSession) -> None:
+def test_full_disk_costs_one_checkpoint_and_is_reported(kept: LiveSession) -> None:
     kept.run(adding("Kept"))
     last = kept.blender.keep("before")
     content = last.path.read_bytes()
@@ -243,7 +243,7 @@ def test_a_full_disk_costs_one_checkpoint_and_is_told_beside_the_result(kept: Li
     assert kept.run(NAMES) == ["Kept", "Later", "Unkept"]
 
 
-def test_what_was_not_kept_for_want_of_room_is_told_when_it_is_lost(kept: LiveSession) -> None:
+def test_reports_loss_of_what_did_not_fit_on_disk(kept: LiveSession) -> None:
     kept.run(adding("Kept"))
     kept.blender.keep("before")
     with full_disk():
@@ -253,7 +253,7 @@ def test_what_was_not_kept_for_want_of_room_is_told_when_it_is_lost(kept: LiveSe
     assert kept.run(NAMES) == ["Kept"]
 
 
-def test_a_checkpoint_that_is_asked_for_fails_plainly(kept: LiveSession) -> None:
+def test_explicit_checkpoint_fails_on_a_full_disk(kept: LiveSession) -> None:
     kept.blender.checkpoints.changed(0.0)
     with (
         full_disk(),
@@ -265,7 +265,7 @@ def test_a_checkpoint_that_is_asked_for_fails_plainly(kept: LiveSession) -> None
     assert kept.blender.inner_pid == before
 
 
-def test_a_scene_too_large_to_be_written_is_told_and_stays(tmp_path: Path) -> None:
+def test_reports_a_scene_too_large_to_write(tmp_path: Path) -> None:
     """Blender itself cannot write it: it is confined to small files."""
     session = LiveSession(tmp_path / "run", sandbox=best_sandbox(None, ResourceLimits(file_size=3 << 20)))
     try:
@@ -283,7 +283,7 @@ def test_a_scene_too_large_to_be_written_is_told_and_stays(tmp_path: Path) -> No
     assert of_run(tmp_path / "run") == []
 
 
-def test_what_cannot_be_opened_is_passed_over_and_told(tmp_path: Path) -> None:
+def test_skips_checkpoints_that_cannot_be_opened(tmp_path: Path) -> None:
     session = LiveSession(tmp_path / "run")
     for name in ("One", "Two"):
         session.run(adding(name))
@@ -307,7 +307,7 @@ def test_what_cannot_be_opened_is_passed_over_and_told(tmp_path: Path) -> None:
         again.blender.close()
 
 
-def test_halves_of_checkpoints_are_cleared_away(tmp_path: Path) -> None:
+def test_removes_half_written_checkpoints(tmp_path: Path) -> None:
     session = LiveSession(tmp_path / "run")
     session.run(adding("Kept"))
     session.blender.close()
@@ -324,7 +324,7 @@ def test_halves_of_checkpoints_are_cleared_away(tmp_path: Path) -> None:
         again.blender.close()
 
 
-def test_a_checkpoint_says_what_it_is(kept: LiveSession) -> None:
+def test_describes_a_checkpoint(kept: LiveSession) -> None:
     kept.use(TOOL, code="tower = 'high'")
     last = kept.blender.checkpoints.last
     assert isinstance(last, Checkpoint)

@@ -276,9 +276,7 @@ def test_links_lead_neither_code_nor_blender_nor_the_host_out(confined: LiveSess
 
 
 @pytest.mark.parametrize("planted", ["link", "folder"])
-def test_what_stands_in_the_place_of_the_runs_own_file_is_not_written_through(
-    confined: LiveSession, home: Path, planted: str
-) -> None:
+def test_links_at_the_runs_own_file_are_not_followed(confined: LiveSession, home: Path, planted: str) -> None:
     key = home / ".ssh" / "id_ed25519"
     keep_an_object(confined)
     make = (
@@ -333,7 +331,7 @@ def test_no_server_is_reached(confined: LiveSession) -> None:
             udp.recv(10)
 
 
-def test_io_uring_which_could_do_all_that_is_closed(confined: LiveSession) -> None:
+def test_io_uring_is_closed(confined: LiveSession) -> None:
     assert tried(
         confined, f"{LIBC}libc.syscall(425, 8, ctypes.create_string_buffer(120)), ctypes.get_errno()"
     ) == (
@@ -367,7 +365,7 @@ def test_threads_without_end_are_stopped(confined: LiveSession) -> None:
     assert confined.run("1 + 1") == 2
 
 
-def test_nobody_else_gets_a_signal(confined: LiveSession) -> None:
+def test_signals_reach_no_other_process(confined: LiveSession) -> None:
     own = os.getpid()
     started = confined.blender.pid
     for code in (
@@ -453,7 +451,7 @@ def test_a_disk_cannot_be_filled(confined: LiveSession, code: str, told: str) ->
     assert confined.run("import time; time.sleep(0.6); open('kept').read()") == "from before"
 
 
-def test_short_calls_do_not_slip_through(confined: LiveSession) -> None:
+def test_limits_hold_for_short_calls(confined: LiveSession) -> None:
     """Each of them ends before it would be looked at."""
 
     def write_on() -> None:
@@ -465,7 +463,7 @@ def test_short_calls_do_not_slip_through(confined: LiveSession) -> None:
     assert confined.run("import time; time.sleep(0.6); 1 + 1") == 2
 
 
-def test_memory_has_an_end(confined: LiveSession) -> None:
+def test_memory_limit_holds(confined: LiveSession) -> None:
     assert tried(confined, "bytearray(4 << 30)")[0] == "MemoryError"
     assert tried(confined, "import mmap\nmmap.mmap(-1, 4 << 30, flags=mmap.MAP_PRIVATE)")[0] in {
         "OSError",
@@ -545,7 +543,7 @@ wire, ticket = frame.f_locals['wire'], frame.f_locals['request']['ticket']
 """
 
 
-def test_bytes_on_the_channel_are_not_believed(channelled: LiveSession) -> None:
+def test_unsigned_bytes_on_the_channel_are_rejected(channelled: LiveSession) -> None:
     keep_an_object(channelled)
     code = """
 import os
@@ -571,14 +569,14 @@ for number in range(100, 400):
         "{'nothing': 1}",
     ],
 )
-def test_a_signed_answer_that_is_none_is_not_believed(channelled: LiveSession, answer: str) -> None:
+def test_signed_but_malformed_replies_are_rejected(channelled: LiveSession, answer: str) -> None:
     with pytest.raises(Untrustworthy, match=r"not a valid reply.*A new Blender was started from checkpoint"):
         channelled.use(TOOL, code=f"{WIRE}wire.send({answer})\nimport time; time.sleep(10)", timeout=15)
     assert channelled.run("1 + 1") == 2
 
 
 @pytest.mark.parametrize("value", ["None", "[]", "{'value': 'x', 'error': 'y', 'changed': 1}"])
-def test_an_outcome_that_is_none_is_not_believed(channelled: LiveSession, value: str) -> None:
+def test_malformed_outcomes_are_rejected(channelled: LiveSession, value: str) -> None:
     keep_an_object(channelled)
     code = f"{WIRE}wire.send({{'ticket': ticket, 'value': {value}, 'seconds': 0.1, 'left': []}})"
     with pytest.raises((Untrustworthy, LeftBehind, Died)) as caught:
@@ -587,7 +585,7 @@ def test_an_outcome_that_is_none_is_not_believed(channelled: LiveSession, value:
     assert channelled.run("[o.name for o in bpy.data.objects]") == ["Kept"]
 
 
-def test_answering_in_the_workers_name_does_not_touch_the_next_call(channelled: LiveSession) -> None:
+def test_forged_replies_do_not_affect_the_next_call(channelled: LiveSession) -> None:
     """Code that knows the key can answer its own call before it is over; its real answer then comes too late."""
     value = "{'value': 'forged', 'error': None, 'changed': {}, 'mode': 'OBJECT'}"
     code = f"{WIRE}wire.send({{'ticket': ticket, 'value': {value}, 'seconds': 0.1, 'left': []}})"

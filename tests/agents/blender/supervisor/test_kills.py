@@ -184,7 +184,7 @@ def test_kills_while_another_blender_is_being_started(killed: LiveSession) -> No
         assert session.run("bpy.context.scene['round']") == before
 
 
-def test_nothing_is_left_of_all_that(killed: LiveSession) -> None:
+def test_kills_leave_no_files_or_processes(killed: LiveSession) -> None:
     root = killed.blender.folder.root
     killed.blender.close()
     assert becomes(lambda: of_run(root) == [])

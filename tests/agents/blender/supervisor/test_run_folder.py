@@ -58,7 +58,7 @@ def small_files() -> Iterator[None]:
         (".hidden", ".hidden.blend"),
     ],
 )
-def test_a_plain_name_is_a_file_of_the_run(folder: RunFolder, name: str, lies: str) -> None:
+def test_accepts_plain_file_names(folder: RunFolder, name: str, lies: str) -> None:
     assert folder.place_for(name, ".blend") == folder.root / lies
 
 
@@ -77,12 +77,12 @@ def test_a_name_that_leads_elsewhere_is_refused(folder: RunFolder, name: str) ->
 @pytest.mark.parametrize(
     "name", ["workspace/x", "checkpoints/000001", "private/x", "Workspace/x", "CHECKPOINTS/x"]
 )
-def test_folders_with_a_purpose_are_no_place_to_save_in(folder: RunFolder, name: str) -> None:
+def test_refuses_to_save_in_reserved_folders(folder: RunFolder, name: str) -> None:
     with pytest.raises(Refusal, match="choose another folder"):
         folder.place_for(name, ".blend")
 
 
-def test_a_link_in_the_runs_folder_does_not_lead_out(folder: RunFolder, outside: Path) -> None:
+def test_refuses_links_that_lead_out_of_the_run(folder: RunFolder, outside: Path) -> None:
     (folder.root / "saves").symlink_to(outside.parent)
     with pytest.raises(Refusal, match="leads out"):
         folder.place_for("saves/secret", ".blend")
@@ -91,7 +91,7 @@ def test_a_link_in_the_runs_folder_does_not_lead_out(folder: RunFolder, outside:
 # Files that Blender made
 
 
-def test_what_blender_made_is_moved_whole(folder: RunFolder) -> None:
+def test_takes_files_whole(folder: RunFolder) -> None:
     (folder.workspace / "deep").mkdir()
     (folder.workspace / "deep" / "made.bin").write_bytes(os.urandom(3_000_000))
     content = (folder.workspace / "deep" / "made.bin").read_bytes()
@@ -103,12 +103,12 @@ def test_what_blender_made_is_moved_whole(folder: RunFolder) -> None:
 
 
 @pytest.mark.parametrize("relative", ["", "/etc/passwd", "../../outside/secret.blend", "a/../b", "a\0b"])
-def test_what_is_no_path_in_the_workspace_is_refused(folder: RunFolder, outside: Path, relative: str) -> None:
+def test_refuses_invalid_workspace_paths(folder: RunFolder, outside: Path, relative: str) -> None:
     with pytest.raises(Refusal, match="not a valid path in the workspace"):
         folder.open_made(relative)
 
 
-def test_a_link_is_neither_read_nor_taken_nor_removed_through(folder: RunFolder, outside: Path) -> None:
+def test_never_follows_links(folder: RunFolder, outside: Path) -> None:
     (folder.workspace / "link.blend").symlink_to(outside)
     (folder.workspace / "linked").symlink_to(outside.parent)
     for relative in ("link.blend", "linked/secret.blend"):
@@ -120,9 +120,7 @@ def test_a_link_is_neither_read_nor_taken_nor_removed_through(folder: RunFolder,
     assert not (folder.root / "kept.blend").exists()
 
 
-def test_a_folder_that_becomes_a_link_meanwhile_costs_nothing_outside(
-    folder: RunFolder, outside: Path
-) -> None:
+def test_survives_a_folder_replaced_by_a_link(folder: RunFolder, outside: Path) -> None:
     """The file is opened in ``made``, which is a link to elsewhere by the time that it is to be removed."""
     (folder.workspace / "made").mkdir()
     mine = folder.workspace / "made" / "secret.blend"
@@ -156,7 +154,7 @@ def test_a_folder_that_becomes_a_link_meanwhile_costs_nothing_outside(
 
 
 @pytest.mark.parametrize("kind", ["pipe", "folder", "nothing"])
-def test_what_is_no_plain_file_is_refused_at_once(folder: RunFolder, kind: str) -> None:
+def test_refuses_irregular_files_at_once(folder: RunFolder, kind: str) -> None:
     path = folder.workspace / "made"
     if kind == "pipe":
         os.mkfifo(path)
@@ -166,7 +164,7 @@ def test_what_is_no_plain_file_is_refused_at_once(folder: RunFolder, kind: str) 
         folder.open_made("made")
 
 
-def test_what_cannot_be_taken_whole_is_not_taken(folder: RunFolder, small_files: None) -> None:
+def test_takes_no_partial_file(folder: RunFolder, small_files: None) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, resource.getrlimit(resource.RLIMIT_FSIZE)[1:] * 2)
     (folder.workspace / "made.bin").write_bytes(bytes(50_000))
     target = folder.root / "kept.bin"
@@ -183,9 +181,7 @@ def test_what_cannot_be_taken_whole_is_not_taken(folder: RunFolder, small_files:
 
 
 @pytest.mark.parametrize("there", ["nothing", "file", "link", "dangling link", "folder", "pipe"])
-def test_what_is_put_takes_the_place_of_whatever_is_there(
-    folder: RunFolder, outside: Path, there: str
-) -> None:
+def test_put_replaces_whatever_is_there(folder: RunFolder, outside: Path, there: str) -> None:
     place = folder.workspace / "scene.blend"
     if there == "file":
         place.write_text("old")
@@ -208,7 +204,7 @@ def test_what_is_put_takes_the_place_of_whatever_is_there(
     assert [path.name for path in folder.workspace.iterdir()] == ["scene.blend"]
 
 
-def test_what_cannot_be_put_leaves_no_half(folder: RunFolder, small_files: None) -> None:
+def test_put_leaves_no_partial_file(folder: RunFolder, small_files: None) -> None:
     source = folder.checkpoints / "000001.blend"
     hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
     resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
@@ -222,14 +218,14 @@ def test_what_cannot_be_put_leaves_no_half(folder: RunFolder, small_files: None)
 # One run, one worker
 
 
-def test_a_run_is_one_workers_at_a_time(folder: RunFolder) -> None:
+def test_refuses_a_second_lock_of_a_run(folder: RunFolder) -> None:
     with locked(folder.root), pytest.raises(Refusal, match="in use"), locked(folder.root):
         pass
     with locked(folder.root):
         pass
 
 
-def test_runs_begun_in_one_second_have_folders_of_their_own(tmp_path: Path) -> None:
+def test_runs_started_in_one_second_get_their_own_folders(tmp_path: Path) -> None:
     made = [new_run(tmp_path / "runs").root for _ in range(5)]
     assert len(set(made)) == 5
     assert all((root / "workspace").is_dir() and (root / "checkpoints").is_dir() for root in made)
@@ -238,7 +234,7 @@ def test_runs_begun_in_one_second_have_folders_of_their_own(tmp_path: Path) -> N
 # Clearing away
 
 
-def test_everything_is_swept_however_deep_or_closed(tmp_path: Path, outside: Path) -> None:
+def test_empties_deep_and_closed_folders(tmp_path: Path, outside: Path) -> None:
     room = tmp_path / "room"
     room.mkdir()
     (room / "link").symlink_to(outside.parent)
@@ -258,11 +254,11 @@ def test_everything_is_swept_however_deep_or_closed(tmp_path: Path, outside: Pat
     assert outside.read_text() == "secret"
 
 
-def test_sweeping_what_is_not_there_is_no_error(tmp_path: Path) -> None:
+def test_emptying_a_missing_folder_is_no_error(tmp_path: Path) -> None:
     usage.empty_folder(tmp_path / "none")
 
 
-def test_what_is_measured_is_what_lies_on_disk_and_no_link(tmp_path: Path, outside: Path) -> None:
+def test_measures_disk_usage_without_following_links(tmp_path: Path, outside: Path) -> None:
     room = tmp_path / "room"
     (room / "deep").mkdir(parents=True)
     (room / "deep" / "file").write_bytes(os.urandom(100_000))
@@ -273,14 +269,14 @@ def test_what_is_measured_is_what_lies_on_disk_and_no_link(tmp_path: Path, outsi
     assert usage.measure(room, at_most=1).files == 2
 
 
-def test_folders_without_end_are_told_of(tmp_path: Path) -> None:
+def test_measures_endless_folders_down_to_a_depth(tmp_path: Path) -> None:
     deep = tmp_path.joinpath(*["d"] * (usage.DEEPEST + 1))
     deep.mkdir(parents=True)
     found = usage.measure(tmp_path)
     assert found.deepest == found.files == usage.DEEPEST
 
 
-def test_what_came_since_a_moment_goes_and_what_was_there_stays(tmp_path: Path) -> None:
+def test_removes_only_files_newer_than_a_moment(tmp_path: Path) -> None:
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "kept").write_text("kept")
     moment = usage.now(tmp_path)
@@ -308,7 +304,7 @@ def two(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
     return tmp_path / "workspace", tmp_path / "private"
 
 
-def test_what_is_written_to_both_folders_counts_together(two: tuple[Path, Path]) -> None:
+def test_counts_usage_of_both_folders_together(two: tuple[Path, Path]) -> None:
     watch = usage.UsageMonitor(two, ResourceLimits(disk=150_000, files=0))
     for number, folder in enumerate(two):
         assert watch.excess(at_end=True) is None
@@ -317,7 +313,7 @@ def test_what_is_written_to_both_folders_counts_together(two: tuple[Path, Path])
     assert watch.excess(at_end=True) == "brought the run's files to 0 MB; the limit is 0 MB"
 
 
-def test_what_was_there_before_is_no_fault_but_more_is(two: tuple[Path, Path]) -> None:
+def test_counts_only_usage_beyond_the_initial_files(two: tuple[Path, Path]) -> None:
     for number in range(30):
         (two[0] / f"old{number}").write_text("x")
     watch = usage.UsageMonitor(two, ResourceLimits(files=10))
@@ -326,7 +322,7 @@ def test_what_was_there_before_is_no_fault_but_more_is(two: tuple[Path, Path]) -
     assert watch.excess(at_end=True) == "brought the run to more than 30 files"
 
 
-def test_checks_are_paused_between_two_but_not_at_the_end_of_a_call(
+def test_pauses_between_checks_except_at_the_end_of_a_call(
     two: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(usage, "_CHECK_SECONDS", 1e6)
@@ -338,7 +334,7 @@ def test_checks_are_paused_between_two_but_not_at_the_end_of_a_call(
     assert watch.excess(at_end=True) is not None
 
 
-def test_the_moment_that_was_fine_is_after_what_was_written_before_it(two: tuple[Path, Path]) -> None:
+def test_removes_nothing_from_before_the_last_check(two: tuple[Path, Path]) -> None:
     watch = usage.UsageMonitor(two, ResourceLimits(files=3))
     (two[0] / "kept").write_text("x")
     assert watch.excess(at_end=True) is None

@@ -169,7 +169,7 @@ def test_a_baked_cache_opens_elsewhere_and_here_again(
     assert before[0] > 100
 
 
-def test_a_picture_is_packed_into_the_copy_alone(session: LiveSession, tmp_path: Path) -> None:
+def test_packs_images_only_into_the_copy(session: LiveSession, tmp_path: Path) -> None:
     session.run(PICTURE)
     found = session.use(SAVE, name="tower", verify=False)
     assert found.data["packed"] == ["wood.png"]
@@ -179,7 +179,7 @@ def test_a_picture_is_packed_into_the_copy_alone(session: LiveSession, tmp_path:
     assert elsewhere(Path(found.data["path"]), tmp_path / "elsewhere", COLOUR) == [0.25, 0.5, 0.75, 1.0]
 
 
-def test_without_packing_a_picture_is_found_where_it_lies(session: LiveSession) -> None:
+def test_saves_paths_of_unpacked_images(session: LiveSession) -> None:
     session.run(PICTURE)
     found = session.use(SAVE, name="saves/tower", verify=False, pack=False)
     lies = str(session.blender.folder.workspace / "textures" / "wood.png")
@@ -199,7 +199,7 @@ def test_pixels_that_no_file_holds_are_saved(session: LiveSession, tmp_path: Pat
     assert elsewhere(Path(found.data["path"]), tmp_path / "elsewhere", COLOUR) == [1, 0, 1, 1]
 
 
-def test_what_is_missing_is_named_and_hinders_nothing(session: LiveSession) -> None:
+def test_saves_despite_missing_files_and_names_them(session: LiveSession) -> None:
     session.run(PICTURE + "\nos.remove('textures/wood.png')")
     found = session.use(SAVE, name="tower", verify=False)
     assert found.data["packed"] == []
@@ -207,7 +207,7 @@ def test_what_is_missing_is_named_and_hinders_nothing(session: LiveSession) -> N
     assert "(missing)" in found.text
 
 
-def test_a_bake_of_geometry_nodes_goes_along(session: LiveSession, tmp_path: Path) -> None:
+def test_saves_geometry_nodes_bakes(session: LiveSession, tmp_path: Path) -> None:
     session.run("""
 bpy.ops.mesh.primitive_cube_add()
 bpy.context.object.name = "Sheet"
@@ -234,7 +234,7 @@ bpy.ops.object.simulation_nodes_cache_bake(selected=True)
     assert before[2] == pytest.approx(1.8)
 
 
-def test_caches_of_an_older_save_go_with_it(session: LiveSession) -> None:
+def test_replaces_caches_of_an_older_save(session: LiveSession) -> None:
     session.run(CLOTH.replace("ON_DISK", "True"))
     beside = Path(session.use(SAVE, name="tower", verify=False).data["beside"]["path"])
     assert len(list(beside.iterdir())) == 12
@@ -243,7 +243,7 @@ def test_caches_of_an_older_save_go_with_it(session: LiveSession) -> None:
     assert not beside.exists()
 
 
-def test_a_cache_whose_files_are_gone_is_not_called_whole(session: LiveSession) -> None:
+def test_reports_baked_caches_with_missing_files(session: LiveSession) -> None:
     session.run(LIQUID + "\nimport shutil\nshutil.rmtree('caches')")
     found = session.use(SAVE, name="tower", verify=False)
     assert found.failed
@@ -251,9 +251,7 @@ def test_a_cache_whose_files_are_gone_is_not_called_whole(session: LiveSession) 
     assert (session.blender.folder.root / "tower.blend").exists()
 
 
-def test_another_folders_file_opens_with_its_caches_and_pictures(
-    session: LiveSession, tmp_path: Path
-) -> None:
+def test_opens_a_file_of_another_folder_with_caches_and_images(session: LiveSession, tmp_path: Path) -> None:
     session.run(CLOTH.replace("ON_DISK", "True") + PICTURE)
     before = session.run(MEASURE)
     saved = Path(session.use(SAVE, name="tower", verify=False).data["path"])
@@ -299,7 +297,7 @@ def test_the_oldest_checkpoint_can_be_gone_back_to(session: LiveSession) -> None
     assert session.run("len(bpy.data.objects)") == 14 - (KEPT - 1)
 
 
-def test_no_such_checkpoint_is_refused_with_those_that_are_kept(session: LiveSession) -> None:
+def test_unknown_checkpoint_is_refused_with_the_available_ones(session: LiveSession) -> None:
     kept = session.use(LOAD).data["checkpoints"]
     assert f"Available: {kept[-1]}, " in refusal(session, LOAD, checkpoint=9999)
     assert "not both" in refusal(session, LOAD, checkpoint=1, path="tower")
@@ -319,7 +317,7 @@ def test_a_name_that_leads_elsewhere_is_refused(session: LiveSession, name: str)
     assert sorted(session.blender.folder.root.rglob("*")) == before
 
 
-def test_a_folders_name_is_refused(session: LiveSession) -> None:
+def test_refuses_a_folder_as_a_file(session: LiveSession) -> None:
     (session.blender.folder.root / "folder.blend").mkdir()
     assert "is a folder" in refusal(session, SAVE, name="folder")
     assert "not a regular file" in refusal(session, LOAD, path="folder.blend")
@@ -356,7 +354,7 @@ os.symlink({str(victim)!r}, ".loading")
 
 
 @pytest.mark.parametrize("below", ["../out", "/tmp/out", "", "a/../../out", "a\0b"])
-def test_a_reply_cannot_name_a_place_outside(session: LiveSession, tmp_path: Path, below: str) -> None:
+def test_reply_cannot_name_a_path_outside(session: LiveSession, tmp_path: Path, below: str) -> None:
     (session.blender.folder.workspace / "made").write_text("made")
     with pytest.raises(Refusal, match="not a valid path for a cache file"):
         copy_from_workspace(session.blender.folder, [("made", below)], tmp_path / "caches")
@@ -377,7 +375,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("path", HOSTILE)
-def test_what_is_no_blend_file_is_refused_and_the_scene_stays(session: LiveSession, path: str) -> None:
+def test_refuses_files_that_are_not_blend_files(session: LiveSession, path: str) -> None:
     session.run("bpy.ops.mesh.primitive_cube_add()")
     content, because = HOSTILE[path]
     root = session.blender.folder.root

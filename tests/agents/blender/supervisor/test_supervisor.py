@@ -87,7 +87,7 @@ def lost(session: LiveSession, code: str, timeout: float = 20.0) -> Lost:
         ("import os; os.execv('/bin/sleep', ['sleep', '600'])", "or it became another program"),
     ],
 )
-def test_code_that_ends_blender_is_undone_and_told(hardy: LiveSession, code: str, told: str) -> None:
+def test_undoes_code_that_ends_blender(hardy: LiveSession, code: str, told: str) -> None:
     error = lost(hardy, code)
     assert isinstance(error, Died)
     assert re.search(
@@ -96,7 +96,7 @@ def test_code_that_ends_blender_is_undone_and_told(hardy: LiveSession, code: str
     )
 
 
-def test_quitting_blender_costs_nothing_but_at_most_itself(hardy: LiveSession) -> None:
+def test_quitting_blender_loses_at_most_the_call(hardy: LiveSession) -> None:
     with contextlib.suppress(Died):
         hardy.use(TOOL, code="bpy.ops.wm.quit_blender()")
     assert hardy.run(NAMES) == ["Kept"]
@@ -117,15 +117,13 @@ def test_quitting_blender_costs_nothing_but_at_most_itself(hardy: LiveSession) -
         ("import sys\ndef hook(*_): raise ValueError('spoilt')\nsys.addaudithook(hook)", "spoilt"),
     ],
 )
-def test_what_code_leaves_behind_does_not_reach_the_next_call(
-    hardy: LiveSession, code: str, told: str
-) -> None:
+def test_stops_blender_when_code_leaves_threads_or_hooks(hardy: LiveSession, code: str, told: str) -> None:
     error = lost(hardy, code)
     assert isinstance(error, LeftBehind)
     assert told in str(error)
 
 
-def test_threads_that_end_with_their_call_are_no_fault(hardy: LiveSession) -> None:
+def test_allows_threads_that_end_with_their_call(hardy: LiveSession) -> None:
     code = "import threading\nt = threading.Thread(target=print, args=('from a thread',))\nt.start()"
     assert hardy.use(TOOL, code=code).data["stdout"] == "from a thread\n"
 
@@ -191,7 +189,7 @@ def test_blender_survives(hardy: LiveSession, code: str) -> None:
     ],
     ids=["python", "sleep", "c", "render", "catches all", "output", "ignores signals"],
 )
-def test_a_deadline_is_kept_whatever_runs(hardy: LiveSession, code: str) -> None:
+def test_keeps_the_deadline_whatever_runs(hardy: LiveSession, code: str) -> None:
     started = time.monotonic()
     error = lost(hardy, code, timeout=0.7)
     assert time.monotonic() - started < 60  # a new Blender takes long to start on a busy machine
@@ -202,7 +200,7 @@ def test_a_deadline_is_kept_whatever_runs(hardy: LiveSession, code: str) -> None
     assert len(error.printed) <= 2000
 
 
-def test_what_an_error_says_can_be_read_aloud(hardy: LiveSession) -> None:
+def test_describes_a_lost_blender_in_full_sentences(hardy: LiveSession) -> None:
     hardy.run("tower = 1")
     hardy.blender.keep("a tower")
     with pytest.raises(TookTooLong) as caught:
@@ -215,14 +213,14 @@ def test_what_an_error_says_can_be_read_aloud(hardy: LiveSession) -> None:
     )
 
 
-def test_code_that_is_to_be_undone_when_it_fails_is_undone_when_it_crashes(hardy: LiveSession) -> None:
+def test_undoes_a_crash_with_on_error_restore(hardy: LiveSession) -> None:
     hardy.blender.checkpoints.changed(0.0)
     with pytest.raises(Died):
         hardy.use(TOOL, code=f"{adding('Half')}\nimport os\nos.abort()", on_error="restore")
     assert hardy.run(NAMES) == ["Kept"]
 
 
-def test_a_call_that_nobody_waits_for_any_more_is_ended(hardy: LiveSession) -> None:
+def test_stops_a_cancelled_call(hardy: LiveSession) -> None:
     call = Call()
     threading.Timer(0.2, call.cancelled.set).start()
     started = time.monotonic()
@@ -232,14 +230,14 @@ def test_a_call_that_nobody_waits_for_any_more_is_ended(hardy: LiveSession) -> N
     assert hardy.run(NAMES) == ["Kept"]
 
 
-def test_ctrl_c_ends_the_call_and_not_the_run(hardy: LiveSession) -> None:
+def test_ctrl_c_ends_the_call_but_not_the_run(hardy: LiveSession) -> None:
     threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         hardy.use(TOOL, code="while True: pass", timeout=100)
     assert hardy.run(NAMES) == ["Kept"]
 
 
-def test_arguments_too_large_are_refused_before_they_are_sent(hardy: LiveSession) -> None:
+def test_refuses_too_large_arguments_before_sending(hardy: LiveSession) -> None:
     blender = hardy.blender.inner_pid
     with pytest.raises(Refusal, match=r"arguments of execute are too large: .*the limit is"):
         hardy.blender.call("execute", {"code": "#" * (17 << 20)}, timeout=20)
@@ -253,7 +251,7 @@ next(item for item in gc.get_objects() if isinstance(item, Encoder))._largest = 
 """
 
 
-def test_an_answer_too_large_is_told(own_session: LiveSession) -> None:
+def test_refuses_a_too_large_reply(own_session: LiveSession) -> None:
     with pytest.raises(Refusal, match=r"The reply cannot be sent: .*the limit is"):
         own_session.use(TOOL, code=f"{SMALL_ANSWERS}\n'x' * 3000")
 
@@ -262,7 +260,7 @@ def test_an_answer_too_large_is_told(own_session: LiveSession) -> None:
 
 
 @pytest.mark.parametrize("which", ["outer", "inner"])
-def test_a_blender_that_ends_between_two_calls_is_started_again(hardy: LiveSession, which: str) -> None:
+def test_restarts_a_blender_that_ended_between_calls(hardy: LiveSession, which: str) -> None:
     number = hardy.blender.pid if which == "outer" else hardy.blender.inner_pid
     assert number is not None
     inner = Path(f"/proc/{hardy.blender.inner_pid}")
@@ -273,7 +271,7 @@ def test_a_blender_that_ends_between_two_calls_is_started_again(hardy: LiveSessi
     assert re.search(RESTARTED, found.text), found.text
 
 
-def test_what_is_lost_between_two_calls_is_told(hardy: LiveSession) -> None:
+def test_reports_changes_lost_between_calls(hardy: LiveSession) -> None:
     """A scene that is slow to write is not written after every call."""
     hardy.blender.checkpoints.changed(0.0)
     hardy.blender.checkpoints.changed(0.0)
@@ -304,7 +302,7 @@ def test_blender_outlives_the_thread_that_started_it(tmp_path: Path) -> None:
         blender.close()
 
 
-def test_calls_of_many_threads_are_answered_each_with_its_own(hardy: LiveSession) -> None:
+def test_answers_calls_of_many_threads(hardy: LiveSession) -> None:
     answers: dict[int, object] = {}
 
     def ask(number: int) -> None:
@@ -319,7 +317,7 @@ def test_calls_of_many_threads_are_answered_each_with_its_own(hardy: LiveSession
     assert answers == {number: (str(number**2), f"{number}\n") for number in range(12)}
 
 
-def test_two_runs_know_nothing_of_each_other(make_session: Callable[[str], LiveSession]) -> None:
+def test_two_runs_are_independent(make_session: Callable[[str], LiveSession]) -> None:
     one, two = make_session("one"), make_session("two")
     one.run(adding("One"))
     two.run(adding("Two"))
@@ -332,7 +330,7 @@ def test_two_runs_know_nothing_of_each_other(make_session: Callable[[str], LiveS
 # Starting and ending
 
 
-def test_a_run_goes_on_where_it_was_left(tmp_path: Path) -> None:
+def test_continues_a_run_where_it_was_left(tmp_path: Path) -> None:
     first = LiveSession(tmp_path / "run")
     first.run(adding("Kept"))
     first.blender.call("execute", {"code": adding("Not yet written")}, timeout=20)
@@ -345,7 +343,7 @@ def test_a_run_goes_on_where_it_was_left(tmp_path: Path) -> None:
         second.blender.close()
 
 
-def test_nothing_remains_of_a_run_that_is_closed(tmp_path: Path) -> None:
+def test_closing_leaves_no_process_and_no_private_folder(tmp_path: Path) -> None:
     def open_files() -> int:
         return len(list(Path("/proc/self/fd").iterdir()))
 
@@ -363,13 +361,13 @@ def test_nothing_remains_of_a_run_that_is_closed(tmp_path: Path) -> None:
         session.run("1")
 
 
-def test_a_run_is_one_supervisors(hardy: LiveSession) -> None:
+def test_refuses_a_second_supervisor_for_a_run(hardy: LiveSession) -> None:
     folder = hardy.blender.folder
     with pytest.raises(Refusal, match="in use by another"):
         Supervisor(make_launch(folder.workspace), folder)
 
 
-def test_what_is_no_blender_is_told_before_anything_is_started(tmp_path: Path) -> None:
+def test_rejects_a_wrong_executable_before_starting_it(tmp_path: Path) -> None:
     for path, told in (
         (Path("/bin/true"), "is not Blender"),
         (tmp_path, "no Blender executable"),
@@ -378,7 +376,7 @@ def test_what_is_no_blender_is_told_before_anything_is_started(tmp_path: Path) -
             make_launch(tmp_path / "run" / "workspace", blender_exe=path)
 
 
-def test_a_blender_that_does_not_come_up_says_why(tmp_path: Path) -> None:
+def test_reports_why_blender_does_not_start(tmp_path: Path) -> None:
     fake = tmp_path / "fake" / "blender"
     fake.parent.mkdir()
     fake.write_text(
@@ -390,7 +388,7 @@ def test_a_blender_that_does_not_come_up_says_why(tmp_path: Path) -> None:
     assert of_run(tmp_path / "run") == []
 
 
-def test_a_session_that_is_being_ended_starts_no_blender(own_session: LiveSession) -> None:
+def test_starts_no_blender_while_ending(own_session: LiveSession) -> None:
     own_session.blender.end()
     with pytest.raises(TookTooLong, match="A new Blender could not be started: this session is being ended"):
         own_session.use(TOOL, code="while True: pass", timeout=0.2)
@@ -451,7 +449,7 @@ session.blender.close()
 """
 
 
-def test_the_last_of_a_disk_is_left_to_others(tmp_path: Path) -> None:
+def test_stops_before_the_disk_is_full(tmp_path: Path) -> None:
     """Also what is written to a file without a name, which no list of files shows, is written to the disk."""
     from test_escapes import works
 
@@ -505,7 +503,7 @@ def test_an_installed_blender_works_the_same_way(debians: LiveSession) -> None:
         assert debians.run(NAMES) == ["Cube"]
 
 
-def test_a_blender_without_numpy_still_shows_its_scenes_and_says_what_else_it_lacks(
+def test_previews_work_without_numpy_and_name_missing_modules(
     debians: LiveSession,
 ) -> None:
     if debians.run("__import__('importlib.util').util.find_spec('numpy') is not None"):
