@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from agents.blender.tools.base import Call
     from agents.plan.scene import ScenePlan
     from agents.protocol.findings import Report
-    from agents.protocol.report.report import Checked
+    from agents.protocol.report.summary import VerificationScope
     from agents.protocol.rule import Rule
 
 _UNCHECKED, _INTERRUPTED = 2, 130
@@ -78,7 +78,7 @@ def verify(scene: Path, form: str | None, rules: str | None, **given: Any) -> No
 
 
 def _verified(scene: Path, form: str | None, rules: tuple[Rule, ...], given: dict[str, Any]) -> int:
-    from agents.protocol.report.report import exit_code  # noqa: PLC0415
+    from agents.protocol.report.summary import exit_code  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
     plan = _plan(given["plan"]) if given["plan"] else None
@@ -122,11 +122,11 @@ def _plan(path: Path) -> ScenePlan:
 
 def _run(
     scene: Path, rules: tuple[Rule, ...], plan: ScenePlan | None, given: dict[str, Any]
-) -> tuple[Report, Checked]:
+) -> tuple[Report, VerificationScope]:
     """Checks, and draws if that is asked for. Raises _CannotCheckError and BlenderError."""
     from agents.blender.tools.base import Call  # noqa: PLC0415 - not for --help
     from agents.blender.verification import verify_scene  # noqa: PLC0415
-    from agents.protocol.report.report import Checked  # noqa: PLC0415
+    from agents.protocol.report.summary import VerificationScope  # noqa: PLC0415
 
     with _Waiting() as waiting:
         call = Call(waiting.progress)
@@ -142,7 +142,7 @@ def _run(
             if blender.inner_pid != process:
                 # What stands there now is an empty scene, about which nobody has asked.
                 raise _CannotCheckError(f"{scene} could not be checked: Blender ended over it.")
-            checked = Checked(
+            checked = VerificationScope(
                 rules,
                 file=str(scene),
                 scene=str(stands["scene"]),
@@ -198,7 +198,7 @@ def _opened(scene: Path, given: dict[str, Any], call: Call) -> Generator[Supervi
             yield blender
 
 
-def _draw(blender: Supervisor, report: Report, call: Call, checked: Checked, target: Path) -> str:
+def _draw(blender: Supervisor, report: Report, call: Call, checked: VerificationScope, target: Path) -> str:
     """Draws; returns why there is no picture, "" if there is one."""
     from agents.blender.sheets.findings_sheet import draw_findings  # noqa: PLC0415
     from simworlds.sandbox.errors import Refusal  # noqa: PLC0415 - only for --image
@@ -215,11 +215,13 @@ def _draw(blender: Supervisor, report: Report, call: Call, checked: Checked, tar
 # What is said
 
 
-def _print(report: Report, checked: Checked, form: str | None) -> None:
-    from agents.protocol.report.report import as_json, as_sarif, as_table, dumped  # noqa: PLC0415 - not for --help
+def _print(report: Report, checked: VerificationScope, form: str | None) -> None:
+    from agents.protocol.report.json_report import as_json, dump_json  # noqa: PLC0415 - not for --help
+    from agents.protocol.report.sarif import as_sarif  # noqa: PLC0415
+    from agents.protocol.report.table import as_table  # noqa: PLC0415
 
     if form is not None:
-        click.echo(dumped((as_json if form == "json" else as_sarif)(report, checked)))
+        click.echo(dump_json((as_json if form == "json" else as_sarif)(report, checked)))
         return
     from rich.console import Console  # noqa: PLC0415 - the other ways do without
 
@@ -231,15 +233,16 @@ def _print(report: Report, checked: Checked, form: str | None) -> None:
 
 def _tell(error: _CannotCheckError, form: str | None) -> None:
     """The reason on stderr; for machines also where they look for the report."""
-    from agents.protocol.report.report import dumped, sarif_failure  # noqa: PLC0415 - not for --help
+    from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
+    from agents.protocol.report.sarif import sarif_failure  # noqa: PLC0415 - not for --help
 
     lines = [f"Error: {error}", *(f"  {path or 'plan'}: {message}" for path, message in error.faults)]
     click.echo("\n".join(lines), err=True)
     if form == "json":
         faults = [{"path": path, "message": message} for path, message in error.faults]
-        click.echo(dumped({"error": str(error), "faults": faults}))
+        click.echo(dump_json({"error": str(error), "faults": faults}))
     elif form == "sarif":
-        click.echo(dumped(sarif_failure("\n".join(lines))))
+        click.echo(dump_json(sarif_failure("\n".join(lines))))
 
 
 class _Waiting:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from agents.loop.rendering import Rendering
     from agents.loop.run import Run
     from agents.plan.part import Stage
-    from agents.plan.scene import Render, ScenePlan
+    from agents.plan.scene import RenderSettings, ScenePlan
 
 # Without stages, one pass builds everything, and is judged as the last stage is.
 ALL_AT_ONCE: tuple[Stage, ...] = ("light",)
@@ -56,7 +56,7 @@ def build(run: Run, planner: Planner, task: Task, wanted: Sequence[Stage]) -> st
     return last
 
 
-def finish(run: Run, task: Task, plan: Render | None, last: str) -> Rendering:
+def finish(run: Run, task: Task, plan: RenderSettings | None, last: str) -> Rendering:
     """Renders, has it reviewed, and mends it once if need be; the scene is saved. Raises RunError, ModelError."""
     rendering = render(run, plan, 1)
     review = reviewed(run, task, rendering, 1)

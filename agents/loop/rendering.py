@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from agents.loop.run import Run
     from agents.loop.task import Task
-    from agents.plan.scene import Render
+    from agents.plan.scene import RenderSettings
     from simworlds.llm.messages import Block
 
 _FRAMES_SHOWN = 5  # at 0, 25, 50, 75, 100 %
@@ -39,7 +39,7 @@ class Rendering:
     told: str
 
 
-def render(run: Run, plan: Render | None, number: int) -> Rendering:
+def render(run: Run, plan: RenderSettings | None, number: int) -> Rendering:
     """Renders the scene as planned (None: by the scene's own settings). Raises RunError."""
     run.attempt = number
     asked: dict[str, Any] = {"kind": plan.kind if plan else "still"}

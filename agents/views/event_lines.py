@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.run_state import ModelCall, ToolCall
-from agents.protocol.report.folding import rows
+from agents.protocol.report.grouping import group_findings
 from agents.views.formatting import (
     counted,
     shortened,
@@ -104,7 +104,7 @@ def _verified(_row: Mapping[str, Any], _history: History, stage: StageRun | None
 
 def told_findings(found: Verification, most: int) -> list[str]:
     """The worst findings, those that say the same in one line, and how many kinds there are more."""
-    folded = rows(found.findings)
+    folded = group_findings(found.findings)
     lines: list[str] = []
     for row in folded[:most]:
         many = f" ×{len(row.findings)}" if len(row.findings) > 1 else ""

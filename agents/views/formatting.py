@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.protocol.report.folding import plain
+from agents.protocol.report.text_format import plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

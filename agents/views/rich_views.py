@@ -16,7 +16,7 @@ from rich.text import Text
 
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.plan.part import STAGES
-from agents.protocol.report.folding import plain
+from agents.protocol.report.text_format import plain
 from agents.views.event_lines import told_findings
 from agents.views.formatting import (
     counted,

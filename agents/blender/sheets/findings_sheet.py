@@ -10,8 +10,8 @@ from PIL import Image, ImageDraw
 
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import text_width
-from agents.protocol.report.folding import rows
-from agents.protocol.report.report import told, verdict
+from agents.protocol.report.grouping import group_findings
+from agents.protocol.report.summary import short_label, verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,17 +51,19 @@ class Mark:
     @property
     def label(self) -> str:
         """What is written in the pictures."""
-        return f"{self.number}  {told(self.finding)}"
+        return f"{self.number}  {short_label(self.finding)}"
 
     @property
     def line(self) -> str:
         """What is written below them."""
-        return f"{self.number}  {told(self.finding)}: {self.finding.message}"
+        return f"{self.number}  {short_label(self.finding)}: {self.finding.message}"
 
 
 def worth_marking(findings: Sequence[Finding], most: int = MOST_MARKS) -> list[Finding]:
     """At most so many, of each kind the worst first, so that no kind crowds the others out."""
-    kinds = [row.findings for row in rows(findings) if any(one.objects or one.at for one in row.findings)]
+    kinds = [
+        row.findings for row in group_findings(findings) if any(one.objects or one.at for one in row.findings)
+    ]
     kinds = [kind for kind in kinds if not _is_everywhere(kind)] or kinds
     found: list[Finding] = []
     for rank in range(max((len(kind) for kind in kinds), default=0)):
@@ -80,7 +82,7 @@ def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -
     marked = {id(mark.finding) for mark in marks}
     asked = [mark.finding for mark in marks]
     # All that is at fault is coloured, though not all of it is marked.
-    vague = [row for row in rows(report.findings) if _is_everywhere(row.findings)] if marks else []
+    vague = [row for row in group_findings(report.findings) if _is_everywhere(row.findings)] if marks else []
     vague = [row for row in vague if not marked & {id(one) for one in row.findings}]
     left_out = {id(one) for row in vague for one in row.findings}
     asked += [

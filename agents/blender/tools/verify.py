@@ -9,7 +9,9 @@ from pydantic import Field
 from agents.blender.sheets.findings_sheet import draw_findings
 from agents.blender.tools.base import Arguments, Call, Picture, Result, Session, Tool
 from agents.blender.verification import verify_scene
-from agents.protocol.report.report import Checked, as_json, as_text
+from agents.protocol.report.json_report import as_json
+from agents.protocol.report.markdown import as_text
+from agents.protocol.report.summary import VerificationScope
 from agents.protocol.verify_request import plan_from, rules_named
 from simworlds.sandbox.errors import Refusal
 
@@ -61,7 +63,7 @@ def run(session: Session, asked: Verify, call: Call) -> Result:
     with blender.alone():
         stands = blender.call("stand_at", {"frame": None}, timeout=_SECONDS, given_up=call.given_up).value
         report = verify_scene(blender, rules, plan, call)
-        checked = Checked(
+        checked = VerificationScope(
             rules,
             scene=str(stands["scene"]),
             frame=int(stands["frame"]),

@@ -17,7 +17,7 @@ from markupsafe import Markup
 from agents.loop.reducer import read_history
 from agents.loop.run_state import ModelCall, Step, ToolCall
 from agents.plan.part import STAGES
-from agents.protocol.report.folding import rows
+from agents.protocol.report.grouping import group_findings
 from agents.protocol.rules.catalogue import RULES
 from agents.views import formatting
 from agents.views.report import code
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from agents.loop.run_state import Attempt, History, StageRun
-    from agents.protocol.report.folding import Row
+    from agents.protocol.report.grouping import FindingGroup
 
 NAME = "report.html"
 _FOLDER = Path(__file__).parent / "templates"
@@ -84,7 +84,7 @@ class ShownAttempt:
     others: tuple[ShownStep, ...]
     pictures: tuple[Seen, ...]
     changes: tuple[tuple[code.Change, Markup], ...]
-    findings: tuple[Row, ...]
+    findings: tuple[FindingGroup, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,7 +280,7 @@ def _attempt(attempt: Attempt, before: Sequence[Attempt], gallery: _Gallery) -> 
         others=tuple(others),
         pictures=pictures,
         changes=tuple((one, code.highlighted(one.diff, "diff")) for one in made),
-        findings=tuple(rows(attempt.verification.findings)) if attempt.verification else (),
+        findings=tuple(group_findings(attempt.verification.findings)) if attempt.verification else (),
     )
 
 

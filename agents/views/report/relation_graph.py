@@ -6,7 +6,7 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from agents.protocol.report.folding import plain
+from agents.protocol.report.text_format import plain
 from agents.views.formatting import shortened, swatch
 from agents.views.report.graph_layout import Box, lay_out
 from agents.views.report.links import Card, LinkBox, label, linked, told_pill

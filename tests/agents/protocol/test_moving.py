@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from scenes import a_plan, build, the_finding, verified
 
-from agents.protocol.judging.move_advice import told_move
+from agents.protocol.judging.move_advice import describe_move
 
 if TYPE_CHECKING:
     from studio import Studio
@@ -31,7 +31,7 @@ _SIDES = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1)}
     ],
 )
 def test_a_way_along_an_axis_is_told_by_its_side(way: tuple[float, float, float], words: str) -> None:
-    assert told_move("A", way) == words
+    assert describe_move("A", way) == words
 
 
 def way_told(fix: str) -> tuple[str, list[float]]:

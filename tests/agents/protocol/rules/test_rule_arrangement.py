@@ -130,7 +130,7 @@ def test_the_centre_may_be_an_object(studio: Studio) -> None:
 
 def test_members_on_one_spot_are_no_ring(studio: Studio) -> None:
     found = the_finding(ring(studio, [(1, 1, 0)] * 4))
-    assert "one spot" in found.message
+    assert "all at one point" in found.message
 
 
 @pytest.mark.parametrize(("off", "breaks"), [(9.9, False), (10.1, True), (180, True)])
@@ -256,7 +256,7 @@ def test_without_a_planned_spacing_it_is_to_be_even(studio: Studio) -> None:
 
 
 def test_members_on_one_spot_are_no_line(studio: Studio) -> None:
-    assert "one spot" in the_finding(line(studio, [(1, 1, 0)] * 3)).message
+    assert "all at one point" in the_finding(line(studio, [(1, 1, 0)] * 3)).message
 
 
 def test_parts_stand_where_their_middle_is(studio: Studio) -> None:
@@ -304,7 +304,7 @@ def test_a_grid_with_a_hole_says_how_many_it_lacks(studio: Studio) -> None:
 
 def test_another_number_of_rows_is_told(studio: Studio) -> None:
     found = the_finding(grid(studio, cells(2, 6), rows=3, columns=4))
-    assert "planned are 3 × 4" in found.message
+    assert "the plan says 3 × 4" in found.message
 
 
 @pytest.mark.parametrize(("spacing", "breaks"), [(0.615, False), (0.62, True)])
@@ -354,5 +354,10 @@ def test_a_member_beside_its_mirrored_place_breaks_the_symmetry(
 
 def test_a_plan_without_arrangements_leaves_the_rules_idle(studio: Studio) -> None:
     build(studio, seat("A", (0, 0, 0)))
-    idle = verified(studio, "R16,R17", a_plan({"kind": "CoMoves", "a": "A", "b": "B"})).idle
-    assert idle == {"R16": "the plan has no circle or arc", "R17": "the plan has no line, grid or mirror"}
+    not_applicable = verified(
+        studio, "R16,R17", a_plan({"kind": "CoMoves", "a": "A", "b": "B"})
+    ).not_applicable
+    assert not_applicable == {
+        "R16": "the plan has no circle or arc",
+        "R17": "the plan has no line, grid or mirror",
+    }

@@ -82,7 +82,7 @@ def test_what_touches_and_is_linked_is_fastened(studio: Studio, link: str) -> No
 def test_what_only_touches_is_not(studio: Studio, link: str) -> None:
     found = the_finding(fastened(studio, DOOR.format(gap=0) + link))
     assert (found.rule, found.severity, found.objects) == ("R7", "hard", ("Handle", "Door"))
-    assert "neither a parent nor a constraint" in found.message
+    assert "no parent or constraint links them" in found.message
 
 
 def test_what_follows_its_host_is_what_is_asked_for(studio: Studio) -> None:

@@ -188,4 +188,4 @@ def test_what_is_not_evaluated_cannot_be_measured_and_hides_no_other_finding(stu
 
 def test_without_declarations_there_is_nothing_to_judge(studio: Studio) -> None:
     build(studio, crate(0.5))
-    assert set(verified(studio, "V1").idle) == {"V1"}
+    assert set(verified(studio, "V1").not_applicable) == {"V1"}

@@ -191,7 +191,7 @@ def test_without_an_active_camera_nothing_is_framed(studio: Studio) -> None:
 @pytest.mark.parametrize(
     ("script", "reason"),
     [
-        ("", "nothing called 'Poster'"),
+        ("", "no object is named 'Poster'"),
         ("sheet('Poster', -1, 1, -1, 1)\nscene.camera.data.type = 'PANO'", "panoramic"),
         ("sheet('Poster', 1, 1, -1, 1)", "no area"),
     ],
@@ -205,6 +205,6 @@ def test_what_cannot_be_told_is_undecided(studio: Studio, script: str, reason: s
 def test_a_plan_without_subjects_leaves_the_camera_alone(studio: Studio) -> None:
     build(studio, STAGE)
     relation = {"kind": "Upright", "a": "Poster"}
-    assert verified(studio, "R14", a_plan(relation)).idle == {
+    assert verified(studio, "R14", a_plan(relation)).not_applicable == {
         "R14": "the plan names no subjects of the camera"
     }

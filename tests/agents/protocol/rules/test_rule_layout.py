@@ -101,7 +101,7 @@ def test_a_scene_without_any_tags_has_homeless_meshes_and_no_ground(studio: Stud
         ("C6", ("ground",)),
     ]
     assert not report.ok
-    assert set(report.idle) == {"C1", "C2", "C4", "C5"}
+    assert set(report.not_applicable) == {"C1", "C2", "C4", "C5"}
 
 
 def test_meshes_that_no_render_shows_are_in_an_object_as_well(studio: Studio) -> None:

@@ -346,7 +346,7 @@ def test_what_is_declared_and_done_is_right(studio: Studio, kind: str, motion: s
         ("none", "none", KEYS, "'Actor root' is animated"),
         ("none", "none", OTHER + PUSHED, "'Cart root' is animated"),
         ("none", "none", "post.modifiers.new('Cloth', 'CLOTH')", "is simulated (sim_cloth)"),
-        ("none", "bake", "", "no solver is at work"),
+        ("none", "bake", "", "no solver moves it"),
     ],
 )
 def test_what_is_declared_and_not_done_is_told(
@@ -360,7 +360,7 @@ def test_what_is_declared_and_not_done_is_told(
 
 def test_what_declares_nothing_is_not_judged(studio: Studio) -> None:
     make(studio, POST + KEYS)
-    assert mechanism(studio).idle == {"R15": "no object declares how it is deformed or moved"}
+    assert mechanism(studio).not_applicable == {"R15": "no object declares how it is deformed or moved"}
 
 
 def test_the_plan_declares_for_what_has_no_tags(studio: Studio) -> None:
@@ -408,14 +408,14 @@ def test_a_baked_timeline_that_is_the_planned_one_passes(studio: Studio) -> None
 @pytest.mark.parametrize(
     ("change", "told", "measured"),
     [
-        ("scene.render.fps = 25", "frame rate is 25; planned is 24", 25),
+        ("scene.render.fps = 25", "frame rate is 25; the plan says 24", 25),
         (
             "scene.render.fps, scene.render.fps_base = 24, 1.001",
-            "frame rate is 23.976; planned is 24",
+            "frame rate is 23.976; the plan says 24",
             24 / 1.001,
         ),
-        ("scene.frame_start = 2", "first frame is 2; planned is 1", 2),
-        ("scene.frame_end = 11", "last frame is 11; planned is 12", 11),
+        ("scene.frame_start = 2", "first frame is 2; the plan says 1", 2),
+        ("scene.frame_end = 11", "last frame is 11; the plan says 12", 11),
     ],
 )
 def test_another_timeline_is_told(studio: Studio, change: str, told: str, measured: float) -> None:
@@ -447,4 +447,4 @@ def test_an_animation_without_phases_has_a_timeline_and_a_still_has_none(studio:
     relation = {"kind": "Upright", "a": "Actor"}
     film = a_plan(relation, frame_end=20, render={"kind": "animation"})
     assert the_finding(verified(studio, "T1", film)).measured == LAST
-    assert verified(studio, "T1", a_plan(relation)).idle == {"T1": "the plan has no motion"}
+    assert verified(studio, "T1", a_plan(relation)).not_applicable == {"T1": "the plan has no motion"}

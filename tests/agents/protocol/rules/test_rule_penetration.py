@@ -124,7 +124,7 @@ def test_parts_of_one_object_are_no_exception(studio: Studio) -> None:
 )  # fmt: skip
 def test_what_no_render_shows_is_in_nothings_way(studio: Studio, hidden: str) -> None:
     build(studio, FLOOR + crate(0.05) + hidden)
-    assert set(verified(studio, "V2").idle) == {"V2"}
+    assert set(verified(studio, "V2").not_applicable) == {"V2"}
 
 
 def test_what_is_rendered_but_not_evaluated_is_undecided(studio: Studio) -> None:
@@ -226,4 +226,4 @@ def test_particles_are_no_surface_of_what_emits_them(studio: Studio) -> None:
 
 def test_one_mesh_alone_goes_through_nothing(studio: Studio) -> None:
     build(studio, FLOOR)
-    assert set(verified(studio, "V2").idle) == {"V2"}
+    assert set(verified(studio, "V2").not_applicable) == {"V2"}
