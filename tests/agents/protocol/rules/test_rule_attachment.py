@@ -261,7 +261,7 @@ def test_without_an_opening_around_it_nothing_is_filled(studio: Studio, script: 
     assert (found.tolerance, found.unit) == (180.0, "°")
     assert found.measured is not None
     assert found.measured > 200
-    assert "in no opening" in found.message
+    assert "not in an opening" in found.message
 
 
 def test_a_window_stuck_onto_the_wall_is_not_in_it(studio: Studio) -> None:

@@ -178,7 +178,7 @@ def test_a_target_waits_for_the_contact(studio: Studio, onset: int, holds: bool)
     if finding := broken(found, "T3", holds):
         assert finding.objects == ("Tile", "Rod")
         assert (finding.measured, finding.tolerance, finding.frame) == (30 - onset, 1, onset)
-        assert "touches it at frame 30 only" in finding.message
+        assert "touches it only at frame 30" in finding.message
 
 
 @pytest.mark.parametrize(("onset", "holds"), [(9, True), (8, False)])

@@ -1,4 +1,4 @@
-"""Who is said to touch whom, when relations are looked at, and how axes are turned: from facts alone."""
+"""Declared contacts, sample frames, and poses, from facts alone."""
 
 from __future__ import annotations
 

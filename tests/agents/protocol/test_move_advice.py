@@ -1,4 +1,4 @@
-"""What is to be done is told in numbers, and whoever does it is rid of the finding."""
+"""Fixes say how far to move an object, and following them removes the finding."""
 
 from __future__ import annotations
 
