@@ -58,15 +58,13 @@ lint: $(STAMP) ## Check style, format and types
 	@.venv/bin/pyright
 
 docs: $(STAMP) ## Write the generated references
-	@$(PY) -m docs.generate.references
-	@$(PY) -m docs.generate.benchmark_pages
+	@$(PY) -m docs.generate
 
 rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 	@$(PY) tests/agents/protocol/rule_pictures.py $(RULES)
 
 docs-check: $(STAMP) ## Check that the generated references are up to date
-	@$(PY) -m docs.generate.references --check
-	@$(PY) -m docs.generate.benchmark_pages --check
+	@$(PY) -m docs.generate --check
 
 lock: $(UV) ## Pin the newest dependencies in requirements.lock
 	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 --upgrade \

@@ -10,9 +10,9 @@ import mcp_types as types
 
 from agents.plan.part import STAGES
 from agents.plan.scene import ScenePlan
-from agents.protocol.report.folding import folded, told_ids
+from agents.protocol.report.text_format import fold_names, format_rule_ids
 from agents.protocol.rules.catalogue import RULES
-from agents.protocol.rules_by_stage import begins, rules_of
+from agents.protocol.rules_by_stage import first_stage, rules_of
 from agents.protocol.verify_request import plan_from
 from simworlds.schemas.json_schema import lean_schema_of
 
@@ -93,7 +93,7 @@ def summary(plan: ScenePlan) -> str:
     roles: dict[str, list[str]] = {}
     for obj in plan.objects:
         roles.setdefault(obj.role, []).append(obj.name)
-    objects = "; ".join(f"{role}: {folded(names, _LISTED)}" for role, names in roles.items())
+    objects = "; ".join(f"{role}: {fold_names(names, _LISTED)}" for role, names in roles.items())
     return "\n".join(
         [
             f"The plan {plan.title!r} is valid.",
@@ -115,7 +115,7 @@ def _motion(plan: ScenePlan) -> str:
     phases = plan.motion.phases
     if not phases:
         return "Phases: none; nothing moves."
-    actors = folded((phase.actor for phase in phases), _LISTED)
+    actors = fold_names((phase.actor for phase in phases), _LISTED)
     return (
         f"Phases ({len(phases)}) of {actors}, in frames {plan.frame_start}–{plan.frame_end} "
         f"({frames / plan.fps:.3g} s at {plan.fps} fps)."
@@ -127,10 +127,10 @@ def _rules(plan: ScenePlan) -> list[str]:
     order = [rule.id for rule in RULES]
     since: dict[str, list[str]] = {}
     for rule in rules_of(STAGES[-1]):
-        first = next(stage for stage in plan.stages if STAGES.index(stage) >= STAGES.index(begins(rule)))
+        first = next(stage for stage in plan.stages if STAGES.index(stage) >= STAGES.index(first_stage(rule)))
         since.setdefault(first, []).append(rule.id)
     return [
-        f"- Checked from {stage} on: {told_ids(since[stage], order)}."
+        f"- Checked from {stage} on: {format_rule_ids(since[stage], order)}."
         for stage in plan.stages
         if stage in since
     ]

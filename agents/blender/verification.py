@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from agents.protocol.engine import verify
-from agents.protocol.facts import Facts
+from agents.protocol.facts import SceneFacts
 from simworlds.sandbox.errors import Refusal, ToolBroke
 
 if TYPE_CHECKING:
@@ -37,4 +37,4 @@ def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | N
             return [{"unmeasured": str(error)}] * len(requests)
 
     facts = blender.call("scene_facts", {}, timeout=SNAPSHOT_SECONDS, cancelled=call.cancelled)
-    return verify(Facts.read(facts.value), measure, rules, plan)
+    return verify(SceneFacts.model_validate(facts.value), measure, rules, plan)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from agents.blender.tools.base import Call
     from agents.plan.scene import ScenePlan
     from agents.protocol.findings import Report
-    from agents.protocol.report.report import Checked
+    from agents.protocol.report.summary import VerificationScope
     from agents.protocol.rule import Rule
 
 _UNCHECKED, _INTERRUPTED = 2, 130
@@ -74,7 +74,7 @@ def verify(scene: Path, form: str | None, rules: str | None, **choices: Any) -> 
 
 
 def _verify(scene: Path, form: str | None, rules: tuple[Rule, ...], choices: dict[str, Any]) -> int:
-    from agents.protocol.report.report import exit_code  # noqa: PLC0415
+    from agents.protocol.report.summary import exit_code  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
     plan = _plan(choices["plan"]) if choices["plan"] else None
@@ -118,11 +118,11 @@ def _plan(path: Path) -> ScenePlan:
 
 def _run(
     scene: Path, rules: tuple[Rule, ...], plan: ScenePlan | None, choices: dict[str, Any]
-) -> tuple[Report, Checked]:
+) -> tuple[Report, VerificationScope]:
     """Checks the scene, and draws the image if one is wanted. Raises _CannotCheckError and BlenderError."""
     from agents.blender.tools.base import Call  # noqa: PLC0415 - not for --help
     from agents.blender.verification import verify_scene  # noqa: PLC0415
-    from agents.protocol.report.report import Checked  # noqa: PLC0415
+    from agents.protocol.report.summary import VerificationScope  # noqa: PLC0415
 
     with _StatusLine() as status:
         call = Call(status.progress)
@@ -138,7 +138,7 @@ def _run(
             if blender.inner_pid != process:
                 # The new Blender has an empty scene.
                 raise _CannotCheckError(f"{scene} could not be checked: Blender ended while checking it.")
-            checked = Checked(
+            checked = VerificationScope(
                 rules,
                 file=str(scene),
                 scene=str(position["scene"]),
@@ -193,7 +193,7 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
             yield blender
 
 
-def _draw(blender: Supervisor, report: Report, call: Call, checked: Checked, target: Path) -> str:
+def _draw(blender: Supervisor, report: Report, call: Call, checked: VerificationScope, target: Path) -> str:
     """Draws the image; returns why that failed, "" if it did not."""
     from agents.blender.sheets.findings_sheet import draw_findings  # noqa: PLC0415
     from simworlds.sandbox.errors import Refusal  # noqa: PLC0415 - only for --image
@@ -210,11 +210,13 @@ def _draw(blender: Supervisor, report: Report, call: Call, checked: Checked, tar
 # Output
 
 
-def _print(report: Report, checked: Checked, form: str | None) -> None:
-    from agents.protocol.report.report import as_json, as_sarif, as_table, dumped  # noqa: PLC0415 - not for --help
+def _print(report: Report, checked: VerificationScope, form: str | None) -> None:
+    from agents.protocol.report.json_report import as_json, dump_json  # noqa: PLC0415 - not for --help
+    from agents.protocol.report.sarif import as_sarif  # noqa: PLC0415
+    from agents.protocol.report.table import as_table  # noqa: PLC0415
 
     if form is not None:
-        click.echo(dumped((as_json if form == "json" else as_sarif)(report, checked)))
+        click.echo(dump_json((as_json if form == "json" else as_sarif)(report, checked)))
         return
     from rich.console import Console  # noqa: PLC0415 - not for --json
 
@@ -226,15 +228,16 @@ def _print(report: Report, checked: Checked, form: str | None) -> None:
 
 def _print_error(error: _CannotCheckError, form: str | None) -> None:
     """Prints the error on stderr, and for --json and --sarif also in their form on stdout."""
-    from agents.protocol.report.report import dumped, sarif_failure  # noqa: PLC0415 - not for --help
+    from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
+    from agents.protocol.report.sarif import sarif_failure  # noqa: PLC0415 - not for --help
 
     lines = [f"Error: {error}", *(f"  {path or 'plan'}: {message}" for path, message in error.faults)]
     click.echo("\n".join(lines), err=True)
     if form == "json":
         faults = [{"path": path, "message": message} for path, message in error.faults]
-        click.echo(dumped({"error": str(error), "faults": faults}))
+        click.echo(dump_json({"error": str(error), "faults": faults}))
     elif form == "sarif":
-        click.echo(dumped(sarif_failure("\n".join(lines))))
+        click.echo(dump_json(sarif_failure("\n".join(lines))))
 
 
 class _StatusLine:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from agents.loop.rendering import RenderResult
     from agents.loop.run import Run
     from agents.plan.part import Stage
-    from agents.plan.scene import Render, ScenePlan
+    from agents.plan.scene import RenderSettings, ScenePlan
 
 # Without stages, one pass builds everything, and is judged as the last stage is.
 ALL_AT_ONCE: tuple[Stage, ...] = ("light",)
@@ -61,7 +61,7 @@ def build(run: Run, planner: Planner, task: RunTask, wanted: Sequence[Stage]) ->
     return last
 
 
-def finish(run: Run, task: RunTask, plan: Render | None, last: str) -> RenderResult:
+def finish(run: Run, task: RunTask, plan: RenderSettings | None, last: str) -> RenderResult:
     """Renders the scene, has it reviewed, fixes it once if needed, and saves it. Raises RunError, ModelError."""
     rendering = render(run, plan, 1)
     verdict = review(run, task, rendering, 1)

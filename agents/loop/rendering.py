@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from agents.loop.run import Run
     from agents.loop.task import RunTask
-    from agents.plan.scene import Render
+    from agents.plan.scene import RenderSettings
     from simworlds.llm.messages import Block
 
 _FRAMES_SHOWN = 5  # at 0, 25, 50, 75, 100 %
@@ -40,7 +40,7 @@ class RenderResult:
     text: str
 
 
-def render(run: Run, plan: Render | None, number: int) -> RenderResult:
+def render(run: Run, plan: RenderSettings | None, number: int) -> RenderResult:
     """Renders the scene as planned (None: by the scene's own settings). Raises RunError."""
     run.attempt = number
     asked: dict[str, Any] = {"kind": plan.kind if plan else "still"}

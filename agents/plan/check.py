@@ -1,7 +1,7 @@
-"""Checks a scene plan for itself, before anything is built.
+"""Checks of a scene plan before anything is built.
 
-``read_plan`` takes what a model wrote and gives a plan or its faults; ``faults_of`` finds what the fields alone do not
-show: names that nobody has, relations that contradict each other, sizes that cannot be, phases outside the timeline.
+``read_plan`` reads what a model wrote and returns a plan or its faults. ``faults_of`` finds what no single field shows:
+unknown names, relations that contradict each other, impossible sizes, phases outside the timeline.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
-from agents.plan import graph
 from agents.plan.faults import Fault
+from agents.plan.graph import held_by, reachable, relation_faults
 from agents.plan.part import ALWAYS, owner_of
 from agents.plan.relations import Distributed, EmbeddedIn, Inside, SupportedBy
 from agents.plan.scene import PlannedObject, ScenePlan
@@ -22,21 +22,21 @@ from agents.plan.validation_messages import faults_from, near
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from agents.plan.motion import Phase
+    from agents.plan.motion import MotionPhase
 
-LARGEST = 2_000_000  # characters of a plan
+MAX_CHARACTERS = 2_000_000
 _MOVED = frozenset({"rigid", "cloth", "soft", "fluid", "emitter", "rig", "keyframed"})
 
 
 def read_plan(text: str | bytes | dict[str, Any]) -> tuple[ScenePlan | None, list[Fault]]:
-    """A plan from JSON. (None, faults) for what is no plan; (plan, []) for one that contradicts itself nowhere."""
+    """Reads a plan from JSON: (plan, []) if it is valid and consistent, else (None, faults)."""
     if isinstance(text, (str, bytes)):
-        if len(text) > LARGEST:
-            return None, [Fault("", f"The plan has {len(text)} characters; {LARGEST} are the most.")]
+        if len(text) > MAX_CHARACTERS:
+            return None, [Fault("", f"The plan has {len(text)} characters; the limit is {MAX_CHARACTERS}.")]
         try:
             text = json.loads(text)
         except (ValueError, RecursionError) as error:
-            return None, [Fault("", f"The plan is no JSON: {error}.")]
+            return None, [Fault("", f"The plan is not valid JSON: {error}.")]
     try:
         plan = ScenePlan.model_validate(text)
     except ValidationError as error:
@@ -46,54 +46,53 @@ def read_plan(text: str | bytes | dict[str, Any]) -> tuple[ScenePlan | None, lis
 
 
 def faults_of(plan: ScenePlan) -> list[Fault]:
-    """Everything that contradicts itself in a plan; [] for a sound one."""
+    """The contradictions in a plan; [] if it is consistent."""
     return [
-        *_names(plan),
-        *_systems(plan),
-        *_members(plan),
-        *graph.faults_of(plan.relations),
-        *_grounds(plan),
-        *_sizes(plan),
-        *_rings(plan),
-        *_phases(plan),
-        *_stages(plan),
+        *_repeated_names(plan),
+        *_system_faults(plan),
+        *_unknown_names(plan),
+        *relation_faults(plan.relations),
+        *_ungrounded(plan),
+        *_impossible_sizes(plan),
+        *_pattern_faults(plan),
+        *_phase_faults(plan),
+        *_stage_faults(plan),
     ]
 
 
-def _names(plan: ScenePlan) -> Iterator[Fault]:
+def _repeated_names(plan: ScenePlan) -> Iterator[Fault]:
     for field, names in (
-        ("objects", [one.name for one in plan.objects]),
+        ("objects", [planned.name for planned in plan.objects]),
         ("systems", [*plan.systems]),
-        ("groups", [one.name for one in plan.groups]),
-        ("motion.phases", [one.name for one in plan.motion.phases]),
-        ("lighting", [one.name for one in plan.lighting]),
+        ("groups", [group.name for group in plan.groups]),
+        ("motion.phases", [phase.name for phase in plan.motion.phases]),
+        ("lighting", [light.name for light in plan.lighting]),
     ):
         seen: set[str] = set()
         for place, name in enumerate(names):
             if name in seen:
-                yield Fault(
-                    f"{field}[{place}]", f"{name!r} is there twice; every one needs a name of its own."
-                )
+                yield Fault(f"{field}[{place}]", f"{name!r} is used twice; give each its own name.")
             seen.add(name)
-    for place, one in enumerate(plan.objects):
-        if one.name in plan.systems:
+    for place, planned in enumerate(plan.objects):
+        if planned.name in plan.systems:
             yield Fault(
                 f"objects[{place}].name",
-                f"{one.name!r} is the name of a system too; collections share names.",
+                f"{planned.name!r} is also the name of a system; objects and systems are both collections, so their "
+                "names must differ.",
             )
 
 
-def _systems(plan: ScenePlan) -> Iterator[Fault]:
+def _system_faults(plan: ScenePlan) -> Iterator[Fault]:
     if "ground" not in plan.systems:
         yield Fault(
-            "systems", "There is no system 'ground'; the scene needs one, with the object that all stands on."
+            "systems", "The system 'ground' is missing; add it, with the object that everything stands on."
         )
-    elif not any("ground" in one.systems for one in plan.objects):
+    elif not any("ground" in planned.systems for planned in plan.objects):
         yield Fault(
-            "objects", "No object belongs to the system 'ground'; give it the floor, table or terrain."
+            "objects", "No object belongs to the system 'ground'; add the floor, table or terrain to it."
         )
-    for place, one in enumerate(plan.objects):
-        for number, system in enumerate(one.systems):
+    for place, planned in enumerate(plan.objects):
+        for number, system in enumerate(planned.systems):
             if system not in plan.systems:
                 yield Fault(
                     f"objects[{place}].systems[{number}]",
@@ -101,21 +100,20 @@ def _systems(plan: ScenePlan) -> Iterator[Fault]:
                 )
 
 
-def _members(plan: ScenePlan) -> Iterator[Fault]:
-    """Names that are used but not there."""
-    names = [one.name for one in plan.objects]
-    parts = {one.name: one.parts for one in plan.objects}
+def _unknown_names(plan: ScenePlan) -> Iterator[Fault]:
+    """Names that are used but that the plan does not have."""
+    parts = {planned.name: planned.parts for planned in plan.objects}
 
     def unknown(node: str) -> str | None:
         owner, _, part = node.partition("/")
         if owner not in parts:
-            return f"There is no object {owner!r}{near(owner, names)}."
+            return f"There is no object {owner!r}{near(owner, parts)}."
         if part and part not in parts[owner]:
             return f"{owner!r} has no part {part!r} (its parts: {', '.join(parts[owner]) or 'none'})."
         return None
 
     for place, relation in enumerate(plan.relations):
-        for field, node in graph.fields_of(relation):
+        for field, node in relation.named_nodes:
             if reason := unknown(node):
                 yield Fault(f"relations[{place}].{field}", reason)
     for place, group in enumerate(plan.groups):
@@ -136,83 +134,78 @@ def _members(plan: ScenePlan) -> Iterator[Fault]:
             yield Fault(f"motion.phases[{place}].actor", reason)
 
 
-def _grounds(plan: ScenePlan) -> Iterator[Fault]:
-    """What is supported must in the end stand on something of the ground."""
-    ground = {one.name for one in plan.objects if "ground" in one.systems}
-    bearers: dict[str, set[str]] = {}
+def _ungrounded(plan: ScenePlan) -> Iterator[Fault]:
+    """A supported object must stand, directly or through others, on an object of the ground."""
+    ground = {planned.name for planned in plan.objects if "ground" in planned.systems}
+    holders: dict[str, set[str]] = {}
     for relation in plan.relations:
-        if isinstance(relation, SupportedBy):
-            bearers.setdefault(owner_of(relation.child), set()).update(map(owner_of, relation.parents))
-        else:
-            for child, bearer in graph.held_by(relation):
-                bearers.setdefault(owner_of(child), set()).add(owner_of(bearer))
+        for held, holder in held_by(relation):
+            holders.setdefault(owner_of(held), set()).add(owner_of(holder))
     for place, relation in enumerate(plan.relations):
         if not isinstance(relation, SupportedBy):
             continue
-        reached, waiting = set[str](), [owner_of(relation.child)]
-        while waiting:
-            name = waiting.pop()
-            if name not in reached:
-                reached.add(name)
-                waiting += bearers.get(name, ())
-        if not reached & ground:
+        if not ground & reachable([owner_of(relation.child)], lambda name: holders.get(name, ())).keys():
             yield Fault(
                 f"relations[{place}]",
-                f"{relation.child!r} is supported, but nothing below it stands on an object of the system 'ground'.",
+                f"{relation.child!r} is supported, but nothing below it leads to an object of the system 'ground'; "
+                "add the missing SupportedBy.",
             )
 
 
-def _sizes(plan: ScenePlan) -> Iterator[Fault]:
-    """What is to be contained must fit, however it is turned."""
-    by_name = {one.name: one for one in plan.objects}
+def _impossible_sizes(plan: ScenePlan) -> Iterator[Fault]:
+    """A content must fit into its container in some orientation."""
+    by_name = {planned.name: planned for planned in plan.objects}
     for place, relation in enumerate(plan.relations):
         if isinstance(relation, Inside) and not relation.partial:
             content, container = by_name.get(relation.content), by_name.get(relation.container)
             if content and container and not _fits(content, container):
                 yield Fault(
                     f"relations[{place}]",
-                    f"{content.name!r} ({_metres(content)}) cannot lie inside {container.name!r} "
-                    f"({_metres(container)}), however it is turned.",
+                    f"{content.name!r} ({_size(content)}) does not fit inside {container.name!r} "
+                    f"({_size(container)}) in any orientation.",
                 )
         elif isinstance(relation, EmbeddedIn):
             host = by_name.get(relation.host)
             if host and relation.depth > max(host.dimensions):
                 yield Fault(
                     f"relations[{place}].depth",
-                    f"{relation.depth} m is deeper than {host.name!r} ({_metres(host)}).",
+                    f"{relation.depth} m is more than the size of {host.name!r} ({_size(host)}).",
                 )
 
 
 def _fits(content: PlannedObject, container: PlannedObject) -> bool:
-    """Whether one box can hold the other, edges compared by size: necessary, and enough for axis-aligned boxes."""
+    """Whether the sorted edges of one box fit those of the other: exact for boxes that are parallel."""
     pairs = zip(sorted(content.dimensions), sorted(container.dimensions), strict=True)
     return all(inner <= outer for inner, outer in pairs)
 
 
-def _metres(one: PlannedObject) -> str:
-    return " × ".join(f"{size:g}" for size in one.dimensions) + " m"
+def _size(planned: PlannedObject) -> str:
+    return " × ".join(f"{size:g}" for size in planned.dimensions) + " m"
 
 
-def _rings(plan: ScenePlan) -> Iterator[Fault]:
+def _pattern_faults(plan: ScenePlan) -> Iterator[Fault]:
     for place, relation in enumerate(plan.relations):
         if not isinstance(relation, Distributed):
             continue
         count, path = len(relation.members), f"relations[{place}]"
         if relation.fold is not None and relation.fold != count:
-            yield Fault(f"{path}.fold", f"{relation.fold} members are asked for, {count} are named.")
+            yield Fault(f"{path}.fold", f"fold is {relation.fold}, but members has {count} names.")
         if relation.pattern == "circle" and count < 3:
-            yield Fault(f"{path}.members", "Two objects make no circle; name three or more, or say 'line'.")
+            yield Fault(
+                f"{path}.members",
+                "A circle needs at least three members; add some, or use the pattern 'line'.",
+            )
         cells = (relation.rows or 0) * (relation.columns or 0)
         if relation.pattern == "grid" and cells and cells != count:
             yield Fault(
                 f"{path}.members",
-                f"{relation.rows} rows of {relation.columns} are {cells}; {count} are named.",
+                f"{relation.rows} rows × {relation.columns} columns are {cells} places, but {count} members are named.",
             )
 
 
-def _phases(plan: ScenePlan) -> Iterator[Fault]:
+def _phase_faults(plan: ScenePlan) -> Iterator[Fault]:
     by_name = {phase.name: phase for phase in plan.motion.phases}
-    roles = {one.name: one.role for one in plan.objects}
+    roles = {planned.name: planned.role for planned in plan.objects}
     for place, phase in enumerate(plan.motion.phases):
         path = f"motion.phases[{place}]"
         if phase.start < plan.frame_start or phase.end > plan.frame_end:
@@ -221,42 +214,44 @@ def _phases(plan: ScenePlan) -> Iterator[Fault]:
                 f"Frames {phase.start}–{phase.end} are outside the scene's, {plan.frame_start}–{plan.frame_end}.",
             )
         if phase.cause is not None:
-            yield from _cause(path, phase, by_name)
+            yield from _cause_faults(path, phase, by_name)
         if phase.kind != "hold" and roles.get(phase.actor, "rigid") not in _MOVED:
             yield Fault(
                 f"{path}.actor",
-                f"{phase.actor!r} is to move, but its role is {roles[phase.actor]!r}; say what moves it "
-                f"({', '.join(sorted(_MOVED))}).",
+                f"{phase.actor!r} moves, but its role {roles[phase.actor]!r} does not; choose one of "
+                f"{', '.join(sorted(_MOVED))}.",
             )
-    for (first, one), (second, other) in combinations(enumerate(plan.motion.phases), 2):
-        if one.actor == other.actor and one.start < other.end and other.start < one.end:
+    for (first, phase), (second, other) in combinations(enumerate(plan.motion.phases), 2):
+        if phase.actor == other.actor and phase.start < other.end and other.start < phase.end:
             yield Fault(
                 f"motion.phases[{second}]",
-                f"{other.name!r} overlaps {one.name!r} (phases[{first}]) of the same actor {one.actor!r}.",
+                f"{other.name!r} overlaps {phase.name!r} (phases[{first}]) of the same actor {phase.actor!r}.",
             )
 
 
-def _cause(path: str, phase: Phase, by_name: dict[str, Phase]) -> Iterator[Fault]:
+def _cause_faults(path: str, phase: MotionPhase, by_name: dict[str, MotionPhase]) -> Iterator[Fault]:
     cause = by_name.get(phase.cause or "")
     if cause is None:
         yield Fault(f"{path}.cause", f"There is no phase {phase.cause!r}{near(phase.cause or '', by_name)}.")
     elif cause is phase:
-        yield Fault(f"{path}.cause", "A phase cannot be its own cause.")
+        yield Fault(f"{path}.cause", "A phase cannot cause itself.")
     elif cause.start > phase.start:
         yield Fault(
             f"{path}.cause",
-            f"{cause.name!r} begins at frame {cause.start}, after its effect at {phase.start}.",
+            f"The cause {cause.name!r} starts at frame {cause.start}, after its effect at frame {phase.start}.",
         )
 
 
-def _stages(plan: ScenePlan) -> Iterator[Fault]:
+def _stage_faults(plan: ScenePlan) -> Iterator[Fault]:
     for place, stage in enumerate(plan.opt_out):
         if stage in ALWAYS:
-            yield Fault(f"opt_out[{place}]", f"No scene does without the stage {stage!r}.")
-    moved = [one.name for one in plan.objects if one.role in _MOVED]
+            yield Fault(f"opt_out[{place}]", f"The stage {stage!r} cannot be skipped.")
+    moved = [planned.name for planned in plan.objects if planned.role in _MOVED]
     if plan.motion.phases and "motion" in plan.opt_out:
-        yield Fault("opt_out", "The stage 'motion' is opted out, but phases are planned.")
+        yield Fault("opt_out", "The stage 'motion' is skipped, but motion.phases is not empty.")
     if plan.render.kind == "animation" and plan.frame_end == plan.frame_start:
         yield Fault("frame_end", "An animation needs more than one frame.")
     if moved and plan.render.kind == "animation" and not plan.motion.phases:
-        yield Fault("motion.phases", f"{', '.join(moved[:5])} are to move, but no phase says how.")
+        yield Fault(
+            "motion.phases", f"{', '.join(moved[:5])}: the role is one that moves, but no phase says how."
+        )

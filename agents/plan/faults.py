@@ -1,4 +1,4 @@
-"""What is wrong with a plan."""
+"""A fault of a plan."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """``path`` leads to the field (``relations[3].parents[0]``), ``message`` is a sentence."""
+    """What is wrong with a plan: ``path`` names the field (``relations[3].parents[0]``), ``message`` is a sentence."""
 
     path: str
     message: str

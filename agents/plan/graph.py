@@ -1,4 +1,4 @@
-"""What the relations say together: who holds whom, and where they contradict each other."""
+"""What the relations of a plan say together: who holds whom, and where they contradict each other."""
 
 from __future__ import annotations
 
@@ -7,24 +7,11 @@ from typing import TYPE_CHECKING
 
 from agents.plan.faults import Fault
 from agents.plan.part import owner_of
-from agents.plan.relations import (
-    Aperture,
-    Direction,
-    Distributed,
-    EmbeddedIn,
-    FixedAttachment,
-    Inside,
-    OnTopOf,
-    Relation,
-    StableAgainst,
-    SupportedBy,
-    SymmetricAbout,
-)
+from agents.plan.relations import CONTACTS, Direction, EmbeddedIn, Inside, OnTopOf, Relation, SupportedBy
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
-# What cannot hold of (a, b) and (b, a) at once, and what of one pair with another.
 _OPPOSITE = {
     "LeftOf": "RightOf",
     "RightOf": "LeftOf",
@@ -33,99 +20,86 @@ _OPPOSITE = {
     "Above": "Below",
     "Below": "Above",
 }
-_PAIRED = ("child", "parent", "part", "host", "filler", "content", "container", "a", "b")
 
 
-def fields_of(relation: Relation) -> Iterator[tuple[str, str]]:
-    """(field, node) for every object that a relation names: ``parents[1]``, ``child``."""
-    if isinstance(relation, SupportedBy):
-        yield "child", relation.child
-        yield from ((f"parents[{place}]", node) for place, node in enumerate(relation.parents))
-    elif isinstance(relation, (Distributed, SymmetricAbout)):
-        yield from ((f"members[{place}]", node) for place, node in enumerate(relation.members))
-        if isinstance(relation, Distributed) and isinstance(relation.about, str):
-            yield "about", relation.about
-    else:
-        for field in _PAIRED:
-            node = getattr(relation, field, None)
-            if isinstance(node, str):
-                yield field, node
+def reachable(starts: Iterable[str], links: Callable[[str], Iterable[str]]) -> dict[str, None]:
+    """The names that ``links`` leads to from ``starts``, over any number of steps; the starts come first."""
+    names = dict.fromkeys(starts)
+    queue = list(names)
+    for name in queue:
+        new = [other for other in dict.fromkeys(links(name)) if other not in names]
+        names.update(dict.fromkeys(new))
+        queue += new
+    return names
 
 
 def held_by(relation: Relation) -> Iterator[tuple[str, str]]:
     """(what is held, what holds it) for relations that keep something from falling."""
-    match relation:
-        case SupportedBy(child=child, parents=parents):
-            yield from ((child, parent) for parent in parents)
-        case StableAgainst(child=child, parent=parent):
-            yield child, parent
-        case FixedAttachment(part=part, host=host) | EmbeddedIn(part=part, host=host):
-            yield part, host
-        case Aperture(filler=filler, host=host):
-            yield filler, host
-        case Inside(content=content, container=container):
-            yield content, container
-        case OnTopOf(a=a, b=b):
-            yield a, b
-        case _:
-            return
+    if isinstance(relation, (*CONTACTS, EmbeddedIn, Inside, OnTopOf)):
+        held, *holders = relation.nodes
+        yield from ((held, holder) for holder in holders)
 
 
-def faults_of(relations: Sequence[Relation]) -> Iterator[Fault]:
+def relation_faults(relations: Sequence[Relation]) -> Iterator[Fault]:
     """Relations that contradict themselves or each other."""
-    yield from _with_itself(relations)
-    yield from _told_twice(relations)
-    yield from _circles(relations)
-    yield from _directions(relations)
+    yield from _self_relations(relations)
+    yield from _duplicates(relations)
+    yield from _cycles(relations)
+    yield from _opposed_directions(relations)
 
 
-def _with_itself(relations: Sequence[Relation]) -> Iterator[Fault]:
+def _self_relations(relations: Sequence[Relation]) -> Iterator[Fault]:
     for place, relation in enumerate(relations):
-        nodes = [node for _, node in fields_of(relation)]
+        nodes = relation.nodes
         for node in dict.fromkeys(nodes):
             if nodes.count(node) > 1:
-                yield Fault(f"relations[{place}]", f"{relation.kind} joins {node!r} with itself.")
+                yield Fault(
+                    f"relations[{place}]", f"{relation.kind} names {node!r} twice; name each object once."
+                )
 
 
-def _told_twice(relations: Sequence[Relation]) -> Iterator[Fault]:
+def _duplicates(relations: Sequence[Relation]) -> Iterator[Fault]:
     seen: dict[str, int] = {}
     for place, relation in enumerate(relations):
         text = relation.model_dump_json()
         if text in seen:
-            yield Fault(f"relations[{place}]", f"{relation.kind} says the same as relations[{seen[text]}].")
+            yield Fault(
+                f"relations[{place}]",
+                f"{relation.kind} repeats relations[{seen[text]}]; remove one of the two.",
+            )
         seen.setdefault(text, place)
 
 
-def _circles(relations: Sequence[Relation]) -> Iterator[Fault]:
-    """A on B and B on A, or the same over several: nothing can hold itself."""
+def _cycles(relations: Sequence[Relation]) -> Iterator[Fault]:
+    """A on B and B on A, directly or through others: nothing can hold itself."""
     held: dict[str, set[str]] = defaultdict(set)
     for place, relation in enumerate(relations):
         if not isinstance(relation, (SupportedBy, OnTopOf, Inside)):
             continue
-        for child, bearer in held_by(relation):
-            chain = _way(held, owner_of(bearer), owner_of(child))
-            if owner_of(child) != owner_of(bearer) and chain:
+        for child, parent in held_by(relation):
+            chain = _path(held, owner_of(parent), owner_of(child))
+            if owner_of(child) != owner_of(parent) and chain:
                 words = " on ".join(repr(name) for name in (owner_of(child), *chain))
-                yield Fault(f"relations[{place}]", f"{relation.kind} closes a circle: {words}.")
-            held[owner_of(child)].add(owner_of(bearer))
+                yield Fault(f"relations[{place}]", f"{relation.kind} closes a cycle: {words}.")
+            held[owner_of(child)].add(owner_of(parent))
 
 
-def _way(held: dict[str, set[str]], start: str, goal: str) -> list[str]:
-    """The objects from ``start`` down to ``goal``; [] if there is no way."""
-    waiting, seen = [[start]], {start}
-    while waiting:
-        path = waiting.pop()
+def _path(held: dict[str, set[str]], start: str, goal: str) -> list[str]:
+    """The objects from ``start`` down to ``goal``; [] if there is no path."""
+    stack, seen = [[start]], {start}
+    while stack:
+        path = stack.pop()
         if path[-1] == goal:
             return path
         for below in sorted(held.get(path[-1], ())):
             if below not in seen:
                 seen.add(below)
-                waiting.append([*path, below])
+                stack.append([*path, below])
     return []
 
 
-def _directions(relations: Sequence[Relation]) -> Iterator[Fault]:
-    said: dict[tuple[str, str, str, str], int] = {}
+def _opposed_directions(relations: Sequence[Relation]) -> Iterator[Fault]:
+    stated: dict[tuple[str, str, str, str], int] = {}
     for place, relation in enumerate(relations):
         if not isinstance(relation, Direction):
             continue
@@ -134,9 +108,7 @@ def _directions(relations: Sequence[Relation]) -> Iterator[Fault]:
             (relation.kind, relation.b, relation.a, relation.frame),
             (opposite, relation.a, relation.b, relation.frame),
         ):
-            if key in said:
-                yield Fault(
-                    f"relations[{place}]",
-                    f"{relation.a!r} cannot be {relation.kind} {relation.b!r}: relations[{said[key]}] says otherwise.",
-                )
-        said[relation.kind, relation.a, relation.b, relation.frame] = place
+            if key in stated:
+                words = f"{relation.a!r} cannot be {relation.kind} {relation.b!r}"
+                yield Fault(f"relations[{place}]", f"{words}: relations[{stated[key]}] contradicts it.")
+        stated[relation.kind, relation.a, relation.b, relation.frame] = place

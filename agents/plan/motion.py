@@ -1,4 +1,4 @@
-"""The motion plan: who moves when, how, how far, and because of what."""
+"""The motion plan: which actor moves, when, how, how far, and what causes it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from agents.plan.part import Frame, Metres, Name, Part, Vector
+from agents.plan.part import Frame, Metres, Name, PlanPart, Vector
 
 MotionKind = Literal[
     "hold", "translate", "rotate", "fall", "slide", "roll", "topple", "swing", "bounce", "deform", "flow", "emit",
@@ -14,12 +14,12 @@ MotionKind = Literal[
 ]  # fmt: skip
 
 
-class Phase(Part):
+class MotionPhase(PlanPart):
     """One actor's motion from ``start`` to ``end`` (frames, both included).
 
-    ``extent`` is the displacement of the actor's centre in metres (of a deforming one: of its vertices on average),
-    ``direction`` the way it goes in the world, ``turn`` the angle it turns in degrees, ``amplitude`` the greatest
-    distance from where the phase begins, in metres. ``cause`` names the phase that sets this one off.
+    ``extent`` is the displacement of the actor's centre in metres (for a deforming actor: the mean displacement of its
+    vertices), ``direction`` the direction of motion in the world, ``turn`` the rotation in degrees, ``amplitude`` the
+    largest distance from the starting point, in metres. ``cause`` names the phase that triggers this one.
     """
 
     name: Name
@@ -35,15 +35,17 @@ class Phase(Part):
     cause: Name | None = None
 
     @model_validator(mode="after")
-    def _sound(self) -> Phase:
+    def _consistent(self) -> MotionPhase:
         if self.end < self.start:
-            raise ValueError(f"end: frame {self.end} is before the start, {self.start}")
+            raise ValueError(f"end: frame {self.end} is before the start frame, {self.start}")
         if self.direction is not None and not any(self.direction):
-            raise ValueError("direction: (0, 0, 0) is none; leave it out")
+            raise ValueError(
+                "direction: (0, 0, 0) has no direction; leave the field out, or give a direction"
+            )
         return self
 
 
-class MotionPlan(Part):
-    """All phases, in any order. No phases: a still scene."""
+class MotionPlan(PlanPart):
+    """All phases, in any order. A still scene has none."""
 
-    phases: tuple[Phase, ...] = ()
+    phases: tuple[MotionPhase, ...] = ()

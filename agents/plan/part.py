@@ -1,4 +1,4 @@
-"""What every part of a plan has in common."""
+"""What all parts of a plan share: the base class, types of fields, and the stages of construction."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ STAGES: tuple[Stage, ...] = (
     "light",
     "render",
 )
-ALWAYS: frozenset[Stage] = frozenset({"modeling", "camera", "light", "render"})  # no scene does without
+ALWAYS: frozenset[Stage] = frozenset(
+    {"modeling", "camera", "light", "render"}
+)  # no scene can leave these out
 
-# What Blender's own names may be: 63 bytes; a slash tells a part from its object.
+# Blender's names have at most 63 bytes. A slash separates an object from its part.
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[^/\x00-\x1f]+$")]
 Node = Annotated[
     str,
@@ -38,12 +40,12 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Frame = Annotated[int, Field(ge=-100_000, le=1_000_000)]
 
 
-class Part(BaseModel):
-    """A part of a plan: nothing that it does not know, no number that is none, never changed."""
+class PlanPart(BaseModel):
+    """Base class of a plan's parts: frozen; unknown fields and numbers that are not finite are rejected."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False, frozen=True)
 
 
 def owner_of(node: str) -> str:
-    """The object that a node of the relation graph belongs to: ``Table`` of ``Table`` and of ``Table/Leg``."""
+    """The object that a node of the relation graph belongs to: ``Table`` for both ``Table`` and ``Table/Leg``."""
     return node.partition("/")[0]

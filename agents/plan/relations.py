@@ -1,15 +1,35 @@
-"""The relation graph: relations are nodes of their own, so that one may join any number of objects.
+"""The relations of a plan: nodes of a bipartite graph, so that one relation can join any number of objects.
 
 Source: the paper's "Bipartite plan graph" and its appendix "Scene Protocol and Verifier Ruleset".
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from agents.plan.part import Length, Node, Part, Vector
+from agents.plan.part import Length, Node, PlanPart, Vector
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_NODE_FIELDS = frozenset(
+    {
+        "child",
+        "parent",
+        "parents",
+        "part",
+        "host",
+        "filler",
+        "content",
+        "container",
+        "a",
+        "b",
+        "members",
+        "about",
+    }
+)
 
 Reference = Annotated[
     Literal["world", "reference", "camera"],
@@ -19,73 +39,67 @@ Reference = Annotated[
 ]
 
 
-class SupportedBy(Part):
-    """The child rests on its parents: contact from below, stable."""
+class RelationPart(PlanPart):
+    """Base class of the relations."""
+
+    @property
+    def named_nodes(self) -> Iterator[tuple[str, str]]:
+        """(field, node) for every object that it joins: ``("child", "Cup")``, ``("parents[1]", "Table/Top")``."""
+        for field in type(self).model_fields:
+            value: Any = getattr(self, field)
+            if field in _NODE_FIELDS and isinstance(value, str):
+                yield field, value
+            elif field in _NODE_FIELDS and isinstance(value, tuple):
+                yield from ((f"{field}[{i}]", node) for i, node in enumerate(value) if isinstance(node, str))
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """The objects that it joins, in the order of its fields."""
+        return tuple(node for _, node in self.named_nodes)
+
+
+class SupportedBy(RelationPart):
+    """The child rests stably on its parents."""
 
     kind: Literal["SupportedBy"]
     child: Node
     parents: tuple[Node, ...] = Field(min_length=1)
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.child, *self.parents)
 
-
-class StableAgainst(Part):
-    """The child leans on the parent, or is flush with a face of it."""
+class StableAgainst(RelationPart):
+    """The child leans on the parent, or lies flush against one of its faces."""
 
     kind: Literal["StableAgainst"]
     child: Node
     parent: Node
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.child, self.parent)
 
-
-class FixedAttachment(Part):
-    """The part is fastened to the host: touches it, and moves with it."""
+class FixedAttachment(RelationPart):
+    """The part is fastened to the host: it touches the host and moves with it."""
 
     kind: Literal["FixedAttachment"]
     part: Node
     host: Node
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.part, self.host)
 
-
-class Aperture(Part):
-    """The filler closes an opening of the host, as a window in a wall; its rim touches."""
+class Aperture(RelationPart):
+    """The filler closes an opening in the host, as a window in a wall; it touches the rim."""
 
     kind: Literal["Aperture"]
     filler: Node
     host: Node
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.filler, self.host)
 
-
-class Inside(Part):
+class Inside(RelationPart):
     """The content lies in the container's cavity; an open container ends at its rim."""
 
     kind: Literal["Inside"]
     content: Node
     container: Node
-    partial: bool = Field(default=False, description="Half of it may stick out.")
-
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.content, self.container)
+    partial: bool = Field(default=False, description="Up to half of the content may stick out.")
 
 
-class EmbeddedIn(Part):
+class EmbeddedIn(RelationPart):
     """The part is sunk into the host, ``depth`` metres deep."""
 
     kind: Literal["EmbeddedIn"]
@@ -93,26 +107,16 @@ class EmbeddedIn(Part):
     host: Node
     depth: Length
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.part, self.host)
 
-
-class OnTopOf(Part):
-    """``a`` is above ``b``, over it in plan view."""
+class OnTopOf(RelationPart):
+    """``a`` is higher than ``b``, and over it when seen from above."""
 
     kind: Literal["OnTopOf"]
     a: Node
     b: Node
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.a, self.b)
 
-
-class NextTo(Part):
+class NextTo(RelationPart):
     """The surfaces of ``a`` and ``b`` are between ``gap[0]`` and ``gap[1]`` metres apart."""
 
     kind: Literal["NextTo"]
@@ -124,73 +128,48 @@ class NextTo(Part):
     def _ordered(self) -> NextTo:
         if self.gap[0] > self.gap[1]:
             raise ValueError(
-                f"gap: the least distance, {self.gap[0]}, is more than the greatest, {self.gap[1]}"
+                f"gap: the smallest distance, {self.gap[0]}, is larger than the largest, {self.gap[1]}"
             )
         return self
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.a, self.b)
 
-
-class Direction(Part):
-    """``a`` lies on that side of ``b``, seen in ``frame``."""
+class Direction(RelationPart):
+    """``a`` lies on that side of ``b``, as seen in ``frame``."""
 
     kind: Literal["LeftOf", "RightOf", "InFrontOf", "Behind", "Above", "Below"]
     a: Node
     b: Node
     frame: Reference = "world"
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.a, self.b)
 
-
-class Upright(Part):
+class Upright(RelationPart):
     """The object's own Z axis points up."""
 
     kind: Literal["Upright"]
     a: Node
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.a,)
 
-
-class Facing(Part):
-    """The front of ``a`` (its −Y axis) is turned to ``b``."""
+class Facing(RelationPart):
+    """The front of ``a`` (its −Y axis) points to ``b``."""
 
     kind: Literal["Facing"]
     a: Node
     b: Node
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.a, self.b)
 
-
-class ParallelTo(Part):
-    """The axes of ``a`` and ``b`` have the same directions."""
+class ParallelTo(RelationPart):
+    """The axes of ``a`` and ``b`` point in the same directions."""
 
     kind: Literal["ParallelTo"]
     a: Node
     b: Node
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.a, self.b)
 
-
-class Distributed(Part):
-    """The members stand regularly on a circle, an arc, a line or a grid.
+class Distributed(RelationPart):
+    """The members are evenly spaced on a circle, an arc, a line or a grid.
 
     ``about`` is the centre: an object or a point in metres. ``radius`` and ``spacing`` are in metres, ``arc`` in
-    degrees; what is not given is taken from the scene itself.
+    degrees; what is left out is measured in the scene.
     """
 
     kind: Literal["Distributed"]
@@ -205,14 +184,9 @@ class Distributed(Part):
     columns: int | None = Field(default=None, ge=1)
     facing: Literal["inwards", "outwards"] | None = None
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (*self.members, *((self.about,) if isinstance(self.about, str) else ()))
 
-
-class SymmetricAbout(Part):
-    """The members mirror each other in a plane, given by a point (metres) and a normal."""
+class SymmetricAbout(RelationPart):
+    """The members mirror each other across a plane, given by a point (metres) and a normal."""
 
     kind: Literal["SymmetricAbout"]
     members: tuple[Node, ...] = Field(min_length=2)
@@ -222,26 +196,16 @@ class SymmetricAbout(Part):
     @model_validator(mode="after")
     def _has_direction(self) -> SymmetricAbout:
         if not any(self.normal):
-            raise ValueError("normal: a plane needs a direction; (0, 0, 0) is none")
+            raise ValueError("normal: (0, 0, 0) has no direction; give the direction across the plane")
         return self
 
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return self.members
 
-
-class CoMoves(Part):
-    """``a`` travels with ``b``."""
+class CoMoves(RelationPart):
+    """``a`` moves with ``b`` and keeps its place relative to it."""
 
     kind: Literal["CoMoves"]
     a: Node
     b: Node
-
-    @property
-    def nodes(self) -> tuple[str, ...]:
-        """Whom it joins."""
-        return (self.a, self.b)
 
 
 Relation = Annotated[

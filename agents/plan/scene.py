@@ -1,4 +1,4 @@
-"""The scene plan, which is written once and never changed (paper, "Scene Plan" and "Implementation Details")."""
+"""The scene plan, written once and never changed (paper, "Scene Plan" and "Implementation Details")."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from agents.plan.motion import MotionPlan
-from agents.plan.part import STAGES, Frame, Length, Name, Node, Part, Share, Stage, Vector
+from agents.plan.part import STAGES, Frame, Length, Name, Node, PlanPart, Share, Stage, Vector
 from agents.plan.relations import Relation
 
 PhysicsRole = Literal[
@@ -17,7 +17,7 @@ PhysicsRole = Literal[
 DeformationKind = Literal["rig", "sim_cloth", "sim_fluid", "sim_rigid", "sim_soft", "sim_particle", "none"]
 MotionMechanism = Literal["keyframe", "bake", "none"]
 
-# Role → (what deforms or moves it, how its motion is kept): the tags that its L3 is to carry.
+# Role → (deformation_kind, motion_kind): the tags that the object's L3 collection must carry.
 MECHANISMS: dict[str, tuple[DeformationKind, MotionMechanism]] = {
     "ground": ("none", "none"),
     "static": ("none", "none"),
@@ -34,8 +34,8 @@ MECHANISMS: dict[str, tuple[DeformationKind, MotionMechanism]] = {
 }
 
 
-class Material(Part):
-    """A physically based surface. Colours are linear RGB from 0 to 1."""
+class Material(PlanPart):
+    """A physically based material. Colours are linear RGB from 0 to 1."""
 
     name: Name
     base_color: tuple[Share, Share, Share]
@@ -44,15 +44,15 @@ class Material(Part):
     transmission: Share = 0.0
     ior: Annotated[float, Field(ge=1, le=4)] = 1.45
     emission_strength: Annotated[float, Field(ge=0)] = 0.0
-    texture: str = Field(default="", max_length=300, description="What the surface shows, in words.")
+    texture: str = Field(default="", max_length=300, description="What the surface looks like, in words.")
 
 
-class PlannedObject(Part):
+class PlannedObject(PlanPart):
     """One logical object: an L3 collection with a root Empty and one or more meshes.
 
-    ``dimensions`` are the extents of the whole in metres along its own axes, ``position`` is its root's in metres,
-    ``rotation`` its root's in degrees (XYZ). ``systems`` are the L2 collections it belongs to, ``parts`` the names of
-    meshes that relations speak of. ``holds_volume``: it must be a closed surface.
+    ``dimensions`` are the extents of the whole object in metres along its own axes; ``position`` (metres) and
+    ``rotation`` (degrees, XYZ) are those of its root. ``systems`` are the L2 collections that it belongs to, ``parts``
+    the names of meshes that relations refer to. ``holds_volume``: its meshes must be closed surfaces.
     """
 
     name: Name
@@ -69,20 +69,20 @@ class PlannedObject(Part):
 
     @property
     def mechanism(self) -> tuple[DeformationKind, MotionMechanism]:
-        """The tags that its role asks for."""
+        """(deformation_kind, motion_kind): the tags that its role requires."""
         return MECHANISMS[self.role]
 
 
-class Group(Part):
-    """Objects that are alike, or belong together: ``same`` names what they share."""
+class ObjectGroup(PlanPart):
+    """Objects that are alike or belong together. ``same`` names what they share."""
 
     name: Name
     members: tuple[Name, ...] = Field(min_length=2)
     same: tuple[Literal["dimensions", "material", "role", "mesh"], ...] = ()
 
 
-class Light(Part):
-    """A lamp, or the world's own light. ``energy`` is in Blender's unit for its kind (watts; the sun: W/m²)."""
+class Light(PlanPart):
+    """A light object, or the world's light. ``energy`` is in Blender's unit for its kind (W; for a sun W/m²)."""
 
     name: Name
     kind: Literal["sun", "point", "area", "spot", "world"]
@@ -92,8 +92,8 @@ class Light(Part):
     color: tuple[Share, Share, Share] = (1.0, 1.0, 1.0)
 
 
-class Camera(Part):
-    """Where the scene is seen from. ``lens`` in millimetres; ``subjects`` must be seen."""
+class Camera(PlanPart):
+    """The camera. ``lens`` is in millimetres; the camera must show the ``subjects``."""
 
     name: Name = "Camera"
     position: Vector
@@ -103,8 +103,8 @@ class Camera(Part):
     moves: bool = False
 
 
-class Render(Part):
-    """What comes out. ``resolution`` in pixels."""
+class RenderSettings(PlanPart):
+    """How the scene is rendered. ``resolution`` is in pixels."""
 
     kind: Literal["still", "animation"]
     engine: Literal["CYCLES", "BLENDER_EEVEE", "BLENDER_WORKBENCH"] = "CYCLES"
@@ -115,8 +115,8 @@ class Render(Part):
     samples: Annotated[int, Field(ge=1, le=65536)] = 64
 
 
-class ScenePlan(Part):
-    """Everything that is to be built."""
+class ScenePlan(PlanPart):
+    """Everything to build."""
 
     title: str = Field(min_length=1, max_length=200)
     frame_start: Frame = 1
@@ -125,26 +125,26 @@ class ScenePlan(Part):
     systems: tuple[Name, ...] = Field(min_length=1, description="The L2 collections; one is `ground`.")
     objects: tuple[PlannedObject, ...] = Field(min_length=1)
     relations: tuple[Relation, ...] = ()
-    groups: tuple[Group, ...] = ()
+    groups: tuple[ObjectGroup, ...] = ()
     lighting: tuple[Light, ...] = Field(min_length=1)
     camera: Camera
-    render: Render
+    render: RenderSettings
     motion: MotionPlan = MotionPlan()
-    opt_out: tuple[Stage, ...] = Field(default=(), description="Stages that this scene does without.")
+    opt_out: tuple[Stage, ...] = Field(default=(), description="Stages to skip for this scene.")
     strict_grounding: bool = False
     tolerances: dict[str, Annotated[float, Field(gt=0)]] = Field(
-        default_factory=dict[str, float], description="Tolerances tightened for this scene, by their names."
+        default_factory=dict[str, float], description="Tolerances to tighten for this scene, by name."
     )
 
     @model_validator(mode="after")
     def _ordered(self) -> ScenePlan:
         if self.frame_end < self.frame_start:
-            raise ValueError(f"frame_end: {self.frame_end} is before frame_start, {self.frame_start}")
+            raise ValueError(f"frame_end: frame {self.frame_end} is before frame_start, {self.frame_start}")
         return self
 
     def object(self, name: str) -> PlannedObject | None:
-        """The object of that name."""
-        return next((one for one in self.objects if one.name == name), None)
+        """The planned object with that name."""
+        return next((planned for planned in self.objects if planned.name == name), None)
 
     @property
     def stages(self) -> tuple[Stage, ...]:

@@ -1,4 +1,4 @@
-"""What is to be done in one stage, and what is decided after it (paper, "Per-Stage Execution Loop")."""
+"""The plan of one stage, and the decisions and reviews that close it (paper, "Per-Stage Execution Loop")."""
 
 from __future__ import annotations
 
@@ -6,46 +6,46 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from agents.plan.part import Name, Part, Stage
+from agents.plan.part import Name, PlanPart, Stage
 
 
-class Asset(Part):
-    """Something that the stage is to realise: for which object, and how it is known to be done."""
+class Asset(PlanPart):
+    """One task of the stage: which object it builds or changes, and what to do."""
 
     target: Name
     task: str = Field(min_length=1, max_length=2000)
 
 
-class TacticalPlan(Part):
-    """The plan of one stage. ``questions`` are for the reviewer, who sees previews and the scene's readout."""
+class TacticalPlan(PlanPart):
+    """The plan of one stage. ``questions`` go to the reviewer, who sees previews and the scene's state."""
 
     stage: Stage
     goal: str = Field(min_length=1, max_length=2000)
     assets: tuple[Asset, ...] = ()
     relations: tuple[int, ...] = Field(
-        default=(), description="Relations to satisfy, by their place in the scene plan."
+        default=(), description="Relations to satisfy, by their index in the scene plan."
     )
-    acceptance: tuple[str, ...] = Field(default=(), description="What must hold when the stage is closed.")
-    questions: tuple[str, ...] = Field(default=(), description="What the reviewer is to judge by eye.")
+    acceptance: tuple[str, ...] = Field(default=(), description="What must be true at the end of the stage.")
+    questions: tuple[str, ...] = Field(default=(), description="What the reviewer must judge by eye.")
 
 
-class Decision(Part):
-    """What becomes of a stage. ``advance`` is never taken while a hard rule fails or a review blocks."""
+class Decision(PlanPart):
+    """What happens after a stage. ``advance`` is refused while a hard rule fails or a review blocks."""
 
     transition: Literal["advance", "retry", "replan", "abort"]
     reason: str = Field(min_length=1, max_length=2000)
     instructions: str = Field(
-        default="", max_length=8000, description="For a retry: what the coder is to mend."
+        default="", max_length=8000, description="For a retry: what the coder must fix."
     )
 
     @model_validator(mode="after")
     def _retry_says_what(self) -> Decision:
         if self.transition == "retry" and not self.instructions.strip():
-            raise ValueError("instructions: a retry needs to say what is to be mended")
+            raise ValueError("instructions: a retry must say what to fix")
         return self
 
 
-class Judgement(Part):
+class ReviewAnswer(PlanPart):
     """The reviewer's answer to one question."""
 
     question: str
@@ -53,15 +53,15 @@ class Judgement(Part):
     evidence: str = Field(max_length=2000)
 
 
-class Review(Part):
-    """What a reviewer found. ``blocking`` keeps the stage from being closed."""
+class Review(PlanPart):
+    """A reviewer's answers. ``blocking`` keeps the stage open."""
 
-    judgements: tuple[Judgement, ...]
+    judgements: tuple[ReviewAnswer, ...]
     blocking: bool
     summary: str = Field(max_length=4000)
 
 
-class FinalReview(Part):
+class FinalReview(PlanPart):
     """The verdict on the rendered result."""
 
     verdict: Literal["accept", "needs_fix"]
@@ -71,5 +71,5 @@ class FinalReview(Part):
     @model_validator(mode="after")
     def _fix_says_what(self) -> FinalReview:
         if self.verdict == "needs_fix" and not self.instructions.strip():
-            raise ValueError("instructions: needs_fix must say what is to be mended")
+            raise ValueError("instructions: needs_fix must say what to fix")
         return self

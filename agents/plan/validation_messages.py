@@ -1,4 +1,4 @@
-"""What pydantic finds wrong, in the words of plans: paths without its own labels, sentences that say what to write."""
+"""Turns pydantic's validation errors into faults: a path as in the JSON, and a sentence that says what to write."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
     from pydantic_core import ErrorDetails
 
-_NEAREST = 3
+_MOST_SUGGESTIONS = 3
 _LONGEST_VALUE = 60
-_BRANCHES = {"str": "a name", "float": "a number", "int": "a whole number"}
+_TYPE_WORDS = {"str": "a name", "float": "a number", "int": "a whole number"}
 _COUNTS = {2: "two", 3: "three"}
 _WORDS = {
     "valid tuple": "list",
@@ -23,26 +23,26 @@ _WORDS = {
     " after validation": "",
     "a valid dictionary or instance of": "a JSON object:",
 }
-_NAMES = "A name is 1 to 60 characters without a slash; a part of an object is named as Object/Part."
+_NAME_RULE = "A name has 1 to 60 characters and no slash; write a part of an object as Object/Part."
 
 
-def faults_from(error: ValidationError, given: Any, model: type[BaseModel]) -> list[Fault]:
-    """One fault for each thing that is wrong with ``given``, which is no ``model``."""
+def faults_from(error: ValidationError, data: Any, model: type[BaseModel]) -> list[Fault]:
+    """One fault for each error that pydantic found when it validated ``data`` as ``model``."""
     schema = model.model_json_schema()
-    found: dict[Fault, None] = {}
+    faults: dict[Fault, None] = {}
     choices: dict[str, list[str]] = {}
-    for one in error.errors(include_url=False, include_context=False):
-        path, branch = _place(one, given)
+    for details in error.errors(include_url=False, include_context=False):
+        path, branch = _locate(details, data)
         if branch is None:
-            found[_fault(path, one, schema)] = None
+            faults[_fault(path, details, schema)] = None
         else:
-            choices.setdefault(path_of(path), []).append(_branch(branch))
-    for path, words in choices.items():
-        found[Fault(path, f"Give {' or '.join(dict.fromkeys(words))}.")] = None
-    return list(found)
+            choices.setdefault(format_path(path), []).append(_describe_type(branch))
+    for path, types in choices.items():
+        faults[Fault(path, f"Write {' or '.join(dict.fromkeys(types))}.")] = None
+    return list(faults)
 
 
-def path_of(parts: Iterable[int | str]) -> str:
+def format_path(parts: Iterable[int | str]) -> str:
     """``relations[3].parents[0]``."""
     text = ""
     for part in parts:
@@ -55,24 +55,24 @@ def near(name: str, names: Iterable[str]) -> str:
     from rapidfuzz import process, utils  # noqa: PLC0415 - only plans with faults need it
 
     close = process.extract(
-        name, list(names), limit=_NEAREST, score_cutoff=60, processor=utils.default_process
+        name, list(names), limit=_MOST_SUGGESTIONS, score_cutoff=60, processor=utils.default_process
     )
-    return f"; did you mean {' or '.join(repr(found) for found, _, _ in close)}" if close else ""
+    return f"; did you mean {' or '.join(repr(match) for match, _, _ in close)}" if close else ""
 
 
-def _place(one: ErrorDetails, given: Any) -> tuple[list[int | str], str | None]:
-    """(the way through the data, None); where several types are possible, (the way there, pydantic's name of one)."""
+def _locate(details: ErrorDetails, data: Any) -> tuple[list[int | str], str | None]:
+    """(path in the data, None); where several types are allowed, (path, pydantic's name of one of them)."""
     path: list[int | str] = []
-    at: Any = given
-    last = len(one["loc"]) - 1
-    for place, part in enumerate(one["loc"]):
+    at: Any = data
+    last = len(details["loc"]) - 1
+    for place, part in enumerate(details["loc"]):
         if isinstance(part, int):
             path.append(part)
             items = cast("Sequence[Any]", at) if isinstance(at, (list, tuple)) else ()
             at = items[part] if part < len(items) else None
         elif isinstance(at, dict):
             fields = cast("dict[str, Any]", at)
-            if part in fields or (place == last and one["type"] == "missing"):
+            if part in fields or (place == last and details["type"] == "missing"):
                 path.append(part)
                 at = fields.get(part)
         else:
@@ -80,58 +80,58 @@ def _place(one: ErrorDetails, given: Any) -> tuple[list[int | str], str | None]:
     return path, None
 
 
-def _branch(name: str) -> str:
+def _describe_type(name: str) -> str:
     if name.startswith("tuple"):
         count = name.count(",") + 1
         return f"a list of {_COUNTS.get(count, count)} numbers"
-    return _BRANCHES.get(name.removeprefix("constrained-"), name)
+    return _TYPE_WORDS.get(name.removeprefix("constrained-"), name)
 
 
-def _fault(path: list[int | str], one: ErrorDetails, schema: dict[str, Any]) -> Fault:  # noqa: PLR0911 - by kind
-    message, kind = one["msg"], one["type"]
+def _fault(path: list[int | str], details: ErrorDetails, schema: dict[str, Any]) -> Fault:  # noqa: PLR0911 - by kind
+    message, kind = details["msg"], details["type"]
     match kind:
         case "missing":
-            return Fault(path_of(path), "It is missing.")
+            return Fault(format_path(path), "It is missing.")
         case "extra_forbidden":
-            fields = list(_fields(schema, one["loc"][:-1]))
+            fields = list(_fields(schema, details["loc"][:-1]))
             known = f" (fields: {', '.join(fields)})" if fields else ""
             return Fault(
-                path_of(path), f"There is no field {path[-1]!r} here{near(str(path[-1]), fields)}{known}."
+                format_path(path), f"Unknown field {path[-1]!r}{near(str(path[-1]), fields)}{known}."
             )
         case "union_tag_not_found":
-            return Fault(path_of([*path, "kind"]), "It is missing; it says which relation this is.")
+            return Fault(format_path([*path, "kind"]), "It is missing; it says which relation this is.")
         case "union_tag_invalid":
             kinds = list(_kinds(schema))
-            wanted = str(cast("Mapping[str, Any]", one["input"]).get("kind"))
-            told = f"There is no relation {wanted!r}{near(wanted, kinds)} (relations: {', '.join(kinds)})."
-            return Fault(path_of([*path, "kind"]), told)
+            wanted = str(cast("Mapping[str, Any]", details["input"]).get("kind"))
+            text = f"Unknown relation {wanted!r}{near(wanted, kinds)} (relations: {', '.join(kinds)})."
+            return Fault(format_path([*path, "kind"]), text)
         case "value_error":
             field, _, reason = message.removeprefix("Value error, ").partition(": ")
-            return Fault(path_of([*path, field]), f"{reason[:1].upper()}{reason[1:]}.")
+            return Fault(format_path([*path, field]), f"{reason[:1].upper()}{reason[1:]}.")
         case "string_pattern_mismatch" | "string_too_short" | "string_too_long" if "pattern" in str(
-            _at(schema, one["loc"])
+            _at(schema, details["loc"])
         ):
-            return Fault(path_of(path), f"{_NAMES}{_given(one)}")
+            return Fault(format_path(path), f"{_NAME_RULE}{_value(details)}")
         case _:
             words = message
             for theirs, ours in _WORDS.items():
                 words = words.replace(theirs, ours)
-            return Fault(path_of(path), f"{words}.{_given(one)}")
+            return Fault(format_path(path), f"{words}.{_value(details)}")
 
 
-def _given(one: ErrorDetails) -> str:
-    value = one["input"]
+def _value(details: ErrorDetails) -> str:
+    value = details["input"]
     if isinstance(value, (dict, list, tuple)):
         return ""
-    told = json.dumps(value, ensure_ascii=False, default=str)
-    return f" Given: {told}." if len(told) <= _LONGEST_VALUE else ""
+    text = json.dumps(value, ensure_ascii=False, default=str)
+    return f" Given: {text}." if len(text) <= _LONGEST_VALUE else ""
 
 
-# The schema at a place
+# Reading the schema
 
 
-def _fields(schema: dict[str, Any], way: Sequence[int | str]) -> Iterator[str]:
-    yield from _at(schema, way).get("properties", ())
+def _fields(schema: dict[str, Any], path: Sequence[int | str]) -> Iterator[str]:
+    yield from _at(schema, path).get("properties", ())
 
 
 def _kinds(schema: dict[str, Any]) -> Iterator[str]:
@@ -139,10 +139,10 @@ def _kinds(schema: dict[str, Any]) -> Iterator[str]:
     yield from relations.get("discriminator", {}).get("mapping", ())
 
 
-def _at(schema: dict[str, Any], way: Sequence[int | str]) -> dict[str, Any]:
-    """The schema of what pydantic's way leads to; {} where it leads out of what is told."""
+def _at(schema: dict[str, Any], path: Sequence[int | str]) -> dict[str, Any]:
+    """The schema at pydantic's path; {} where the path leaves the schema."""
     at = schema
-    for part in way:
+    for part in path:
         at = _resolved(schema, at)
         if isinstance(part, int):
             items = at.get("prefixItems", ())
@@ -157,5 +157,5 @@ def _at(schema: dict[str, Any], way: Sequence[int | str]) -> dict[str, Any]:
 
 def _resolved(schema: dict[str, Any], at: dict[str, Any]) -> dict[str, Any]:
     if "anyOf" in at:  # a field that may be null
-        at = next((one for one in at["anyOf"] if one.get("type") != "null"), {})
+        at = next((branch for branch in at["anyOf"] if branch.get("type") != "null"), {})
     return schema["$defs"].get(at["$ref"].rpartition("/")[2], {}) if "$ref" in at else at

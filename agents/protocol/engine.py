@@ -1,4 +1,4 @@
-"""Runs the rules over a scene: facts, then one batch of measurements, then judgements."""
+"""Runs rules over a scene: collects their measurement requests, has them measured in one batch, and judges."""
 
 from __future__ import annotations
 
@@ -6,74 +6,77 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from agents.protocol.findings import Finding, Report
-from agents.protocol.measures.measure import Unmeasured, measure
-from agents.protocol.rule import Idle, Subject
-from agents.protocol.structure import Structure
+from agents.protocol.measures.requests import Unmeasured, measure
+from agents.protocol.rule import NotApplicable, RuleContext
+from agents.protocol.structure import SceneStructure
 from agents.protocol.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from agents.plan.scene import ScenePlan
-    from agents.protocol.facts import Facts
+    from agents.protocol.facts import SceneFacts
     from agents.protocol.findings import Severity
-    from agents.protocol.measures.measure import Measures, Request
+    from agents.protocol.measures.requests import MeasureInBlender, Measures, Request
     from agents.protocol.rule import Rule
 
-    Ask = Callable[[list[dict[str, Any]]], list[dict[str, Any]]]
 
+def verify(
+    facts: SceneFacts,
+    measure_in_blender: MeasureInBlender,
+    rules: Sequence[Rule],
+    plan: ScenePlan | None = None,
+) -> Report:
+    """Judges a scene by ``rules``. A rule that raises, or that cannot measure, gives a finding of its own.
 
-def verify(facts: Facts, ask: Ask, rules: Sequence[Rule], plan: ScenePlan | None = None) -> Report:
-    """Judges a scene by ``rules``. ``ask`` measures (see :func:`agents.protocol.measures.measure.measure`).
-
-    A rule that raises, and one that could not measure, is a finding of its own. Raises what ``ask`` raises.
+    Raises what ``measure_in_blender`` raises.
     """
     began = time.perf_counter()
     tolerances, refused = TOLERANCES.tightened(plan.tolerances if plan else {})
-    subject = Subject(facts, Structure(facts), tolerances, plan)
-    findings = [_error("plan", "soft", f"The plan's tolerances: {one}.") for one in refused]
-    idle: dict[str, str] = {}
+    context = RuleContext(facts, SceneStructure(facts), tolerances, plan)
+    findings = [_error("plan", "soft", f"The plan's tolerances: {reason}.") for reason in refused]
+    not_applicable: dict[str, str] = {}
     requests: dict[Request[Any], None] = {}
     ready: list[Rule] = []
     for rule in rules:
         if rule.needs_plan and plan is None:
-            idle[rule.id] = "there is no plan"
+            not_applicable[rule.id] = "no plan was given"
             continue
         try:
-            requests |= dict.fromkeys(rule.requests(subject))
+            requests |= dict.fromkeys(rule.requests(context))
             ready.append(rule)
-        except Idle as reason:
-            idle[rule.id] = str(reason)
+        except NotApplicable as reason:
+            not_applicable[rule.id] = str(reason)
         except Exception as error:
             findings.append(_failed(rule, error))
-    measures = measure(requests, ask)
+    measures = measure(requests, measure_in_blender)
     passed: list[str] = []
     for rule in ready:
         try:
-            found = _judged(rule, subject, measures)
-        except Idle as reason:
-            idle[rule.id] = str(reason)
+            of_rule = _judge(rule, context, measures)
+        except NotApplicable as reason:
+            not_applicable[rule.id] = str(reason)
             continue
-        findings += found
-        if not found:
+        findings += of_rule
+        if not of_rule:
             passed.append(rule.id)
-    return Report(tuple(findings), tuple(passed), idle, time.perf_counter() - began)
+    return Report(tuple(findings), tuple(passed), not_applicable, time.perf_counter() - began)
 
 
-def _judged(rule: Rule, subject: Subject, measures: Measures) -> list[Finding]:
-    """What a rule finds. Raises Idle where it has nothing to judge."""
-    found: list[Finding] = []
+def _judge(rule: Rule, context: RuleContext, measures: Measures) -> list[Finding]:
+    """The findings of a rule. Raises NotApplicable where it has nothing to judge."""
+    findings: list[Finding] = []
     try:
-        for one in rule.judge(subject, measures):
-            found.append(one)
-    except Idle:
-        if not found:
+        for finding in rule.judge(context, measures):
+            findings.append(finding)
+    except NotApplicable:
+        if not findings:
             raise
     except Unmeasured as reason:
-        found.append(rule.undecided((), reason))
+        findings.append(rule.undecided((), reason))
     except Exception as error:
-        found.append(_failed(rule, error))
-    return found
+        findings.append(_failed(rule, error))
+    return findings
 
 
 def _failed(rule: Rule, error: Exception) -> Finding:

@@ -1,59 +1,44 @@
-"""What Blender says of a scene: plain facts, taken once, before anything is measured. Metres, radians, frames."""
+"""The facts of a scene as read from Blender once, before anything is measured. Metres, radians, frames."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict, Field
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
 
 Vector = tuple[float, float, float]
 Matrix = tuple[float, ...]  # 16 numbers, row by row
 
 
-class _Facts(BaseModel):
-    """Facts are never changed; what a newer snapshot adds is passed over."""
+class _Frozen(BaseModel):
+    """Base class of the facts: frozen; fields that only a newer reader knows are ignored."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
 
-class Box(_Facts):
+class WorldBox(_Frozen):
     """A box along the world's axes."""
 
     low: Vector
     high: Vector
 
     @property
-    def size(self) -> Vector:
-        """Its extent along each axis."""
-        return (self.high[0] - self.low[0], self.high[1] - self.low[1], self.high[2] - self.low[2])
-
-    @property
     def diagonal(self) -> float:
         """The length of its diagonal."""
-        return sum(extent**2 for extent in self.size) ** 0.5
+        return sum((high - low) ** 2 for low, high in zip(self.low, self.high, strict=True)) ** 0.5
 
-    @property
-    def centre(self) -> Vector:
-        """Its middle."""
-        low, high = self.low, self.high
-        return ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2)
-
-    def joined(self, other: Box) -> Box:
+    def joined(self, other: WorldBox) -> WorldBox:
         """The smallest box around both."""
         low = tuple(map(min, self.low, other.low))
         high = tuple(map(max, self.high, other.high))
-        return Box(low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]))
-
-    def overlaps(self, other: Box, margin: float = 0.0) -> bool:
-        """Whether they share space, or come within ``margin`` of it."""
-        return all(
-            self.low[axis] - margin <= other.high[axis] and other.low[axis] - margin <= self.high[axis]
-            for axis in range(3)
-        )
+        return WorldBox(low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]))
 
 
-class CollectionFacts(_Facts):
-    """A collection. ``parents`` are the collections that hold it ("": the scene's own), ``objects`` its direct ones."""
+class CollectionFacts(_Frozen):
+    """A collection. ``parents``: the collections that hold it ("" is the scene's own); ``objects``: its direct ones."""
 
     name: str
     parents: tuple[str, ...] = ()
@@ -64,8 +49,8 @@ class CollectionFacts(_Facts):
     allows_disconnected: bool = False
 
 
-class ModifierFacts(_Facts):
-    """A modifier: its name, type, whether it is on for renders, and what it works with."""
+class ModifierFacts(_Frozen):
+    """A modifier. ``on``: it is switched on for renders. ``target``: the object that it works with."""
 
     name: str
     type: str
@@ -73,31 +58,31 @@ class ModifierFacts(_Facts):
     target: str | None = None
 
 
-class ConstraintFacts(_Facts):
-    """A constraint: its type, the object that it follows, and whether it is on."""
+class ConstraintFacts(_Frozen):
+    """A constraint. ``on``: it is switched on. ``target``: the object that it follows."""
 
     type: str
     target: str | None = None
     on: bool = True
 
 
-class RigidBodyFacts(_Facts):
-    """A rigid body. ``active``: the solver moves it; ``kinematic``: it follows its animation all the time instead."""
+class RigidBodyFacts(_Frozen):
+    """A rigid body. ``active``: the solver moves it; ``kinematic``: its animation moves it instead, all the time."""
 
     active: bool
     kinematic: bool = False
     enabled: bool = True
 
 
-class ObjectFacts(_Facts):
-    """An object.
+class ObjectFacts(_Frozen):
+    """An object of Blender.
 
-    ``dimensions`` are the evaluated extents along its own axes, ``box`` is around the evaluated geometry in the world:
-    both None for what has none. ``surface``: it, or what it makes instances of, has evaluated polygons. ``rendered``:
-    renders show it; ``evaluated`` is false for what is hidden from the viewport or left out of the view layer. ``keys``
-    counts keyframes by channel (``location``, ``rotation_euler``, …; ``other``) of curves that change over time,
-    ``driven`` are such channels that drivers set; ``animated_shape_keys`` tells whether shape keys move it. ``fault``
-    says why it could not be described, "" where it could.
+    ``dimensions`` are the evaluated extents along its own axes, ``box`` surrounds the evaluated geometry in the world;
+    both are None for objects without geometry. ``surface``: it, or what it instances, has evaluated polygons.
+    ``rendered``: renders show it. ``evaluated`` is false for objects that are hidden from the viewport or outside the
+    view layer. ``keys`` counts keyframes by channel (``location``, ``rotation_euler``, …; ``other``) of curves that
+    change over time; ``driven`` are the channels that drivers set; ``animated_shape_keys``: shape keys move it.
+    ``fault`` says why it could not be described; it is "" where all went well.
     """
 
     name: str
@@ -110,7 +95,7 @@ class ObjectFacts(_Facts):
     matrix: Matrix
     scale: Vector = (1.0, 1.0, 1.0)
     dimensions: Vector | None = None
-    box: Box | None = None
+    box: WorldBox | None = None
     surface: bool = False
     polygons: int = 0
     rendered: bool = True
@@ -127,16 +112,25 @@ class ObjectFacts(_Facts):
     energy: float = 0.0
     fault: str = ""
 
+    def has_modifier(self, types: Collection[str]) -> bool:
+        """Whether a modifier of one of the ``types`` is switched on."""
+        return any(modifier.on and modifier.type in types for modifier in self.modifiers)
+
     @property
-    def location(self) -> Vector:
-        """Its origin in the world."""
-        return (self.matrix[3], self.matrix[7], self.matrix[11])
+    def is_fluid_domain(self) -> bool:
+        """Whether it is a fluid's domain, which encloses the simulation and is no body itself."""
+        return any(modifier.type == "FLUID_DOMAIN" for modifier in self.modifiers)
+
+    @property
+    def is_active_body(self) -> bool:
+        """Whether it is a rigid body that the solver or its animation moves."""
+        return self.rigid_body is not None and self.rigid_body.active and self.rigid_body.enabled
 
 
-class CacheFacts(_Facts):
-    """A physics cache. ``kind`` is cloth, soft_body, particles, rigid_body, fluid, …; ``owner`` the modifier's name.
+class CacheFacts(_Frozen):
+    """A physics cache. ``kind`` is cloth, soft_body, particles, rigid_body, fluid, …; ``owner`` is the modifier's name.
 
-    ``missing`` is how many frames of a bake are not there; ``on``: its solver is switched on.
+    ``missing`` counts the frames that a bake lacks; ``on``: its solver is switched on.
     """
 
     object: str
@@ -150,8 +144,8 @@ class CacheFacts(_Facts):
     on: bool = True
 
 
-class Facts(_Facts):
-    """A scene at the frame that it stands at."""
+class SceneFacts(_Frozen):
+    """A scene at its current frame."""
 
     version: str
     scene: str
@@ -160,15 +154,10 @@ class Facts(_Facts):
     frame_end: int
     fps: float
     gravity: Vector = (0.0, 0.0, -9.81)
-    metres: float = Field(default=1.0, description="Metres in a unit of Blender's.")
+    metres: float = Field(default=1.0, description="Metres in one Blender unit.")
     strict_grounding: bool = False
     camera: str | None = None
     world_light: float = 0.0
     collections: tuple[CollectionFacts, ...] = ()
     objects: tuple[ObjectFacts, ...] = ()
     caches: tuple[CacheFacts, ...] = ()
-
-    @classmethod
-    def read(cls, told: dict[str, Any]) -> Facts:
-        """Facts from what the snapshot told. Raises pydantic's ValidationError."""
-        return cls.model_validate(told)

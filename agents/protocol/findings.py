@@ -1,4 +1,4 @@
-"""What the verifier says."""
+"""What the verifier reports: findings, and the report that holds them."""
 
 from __future__ import annotations
 
@@ -13,9 +13,8 @@ Outcome = Literal["broken", "undecided", "error"]
 class Finding:
     """One breach of one rule.
 
-    ``outcome``: the rule is broken; or it could not be decided; or the rule itself failed. ``measured`` and
-    ``tolerance`` are in ``unit``. ``message`` says what is wrong, ``fix`` what a coder is to change. ``at`` is where
-    in the world, for pictures.
+    ``outcome``: the rule is broken, could not be decided, or failed itself. ``message`` says what is wrong, ``fix``
+    what to change. ``measured`` and ``tolerance`` are in ``unit``. ``at`` is the place in the world, for pictures.
     """
 
     rule: str
@@ -33,12 +32,15 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The outcome of a run. ``passed`` are rules that ran and found nothing; ``idle`` those with nothing to judge,
-    with the reason."""
+    """The outcome of a run.
+
+    ``passed`` are the rules that ran and found nothing; ``not_applicable`` maps those with nothing to judge to the
+    reason.
+    """
 
     findings: tuple[Finding, ...]
     passed: tuple[str, ...]
-    idle: dict[str, str] = field(default_factory=dict[str, str])
+    not_applicable: dict[str, str] = field(default_factory=dict[str, str])
     seconds: float = 0.0
 
     @property

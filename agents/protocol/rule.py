@@ -1,4 +1,4 @@
-"""What a rule is: it asks for measurements, and judges by them. It never sees Blender."""
+"""What a rule is: it requests measurements and judges by them, without Blender."""
 
 from __future__ import annotations
 
@@ -11,44 +11,47 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from agents.plan.scene import ScenePlan
-    from agents.protocol.facts import Facts
+    from agents.protocol.facts import SceneFacts
     from agents.protocol.findings import Severity
-    from agents.protocol.measures.measure import Measures, Request
-    from agents.protocol.structure import Structure
+    from agents.protocol.measures.requests import Measures, Request
+    from agents.protocol.structure import SceneStructure
     from agents.protocol.tolerances import Tolerances
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
-    """What is judged: a scene's facts, and the plan it was built to, if there is one."""
+class RuleContext:
+    """What a rule judges: a scene's facts, and the plan that it was built to, if there is one."""
 
-    facts: Facts
-    structure: Structure
+    facts: SceneFacts
+    structure: SceneStructure
     tolerances: Tolerances
     plan: ScenePlan | None = None
 
     @property
     def planned(self) -> ScenePlan:
-        """The plan; for rules that need one."""
+        """The plan, for rules that need one."""
         assert self.plan is not None
         return self.plan
 
 
-class Idle(Exception):  # noqa: N818 - reads as the state it names
+NO_ROLES = "no collection has the tag protocol_role"  # why rules about the layout do not apply
+
+
+class NotApplicable(Exception):  # noqa: N818 - a state, not a failure
     """A rule has nothing to judge in this scene; the message says why."""
 
 
-def nothing(_subject: Subject) -> Iterable[Request[Any]]:
-    """For rules that facts suffice for."""
+def no_requests(_context: RuleContext) -> Iterable[Request[Any]]:
+    """The requests of rules that need no measurements."""
     return ()
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """``requests`` names what is to be measured, ``judge`` yields findings (both may raise Idle).
+    """A rule: ``requests`` yields what to measure, ``judge`` yields findings; both may raise NotApplicable.
 
-    ``about`` says in a sentence what must hold, ``why`` what goes wrong otherwise, ``fix`` what to do.
-    ``needs_plan``: without a plan it has nothing to judge.
+    ``about`` says what must hold, ``why`` what goes wrong otherwise, ``fix`` what to do. ``needs_plan``: the rule does
+    not apply without a plan. ``tolerances`` are the names of those it uses.
     """
 
     id: str
@@ -57,8 +60,8 @@ class Rule:
     about: str
     why: str
     fix: str
-    judge: Callable[[Subject, Measures], Iterable[Finding]]
-    requests: Callable[[Subject], Iterable[Request[Any]]] = nothing
+    judge: Callable[[RuleContext, Measures], Iterable[Finding]]
+    requests: Callable[[RuleContext], Iterable[Request[Any]]] = no_requests
     needs_plan: bool = False
     tolerances: tuple[str, ...] = ()
 
@@ -67,6 +70,6 @@ class Rule:
         return Finding(self.id, self.severity, objects, message, more.pop("fix", self.fix), **more)
 
     def undecided(self, objects: tuple[str, ...], reason: object, **more: Any) -> Finding:
-        """That it could not be told whether this rule holds there, and why."""
-        message = f"Could not be decided for {', '.join(map(repr, objects)) or 'the scene'}: {reason}."
+        """A finding that the rule could not be decided for ``objects``, and why."""
+        message = f"{', '.join(map(repr, objects)) or 'The scene'} could not be checked: {reason}."
         return Finding(self.id, self.severity, objects, message, self.fix, outcome="undecided", **more)

@@ -1,4 +1,4 @@
-"""Which rules judge which stage: those whose subject is built by then. What holds once must go on to hold."""
+"""The rules that judge each stage: those whose subject is built by then. What held once must keep holding."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ if TYPE_CHECKING:
     from agents.plan.part import Stage
     from agents.protocol.rule import Rule
 
-# Rule, or family → the stage that builds what it judges; all others judge from the first stage on.
-FROM: dict[str, Stage] = {"R15": "motion", "R18": "motion", "T": "motion", "R14": "camera"}
-LAYOUT = frozenset("CG")  # the families that hold of a whole file that is built by the protocol
+# Rule or family → the stage that builds what it judges. All others judge from the first stage on.
+FIRST_STAGES: dict[str, Stage] = {"R15": "motion", "R18": "motion", "T": "motion", "R14": "camera"}
+_LAYOUT_FAMILIES = frozenset("CG")  # they hold only for files that follow the protocol throughout
 
 
-def begins(rule: Rule) -> Stage:
+def first_stage(rule: Rule) -> Stage:
     """The first stage that a rule judges."""
-    return FROM.get(rule.id) or FROM.get(rule.id[0]) or STAGES[0]
+    return FIRST_STAGES.get(rule.id) or FIRST_STAGES.get(rule.id[0]) or STAGES[0]
 
 
 def rules_of(stage: Stage, *, edit: bool = False, tagged: bool = True) -> tuple[Rule, ...]:
     """The rules by which the scene is judged at the end of a stage, in the catalogue's order.
 
-    ``edit``: a file that is edited has no scene plan, so the rules that compare with one have nothing to judge. If it
-    is not ``tagged`` (does not follow the protocol), those of its layout stay out too: an edit may tag what it sets
-    in motion, which does not make the whole file a scene of the protocol.
+    ``edit``: the file is edited; there is no scene plan, so the rules that need one are left out. If the file is not
+    ``tagged`` (does not follow the protocol), the layout rules are left out too: an edit may tag what it animates,
+    which does not make the whole file a protocol scene.
     """
     built = STAGES[: STAGES.index(stage) + 1]
-    out = LAYOUT if edit and not tagged else frozenset[str]()
+    left_out = _LAYOUT_FAMILIES if edit and not tagged else frozenset[str]()
     return tuple(
         rule
         for rule in RULES
-        if begins(rule) in built and rule.id[0] not in out and not (edit and rule.needs_plan)
+        if first_stage(rule) in built and rule.id[0] not in left_out and not (edit and rule.needs_plan)
     )

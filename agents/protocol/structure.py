@@ -1,4 +1,4 @@
-"""The protocol's own view of the facts: systems (L2), objects (L3), and whose a mesh is."""
+"""The scene's facts in the protocol's terms: systems (L2), logical objects (L3), and the owners of meshes."""
 
 from __future__ import annotations
 
@@ -7,28 +7,28 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from agents.plan.graph import reachable
 from agents.protocol.vocabulary import GROUND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from agents.protocol.facts import Box, CacheFacts, CollectionFacts, Facts, ObjectFacts
+    from agents.protocol.facts import CollectionFacts, ObjectFacts, SceneFacts
 
-SCENE = ""  # how a collection names the scene's own as its parent
-# Modifiers, and constraints, that move what they are on by themselves.
-_MOVERS = frozenset(
+SCENE = ""  # the name of the scene's own collection, where it is a parent
+_MOVING_MODIFIERS = frozenset(
     {
         "CLOTH", "SOFT_BODY", "FLUID_DOMAIN", "FLUID_FLOW", "PARTICLE_SYSTEM", "DYNAMIC_PAINT", "ARMATURE",
         "MESH_CACHE", "MESH_SEQUENCE_CACHE",
     }
 )  # fmt: skip
+_MOVING_CONSTRAINTS = frozenset({"FOLLOW_PATH", "TRANSFORM_CACHE", "FOLLOW_TRACK"})
 _GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"})
-_MOVING = frozenset({"FOLLOW_PATH", "TRANSFORM_CACHE", "FOLLOW_TRACK"})
 
 
 @dataclass(frozen=True, slots=True)
-class Thing:
-    """A logical object: an L3 collection, the meshes in it, its root Empties."""
+class LogicalObject:
+    """An L3 collection with its meshes, its root Empties, and the other objects in it."""
 
     collection: CollectionFacts
     meshes: tuple[ObjectFacts, ...]
@@ -41,184 +41,155 @@ class Thing:
         return self.collection.name
 
     @property
-    def surfaces(self) -> tuple[str, ...]:
-        """Names of its meshes that have a surface and are rendered; of all with a surface if none is."""
-        shown = tuple(one.name for one in self.meshes if one.surface and one.rendered)
-        return shown or tuple(one.name for one in self.meshes if one.surface)
+    def members(self) -> tuple[ObjectFacts, ...]:
+        """All objects in it."""
+        return (*self.meshes, *self.others, *self.roots)
 
     @property
-    def box(self) -> Box | None:
-        """Around all its evaluated geometry that has a surface."""
-        wanted = set(self.surfaces)
-        boxes = [one.box for one in self.meshes if one.box and one.name in wanted]
-        if not boxes:
-            return None
-        whole = boxes[0]
-        for box in boxes[1:]:
-            whole = whole.joined(box)
-        return whole
+    def surfaces(self) -> tuple[str, ...]:
+        """Names of its meshes with a surface that renders show; of all with a surface if renders show none."""
+        rendered = tuple(mesh.name for mesh in self.meshes if mesh.surface and mesh.rendered)
+        return rendered or tuple(mesh.name for mesh in self.meshes if mesh.surface)
 
 
-class Structure:
-    """Answers about a scene's facts that several rules need."""
+class SceneStructure:
+    """Look-ups in a scene's facts that several rules need."""
 
-    def __init__(self, facts: Facts) -> None:
+    def __init__(self, facts: SceneFacts) -> None:
         self.facts = facts
-        self.objects = {one.name: one for one in facts.objects}
-        self.collections = {one.name: one for one in facts.collections}
+        self.objects = {item.name: item for item in facts.objects}
+        self.collections = {collection.name: collection for collection in facts.collections}
 
     @cached_property
     def systems(self) -> tuple[CollectionFacts, ...]:
         """L2 collections."""
-        return tuple(one for one in self.facts.collections if one.role == "system")
+        return tuple(collection for collection in self.facts.collections if collection.role == "system")
 
     @cached_property
-    def things(self) -> tuple[Thing, ...]:
-        """L3 collections, with what is in them and in the untagged collections below them."""
-        return tuple(self._thing(one) for one in self.facts.collections if one.role == "object")
+    def logical_objects(self) -> tuple[LogicalObject, ...]:
+        """L3 collections, with the objects in them and in the untagged collections below them."""
+        return tuple(
+            self._logical_object(collection)
+            for collection in self.facts.collections
+            if collection.role == "object"
+        )
 
     @cached_property
-    def by_name(self) -> dict[str, Thing]:
-        """L3 by the collection's name."""
-        return {thing.name: thing for thing in self.things}
+    def by_name(self) -> dict[str, LogicalObject]:
+        """Logical objects by the name of their collection."""
+        return {obj.name: obj for obj in self.logical_objects}
 
     @cached_property
-    def owners(self) -> dict[str, tuple[Thing, ...]]:
-        """Object → the L3s that it is in."""
-        found: dict[str, list[Thing]] = defaultdict(list)
-        for thing in self.things:
-            for one in (*thing.meshes, *thing.roots, *thing.others):
-                found[one.name].append(thing)
-        return {name: tuple(things) for name, things in found.items()}
+    def owners(self) -> dict[str, tuple[LogicalObject, ...]]:
+        """Name of a Blender object → the logical objects that it is in."""
+        owners: dict[str, list[LogicalObject]] = defaultdict(list)
+        for obj in self.logical_objects:
+            for item in obj.members:
+                owners[item.name].append(obj)
+        return {name: tuple(objects) for name, objects in owners.items()}
 
     @cached_property
     def grounds(self) -> frozenset[str]:
-        """Names of the L3s that belong to the system ``ground``."""
-        return frozenset(thing.name for thing in self.things if GROUND in self.systems_of(thing.collection))
+        """Names of the logical objects in the system ``ground``."""
+        return frozenset(
+            obj.name for obj in self.logical_objects if GROUND in self.systems_of(obj.collection)
+        )
 
     @cached_property
     def meshes(self) -> tuple[ObjectFacts, ...]:
-        """Everything with geometry of its own, tagged or not."""
-        return tuple(one for one in self.facts.objects if is_mesh(one))
+        """All objects with geometry of their own, tagged or not."""
+        return tuple(item for item in self.facts.objects if is_mesh(item))
 
     def systems_of(self, collection: CollectionFacts) -> frozenset[str]:
         """Names of the L2 collections above a collection."""
-        found: set[str] = set()
-        seen: set[str] = set()
-        waiting = list(collection.parents)
-        while waiting:
-            name = waiting.pop()
-            above = self.collections.get(name)
-            if above is None or name in seen:
-                continue
-            seen.add(name)
-            if above.role == "system":
-                found.add(name)
-            waiting += above.parents
-        return frozenset(found)
+        above = reachable(
+            collection.parents,
+            lambda name: self.collections[name].parents if name in self.collections else (),
+        )
+        return frozenset(system.name for system in self.systems if system.name in above)
 
     def parents_of(self, name: str) -> Iterator[str]:
-        """The chain of parents above an object, nearest first; it ends where a parent comes again."""
+        """The chain of parents above an object, nearest first; it ends where a parent repeats."""
         seen = {name}
-        one = self.objects.get(name)
-        while one is not None and one.parent is not None and one.parent not in seen:
-            yield one.parent
-            seen.add(one.parent)
-            one = self.objects.get(one.parent)
+        item = self.objects.get(name)
+        while item is not None and item.parent is not None and item.parent not in seen:
+            yield item.parent
+            seen.add(item.parent)
+            item = self.objects.get(item.parent)
 
-    def find(self, node: str) -> tuple[str, ...]:
-        """The surfaces that a name stands for: an L3's, a root's, ``Object/Part``'s or one mesh's; () for nobody's."""
+    def surfaces_of(self, node: str) -> tuple[str, ...]:
+        """The meshes with a surface that a name stands for: an L3's, a root's, ``Object/Part``'s or one mesh's."""
         owner, _, part = node.partition("/")
         if part:
-            thing = self.by_name.get(owner)
-            return (
-                tuple(one.name for one in thing.meshes if one.surface and one.name == part) if thing else ()
-            )
+            meshes = self.by_name[owner].meshes if owner in self.by_name else ()
+            return tuple(mesh.name for mesh in meshes if mesh.surface and mesh.name == part)
         if node in self.by_name:
             return self.by_name[node].surfaces
-        one = self.objects.get(node)
-        if one is None:
+        item = self.objects.get(node)
+        if item is None:
             return ()
-        if one.is_root:
-            return tuple(name for thing in self.owners.get(node, ()) for name in thing.surfaces)
-        return (node,) if one.surface else ()
+        if item.is_root:
+            return tuple(name for obj in self.owners.get(node, ()) for name in obj.surfaces)
+        return (node,) if item.surface else ()
 
-    def thing_of(self, node: str) -> Thing | None:
-        """The L3 that a node belongs to: by its own name, a part's, a mesh's or a root's."""
+    def logical_object_of(self, node: str) -> LogicalObject | None:
+        """The logical object that a name belongs to: its own, a part's, a mesh's or a root's."""
         owner = node.partition("/")[0]
         if owner in self.by_name:
             return self.by_name[owner]
-        things = self.owners.get(owner, ())
-        return things[0] if len(things) == 1 else None
+        owners = self.owners.get(owner, ())
+        return owners[0] if len(owners) == 1 else None
 
-    def caches_of(self, thing: Thing) -> tuple[CacheFacts, ...]:
-        """The caches of an L3's objects."""
-        names = {one.name for one in (*thing.meshes, *thing.others, *thing.roots)}
-        return tuple(cache for cache in self.facts.caches if cache.object in names)
+    def can_move(self, name: str) -> bool:
+        """Whether physics, keys, drivers, or anything that it follows may move or deform an object."""
+        return any(
+            is_animated(item) or item.is_active_body or item.has_modifier(_MOVING_MODIFIERS)
+            for item in self.dependencies(name)
+        )
 
-    def moves(self, name: str) -> bool:
-        """Whether something may move or deform an object: physics, keys, drivers, or something that it follows."""
-        return any(_moves(one) for one in self.followed(name))
-
-    def followed(self, name: str) -> Iterator[ObjectFacts]:
-        """An object and all that it may follow: parents, targets of constraints and modifiers, over any steps."""
-        waiting, seen = [name], set[str]()
-        while waiting:
-            one = self.objects.get(waiting.pop())
-            if one is None or one.name in seen:
+    def dependencies(self, name: str) -> Iterator[ObjectFacts]:
+        """An object and all that it follows: parents, targets of constraints and modifiers, and theirs."""
+        stack, seen = [name], set[str]()
+        while stack:
+            item = self.objects.get(stack.pop())
+            if item is None or item.name in seen:
                 continue
-            seen.add(one.name)
-            yield one
-            links = [link.target for link in (*one.constraints, *one.modifiers) if link.on and link.target]
-            waiting += [*links, *((one.parent,) if one.parent else ())]
+            seen.add(item.name)
+            yield item
+            links = [link.target for link in (*item.constraints, *item.modifiers) if link.on and link.target]
+            stack += [*links, *((item.parent,) if item.parent else ())]
 
     @cached_property
-    def _below(self) -> dict[str, list[CollectionFacts]]:
-        """Collection → those in it."""
-        found: dict[str, list[CollectionFacts]] = defaultdict(list)
-        for one in self.facts.collections:
-            for above in one.parents:
-                found[above].append(one)
-        return found
+    def _untagged_children(self) -> dict[str, list[str]]:
+        """Collection → the untagged collections in it."""
+        children: dict[str, list[str]] = defaultdict(list)
+        for collection in self.facts.collections:
+            for parent in collection.parents if collection.role is None else ():
+                children[parent].append(collection.name)
+        return children
 
-    def _thing(self, collection: CollectionFacts) -> Thing:
-        names: dict[str, None] = {}
-        waiting, seen = [collection], {collection.name}
-        while waiting:
-            one = waiting.pop(0)
-            names.update(dict.fromkeys(one.objects))
-            for below in self._below.get(one.name, ()):
-                if below.role is None and below.name not in seen:
-                    seen.add(below.name)
-                    waiting.append(below)
-        inside = [self.objects[name] for name in names if name in self.objects]
-        return Thing(
+    def _logical_object(self, collection: CollectionFacts) -> LogicalObject:
+        below = reachable([collection.name], lambda name: self._untagged_children.get(name, ()))
+        names = dict.fromkeys(name for part in below for name in self.collections[part].objects)
+        items = [self.objects[name] for name in names if name in self.objects]
+        return LogicalObject(
             collection,
-            tuple(one for one in inside if is_mesh(one)),
-            tuple(one for one in inside if one.is_root),
-            tuple(one for one in inside if not is_mesh(one) and not one.is_root),
+            tuple(item for item in items if is_mesh(item)),
+            tuple(item for item in items if item.is_root),
+            tuple(item for item in items if not is_mesh(item) and not item.is_root),
         )
 
 
-def is_mesh(one: ObjectFacts) -> bool:
-    """Whether there is geometry of an object's own: a mesh, what is drawn as one, and what makes instances of one."""
-    return one.surface or one.type in _GEOMETRY
+def is_mesh(item: ObjectFacts) -> bool:
+    """Whether an object has geometry of its own: it is a mesh, renders as one, or makes instances of one."""
+    return item.surface or item.type in _GEOMETRY
 
 
-def is_animated(one: ObjectFacts) -> bool:
-    """Whether keyframes, drivers, shape keys or something recorded move it by itself."""
+def is_animated(item: ObjectFacts) -> bool:
+    """Whether keyframes, drivers, shape keys or a recorded motion move an object."""
     return bool(
-        one.keys
-        or one.drivers
-        or one.animated_shape_keys
-        or any(constraint.on and constraint.type in _MOVING for constraint in one.constraints)
-    )
-
-
-def _moves(one: ObjectFacts) -> bool:
-    body = one.rigid_body
-    return (
-        is_animated(one)
-        or (body is not None and body.active and body.enabled)
-        or any(modifier.type in _MOVERS and modifier.on for modifier in one.modifiers)
+        item.keys
+        or item.drivers
+        or item.animated_shape_keys
+        or any(constraint.on and constraint.type in _MOVING_CONSTRAINTS for constraint in item.constraints)
     )

@@ -1,9 +1,9 @@
-"""The words of the scene protocol: which custom properties carry it, what they may say, and what that means.
+"""The vocabulary of the scene protocol: its levels, its custom properties, their values, and what these mean.
 
-Three levels, of Blender's own collections. L1 is the scene. An L2 is a *system*: a collection directly under the
+The protocol has three levels of collections. L1 is the scene. An L2 is a *system*: a collection directly under the
 scene's root that groups objects or holds lights and cameras. An L3 is an *object*: a collection below a system with
-all meshes of one logical object and one Empty, its root, to which each mesh's chain of parents leads. A collection
-without a role is outside the protocol.
+all meshes of one logical object and one Empty, its root, to which each mesh's chain of parents leads. Collections
+without a role are outside the protocol.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ GROUND = "ground"
 
 
 @dataclass(frozen=True, slots=True)
-class Property:
-    """A custom property of the protocol: what carries it, and what it says there.
+class CustomProperty:
+    """A custom property of the protocol: its owner, and its meaning there.
 
-    ``on_role``: the role that a collection must have to carry it; None where any may.
+    ``on_role``: the role that the collection must have; None for any.
     """
 
     name: str
@@ -41,59 +41,69 @@ class Property:
 
 
 ROLES: dict[Role, str] = {
-    "system": "An L2: a collection directly under the scene's root that groups objects, or holds lights or cameras.",
+    "system": "An L2: a collection directly under the scene's root that groups objects or holds lights or cameras.",
     "object": "An L3: a collection in a system, with all meshes of one logical object and one root Empty.",
 }
 
 DEFORMATION_KINDS: dict[DeformationKind, str] = {
-    "rig": "An armature, a lattice, shape keys or another deformer bends it.",
+    "rig": "An armature, a lattice, shape keys or another deformer deforms it.",
     "sim_cloth": "The cloth solver moves it.",
     "sim_fluid": "The fluid solver makes or moves it: liquid, smoke or fire.",
     "sim_rigid": "The rigid-body solver moves it.",
     "sim_soft": "The soft-body solver moves it.",
-    "sim_particle": "A particle system makes it up.",
+    "sim_particle": "It consists of particles.",
     "none": "Nothing deforms it, and no solver moves it.",
 }
 
 MOTION_KINDS: dict[MotionKind, str] = {
-    "keyframe": "Keyframes move it, on itself or on what it follows.",
+    "keyframe": "Keyframes move it, or an object that it follows.",
     "bake": "Its motion is a baked simulation.",
-    "none": "It stays where it is.",
+    "none": "It does not move.",
 }
 
 SYSTEMS: dict[str, str] = {
-    GROUND: "What everything else stands on; it must be there, with at least one object in it.",
+    GROUND: "What everything else stands on; required, with at least one object in it.",
     "lighting": "The lights.",
     "cameras": "The cameras.",
-    "physics": "Force fields, and what else the solvers need that is not to be seen.",
+    "physics": "Force fields and other invisible helpers of the solvers.",
 }
 
-PROPERTIES: tuple[Property, ...] = (
-    Property(PROTOCOL_ROLE, "collection", "Whether the collection is a system (L2) or an object (L3)."),
-    Property(
+PROPERTIES: tuple[CustomProperty, ...] = (
+    CustomProperty(PROTOCOL_ROLE, "collection", "Whether the collection is a system (L2) or an object (L3)."),
+    CustomProperty(
         DEFORMATION_KIND,
         "collection",
-        "Which mechanism shapes the object; undeclared, the rules about it do not run.",
+        "The mechanism that deforms or simulates the object; without it, the rules about it do not run.",
         "object",
     ),
-    Property(
+    CustomProperty(
         MOTION_KIND,
         "collection",
-        "How the object comes to move; undeclared, the rules about it do not run.",
+        "How the object moves; without it, the rules about it do not run.",
         "object",
     ),
-    Property(ALLOWS_DISCONNECTED, "collection", "The object's meshes need not touch one another.", "object"),
-    Property(IS_OBJECT_ROOT, "object", "This Empty is the root of its object (L3): its anchor and handle."),
-    Property(
+    CustomProperty(
+        ALLOWS_DISCONNECTED, "collection", "The object's meshes need not touch each other.", "object"
+    ),
+    CustomProperty(
+        IS_OBJECT_ROOT,
+        "object",
+        "This Empty is the root of its object (L3): it places and moves the whole object.",
+    ),
+    CustomProperty(
         CONTACT_WITH,
         "object",
-        "Names of the meshes or roots that this mesh, or the object of this root, touches. One side suffices.",
+        "Names of the meshes or roots that this mesh, or this root's object, touches. One side is enough.",
     ),
-    Property(STRICT_GROUNDING, "scene", "An object that nothing connects to the ground fails the check."),
+    CustomProperty(
+        STRICT_GROUNDING,
+        "scene",
+        "An object that is not connected to the ground fails the check (rule W1 becomes hard).",
+    ),
 )
 
 
 def meaning_of(name: str, choices: dict[Any, str] | None = None) -> str:
-    """What a property says, and what each of its ``choices`` means, for whoever is to set it."""
-    told = next(one.meaning for one in PROPERTIES if one.name == name)
-    return " ".join([told, *(f"{choice}: {meaning}" for choice, meaning in (choices or {}).items())])
+    """The meaning of a property and of each of its ``choices``, in one line."""
+    meaning = next(tag.meaning for tag in PROPERTIES if tag.name == name)
+    return " ".join([meaning, *(f"{choice}: {text}" for choice, text in (choices or {}).items())])

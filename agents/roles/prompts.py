@@ -16,7 +16,7 @@ from agents.plan.edit import EditPlan
 from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
-from agents.protocol.guide import guide, told_rules
+from agents.protocol.guide import format_stage_rules, guide
 from simworlds.schemas.notation import shape_of
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def team_text(*, edit: bool = False) -> str:
 @cache
 def stage_text(stage: Stage, *, edit: bool = False) -> str:
     """What belongs into a stage, when it is done, what goes wrong in it, and which rules judge it."""
-    return f"{_read(f'stages/{stage}.md')}\n\nRules that judge this stage: {told_rules(stage, edit=edit)}."
+    return f"{_read(f'stages/{stage}.md')}\n\nRules that judge this stage: {format_stage_rules(stage, edit=edit)}."
 
 
 def stage_title(stage: Stage) -> str:

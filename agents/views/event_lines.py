@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from agents.loop import events
 from agents.loop.run_state import ModelCall, ToolCall
-from agents.protocol.report.folding import rows
+from agents.protocol.report.grouping import group_findings
 from agents.views.formatting import (
     counted,
     describe_attempt,
@@ -114,7 +114,7 @@ def _verified(event: events.Verified) -> list[str]:
 
 def format_findings(verified: events.Verified, most: int) -> list[str]:
     """The worst findings, those that say the same in one line, and how many kinds there are more."""
-    folded = rows(verified.findings)
+    folded = group_findings(verified.findings)
     lines: list[str] = []
     for row in folded[:most]:
         many = f" ×{len(row.findings)}" if len(row.findings) > 1 else ""

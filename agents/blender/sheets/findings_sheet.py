@@ -10,8 +10,8 @@ from PIL import Image, ImageDraw
 
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import text_width
-from agents.protocol.report.folding import rows
-from agents.protocol.report.report import told, verdict
+from agents.protocol.report.grouping import group_findings
+from agents.protocol.report.summary import short_label, verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,19 +51,19 @@ class FindingMark:
     @property
     def label(self) -> str:
         """The text in the images."""
-        return f"{self.number}  {told(self.finding)}"
+        return f"{self.number}  {short_label(self.finding)}"
 
     @property
     def line(self) -> str:
         """The line below the images."""
-        return f"{self.number}  {told(self.finding)}: {self.finding.message}"
+        return f"{self.number}  {short_label(self.finding)}: {self.finding.message}"
 
 
 def findings_to_mark(findings: Sequence[Finding], most: int = MOST_MARKS) -> list[Finding]:
     """At most ``most`` findings, the worst of each kind first, so that no kind crowds out others."""
     kinds = [
         row.findings
-        for row in rows(findings)
+        for row in group_findings(findings)
         if any(finding.objects or finding.at for finding in row.findings)
     ]
     kinds = [kind for kind in kinds if not _is_everywhere(kind)] or kinds

@@ -10,7 +10,9 @@ from agents.blender.sheets.findings_sheet import draw_findings
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.preview_files import new_preview
 from agents.blender.verification import verify_scene
-from agents.protocol.report.report import Checked, as_json, as_text
+from agents.protocol.report.json_report import as_json
+from agents.protocol.report.markdown import as_text
+from agents.protocol.report.summary import VerificationScope
 from agents.protocol.verify_request import plan_from, rules_named
 from simworlds.sandbox.errors import Refusal
 
@@ -61,7 +63,7 @@ def run(context: ToolContext, arguments: VerifyArguments, call: Call) -> Result:
             "go_to_frame", {"frame": None}, timeout=_SECONDS, cancelled=call.cancelled
         ).value
         report = verify_scene(blender, rules, plan, call)
-        checked = Checked(
+        checked = VerificationScope(
             rules,
             scene=str(position["scene"]),
             frame=int(position["frame"]),

@@ -1,4 +1,4 @@
-"""Whether something stands: its centre of mass against the outline of what bears it, seen from above. Metres."""
+"""Whether an object is balanced: its centre of mass against its support area, seen from above. Metres."""
 
 from __future__ import annotations
 
@@ -9,17 +9,13 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    import numpy.typing as npt
-
     from agents.protocol.facts import Vector
-
-    Array = npt.NDArray[np.float64]
 
 
 def balance(bearing: Iterable[Vector], centre: Vector) -> tuple[float, float]:
-    """(how far the centre is inside the hull of the bearing places, negative outside; the hull's area in m²).
+    """(distance of the centre from the edge of the support area, negative outside; the support area in m²).
 
-    The hull of places on a line has no inside: at best 0.
+    The support area is the hull of the ``bearing`` places; if these are on a line, the distance is at most 0.
     """
     hull = _hull(sorted({(place[0], place[1]) for place in bearing}))
     corners = np.array(hull, dtype=float)

@@ -1,4 +1,4 @@
-"""What moves and shapes an object, by the facts: solvers, their caches, rigs and keys."""
+"""What moves and deforms an object, by the facts: solvers, their caches, rigs and keys."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from agents.protocol.structure import is_animated
 
 if TYPE_CHECKING:
     from agents.protocol.facts import CacheFacts, ObjectFacts
-    from agents.protocol.structure import Structure, Thing
+    from agents.protocol.structure import LogicalObject, SceneStructure
 
-FEWEST_DENSE = 5
+MIN_DENSE_KEYS = 5
 _CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle")
 TRANSFORMS = (*_CHANNELS, *(f"delta_{channel}" for channel in _CHANNELS))
-_RECORDED = {"MESH_CACHE": "Mesh Cache", "MESH_SEQUENCE_CACHE": "Mesh Sequence Cache"}
+_RECORDINGS = {"MESH_CACHE": "Mesh Cache", "MESH_SEQUENCE_CACHE": "Mesh Sequence Cache"}
 _DEFORMERS = frozenset(
     {"ARMATURE", "LATTICE", "CURVE", "HOOK", "MESH_DEFORM", "SIMPLE_DEFORM", "WAVE", "SURFACE_DEFORM"}
 )
-# Kind of deformation → (modifiers that make it, kinds of caches that keep it, what to call it).
+# deformation_kind → (the solver's modifiers, the kinds of its caches, what to call it).
 SOLVERS: dict[str, tuple[frozenset[str], frozenset[str], str]] = {
     "sim_cloth": (frozenset({"CLOTH"}), frozenset({"cloth"}), "cloth modifier"),
     "sim_soft": (frozenset({"SOFT_BODY"}), frozenset({"soft_body"}), "soft-body modifier"),
@@ -29,88 +29,76 @@ SOLVERS: dict[str, tuple[frozenset[str], frozenset[str], str]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Mechanism:
-    """A solver at work in an object: ``actors`` are what it moves, ``caches`` what keeps its result."""
+class Solver:
+    """A solver in an object: ``actors`` are what it moves (none if it is off or absent), ``caches`` keep its result."""
 
     kind: str
     actors: tuple[ObjectFacts, ...]
     caches: tuple[CacheFacts, ...]
 
 
-def solver_of(structure: Structure, thing: Thing, kind: str) -> Mechanism:
-    """The solver of a kind (``sim_…``) in an object; no actors where it is not at work."""
-    modifiers, kept_as, _ = SOLVERS[kind]
-    objects = (*thing.meshes, *thing.others, *thing.roots)
+def solver_of(structure: SceneStructure, obj: LogicalObject, kind: str) -> Solver:
+    """The solver of a kind (``sim_…``) in an object."""
+    modifiers, cache_kinds, _ = SOLVERS[kind]
+    caches = tuple(cache for cache in structure.facts.caches if cache.kind in cache_kinds)
     if kind == "sim_rigid":
-        actors = tuple(one for one in objects if _is_driven(one))
-        caches = tuple(cache for cache in structure.facts.caches if cache.kind in kept_as)
-        return Mechanism(kind, actors, caches)
-    actors = tuple(one for one in objects if any(m.type in modifiers and m.on for m in one.modifiers))
-    names = {one.name for one in actors}
-    caches = tuple(
-        cache for cache in structure.facts.caches if cache.kind in kept_as and cache.object in names
-    )
-    if kind == "sim_fluid" and not caches:
-        # A flow has no cache of its own: its liquid is in the domain's.
-        caches = tuple(cache for cache in structure.facts.caches if cache.kind in kept_as)
-    return Mechanism(kind, actors, caches)
+        bodies = tuple(item for item in obj.members if _is_simulated_body(item))
+        return Solver(kind, bodies, caches)
+    actors = tuple(item for item in obj.members if item.has_modifier(modifiers))
+    names = {item.name for item in actors}
+    own = tuple(cache for cache in caches if cache.object in names)
+    # A fluid's flow has no cache: its liquid is in the domain's.
+    return Solver(kind, actors, caches if kind == "sim_fluid" and not own else own)
 
 
-def _is_driven(one: ObjectFacts) -> bool:
-    body = one.rigid_body
-    return body is not None and body.active and body.enabled and not body.kinematic
+def _is_simulated_body(item: ObjectFacts) -> bool:
+    return item.is_active_body and item.rigid_body is not None and not item.rigid_body.kinematic
 
 
-def at_work(structure: Structure, thing: Thing) -> list[str]:
+def active_solvers(structure: SceneStructure, obj: LogicalObject) -> list[str]:
     """The kinds of solvers that move an object."""
-    return [kind for kind in SOLVERS if _is_at_work(solver_of(structure, thing, kind))]
+    return [kind for kind in SOLVERS if _is_active(solver_of(structure, obj, kind))]
 
 
-def _is_at_work(found: Mechanism) -> bool:
-    # Hair that only stands there is a particle system too; it has no cache.
-    return bool(found.actors) and (found.kind != "sim_particle" or bool(found.caches))
+def _is_active(solver: Solver) -> bool:
+    # Hair without dynamics is a particle system too; it has no cache.
+    return bool(solver.actors) and (solver.kind != "sim_particle" or bool(solver.caches))
 
 
-def has_rig(thing: Thing) -> bool:
-    """Whether something bends it that is no solver."""
+def has_rig(obj: LogicalObject) -> bool:
+    """Whether an armature, shape keys or another deformer that is no solver deforms an object."""
     return any(
-        one.animated_shape_keys or any(m.type in _DEFORMERS and m.on for m in one.modifiers)
-        for one in (*thing.meshes, *thing.others)
+        item.animated_shape_keys or item.has_modifier(_DEFORMERS) for item in (*obj.meshes, *obj.others)
     )
 
 
-def keyed(structure: Structure, thing: Thing) -> list[ObjectFacts]:
-    """What has keyframes, drivers or animated shape keys, of an object or of what it follows."""
-    found = {
-        one.name: one
-        for own in (*thing.meshes, *thing.others, *thing.roots)
-        for one in structure.followed(own.name)
-    }
-    return [one for one in found.values() if is_animated(one)]
+def animated_objects(structure: SceneStructure, obj: LogicalObject) -> list[ObjectFacts]:
+    """The members of an object, and what they follow, that have keyframes, drivers or animated shape keys."""
+    items = {item.name: item for member in obj.members for item in structure.dependencies(member.name)}
+    return [item for item in items.values() if is_animated(item)]
 
 
-def imitations(kind: str, one: ObjectFacts, most: float) -> list[str]:
-    """What moves or deforms an object frame by frame as if a solver of that kind did, in words.
+def imitations(kind: str, item: ObjectFacts, dense: float) -> list[str]:
+    """What moves or deforms an object frame by frame as a solver of that kind would, in words.
 
-    ``most``: so many keys on a channel do. What pours or emits may be moved about.
+    ``dense``: number of keys on a channel from which they count. Objects that pour or emit may be moved.
     """
-    found: list[str] = []
+    texts: list[str] = []
     if kind not in {"sim_fluid", "sim_particle"}:
-        found = [
-            f"{one.keys[name]} keyframes on {name}" for name in TRANSFORMS if one.keys.get(name, 0) >= most
+        texts = [
+            f"{item.keys[name]} keyframes on {name}" for name in TRANSFORMS if item.keys.get(name, 0) >= dense
         ]
-        found += [f"a driver on {name}" for name in one.driven if name in TRANSFORMS]
-    found += ["animated shape keys"] if one.animated_shape_keys else []
-    found += [
-        f"a {_RECORDED[modifier.type]} modifier"
-        for modifier in one.modifiers
-        if modifier.on and modifier.type in _RECORDED
+        texts += [f"a driver on {name}" for name in item.driven if name in TRANSFORMS]
+    texts += ["animated shape keys"] if item.animated_shape_keys else []
+    texts += [
+        f"a {_RECORDINGS[modifier.type]} modifier"
+        for modifier in item.modifiers
+        if modifier.on and modifier.type in _RECORDINGS
     ]
-    return found
+    return texts
 
 
-def chain(structure: Structure, thing: Thing, one: ObjectFacts) -> list[ObjectFacts]:
-    """Something of an object and what it is parented to within that object."""
-    own = {part.name for part in (*thing.meshes, *thing.others, *thing.roots)}
-    above = [structure.objects[name] for name in structure.parents_of(one.name) if name in own]
-    return [one, *above]
+def parent_chain(structure: SceneStructure, obj: LogicalObject, item: ObjectFacts) -> list[ObjectFacts]:
+    """A member of an object, and its parents within that object."""
+    own = {member.name for member in obj.members}
+    return [item, *(structure.objects[name] for name in structure.parents_of(item.name) if name in own)]

@@ -1,58 +1,59 @@
-"""By how much something is to be moved, in words that can be acted on. Metres, in the world."""
+"""Advice on how far to move an object, in words. Metres, in the world."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
-from agents.protocol.judging.contact_pairs import diagonal_around
+from agents.protocol.judging.sizes import diagonal_around
 
 if TYPE_CHECKING:
     from agents.protocol.facts import Vector
-    from agents.protocol.measures.measure import GapMeasure, Names
-    from agents.protocol.rule import Subject
+    from agents.protocol.measures.geometry import GapMeasure
+    from agents.protocol.measures.requests import Names
+    from agents.protocol.rule import RuleContext
 
 _AXES = (("−X", "+X"), ("−Y", "+Y"), ("−Z", "+Z"))
 _WORDS = {"+Z": "up", "−Z": "down"}
-_ALONG = 0.999  # share of a way that is along one axis
+_ALONG_AXIS = 0.999  # share of a move along one axis, from which only that axis is named
 
 
-def across(gap: GapMeasure) -> Vector:
-    """The way from the first of two surfaces to the second."""
+def gap_vector(gap: GapMeasure) -> Vector:
+    """From the first of two surfaces to the second."""
     here, there = gap.here, gap.there
     return (there[0] - here[0], there[1] - here[1], there[2] - here[2])
 
 
-def told_move(name: str, way: Vector) -> str:
+def describe_move(name: str, move: Vector) -> str:
     """``Move 'Chair' 5.0 mm down (−Z)``, or by a vector; without a full stop."""
-    length = math.sqrt(sum(part * part for part in way))
-    axis = max(range(3), key=lambda one: abs(way[one]))
-    if abs(way[axis]) < _ALONG * length:
-        return f"Move {name!r} by ({', '.join(_signed(part) for part in way)}) mm"
-    side = _AXES[axis][way[axis] > 0]
-    return f"Move {name!r} {length * 1000:.1f} mm " + (
-        f"{_WORDS[side]} ({side})" if side in _WORDS else f"along {side}"
-    )
+    length = math.hypot(*move)
+    axis = max(range(3), key=lambda place: abs(move[place]))
+    if abs(move[axis]) < _ALONG_AXIS * length:
+        return f"Move {name!r} by ({', '.join(map(_signed, move))}) mm"
+    side = _AXES[axis][move[axis] > 0]
+    direction = f"{_WORDS[side]} ({side})" if side in _WORDS else f"along {side}"
+    return f"Move {name!r} {length * 1000:.1f} mm {direction}"
 
 
-def _signed(part: float) -> str:
-    return f"{part * 1000:+.1f}".replace("-", "−").replace("+0.0", "0").replace("−0.0", "0")
+def _signed(length: float) -> str:
+    return f"{length * 1000:+.1f}".replace("-", "−").replace("+0.0", "0").replace("−0.0", "0")
 
 
-def told_join(subject: Subject, first: tuple[str, Names], second: tuple[str, Names], way: Vector) -> str:
-    """Which of two things, given as (name, its surfaces), is to be moved, so that the first goes ``way``.
-
-    The smaller one; but never one of the ground.
+def describe_closing_move(
+    context: RuleContext, first: tuple[str, Names], second: tuple[str, Names], move: Vector
+) -> str:
+    """Which of two objects, given as (name, its surfaces), to move so that the first goes by ``move`` relative to the
+    second: the smaller one, but never one of the ground.
     """
-    if _is_ground(subject, first[0]) == _is_ground(subject, second[0]):
-        moves_first = diagonal_around(subject, first[1]) <= diagonal_around(subject, second[1])
+    if _is_ground(context, first[0]) == _is_ground(context, second[0]):
+        moves_first = diagonal_around(context, first[1]) <= diagonal_around(context, second[1])
     else:
-        moves_first = _is_ground(subject, second[0])
+        moves_first = _is_ground(context, second[0])
     if moves_first:
-        return told_move(first[0], way)
-    return told_move(second[0], (-way[0], -way[1], -way[2]))
+        return describe_move(first[0], move)
+    return describe_move(second[0], (-move[0], -move[1], -move[2]))
 
 
-def _is_ground(subject: Subject, name: str) -> bool:
-    thing = subject.structure.thing_of(name)
-    return thing is not None and thing.name in subject.structure.grounds
+def _is_ground(context: RuleContext, name: str) -> bool:
+    obj = context.structure.logical_object_of(name)
+    return obj is not None and obj.name in context.structure.grounds

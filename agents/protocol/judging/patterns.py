@@ -1,4 +1,4 @@
-"""How well places fit a circle, a line, a grid, or a mirror: plain geometry on n × 3 arrays of metres."""
+"""How well places fit a circle, a line, a grid or a mirror plane. Places are n × 3 arrays, in metres."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ import numpy as np
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    Array = npt.NDArray[np.float64]
+    from agents.protocol.judging.vectors import Array
 
-_LEVEL = 1e-3  # of its extent that places may differ in height and still lie in a level plane
-_ASKEW = 0.5  # sine of the angle from which on two steps are taken for different directions of a grid
-_ALIKE = 0.3  # of its length that a step may differ from another one and still be the same
+_LEVEL = 1e-3  # share of their extent that places may differ in height and still lie in a horizontal plane
+_OTHER_DIRECTION = 0.5  # sine of the angle from which two steps count as different directions of a grid
+_SAME_STEP = 0.3  # share of its length that a step may differ from another and still count as the same
 
 
 @dataclass(frozen=True, slots=True)
-class Ring:
-    """Places around a centre, each with its distance from it and its height above their plane, in metres.
+class CircleFit:
+    """Places around a centre, each with its distance from it and its height above their plane.
 
-    ``order`` are the places as they come around the centre, ``gaps`` the degrees from each of these to the next one:
-    one less than there are places for an arc, which is open between its ends.
+    ``order`` are the indices of the places around the centre, ``gaps`` the degrees from each of these to the next: for
+    an arc one less than places, since it is open between its ends.
     """
 
     centre: Array
@@ -33,12 +33,12 @@ class Ring:
     gaps: Array
 
 
-def fit_ring(
+def fit_circle(
     places: Array, about: Array | None = None, *, closed: bool = True, arc: float | None = None
-) -> Ring:
-    """The circle (``closed``) or arc through places.
+) -> CircleFit:
+    """Fits a circle (``closed``) or an arc to places.
 
-    ``about`` is its centre if that is known (only its part in the plane counts), ``arc`` the whole arc in degrees.
+    ``about`` is the centre if that is known (projected onto the plane), ``arc`` the length of the arc in degrees.
     """
     middle = places.mean(axis=0)
     normal = _normal(places - middle)
@@ -52,9 +52,9 @@ def fit_ring(
     order = np.argsort(turns, kind="stable")
     gaps = np.diff(np.append(turns[order], turns[order[0]] + 360))
     if not closed:
-        start = _opening(gaps, arc) + 1
+        start = _open_gap(gaps, arc) + 1
         order, gaps = np.roll(order, -start), np.roll(gaps, -start)[:-1]
-    return Ring(
+    return CircleFit(
         middle + centre[0] * u + centre[1] * v,
         normal,
         np.linalg.norm(arms, axis=1),
@@ -64,8 +64,8 @@ def fit_ring(
     )
 
 
-def _opening(gaps: Array, arc: float | None) -> int:
-    """Which gap is the opening of an arc: the one without which the others are the most even, else the widest."""
+def _open_gap(gaps: Array, arc: float | None) -> int:
+    """The index of an arc's open gap: the one without which the others are most even, else the widest."""
 
     def unevenness(place: int) -> tuple[float, float]:
         others = np.delete(gaps, place)
@@ -76,7 +76,7 @@ def _opening(gaps: Array, arc: float | None) -> int:
 
 
 def _normal(spread: Array) -> Array:
-    """The direction in which places spread least; up, where they lie level or it cannot be told."""
+    """The direction in which places spread least; up if they lie in a horizontal plane, or on a line."""
     up = np.array([0.0, 0.0, 1.0])
     extent = float(np.linalg.norm(np.ptp(spread, axis=0)))
     if len(spread) < 3 or float(np.ptp(spread[:, 2])) <= _LEVEL * extent:
@@ -95,17 +95,17 @@ def _axis_in(normal: Array) -> Array:
 
 
 def _circle_through(flat: Array) -> Array:
-    """The centre of the circle that fits places in a plane best (least squares)."""
+    """The centre of the circle that best fits places in a plane (least squares)."""
     if len(flat) < 3:
         return flat.mean(axis=0)
     system = np.concatenate([2 * flat, np.ones((len(flat), 1))], axis=1)
-    found, *_ = np.linalg.lstsq(system, (flat**2).sum(axis=1), rcond=None)
-    return found[:2]
+    solution, *_ = np.linalg.lstsq(system, (flat**2).sum(axis=1), rcond=None)
+    return solution[:2]
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
-    """Places along a line: how far each is off it, and the gaps along it in ``order``, all in metres."""
+class LineFit:
+    """Places along a line: the distance of each from it, and the gaps along it in ``order``."""
 
     beside: Array
     order: tuple[int, ...]
@@ -117,20 +117,20 @@ class Row:
         return float(self.gaps.sum())
 
 
-def fit_row(places: Array) -> Row:
-    """The line through places."""
+def fit_line(places: Array) -> LineFit:
+    """Fits a line to places."""
     middle = places.mean(axis=0)
     along = np.linalg.svd(places - middle, full_matrices=False)[2][0]
     at = (places - middle) @ along
     beside = np.linalg.norm(places - middle - np.outer(at, along), axis=1)
     order = np.argsort(at, kind="stable")
-    return Row(beside, tuple(int(place) for place in order), np.diff(at[order]))
+    return LineFit(beside, tuple(int(place) for place in order), np.diff(at[order]))
 
 
 @dataclass(frozen=True, slots=True)
-class Grid:
-    """Places on a lattice: ``off`` is how far each is from the crossing that the others leave to it, ``spacing`` the
-    two steps, in metres. ``full``: every crossing of the rectangle has exactly one place.
+class GridFit:
+    """Places on a grid: ``off`` is the distance of each from the grid point that the others imply for it, ``spacing``
+    the two steps. ``full``: every grid point has exactly one place.
     """
 
     off: Array
@@ -139,8 +139,8 @@ class Grid:
     full: bool
 
 
-def fit_grid(places: Array) -> Grid | None:
-    """The lattice that places lie on; None where they span none (all on one line, or on one spot)."""
+def fit_grid(places: Array) -> GridFit | None:
+    """Fits a grid to places; None if they are on one line, or at one point."""
     steps = places[None, :, :] - places[:, None, :]
     first = _step(steps, None)
     second = _step(steps, first) if first is not None else None
@@ -148,13 +148,13 @@ def fit_grid(places: Array) -> Grid | None:
         return None
     fitted = np.stack([first, second, places[0]])
     cells, system = _cells(places, fitted)
-    for _ in range(4):  # the steps of some neighbours are not those of all: fit them to every place
+    for _ in range(4):  # the steps came from some neighbours: fit them to all places
         fitted = np.linalg.pinv(system) @ places
         cells, system = _cells(places, fitted)
     spacing = np.linalg.norm(fitted[:2], axis=1)
     if not (spacing > 1e-9).all():
         return None
-    # A place pulls the lattice to itself: without it, the lattice would be farther from it by this.
+    # Each place pulls the fit towards itself; dividing by this gives its distance from the fit of the others.
     pull = np.clip(1 - np.einsum("ij,ji->i", system, np.linalg.pinv(system)), 1e-6, 1.0)
     off = np.linalg.norm(places - system @ fitted, axis=1)
     off = np.where(off < 1e-9, 0.0, off / pull)
@@ -162,22 +162,22 @@ def fit_grid(places: Array) -> Grid | None:
     shape = (int(cells[:, 0].max()) + 1, int(cells[:, 1].max()) + 1)
     distinct = len({(int(row), int(column)) for row, column in cells})
     full = distinct == len(places) == shape[0] * shape[1]
-    return Grid(off, (float(spacing[0]), float(spacing[1])), shape, full)
+    return GridFit(off, (float(spacing[0]), float(spacing[1])), shape, full)
 
 
-def _cells(places: Array, lattice: Array) -> tuple[Array, Array]:
-    """(the crossing next to each place, in steps of a lattice; the same with a column for the lattice's origin)."""
-    cells = np.rint((places - lattice[2]) @ np.linalg.pinv(lattice[:2]))
+def _cells(places: Array, grid: Array) -> tuple[Array, Array]:
+    """(the grid point nearest to each place, in steps; the same with a column of ones for the origin)."""
+    cells = np.rint((places - grid[2]) @ np.linalg.pinv(grid[:2]))
     return cells, np.concatenate([cells, np.ones((len(cells), 1))], axis=1)
 
 
 def _step(steps: Array, but: Array | None) -> Array | None:
-    """The usual step from a place to its nearest neighbour; to the nearest in another direction than ``but``."""
+    """The typical step from a place to its nearest neighbour, or to the nearest in another direction than ``but``."""
     lengths = np.linalg.norm(steps, axis=2)
     allowed = lengths > 1e-9
     if but is not None:
         across = np.linalg.norm(np.cross(steps, but), axis=2)
-        allowed &= across > _ASKEW * lengths * np.linalg.norm(but)
+        allowed &= across > _OTHER_DIRECTION * lengths * np.linalg.norm(but)
     lengths = np.where(allowed, lengths, np.inf)
     nearest = lengths.argmin(axis=1)
     rows = [row for row in range(len(steps)) if allowed[row, nearest[row]]]
@@ -185,18 +185,17 @@ def _step(steps: Array, but: Array | None) -> Array | None:
         return None
     rows.sort(key=lambda row: lengths[row, nearest[row]])
     middle = rows[(len(rows) - 1) // 2]
-    usual = steps[middle, nearest[middle]]
-    same = np.linalg.norm(steps - usual, axis=2) <= _ALIKE * np.linalg.norm(usual)
+    typical = steps[middle, nearest[middle]]
+    same = np.linalg.norm(steps - typical, axis=2) <= _SAME_STEP * np.linalg.norm(typical)
     return steps[same].mean(axis=0)
 
 
-def mirrored(places: Array, point: Array, normal: Array) -> tuple[float, int]:
-    """(how far a place is from its mirror image's partner, when all are paired as well as can be; which place): the
-    worst one, in metres."""
+def mirror_error(places: Array, point: Array, normal: Array) -> tuple[float, int]:
+    """(largest distance of a place from its partner's mirror image, in the best pairing; the index of the place)."""
     unit = normal / np.linalg.norm(normal)
     images = places - 2 * np.outer((places - point) @ unit, unit)
     distances = np.linalg.norm(places[:, None, :] - images[None, :, :], axis=2)
-    # The best worst pair: the smallest distance up to which everybody finds a partner of their own.
+    # The best pairing: the smallest distance within which every place finds a partner of its own.
     limits = np.unique(distances)
     low, high = 0, len(limits) - 1
     while low < high:
@@ -206,7 +205,7 @@ def mirrored(places: Array, point: Array, normal: Array) -> tuple[float, int]:
 
 
 def _all_paired(allowed: npt.NDArray[np.bool_]) -> bool:
-    """Whether each row can have a column of its own (augmenting paths)."""
+    """Whether each row can be matched with its own column (augmenting paths)."""
     partner: dict[int, int] = {}
 
     def finds(row: int, seen: set[int]) -> bool:

@@ -1,38 +1,35 @@
-"""What the rules about contact and containment have measured. Metres, degrees."""
+"""Measures of contact and containment. Metres, degrees."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from agents.protocol.facts import Vector
-from agents.protocol.measures.measure import Measure, Names, Request
+from agents.protocol.measures.requests import Measure, Names, Request
 
 
 class DepthMeasure(Measure):
-    """The greatest depth of one thing in another; ``at`` is where, None for things that are apart."""
+    """The largest depth of two objects in each other, and where; ``at`` is None if they are apart."""
 
     depth: float
     at: Vector | None = None
 
 
 @dataclass(frozen=True)
-class Depth(Request[DepthMeasure]):
+class DepthRequest(Request[DepthMeasure], kind="depth", answer=DepthMeasure):
     """How deep ``a`` and ``b`` are in each other."""
 
-    kind: ClassVar[str] = "depth"
-    answer: ClassVar[type[Measure]] = DepthMeasure
     a: Names
     b: Names
     frame: int | None = None
 
 
 class SupportMeasure(Measure):
-    """What bears a child.
+    """What supports a child.
 
-    ``opposed``: the least cosine between normals of the child and of what is right below it at a contact, None without
-    any; then ``clearance`` is the height of the child above what is below it, None over nothing. ``bearing``: the
-    outline of the contacts whose normals are opposed, ``centre`` the child's centre of mass.
+    ``opposed``: the smallest cosine between the normals of the child and of what is right below it at a contact; None
+    without contacts, and then ``clearance`` is the child's height above what is below it, None over nothing.
+    ``bearing``: the outline of the contacts with opposed normals; ``centre``: the child's centre of mass.
     """
 
     centre: Vector
@@ -43,14 +40,12 @@ class SupportMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Support(Request[SupportMeasure]):
-    """Where the child's surface is at most ``within`` from its parents', from above.
+class SupportRequest(Request[SupportMeasure], kind="support", answer=SupportMeasure):
+    """Where the child rests on its parents: at most ``within`` above them.
 
-    The contacts bear it where the cosine of the normals is at most ``opposed``.
+    A contact supports the child where the cosine of the normals is at most ``opposed``.
     """
 
-    kind: ClassVar[str] = "support"
-    answer: ClassVar[type[Measure]] = SupportMeasure
     child: Names
     parents: Names
     within: float
@@ -59,10 +54,10 @@ class Support(Request[SupportMeasure]):
 
 
 class FlushMeasure(Measure):
-    """How a face of the child lies at one of the parent.
+    """How a face of the child lies against a face of the parent.
 
-    ``angle`` is between the two, ``stands_out`` how far the child's reaches beyond the parent's; both None where
-    they do not touch. ``touching``: the outline of all contacts.
+    ``angle`` is between the two faces, ``stands_out`` is the overhang of the child's; both are None where they do not
+    touch. ``touching``: the outline of all contacts.
     """
 
     angle: float | None = None
@@ -72,11 +67,9 @@ class FlushMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Flush(Request[FlushMeasure]):
-    """How a face of the child, at most ``within`` from the parent, lies at it. ``sideways``: not on top of it."""
+class FlushRequest(Request[FlushMeasure], kind="flush", answer=FlushMeasure):
+    """How a face of the child, at most ``within`` from the parent, lies against it. ``sideways``: not on top of it."""
 
-    kind: ClassVar[str] = "flush"
-    answer: ClassVar[type[Measure]] = FlushMeasure
     child: Names
     parent: Names
     within: float
@@ -87,8 +80,8 @@ class Flush(Request[FlushMeasure]):
 class OpeningMeasure(Measure):
     """How a filler sits in an opening.
 
-    ``unbounded``: the widest angle around the filler in which the host has no rim; 360 where there is no opening.
-    ``gap``: the greatest distance of the rim from the filler, None without a rim.
+    ``unbounded``: the largest angle around the filler in which the host has no rim; 360 where there is no opening.
+    ``gap``: the largest distance of the rim from the filler; None without a rim.
     """
 
     unbounded: float
@@ -97,18 +90,16 @@ class OpeningMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Opening(Request[OpeningMeasure]):
+class OpeningRequest(Request[OpeningMeasure], kind="opening", answer=OpeningMeasure):
     """How the filler sits in an opening of the host."""
 
-    kind: ClassVar[str] = "opening"
-    answer: ClassVar[type[Measure]] = OpeningMeasure
     filler: Names
     host: Names
     frame: int | None = None
 
 
 class EnclosureMeasure(Measure):
-    """Shares of the content's samples: ``inside`` the cavity, and in the container's ``wall``; ``at``: one outside."""
+    """Shares of the content's samples ``inside`` the cavity and in the container's ``wall``; ``at`` is one outside."""
 
     inside: float
     wall: float
@@ -116,11 +107,9 @@ class EnclosureMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Enclosure(Request[EnclosureMeasure]):
-    """How much of the content is in the container's cavity; ``noise`` deep in its wall still counts as in it."""
+class EnclosureRequest(Request[EnclosureMeasure], kind="enclosure", answer=EnclosureMeasure):
+    """How much of the content is in the container's cavity; up to ``noise`` deep in its wall still counts as inside."""
 
-    kind: ClassVar[str] = "enclosure"
-    answer: ClassVar[type[Measure]] = EnclosureMeasure
     content: Names
     container: Names
     noise: float
@@ -128,11 +117,9 @@ class Enclosure(Request[EnclosureMeasure]):
 
 
 @dataclass(frozen=True)
-class Embedding(Request[DepthMeasure]):
-    """How far the part would have to be pulled to be out of the host."""
+class EmbeddingRequest(Request[DepthMeasure], kind="embedding", answer=DepthMeasure):
+    """How far the part would have to be pulled to leave the host."""
 
-    kind: ClassVar[str] = "embedding"
-    answer: ClassVar[type[Measure]] = DepthMeasure
     part: Names
     host: Names
     frame: int | None = None

@@ -1,25 +1,24 @@
-"""What the rules about motion and framing have measured. Metres, radians, frames.
+"""Measures of motion and framing. Metres, radians, frames.
 
-What follows something over time names its first and last frame (``start``, ``end``); every frame between is looked at.
+Requests over time name their first and last frame (``start``, ``end``); every frame between is measured.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from agents.protocol.facts import Vector
-from agents.protocol.measures.measure import Measure, Names, Request
+from agents.protocol.measures.requests import Measure, Names, Request
 
 
-class PathMeasure(Measure):
-    """A motion: every list has an entry for each frame from ``start`` on.
+class MotionPathMeasure(Measure):
+    """A motion; each list has an entry per frame from ``start`` on.
 
-    ``measured`` is what of it was followed: vertices, particles, fluid or origin; ``deforms``: its points move against
-    each other; ``size``: its largest extent. ``centres`` are the means of its points, ``origins`` those of its objects'
-    own origins; None where there is nothing of it. ``speeds`` (m/s) are the means over its points, or that of the
+    ``measured`` says what was followed: vertices, particles, fluid or origin. ``deforms``: its points move relative to
+    each other. ``size``: its largest extent. ``centres`` are the means of its points, ``origins`` the means of its
+    objects' origins; None where it does not exist. ``speeds`` (m/s) are means over its points, or the speed of the
     centre where points cannot be followed; ``rotations`` are axes as long as the angle: both since the frame before,
-    None where unknown. ``ways``: how far its points are, on average, from where they were at the last mark.
+    None where unknown. ``ways``: the mean distance of its points from where they were at the last mark.
     """
 
     start: int
@@ -34,20 +33,20 @@ class PathMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Path(Request[PathMeasure]):
-    """How the named objects move together. ``marks`` are frames from which ways are measured."""
+class MotionPathRequest(Request[MotionPathMeasure], kind="path", answer=MotionPathMeasure):
+    """How the named objects move together. ``marks`` are the frames from which distances are measured."""
 
-    kind: ClassVar[str] = "path"
-    answer: ClassVar[type[Measure]] = PathMeasure
     names: Names
     start: int
     end: int
     marks: tuple[int, ...] = ()
 
 
-class TogetherMeasure(Measure):
-    """How far ``a`` shifted and turned against ``b`` at most, and at which frame; ``turn`` is None where one of them
-    has no rotation: particles and fluids."""
+class RelativeMotionMeasure(Measure):
+    """The largest shift and rotation of ``a`` relative to ``b``, with their frames.
+
+    ``turn`` is None where one of the two has no rotation: particles and fluids.
+    """
 
     shift: float
     shift_frame: int
@@ -57,32 +56,28 @@ class TogetherMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Together(Request[TogetherMeasure]):
-    """How ``a`` keeps its place in ``b``, where the two are nearest, from the first frame on."""
+class RelativeMotionRequest(Request[RelativeMotionMeasure], kind="together", answer=RelativeMotionMeasure):
+    """How ``a`` keeps its place relative to ``b``, where the two are nearest, from the first frame on."""
 
-    kind: ClassVar[str] = "together"
-    answer: ClassVar[type[Measure]] = TogetherMeasure
     a: Names
     b: Names
     start: int
     end: int
 
 
-class TouchesMeasure(Measure):
-    """The frames at which two things touch, or come to touch on the way from the frame before."""
+class ContactFramesMeasure(Measure):
+    """The frames at which two objects touch, or come to touch on the way from the frame before."""
 
     frames: tuple[int, ...]
 
 
 @dataclass(frozen=True)
-class Touches(Request[TouchesMeasure]):
-    """When ``a`` and ``b`` are at most ``within`` apart, beside what their collisions keep.
+class ContactFramesRequest(Request[ContactFramesMeasure], kind="touches", answer=ContactFramesMeasure):
+    """When ``a`` and ``b`` are at most ``within`` apart, on top of the distance that their collision settings keep.
 
-    ``once``: only the first time is asked for.
+    ``once``: only the first frame is wanted.
     """
 
-    kind: ClassVar[str] = "touches"
-    answer: ClassVar[type[Measure]] = TouchesMeasure
     a: Names
     b: Names
     start: int
@@ -92,9 +87,9 @@ class Touches(Request[TouchesMeasure]):
 
 
 class PassageMeasure(Measure):
-    """The deepest that something was in a collider, and when; 0 where it stayed outside.
+    """The largest depth of an object in a collider, and its frame; 0 where it stayed outside.
 
-    ``through``: it was on one side at the frame before, and on the other one at this.
+    ``through``: it passed from one side to the other since the frame before.
     """
 
     depth: float
@@ -104,11 +99,9 @@ class PassageMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Passage(Request[PassageMeasure]):
-    """How deep the objects ``a`` get into the colliders ``b`` on their way; less than ``beyond`` is not looked at."""
+class PassageRequest(Request[PassageMeasure], kind="passage", answer=PassageMeasure):
+    """How deep the objects ``a`` get into the colliders ``b`` on their way; depths below ``beyond`` are ignored."""
 
-    kind: ClassVar[str] = "passage"
-    answer: ClassVar[type[Measure]] = PassageMeasure
     a: Names
     b: Names
     start: int
@@ -116,11 +109,11 @@ class Passage(Request[PassageMeasure]):
     beyond: float
 
 
-class ViewMeasure(Measure):
-    """What the active camera sees of something: shares of its samples ``inside`` of the picture and, of these,
-    ``hidden`` by other things; ``cover`` is the share of the picture that its outline fills.
+class CameraViewMeasure(Measure):
+    """What the active camera sees of an object; all None where the object does not exist yet.
 
-    All None where there is nothing of it yet.
+    ``inside``: the share of its samples in the picture; ``hidden``: the share of these that other objects hide;
+    ``cover``: the share of the picture that its outline fills.
     """
 
     inside: float | None = None
@@ -131,10 +124,8 @@ class ViewMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class View(Request[ViewMeasure]):
-    """How the scene's active camera sees the named objects. ``by`` names what hides them, most of all first."""
+class CameraViewRequest(Request[CameraViewMeasure], kind="view", answer=CameraViewMeasure):
+    """How the active camera sees the named objects. In the answer, ``by`` names what hides them, the most first."""
 
-    kind: ClassVar[str] = "view"
-    answer: ClassVar[type[Measure]] = ViewMeasure
     names: Names
     frame: int | None = None

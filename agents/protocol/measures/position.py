@@ -1,19 +1,18 @@
-"""What the rules about places and directions have measured. Metres, degrees."""
+"""Measures of places and directions. Metres, degrees."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from agents.protocol.facts import Vector
-from agents.protocol.measures.measure import Measure, Names, Request
+from agents.protocol.measures.requests import Measure, Names, Request
 
 
-class OverMeasure(Measure):
-    """How something lies over something else, seen from above.
+class FootprintMeasure(Measure):
+    """How ``a`` lies over ``b``, seen from above.
 
-    ``share`` of its outline has the other one below or above it; ``sunk`` is how far it begins below the top of the
-    other one, at the place where that is most: negative where it is above all of it, None where nothing is shared.
+    ``share`` of its outline has ``b`` below or above it. ``sunk`` is how far ``a`` begins below the top of ``b``, where
+    that is largest: negative where it is above all of it, None where the outlines share nothing.
     """
 
     share: float
@@ -22,23 +21,20 @@ class OverMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Over(Request[OverMeasure]):
+class FootprintRequest(Request[FootprintMeasure], kind="over", answer=FootprintMeasure):
     """How ``a`` lies over ``b``."""
 
-    kind: ClassVar[str] = "over"
-    answer: ClassVar[type[Measure]] = OverMeasure
     a: Names
     b: Names
     frame: int | None = None
 
 
-class BesideMeasure(Measure):
-    """On which side something lies.
+class DirectionMeasure(Measure):
+    """On which side of ``b`` the objects ``a`` lie.
 
-    ``angle``: between the direction and the way to the middle of ``a`` from the nearest place of ``b``, taken in the
-    plane through the middle of ``b`` across the direction; along axis 0 or 1, as seen along axis 2. ``gap``: the widest
-    there is between the two along any of the directions that are tried, negative where they overlap in all. ``at``: the
-    middle of ``a``.
+    ``angle``: between the direction and the line to the middle of ``a`` from the nearest point of ``b`` in the plane
+    through its middle across the direction; along axis 0 or 1, as seen along axis 2. ``gap``: the largest gap between
+    the two along any of the directions that are tried, negative where they overlap in all. ``at``: the middle of ``a``.
     """
 
     angle: float
@@ -47,16 +43,14 @@ class BesideMeasure(Measure):
 
 
 @dataclass(frozen=True)
-class Beside(Request[BesideMeasure]):
-    """Where ``a`` lies, seen from ``b``: along axis 0, 1 or 2, in its direction or (``way`` −1) against it.
+class DirectionRequest(Request[DirectionMeasure], kind="beside", answer=DirectionMeasure):
+    """Where ``a`` lies as seen from ``b``: along axis 0, 1 or 2, in its direction or (``way`` −1) against it.
 
-    The axes are those of the object ``of`` (its X brought level, if ``level``; its Z is up then), or the world's. The
+    The axes are those of the object ``of`` (its X made horizontal, if ``level``; its Z is up then), or the world's. The
     gap is looked for in that direction, along the axes of the world and of the objects ``turned``, and between the
-    middles: where they are within ``cone`` of it.
+    middles, as far as these are within ``cone`` of it.
     """
 
-    kind: ClassVar[str] = "beside"
-    answer: ClassVar[type[Measure]] = BesideMeasure
     a: Names
     b: Names
     axis: int

@@ -1,29 +1,27 @@
-"""Every rule, in the order in which they are reported."""
+"""All rules, in the order in which they are reported."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.protocol.rules import (
+from agents.protocol.rules.motion import comoves, mechanism, plausibility, settle, timing
+from agents.protocol.rules.planned import (
     arrangement,
     attachment,
-    comoves,
-    contact,
     containment,
     framing,
-    grounding,
     inventory,
-    layout,
-    mechanism,
-    motion,
+    position,
+    shape,
+    support,
+)
+from agents.protocol.rules.scene import (
+    collection_layout,
+    contact,
+    grounding,
+    lights_and_cameras,
     parents,
     penetration,
-    plausibility,
-    position,
-    rest,
-    shape,
-    stage,
-    support,
 )
 
 if TYPE_CHECKING:
@@ -32,44 +30,24 @@ if TYPE_CHECKING:
     from agents.protocol.rule import Rule
 
 _FAMILIES = "CGVWRT"  # layout, parents, geometry, warnings, plan against scene, motion
+_SCENE = (collection_layout, parents, contact, penetration, grounding, lights_and_cameras)
+_PLANNED = (inventory, shape, support, attachment, containment, position, arrangement, framing)
+_MOTION = (comoves, mechanism, timing, plausibility, settle)
 
 
-def _place(rule: Rule) -> tuple[int, int]:
+def _order(rule: Rule) -> tuple[int, int]:
     return _FAMILIES.index(rule.id[0]), int(rule.id[1:])
 
 
 RULES: tuple[Rule, ...] = tuple(
-    sorted(
-        (
-            *layout.RULES,
-            *parents.RULES,
-            *contact.RULES,
-            *penetration.RULES,
-            *grounding.RULES,
-            *stage.RULES,
-            *inventory.RULES,
-            *shape.RULES,
-            *support.RULES,
-            *attachment.RULES,
-            *containment.RULES,
-            *position.RULES,
-            *arrangement.RULES,
-            *framing.RULES,
-            *comoves.RULES,
-            *mechanism.RULES,
-            *motion.RULES,
-            *plausibility.RULES,
-            *rest.RULES,
-        ),
-        key=_place,
-    )
+    sorted((rule for module in (*_SCENE, *_PLANNED, *_MOTION) for rule in module.RULES), key=_order)
 )
 BY_ID = {rule.id: rule for rule in RULES}
-assert len(BY_ID) == len(RULES), "a rule is listed twice"
+assert len(BY_ID) == len(RULES), "two rules have the same id"
 
 
-def chosen(wanted: Iterable[str]) -> tuple[Rule, ...]:
-    """Rules by id (``V1``) or family (``C``), in order. Raises KeyError, naming what there is not."""
+def select_rules(wanted: Iterable[str]) -> tuple[Rule, ...]:
+    """Rules by id (``V1``) or family (``C``), in order. Raises KeyError with the name of a rule that does not exist."""
     names = [name.strip().upper() for name in wanted if name.strip()]
     for name in names:
         if name not in BY_ID and not any(rule.id[0] == name for rule in RULES):

@@ -27,7 +27,7 @@ from agents.plan.relations import (
     SupportedBy,
     SymmetricAbout,
 )
-from agents.protocol.report.folding import folded, told_value
+from agents.protocol.report.text_format import fold_names, format_value
 from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class ObjectCard:
     @property
     def name(self) -> str:
         """It in a few words."""
-        return folded((one.name for one in self.objects), _NAMED)
+        return fold_names((one.name for one in self.objects), _NAMED)
 
 
 @dataclass(slots=True)
@@ -129,7 +129,7 @@ def label(card: ObjectCard, used: set[str]) -> str:
     """Which of a card's objects and parts a line leads to; "" for all of them as a whole."""
     owners = {owner_of(node) for node in used}
     parts = sorted({plain(node.partition("/")[2]) for node in used} - {""})
-    words = [folded(sorted(owners), _NAMED)] if len(owners) < len(card.objects) else []
+    words = [fold_names(sorted(owners), _NAMED)] if len(owners) < len(card.objects) else []
     return " · ".join([*words, *parts[:_NAMED]])
 
 
@@ -164,9 +164,9 @@ def describe_terms(relation: Relation) -> str:
     words = ""
     match relation:
         case NextTo(gap=(least, most)):
-            words = f"{told_value(least, 'm')} to {told_value(most, 'm')} apart"
+            words = f"{format_value(least, 'm')} to {format_value(most, 'm')} apart"
         case EmbeddedIn(depth=depth):
-            words = f"{told_value(depth, 'm')} deep"
+            words = f"{format_value(depth, 'm')} deep"
         case Inside(partial=True):
             words = "half of it may stick out"
         case Direction(frame=frame):
@@ -185,9 +185,9 @@ def _describe_pattern(relation: Distributed) -> str:
     if relation.rows or relation.columns:
         words.append(f"{relation.rows or '?'} × {relation.columns or '?'}")
     if relation.radius is not None:
-        words.append(f"radius {told_value(relation.radius, 'm')}")
+        words.append(f"radius {format_value(relation.radius, 'm')}")
     if isinstance(relation.spacing, float):
-        words.append(f"every {told_value(relation.spacing, 'm')}")
+        words.append(f"every {format_value(relation.spacing, 'm')}")
     if relation.arc is not None:
         words.append(f"{relation.arc:g}°")
     if relation.facing:

@@ -17,7 +17,7 @@ from markupsafe import Markup
 from agents.loop.reducer import read_run_state
 from agents.loop.run_state import ModelCall, Step, ToolCall
 from agents.plan.part import STAGES
-from agents.protocol.report.folding import rows
+from agents.protocol.report.grouping import group_findings
 from agents.protocol.rules.catalogue import RULES
 from agents.views import formatting
 from agents.views.report import code
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from agents.loop.run_state import Attempt, RunState, StageRun
-    from agents.protocol.report.folding import Row
+    from agents.protocol.report.grouping import FindingGroup
 
 NAME = "report.html"
 _FOLDER = Path(__file__).parent / "templates"
@@ -85,7 +85,7 @@ class AttemptView:
     others: tuple[StepView, ...]
     pictures: tuple[GalleryPicture, ...]
     changes: tuple[tuple[code.ScriptChange, Markup], ...]
-    findings: tuple[Row, ...]
+    findings: tuple[FindingGroup, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,7 +281,7 @@ def _attempt(attempt: Attempt, before: Sequence[Attempt], gallery: _Gallery) -> 
         others=tuple(others),
         pictures=pictures,
         changes=tuple((one, code.highlighted(one.diff, "diff")) for one in made),
-        findings=tuple(rows(attempt.verification.findings)) if attempt.verification else (),
+        findings=tuple(group_findings(attempt.verification.findings)) if attempt.verification else (),
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from agents.plan.relations import Distributed, SymmetricAbout
-from agents.protocol.report.folding import folded
+from agents.protocol.report.text_format import fold_names
 from agents.views.formatting import swatch
 from agents.views.report.links import category_of, describe_terms
 
@@ -65,7 +65,7 @@ def _object_row(members: Sequence[PlannedObject]) -> ObjectRow:
         surface += [f"transmission {one.material.transmission:g}"] * bool(one.material.transmission)
         surface += [one.material.texture] * bool(one.material.texture)
     return ObjectRow(
-        name=folded((member.name for member in members), _NAMED),
+        name=fold_names((member.name for member in members), _NAMED),
         role=one.role,
         dimensions=" × ".join(f"{size:g}" for size in one.dimensions),
         systems=", ".join(one.systems),
@@ -88,8 +88,8 @@ def relations_of(plan: ScenePlan) -> list[RelationRow]:
         RelationRow(
             kind=kind,
             category=category_of(members[0]),
-            subject=folded((node for one in members for node in _ends(one)[0]), _NAMED),
-            others=folded((node for one in members for node in _ends(one)[1]), _NAMED),
+            subject=fold_names((node for one in members for node in _ends(one)[0]), _NAMED),
+            others=fold_names((node for one in members for node in _ends(one)[1]), _NAMED),
             terms=terms,
             count=len(members),
         )

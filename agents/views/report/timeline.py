@@ -10,7 +10,7 @@ from simworlds.terminal.text import plain, shortened
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from agents.plan.motion import Phase
+    from agents.plan.motion import MotionPhase
     from agents.plan.scene import ScenePlan
 
 MOST = 60  # actors that one can still read
@@ -101,7 +101,7 @@ def draw_timeline(plan: ScenePlan) -> Timeline | None:
     )
 
 
-def _bar(phase: Phase, lane: float, across: Callable[[float], float], fps: int) -> Bar:
+def _bar(phase: MotionPhase, lane: float, across: Callable[[float], float], fps: int) -> Bar:
     x = across(phase.start)
     width = max(3.0, across(phase.end + 1) - x - 1)
     words = [f"{plain(phase.name)}: {plain(phase.actor)}, {phase.kind}, frames {phase.start}–{phase.end}"]

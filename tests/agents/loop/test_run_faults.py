@@ -66,7 +66,7 @@ def test_a_plan_for_another_stage_is_sent_back(troubled: Played) -> None:
 
 def test_a_retry_that_does_not_say_what_to_mend_is_sent_back(troubled: Played) -> None:
     asked = [last_words(one) for one in of_role(troubled, "planner", "modeling")]
-    assert any("a retry needs to say what is to be mended" in words for words in asked)
+    assert any("a retry must say what to fix" in words for words in asked)
 
 
 def test_what_did_not_fit_is_not_kept_in_the_conversation(troubled: Played) -> None:

@@ -81,9 +81,9 @@ def a_plan() -> dict[str, Any]:
     }
 
 
-def told(plan: Any) -> list[str]:
-    found, faults = read_plan(plan)
-    assert (found is None) == bool(faults)
+def fault_texts(plan: Any) -> list[str]:
+    parsed, faults = read_plan(plan)
+    assert (parsed is None) == bool(faults)
     return [str(fault) for fault in faults]
 
 
@@ -121,52 +121,57 @@ def changed(path: str, value: Any) -> dict[str, Any]:
     [
         ("relations[0].child", "Tabel", "relations[0].child", "did you mean 'Table'"),
         ("relations[1].parents[0]", "Table/Leg", "relations[1].parents[0]", "no part 'Leg' (its parts: Top)"),
-        ("relations[0].parents", ["Bowl"], "relations[1]", "closes a circle"),
-        ("relations[0].parents", ["Table"], "relations[0]", "with itself"),
-        ("relations[0].parents", ["Chair 0"], "relations[0]", "nothing below it stands on"),
-        ("relations[3].fold", 5, "relations[3].fold", "5 members are asked for, 4 are named"),
-        ("relations[3].members", ["Chair 0", "Chair 1"], "relations[3].fold", "4 members are asked for"),
-        ("objects[3].dimensions", [0.5, 0.1, 0.1], "relations[2]", "cannot lie inside"),
-        ("objects[3].role", "static", "motion.phases[0].actor", "say what moves it"),
+        ("relations[0].parents", ["Bowl"], "relations[1]", "closes a cycle"),
+        ("relations[0].parents", ["Table"], "relations[0]", "'Table' twice"),
+        ("relations[0].parents", ["Chair 0"], "relations[0]", "nothing below it leads to"),
+        ("relations[3].fold", 5, "relations[3].fold", "fold is 5, but members has 4"),
+        ("relations[3].members", ["Chair 0", "Chair 1"], "relations[3].fold", "fold is 4, but members has 2"),
+        ("objects[3].dimensions", [0.5, 0.1, 0.1], "relations[2]", "does not fit inside"),
+        ("objects[3].role", "static", "motion.phases[0].actor", "its role 'static' does not; choose one of"),
         ("objects[0].systems", ["furniture"], "objects", "No object belongs to the system 'ground'"),
-        ("objects[1].name", "Floor", "objects[1]", "there twice"),
-        ("objects[1].name", "furniture", "objects[1].name", "name of a system too"),
-        ("systems", ["furniture"], "systems", "no system 'ground'"),
+        ("objects[1].name", "Floor", "objects[1]", "used twice"),
+        ("objects[1].name", "furniture", "objects[1].name", "also the name of a system"),
+        ("systems", ["furniture"], "systems", "The system 'ground' is missing"),
         ("objects[1].systems", ["furnitur"], "objects[1].systems[0]", "did you mean 'furniture'"),
         ("motion.phases[0].end", 200, "motion.phases[0]", "outside the scene's"),
         ("motion.phases[0].end", 70, "motion.phases[1]", "overlaps 'drop'"),
         ("motion.phases[1].cause", "push", "motion.phases[1].cause", "no phase 'push'"),
         ("motion.phases[0].cause", "rest", "motion.phases[0].cause", "after its effect"),
-        ("motion.phases[0].cause", "drop", "motion.phases[0].cause", "its own cause"),
+        ("motion.phases[0].cause", "drop", "motion.phases[0].cause", "cannot cause itself"),
         ("motion.phases[0].actor", "Cat", "motion.phases[0].actor", "no object 'Cat'"),
         ("camera.subjects", ["Cat"], "camera.subjects[0]", "no object 'Cat'"),
         ("camera.target", "Cat", "camera.target", "no object 'Cat'"),
         ("lighting[0].target", "Cat", "lighting[0].target", "no object 'Cat'"),
         ("groups[0].members", ["Cat", "Table"], "groups[0].members[0]", "no object 'Cat'"),
-        ("opt_out", ["camera"], "opt_out[0]", "No scene does without"),
-        ("opt_out", ["motion"], "opt_out", "phases are planned"),
+        ("opt_out", ["camera"], "opt_out[0]", "'camera' cannot be skipped"),
+        ("opt_out", ["motion"], "opt_out", "motion.phases is not empty"),
         ("motion.phases", [], "motion.phases", "no phase says how"),
         ("frame_end", -5, "frame_end", "is before frame_start, 1."),
         ("objects[1].dimensions", [1, 0, 1], "objects[1].dimensions[1]", "greater than 0"),
         ("objects[1].position", [float("nan"), 0, 0], "objects[1].position[0]", "finite"),
-        ("objects[1].colour", "red", "objects[1].colour", "no field 'colour' here (fields: name, "),
-        ("relations[0].kind", "Upon", "relations[0].kind", "There is no relation 'Upon'; did you mean "),
+        ("objects[1].colour", "red", "objects[1].colour", "Unknown field 'colour' (fields: name, "),
+        ("relations[0].kind", "Upon", "relations[0].kind", "Unknown relation 'Upon'; did you mean "),
         ("relations[0].kind", "supported_by", "relations[0].kind", "did you mean 'SupportedBy'"),
         ("relations[0]", {"child": "Table"}, "relations[0].kind", "which relation this is"),
-        ("relations[0]", {"kind": "SupportedBy", "child": "Table"}, "relations[0].parents", "It is missing."),
+        (
+            "relations[0]",
+            {"kind": "SupportedBy", "child": "Table"},
+            "relations[0].parents",
+            "It is missing.",
+        ),
         ("relations[0].parents", "Floor", "relations[0].parents", 'should be a list. Given: "Floor".'),
         ("relations[3].fould", 4, "relations[3].fould", "did you mean 'fold' (fields: kind, members, "),
-        ("relations[3].spacing", "wide", "relations[3].spacing", "Give a number or a list of two numbers."),
-        ("camera.target", [1, 2], "camera.target", "Give a name or a list of three numbers."),
-        ("motion.phases[0].end", 0, "motion.phases[0].end", "Frame 0 is before the start, 1."),
+        ("relations[3].spacing", "wide", "relations[3].spacing", "Write a number or a list of two numbers."),
+        ("camera.target", [1, 2], "camera.target", "Write a name or a list of three numbers."),
+        ("motion.phases[0].end", 0, "motion.phases[0].end", "Frame 0 is before the start frame, 1."),
         ("lighting", [], "lighting", "It should have at least 1 item, not 0."),
         ("objects[1].role", "wood", "objects[1].role", 'Given: "wood".'),
-        ("objects[1].name", "a/b", "objects[1].name", "without a slash"),
+        ("objects[1].name", "a/b", "objects[1].name", "no slash"),
     ],
 )
 def test_a_fault_is_named_by_its_field(path: str, value: Any, where: str, says: str) -> None:
-    found = told(changed(path, value))
-    assert any(fault.startswith(f"{where}") and says in fault for fault in found), found
+    faults = fault_texts(changed(path, value))
+    assert any(fault.startswith(where) and says in fault for fault in faults), faults
 
 
 def test_opposite_directions_contradict_each_other() -> None:
@@ -177,23 +182,23 @@ def test_opposite_directions_contradict_each_other() -> None:
         {"kind": "RightOf", "a": "Chair 0", "b": "Table"},
         {"kind": "RightOf", "a": "Chair 0", "b": "Table", "frame": "camera"},
     ]
-    found = told(plan)
-    assert [fault.partition(":")[0] for fault in found] == ["relations[5]", "relations[6]"]
+    faults = fault_texts(plan)
+    assert [fault.partition(":")[0] for fault in faults] == ["relations[5]", "relations[6]"]
 
 
-def test_a_circle_over_several_objects_names_them_all() -> None:
+def test_a_cycle_over_several_objects_names_them_all() -> None:
     plan = a_plan()
     plan["relations"] += [
         {"kind": "OnTopOf", "a": "Chair 1", "b": "Bowl"},
         {"kind": "OnTopOf", "a": "Table", "b": "Chair 1"},
     ]
-    assert any("'Table' on 'Chair 1' on 'Bowl' on 'Table'" in fault for fault in told(plan))
+    assert any("'Table' on 'Chair 1' on 'Bowl' on 'Table'" in fault for fault in fault_texts(plan))
 
 
 @pytest.mark.parametrize(
     "text", ["", "no json", "[]", "null", '{"title": 1}', "[" * 100_000, b"\xff\xfe", "1" * 3_000_000]
 )
-def test_what_is_no_plan_is_told(text: Any) -> None:
+def test_invalid_text_gives_faults(text: Any) -> None:
     plan, faults = read_plan(text)
     assert plan is None
     assert faults

@@ -24,8 +24,8 @@ from rule_cases import CASES, Case, judge  # noqa: E402
 from agents.blender.sheets import contact_sheet  # noqa: E402
 from agents.blender.sheets.findings_sheet import FindingMark, linear, panel_of  # noqa: E402
 from agents.blender.sheets.text_layout import round_length, shortened, text_width  # noqa: E402
-from agents.protocol.facts import Facts  # noqa: E402
-from agents.protocol.report.folding import rows  # noqa: E402
+from agents.protocol.facts import SceneFacts  # noqa: E402
+from agents.protocol.report.grouping import group_findings  # noqa: E402
 from agents.protocol.structure import is_mesh  # noqa: E402
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def draw(session: LiveSession, rule: str, case: Case) -> bytes:
     """The picture of a rule, as a PNG."""
     session.empty()
     found = judge(session, rule, case, good=False).findings
-    finding = rows(found)[0].worst
+    finding = group_findings(found)[0].worst
     bad = take(session, case, finding, finding.objects, RED)
     session.empty()
     assert not judge(session, rule, case, good=True).findings
@@ -99,7 +99,7 @@ def take(
     """The open scene as the case is to be looked at."""
     if case.look == "tree":
         told = session.blender.call("scene_facts", {}, timeout=60).value
-        return Shot(tree(Facts.read(told), names if finding else (), case.baked))
+        return Shot(tree(SceneFacts.model_validate(told), names if finding else (), case.baked))
     if case.look == "camera":
         return Shot(rendered(session))
     if case.look == "curve":
@@ -186,7 +186,7 @@ class Line:
     also: str
 
 
-def tree(facts: Facts, wrong: tuple[str, ...], with_mechanisms: bool) -> Image.Image:
+def tree(facts: SceneFacts, wrong: tuple[str, ...], with_mechanisms: bool) -> Image.Image:
     lines = [Line(0, contact_sheet.GREY, "Scene", "")]
     lines += below(facts, "", 1, with_mechanisms)
     height = 22
@@ -206,7 +206,7 @@ def tree(facts: Facts, wrong: tuple[str, ...], with_mechanisms: bool) -> Image.I
     return picture
 
 
-def below(facts: Facts, parent: str, depth: int, with_mechanisms: bool) -> Iterator[Line]:
+def below(facts: SceneFacts, parent: str, depth: int, with_mechanisms: bool) -> Iterator[Line]:
     for one in facts.collections:
         if parent in one.parents:
             yield Line(

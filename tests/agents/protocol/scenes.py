@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.tools.base import Call
 from agents.blender.verification import verify_scene
 from agents.plan.scene import ScenePlan
-from agents.protocol.measures.measure import measure
-from agents.protocol.rules.catalogue import chosen
+from agents.protocol.measures.requests import measure
+from agents.protocol.rules.catalogue import select_rules
 
 if TYPE_CHECKING:
     from live_session import LiveSession
 
     from agents.protocol.findings import Finding, Report
-    from agents.protocol.measures.measure import Answer, Measures, Request
+    from agents.protocol.measures.requests import Answer, Measures, Request
 
 TOOLS = '''
 import math
@@ -212,7 +212,7 @@ def build(session: LiveSession, script: str) -> None:
 
 def verified(session: LiveSession, rules: str, plan: ScenePlan | None = None) -> Report:
     """What rules (``R5,V``) say of the open scene."""
-    return verify_scene(session.blender, chosen(rules.split(",")), plan, Call())
+    return verify_scene(session.blender, select_rules(rules.split(",")), plan, Call())
 
 
 def measures(session: LiveSession, *requests: Request[Any]) -> Measures:

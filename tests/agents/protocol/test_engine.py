@@ -8,21 +8,22 @@ import pytest
 from scenes import a_plan
 
 from agents.protocol.engine import verify
-from agents.protocol.facts import CollectionFacts, Facts, ObjectFacts
-from agents.protocol.measures.measure import Gap, Measures, Unmeasured
-from agents.protocol.rule import Idle, Rule, Subject
-from agents.protocol.rules.catalogue import BY_ID, RULES, chosen
-from agents.protocol.structure import Structure
+from agents.protocol.facts import CollectionFacts, ObjectFacts, SceneFacts
+from agents.protocol.measures.geometry import GapRequest
+from agents.protocol.measures.requests import Measures, Unmeasured
+from agents.protocol.rule import NotApplicable, Rule, RuleContext
+from agents.protocol.rules.catalogue import BY_ID, RULES, select_rules
+from agents.protocol.structure import SceneStructure
 from agents.protocol.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from agents.protocol.findings import Finding, Report, Severity
-    from agents.protocol.measures.measure import Request
+    from agents.protocol.measures.requests import Request
 
-EMPTY = Facts(version="5.1.2", scene="Scene", frame=1, frame_start=1, frame_end=1, fps=24)
-LEG, TOP = Gap(("Leg",), ("Floor",)), Gap(("Top",), ("Leg",))
+EMPTY = SceneFacts(version="5.1.2", scene="Scene", frame=1, frame_start=1, frame_end=1, fps=24)
+LEG, TOP = GapRequest(("Leg",), ("Floor",)), GapRequest(("Top",), ("Leg",))
 NEAR = {"value": {"distance": 0.5, "here": (0, 0, 0), "there": (0, 0, 0.5)}}
 
 
@@ -31,7 +32,7 @@ def no_blender(_requests: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def rule(
-    judge: Callable[[Subject, Measures], Iterable[Finding]],
+    judge: Callable[[RuleContext, Measures], Iterable[Finding]],
     *requests: Request[Any],
     name: str = "X1",
     severity: Severity = "hard",
@@ -40,12 +41,12 @@ def rule(
     return Rule(name, name, severity, "about", "why", "Mend it.", judge, lambda _: requests, needs_plan)
 
 
-def finds_nothing(_subject: Subject, _measures: Measures) -> Iterator[Finding]:
+def finds_nothing(_context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     yield from ()
 
 
-def finds_one(subject: Subject, _measures: Measures) -> Iterator[Finding]:
-    del subject
+def finds_one(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
+    del context
     yield rule(finds_nothing).finding(("Leg",), "It is loose.", measured=1.0)
 
 
@@ -55,7 +56,7 @@ def run(*rules: Rule, answers: list[dict[str, Any]] | None = None, plan: Any = N
 
 def test_a_rule_that_finds_nothing_is_passed() -> None:
     report = run(rule(finds_nothing))
-    assert (report.findings, report.passed, report.idle) == ((), ("X1",), {})
+    assert (report.findings, report.passed, report.not_applicable) == ((), ("X1",), {})
     assert report.ok
     assert report.decided
 
@@ -66,14 +67,14 @@ def test_a_finding_of_a_hard_rule_is_not_ok_and_one_of_a_soft_rule_is() -> None:
     assert report.findings[0].fix == "Mend it."
     assert (report.passed, report.ok, report.decided) == ((), False, True)
 
-    def softly(_subject: Subject, _measures: Measures) -> Iterator[Finding]:
+    def softly(_context: RuleContext, _measures: Measures) -> Iterator[Finding]:
         yield rule(finds_nothing, severity="soft").finding((), "Hm.")
 
     assert run(rule(softly, severity="soft")).ok
 
 
-def fails(_subject: Subject, _measures: Measures) -> Iterator[Finding]:
-    yield from finds_one(_subject, _measures)
+def fails(_context: RuleContext, _measures: Measures) -> Iterator[Finding]:
+    yield from finds_one(_context, _measures)
     raise ZeroDivisionError("division by zero")
 
 
@@ -89,7 +90,7 @@ def test_a_rule_that_raises_is_an_error_and_never_passed_and_keeps_what_it_found
 
 
 def test_a_rule_that_cannot_say_what_it_needs_is_an_error() -> None:
-    def asks(_subject: Subject) -> Iterator[Gap]:
+    def asks(_context: RuleContext) -> Iterator[GapRequest]:
         yield LEG
         raise KeyError("Leg")
 
@@ -99,8 +100,8 @@ def test_a_rule_that_cannot_say_what_it_needs_is_an_error() -> None:
     assert report.passed == ("X2",)
 
 
-def measures_one(request: Gap) -> Callable[[Subject, Measures], Iterator[Finding]]:
-    def judge(_subject: Subject, measures: Measures) -> Iterator[Finding]:
+def measures_one(request: GapRequest) -> Callable[[RuleContext, Measures], Iterator[Finding]]:
+    def judge(_context: RuleContext, measures: Measures) -> Iterator[Finding]:
         found = measures[request]
         yield rule(finds_nothing).finding(("Leg",), "It is loose.", measured=found.distance)
 
@@ -114,7 +115,10 @@ def test_what_is_asked_for_twice_is_measured_once_and_answered_by_its_own_type()
         asked.extend(requests)
         return [NEAR] * len(requests)
 
-    rules = [rule(measures_one(LEG), LEG, TOP), rule(measures_one(LEG), LEG, Gap(("Leg",), ("Floor",)))]
+    rules = [
+        rule(measures_one(LEG), LEG, TOP),
+        rule(measures_one(LEG), LEG, GapRequest(("Leg",), ("Floor",))),
+    ]
     report = verify(EMPTY, ask, rules)
     assert [one.measured for one in report.findings] == [0.5, 0.5]
     assert asked == [
@@ -129,9 +133,9 @@ def test_what_is_asked_for_twice_is_measured_once_and_answered_by_its_own_type()
         ([{"unmeasured": "'Leg' has no surface"}], "'Leg' has no surface"),
         ([{"unmeasured": ""}], "Blender gave no answer"),
         ([{}], "Blender gave no answer"),
-        ([{"value": {"distance": "near"}}], "Blender's answer is none"),
-        ([], "Blender gave 0 answers to 1 questions"),
-        ([NEAR, NEAR], "Blender gave 2 answers to 1 questions"),
+        ([{"value": {"distance": "near"}}], "Blender's answer is invalid"),
+        ([], "Blender gave 0 answers to 1 requests"),
+        ([NEAR, NEAR], "Blender gave 2 answers to 1 requests"),
     ],
 )
 def test_what_could_not_be_measured_is_never_passed(answers: list[dict[str, Any]], reason: str) -> None:
@@ -149,7 +153,7 @@ def test_one_answer_that_is_none_hides_no_other_one() -> None:
 
 
 def test_what_a_rule_has_not_asked_for_is_not_measured() -> None:
-    assert "it was not asked for" in run(rule(measures_one(LEG))).findings[0].message
+    assert "it was not requested" in run(rule(measures_one(LEG))).findings[0].message
 
 
 def test_a_blender_that_is_gone_is_no_finding() -> None:
@@ -161,25 +165,29 @@ def test_a_blender_that_is_gone_is_no_finding() -> None:
 
 
 def test_rules_without_anything_to_judge_are_idle_and_not_passed() -> None:
-    def idle(_subject: Subject) -> Iterator[Gap]:
-        raise Idle("there are no legs")
+    def has_nothing_to_judge(_context: RuleContext) -> Iterator[GapRequest]:
+        raise NotApplicable("there are no legs")
         yield LEG
 
-    def lazy(_subject: Subject, _measures: Measures) -> Iterator[Finding]:
-        raise Idle("there is no floor")
+    def lazy(_context: RuleContext, _measures: Measures) -> Iterator[Finding]:
+        raise NotApplicable("there is no floor")
         yield
 
-    def late(_subject: Subject, _measures: Measures) -> Iterator[Finding]:
-        yield from finds_one(_subject, _measures)
-        raise Idle("there is nothing else")
+    def late(_context: RuleContext, _measures: Measures) -> Iterator[Finding]:
+        yield from finds_one(_context, _measures)
+        raise NotApplicable("there is nothing else")
 
     report = run(
-        Rule("X1", "X1", "hard", "", "", "", finds_nothing, idle),
+        Rule("X1", "X1", "hard", "", "", "", finds_nothing, has_nothing_to_judge),
         rule(lazy, name="X2"),
         rule(late, name="X3"),
         rule(finds_nothing, name="X4", needs_plan=True),
     )
-    assert report.idle == {"X1": "there are no legs", "X2": "there is no floor", "X4": "there is no plan"}
+    assert report.not_applicable == {
+        "X1": "there are no legs",
+        "X2": "there is no floor",
+        "X4": "no plan was given",
+    }
     assert report.passed == ()
     assert [one.message for one in report.findings] == ["It is loose."]
 
@@ -187,8 +195,8 @@ def test_rules_without_anything_to_judge_are_idle_and_not_passed() -> None:
 def test_a_plan_tightens_tolerances_and_loosens_none() -> None:
     seen: list[Any] = []
 
-    def looks(subject: Subject, _measures: Measures) -> Iterator[Finding]:
-        seen.append(subject.tolerances)
+    def looks(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
+        seen.append(context.tolerances)
         yield from ()
 
     plan = a_plan(
@@ -219,7 +227,7 @@ def test_noise_grows_with_the_smallest_dimension(smallest: float, noise: float) 
 
 
 def test_rules_are_chosen_by_name_and_family_in_their_order() -> None:
-    assert [one.id for one in chosen(["v2", " C ", "V1", ""])] == [
+    assert [one.id for one in select_rules(["v2", " C ", "V1", ""])] == [
         "C1",
         "C2",
         "C3",
@@ -231,14 +239,14 @@ def test_rules_are_chosen_by_name_and_family_in_their_order() -> None:
     ]
     assert len(BY_ID) == len(RULES)
     with pytest.raises(KeyError, match="Q"):
-        chosen(["C", "Q"])
+        select_rules(["C", "Q"])
 
 
 # The structure that rules see
 
 
-def scene(*objects: ObjectFacts, collections: tuple[CollectionFacts, ...]) -> Structure:
-    return Structure(EMPTY.model_copy(update={"objects": objects, "collections": collections}))
+def scene(*objects: ObjectFacts, collections: tuple[CollectionFacts, ...]) -> SceneStructure:
+    return SceneStructure(EMPTY.model_copy(update={"objects": objects, "collections": collections}))
 
 
 def thing(name: str, kind: str = "MESH", **more: Any) -> ObjectFacts:
@@ -257,10 +265,10 @@ def test_names_stand_for_surfaces() -> None:
         thing("Stray"),
         collections=(SET, CHAIR),
     )
-    assert found.find("Chair") == found.find("Root") == ("Seat",)  # what renders show
-    assert found.find("Chair/Leg") == found.find("Leg") == ("Leg",)
-    assert found.find("Stray") == ("Stray",)
-    assert found.find("Chair/Stray") == found.find("Nobody") == found.find("set") == ()
+    assert found.surfaces_of("Chair") == found.surfaces_of("Root") == ("Seat",)  # what renders show
+    assert found.surfaces_of("Chair/Leg") == found.surfaces_of("Leg") == ("Leg",)
+    assert found.surfaces_of("Stray") == ("Stray",)
+    assert found.surfaces_of("Chair/Stray") == found.surfaces_of("Nobody") == found.surfaces_of("set") == ()
     assert found.systems_of(CHAIR) == {"set"}
 
 
@@ -269,7 +277,7 @@ def test_chains_and_collections_that_close_a_circle_come_to_an_end() -> None:
     found = scene(thing("Seat", parent="Leg"), thing("Leg", parent="Seat"), collections=(SET, CHAIR, loop))
     assert list(found.parents_of("Seat")) == ["Leg"]
     assert [one.name for one in found.by_name["Chair"].meshes] == ["Seat", "Leg"]
-    assert found.moves("Seat") is False
+    assert found.can_move("Seat") is False
     assert found.systems_of(loop) == {"set"}
 
 

@@ -124,7 +124,7 @@ def test_contacts_of_what_has_no_geometry_are_found(session: LiveSession, more: 
     report = judged(session, SCENE + more, "V,W1,R4")
     if "contact_with" in more:
         assert {one.outcome for one in of(report, "V1")} == {"broken"}
-        assert "nothing of that name with a surface" in of(report, "V1")[0].message
+        assert "nothing of that name has a surface" in of(report, "V1")[0].message
     else:
         assert report.findings == ()
 

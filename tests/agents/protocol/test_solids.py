@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 import pytest
 from scenes import build, measured, measures
 
-from agents.protocol.measures.measure import Crossings, Extents, Gap, Pieces, Surface, Unmeasured
+from agents.protocol.measures.geometry import (
+    CrossingsRequest,
+    ExtentsRequest,
+    GapRequest,
+    PiecesRequest,
+    SurfaceRequest,
+)
+from agents.protocol.measures.requests import Unmeasured
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -26,12 +33,12 @@ def made(session: LiveSession, script: str) -> None:
 
 
 def gap(session: LiveSession, a: str = "A", b: str = "B") -> float:
-    return measured(session, Gap((a,), (b,))).distance
+    return measured(session, GapRequest((a,), (b,))).distance
 
 
 def depth(session: LiveSession, *names: str) -> float | None:
     """How deep the deepest pair is in each other; None if none shares space."""
-    pairs = measured(session, Crossings(names or ("A", "B"))).pairs
+    pairs = measured(session, CrossingsRequest(names or ("A", "B"))).pairs
     assert all(pair.undecided == "" for pair in pairs)
     return max((pair.depth for pair in pairs if pair.depth is not None), default=None)
 
@@ -83,8 +90,8 @@ APART = {
 @pytest.mark.parametrize(("script", "distance"), APART.values(), ids=APART)
 def test_distances_are_exact(session: LiveSession, script: str, distance: float) -> None:
     made(session, script)
-    found = measured(session, Gap(("A",), ("B",)))
-    back = measured(session, Gap(("B",), ("A",)))
+    found = measured(session, GapRequest(("A",), ("B",)))
+    back = measured(session, GapRequest(("B",), ("A",)))
     assert found.distance == pytest.approx(distance, abs=2e-6)
     assert back.distance == pytest.approx(found.distance, abs=1e-6)
     assert math.dist(found.here, found.there) == pytest.approx(distance, abs=1e-5)
@@ -97,7 +104,7 @@ def test_of_several_surfaces_the_nearest_two_count(session: LiveSession) -> None
         '    add(box(f"R{k}", (k, 2 + k / 10, 0), (k + 0.1, 3, 1)))',
     )
     lefts, rights = (tuple(f"{side}{k}" for k in range(5)) for side in "LR")
-    found = measured(session, Gap(lefts, rights))
+    found = measured(session, GapRequest(lefts, rights))
     assert found.distance == pytest.approx(1, abs=1e-6)
     assert (found.here[1], found.there[1]) == (pytest.approx(1), pytest.approx(2))
 
@@ -314,7 +321,7 @@ SEEN = {
 def test_what_is_seen_is_measured_and_told_in_the_facts(session: LiveSession, script: str) -> None:
     made(session, FLOOR + 'bpy.data.objects["A"].location.z = -0.51\n' + script)
     assert gap(session) == pytest.approx(0.01, abs=2e-4)
-    high = measured(session, Extents(("B",))).high
+    high = measured(session, ExtentsRequest(("B",))).high
     assert high[2] == pytest.approx(0.5, abs=2e-4)
     told = session.blender.call("scene_facts", {}, timeout=60).value["objects"]
     facts = next(one for one in told if one["name"] == "B")
@@ -325,9 +332,9 @@ def test_what_is_seen_is_measured_and_told_in_the_facts(session: LiveSession, sc
 
 def test_text_is_there_once(session: LiveSession) -> None:
     made(session, SEEN["text"])
-    found = measured(session, Surface("B"))
+    found = measured(session, SurfaceRequest("B"))
     assert (found.open_edges, found.parts) == (0, 1)
-    size = measured(session, Extents(("B",))).size
+    size = measured(session, ExtentsRequest(("B",))).size
     assert found.volume == pytest.approx(size[0] * size[1] * size[2], rel=1e-3)
 
 
@@ -348,7 +355,7 @@ def test_what_has_no_faces_has_no_surface(session: LiveSession, script: str) -> 
     made(session, FLOOR + script)
     with pytest.raises(Unmeasured, match="'B' has no surface"):
         gap(session)
-    assert measured(session, Crossings(("A", "B"))).pairs == ()
+    assert measured(session, CrossingsRequest(("A", "B"))).pairs == ()
     told = session.blender.call("scene_facts", {}, timeout=60).value["objects"]
     assert not next(one for one in told if one["name"] == "B")["surface"]
 
@@ -384,10 +391,10 @@ def test_what_is_hidden_is_told_apart(
     assert (facts["rendered"], facts["evaluated"]) == (rendered, evaluated)
     assert facts["surface"]
     if evaluated:
-        assert measured(session, Surface("Cube")).polygons == 12
+        assert measured(session, SurfaceRequest("Cube")).polygons == 12
     else:
         with pytest.raises(Unmeasured, match="not evaluated"):
-            measured(session, Surface("Cube"))
+            measured(session, SurfaceRequest("Cube"))
 
 
 def test_objects_of_other_scenes_are_not_there(session: LiveSession) -> None:
@@ -414,7 +421,7 @@ def test_a_mesh_is_told_as_it_is(
     session: LiveSession, script: str, open_edges: int, volume: float, area: float | None, parts: int
 ) -> None:
     made(session, script)
-    found = measured(session, Surface("B"))
+    found = measured(session, SurfaceRequest("B"))
     assert (found.finite, found.open_edges, found.parts) == (True, open_edges, parts)
     assert found.volume == pytest.approx(volume, rel=1e-5)
     assert area is None or found.area == pytest.approx(area, rel=1e-5)
@@ -430,7 +437,11 @@ def test_meshes_of_a_million_vertices_are_measured_in_seconds(session: LiveSessi
         'dense.subdivision_type, dense.levels = "SIMPLE", 4\n'
         'add(ball("B", 0.3, at=(0.1, 0.2, 0.31)))\nadd(ball("C", 0.3, at=(0.1, 0.2, -0.295)))',
     )
-    surface, apart, crossing = Surface("A"), Gap(("A",), ("B",)), Crossings(("A", "B", "C"))
+    surface, apart, crossing = (
+        SurfaceRequest("A"),
+        GapRequest(("A",), ("B",)),
+        CrossingsRequest(("A", "B", "C")),
+    )
     began = time.perf_counter()
     found = measures(session, surface, apart, crossing)
     assert time.perf_counter() - began < 40  # some seconds where nothing else runs
@@ -458,6 +469,6 @@ def test_thousands_of_parts_are_looked_at_in_seconds(session: LiveSession) -> No
     )
     names = tuple(f"P{k}" for k in range(2500))
     began = time.perf_counter()
-    assert len(measured(session, Pieces(names, 0.002, 0.005, 0.01)).pieces) == 1
+    assert len(measured(session, PiecesRequest(names, 0.002, 0.005, 0.01)).pieces) == 1
     assert depth(session, *names) is None
     assert time.perf_counter() - began < 20

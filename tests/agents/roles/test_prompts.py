@@ -18,8 +18,8 @@ from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
 from agents.protocol import vocabulary
-from agents.protocol.guide import told_tolerance
-from agents.protocol.rules.catalogue import RULES, chosen
+from agents.protocol.guide import format_tolerance
+from agents.protocol.rules.catalogue import RULES, select_rules
 from agents.protocol.rules_by_stage import rules_of
 from agents.protocol.tolerances import TOLERANCES
 from agents.roles import prompts
@@ -87,7 +87,7 @@ def test_the_protocol_names_every_rule_tolerance_tag_and_relation() -> None:
     used = {name for rule in RULES for name in rule.tolerances}
     assert used == {field.name for field in fields(TOLERANCES)}
     for name in used - {"contact", "contact_share", "contact_most", "penetration", "penetration_share"}:
-        assert text.count(f"{name} {told_tolerance(name)}") == 1
+        assert text.count(f"{name} {format_tolerance(name)}") == 1
     for one in vocabulary.PROPERTIES:
         assert f"`{one.name}`" in text
         assert one.meaning in text
@@ -151,7 +151,7 @@ def test_every_stage_says_what_belongs_into_it_when_it_is_done_and_what_judges_i
         for edit in (False, True):
             last = prompts.stage_text(stage, edit=edit).splitlines()[-1]
             told = last.removeprefix("Rules that judge this stage: ").removesuffix(".").split(", ")
-            assert chosen(told) == rules_of(stage, edit=edit), "as blender_verify takes them"
+            assert select_rules(told) == rules_of(stage, edit=edit), "as blender_verify takes them"
 
 
 def test_the_planner_knows_all_stages_in_order() -> None:

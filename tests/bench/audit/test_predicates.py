@@ -235,8 +235,8 @@ def test_two_predicates_of_one_name_are_refused() -> None:
 
 
 def test_the_reference_lists_every_definition_and_is_up_to_date() -> None:
-    from docs.generate.benchmark_pages import NAME, reference
+    from docs.generate.benchmark_pages import predicates_page
 
-    text = reference()
+    text = predicates_page()
     assert all(f"### `{name}`" in text for name in PREDICATES)
-    assert (REPO / "docs" / NAME).read_text(encoding="utf-8") == text
+    assert (REPO / "docs" / "predicates.md").read_text(encoding="utf-8") == text

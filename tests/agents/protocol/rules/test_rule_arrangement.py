@@ -134,7 +134,7 @@ def test_the_centre_may_be_an_object(session: LiveSession) -> None:
 
 def test_members_on_one_spot_are_no_ring(session: LiveSession) -> None:
     found = the_finding(ring(session, [(1, 1, 0)] * 4))
-    assert "one spot" in found.message
+    assert "all at one point" in found.message
 
 
 @pytest.mark.parametrize(("off", "breaks"), [(9.9, False), (10.1, True), (180, True)])
@@ -262,7 +262,7 @@ def test_without_a_planned_spacing_it_is_to_be_even(session: LiveSession) -> Non
 
 
 def test_members_on_one_spot_are_no_line(session: LiveSession) -> None:
-    assert "one spot" in the_finding(line(session, [(1, 1, 0)] * 3)).message
+    assert "all at one point" in the_finding(line(session, [(1, 1, 0)] * 3)).message
 
 
 def test_parts_stand_where_their_middle_is(session: LiveSession) -> None:
@@ -310,7 +310,7 @@ def test_a_grid_with_a_hole_says_how_many_it_lacks(session: LiveSession) -> None
 
 def test_another_number_of_rows_is_told(session: LiveSession) -> None:
     found = the_finding(grid(session, cells(2, 6), rows=3, columns=4))
-    assert "planned are 3 × 4" in found.message
+    assert "the plan says 3 × 4" in found.message
 
 
 @pytest.mark.parametrize(("spacing", "breaks"), [(0.615, False), (0.62, True)])
@@ -360,5 +360,10 @@ def test_a_member_beside_its_mirrored_place_breaks_the_symmetry(
 
 def test_a_plan_without_arrangements_leaves_the_rules_idle(session: LiveSession) -> None:
     build(session, seat("A", (0, 0, 0)))
-    idle = verified(session, "R16,R17", a_plan({"kind": "CoMoves", "a": "A", "b": "B"})).idle
-    assert idle == {"R16": "the plan has no circle or arc", "R17": "the plan has no line, grid or mirror"}
+    not_applicable = verified(
+        session, "R16,R17", a_plan({"kind": "CoMoves", "a": "A", "b": "B"})
+    ).not_applicable
+    assert not_applicable == {
+        "R16": "the plan has no circle or arc",
+        "R17": "the plan has no line, grid or mirror",
+    }

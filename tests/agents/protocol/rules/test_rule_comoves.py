@@ -143,4 +143,4 @@ def test_what_is_not_there_is_undecided(session: LiveSession) -> None:
         verified(session, "R18", plan(relation={"kind": "CoMoves", "a": "Dog", "b": "Cart"}))
     )
     assert (finding.outcome, finding.objects) == ("undecided", ("Dog", "Cart"))
-    assert "nothing called 'Dog'" in finding.message
+    assert "no object is named 'Dog'" in finding.message

@@ -192,4 +192,4 @@ def test_what_is_not_evaluated_cannot_be_measured_and_hides_no_other_finding(ses
 
 def test_without_declarations_there_is_nothing_to_judge(session: LiveSession) -> None:
     build(session, crate(0.5))
-    assert set(verified(session, "V1").idle) == {"V1"}
+    assert set(verified(session, "V1").not_applicable) == {"V1"}

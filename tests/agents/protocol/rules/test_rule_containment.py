@@ -243,7 +243,7 @@ def test_a_round_stone_is_half_in_the_ground(session: LiveSession) -> None:
     [
         ('bpy.data.objects["Rubber"].data.vertices[0].co.x = math.nan', "not finite"),
         ('bpy.data.objects["Rubber"].data.vertices.foreach_set("co", [0.0] * 1446)', "without an area"),
-        ('bpy.data.objects["Rubber"].data.clear_geometry()', "nothing with a surface that is called 'Ball'"),
+        ('bpy.data.objects["Rubber"].data.clear_geometry()', "no object named 'Ball' has a surface"),
     ],
 )
 def test_what_cannot_be_measured_is_undecided(session: LiveSession, more: str, reason: str) -> None:

@@ -193,7 +193,7 @@ def test_without_an_active_camera_nothing_is_framed(session: LiveSession) -> Non
 @pytest.mark.parametrize(
     ("script", "reason"),
     [
-        ("", "nothing called 'Poster'"),
+        ("", "no object is named 'Poster'"),
         ("sheet('Poster', -1, 1, -1, 1)\nscene.camera.data.type = 'PANO'", "panoramic"),
         ("sheet('Poster', 1, 1, -1, 1)", "no area"),
     ],
@@ -207,6 +207,6 @@ def test_what_cannot_be_told_is_undecided(session: LiveSession, script: str, rea
 def test_a_plan_without_subjects_leaves_the_camera_alone(session: LiveSession) -> None:
     build(session, STAGE)
     relation = {"kind": "Upright", "a": "Poster"}
-    assert verified(session, "R14", a_plan(relation)).idle == {
+    assert verified(session, "R14", a_plan(relation)).not_applicable == {
         "R14": "the plan names no subjects of the camera"
     }

@@ -57,7 +57,7 @@ def test_what_is_planned_and_there_is_in_order(
 @pytest.mark.parametrize(
     ("change", "planned", "objects", "measured", "why"),
     [
-        ("", ("Floor", "Cup", "Spoon"), ("Spoon",), 0, "no object (L3) is called so"),
+        ("", ("Floor", "Cup", "Spoon"), ("Spoon",), 0, "no L3 collection has that name"),
         ("", ("Floor",), ("Cup",), None, "not of the plan"),
         ("mug.hide_render = handle.hide_render = True", ("Floor", "Cup"), ("Cup",), 0, "hidden from renders"),
         ("cup.hide_render = True", ("Floor", "Cup"), ("Cup",), 0, "hidden from renders"),
@@ -100,4 +100,4 @@ def test_a_planned_field_that_does_not_blow_is_told(session: LiveSession, there:
 
 def test_without_a_plan_there_is_nothing_to_judge(session: LiveSession) -> None:
     build(session, SCENE)
-    assert verified(session, "R1").idle == {"R1": "there is no plan"}
+    assert verified(session, "R1").not_applicable == {"R1": "no plan was given"}

@@ -354,7 +354,7 @@ def test_what_is_declared_and_done_is_right(
         ("none", "none", KEYS, "'Actor root' is animated"),
         ("none", "none", OTHER + PUSHED, "'Cart root' is animated"),
         ("none", "none", "post.modifiers.new('Cloth', 'CLOTH')", "is simulated (sim_cloth)"),
-        ("none", "bake", "", "no solver is at work"),
+        ("none", "bake", "", "no solver moves it"),
     ],
 )
 def test_what_is_declared_and_not_done_is_told(
@@ -368,7 +368,7 @@ def test_what_is_declared_and_not_done_is_told(
 
 def test_what_declares_nothing_is_not_judged(session: LiveSession) -> None:
     make(session, POST + KEYS)
-    assert mechanism(session).idle == {"R15": "no object declares how it is deformed or moved"}
+    assert mechanism(session).not_applicable == {"R15": "no object declares how it is deformed or moved"}
 
 
 def test_the_plan_declares_for_what_has_no_tags(session: LiveSession) -> None:
@@ -387,7 +387,7 @@ def test_tags_that_say_something_else_than_the_plan_are_told(session: LiveSessio
     )
     found = verified(session, "R15", plan).findings
     assert [one.objects for one in found] == [("Actor",)] * 2
-    assert "tagged deformation_kind='none'; its planned role 'rigid' is 'sim_rigid'" in found[0].message
+    assert "tagged deformation_kind='none', but its planned role 'rigid' needs 'sim_rigid'" in found[0].message
     assert "tagged motion_kind='keyframe'" in found[1].message
 
 
@@ -416,14 +416,14 @@ def test_a_baked_timeline_that_is_the_planned_one_passes(session: LiveSession) -
 @pytest.mark.parametrize(
     ("change", "told", "measured"),
     [
-        ("scene.render.fps = 25", "frame rate is 25; planned is 24", 25),
+        ("scene.render.fps = 25", "frame rate is 25; the plan says 24", 25),
         (
             "scene.render.fps, scene.render.fps_base = 24, 1.001",
-            "frame rate is 23.976; planned is 24",
+            "frame rate is 23.976; the plan says 24",
             24 / 1.001,
         ),
-        ("scene.frame_start = 2", "first frame is 2; planned is 1", 2),
-        ("scene.frame_end = 11", "last frame is 11; planned is 12", 11),
+        ("scene.frame_start = 2", "first frame is 2; the plan says 1", 2),
+        ("scene.frame_end = 11", "last frame is 11; the plan says 12", 11),
     ],
 )
 def test_another_timeline_is_told(session: LiveSession, change: str, told: str, measured: float) -> None:
@@ -455,4 +455,4 @@ def test_an_animation_without_phases_has_a_timeline_and_a_still_has_none(session
     relation = {"kind": "Upright", "a": "Actor"}
     film = a_plan(relation, frame_end=20, render={"kind": "animation"})
     assert the_finding(verified(session, "T1", film)).measured == LAST
-    assert verified(session, "T1", a_plan(relation)).idle == {"T1": "the plan has no motion"}
+    assert verified(session, "T1", a_plan(relation)).not_applicable == {"T1": "the plan has no motion"}

@@ -8,8 +8,8 @@ import pytest
 from scenes import a_motion, build, measured, the_finding, verified
 
 from agents.blender.tools.bake import TOOL as BAKE
-from agents.protocol.measures.measure import Gap
-from agents.protocol.measures.motion import Touches
+from agents.protocol.measures.geometry import GapRequest
+from agents.protocol.measures.motion import ContactFramesRequest
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -178,7 +178,7 @@ def test_a_target_waits_for_the_contact(session: LiveSession, onset: int, holds:
     if finding := broken(found, "T3", holds):
         assert finding.objects == ("Tile", "Rod")
         assert (finding.measured, finding.tolerance, finding.frame) == (30 - onset, 1, onset)
-        assert "touches it at frame 30 only" in finding.message
+        assert "touches it only at frame 30" in finding.message
 
 
 @pytest.mark.parametrize(("onset", "holds"), [(9, True), (8, False)])
@@ -211,9 +211,9 @@ shot.rigid_body.keyframe_insert("kinematic", frame=4)
     build(session, script)
     session.use(BAKE)
     # It comes 0.4 m nearer a frame, stops where it hits between two frames, and the tile flies on before the second.
-    (first, *_) = measured(session, Touches(("Shot",), ("Face",), 1, 40, 0.002)).frames
+    (first, *_) = measured(session, ContactFramesRequest(("Shot",), ("Face",), 1, 40, 0.002)).frames
     assert first == 11
-    gaps = [measured(session, Gap(("Shot",), ("Face",), frame)).distance for frame in (10, 11)]
+    gaps = [measured(session, GapRequest(("Shot",), ("Face",), frame)).distance for frame in (10, 11)]
     assert min(gaps) > 0.05
     shot = {"name": "shot", **phase("Ball", "translate", 1, 12)}
     roles = {"Ball": "rigid", "Tile": "rigid"}
@@ -389,7 +389,7 @@ linear(bpy.data.objects["Shot root"])
     finding = the_finding(found)
     assert finding.objects == ("Shot", "Floor")
     assert finding.frame == 7  # from 0.35 m above to 1.18 m below
-    assert "goes through 'Floor' within a frame" in finding.message
+    assert "passes through 'Floor' within a frame" in finding.message
     assert 0.98 <= (finding.measured or 0) <= 1.4
 
 
@@ -532,7 +532,7 @@ def test_a_body_that_lands_comes_to_rest_but_not_while_it_falls(session: LiveSes
 def test_a_cloth_that_still_swings_is_not_at_rest(session: LiveSession) -> None:
     settle = phase("Flag", "settle", 1, 20)
     finding = the_finding(judged(session, "T7", CURTAIN, settle, roles={"Flag": "cloth"}, last=20))
-    assert "its points move with" in finding.message
+    assert "its points move at" in finding.message
     assert (finding.measured or 0) > 0.5
 
 

@@ -89,4 +89,4 @@ def test_every_mesh_of_an_object_without_a_root_is_told(session: LiveSession) ->
 
 
 def test_without_objects_there_is_nothing_to_judge(session: LiveSession) -> None:
-    assert set(verified(session, "G").idle) == {"G1", "G2", "G3"}
+    assert set(verified(session, "G").not_applicable) == {"G1", "G2", "G3"}

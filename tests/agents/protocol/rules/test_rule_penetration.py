@@ -126,7 +126,7 @@ def test_parts_of_one_object_are_no_exception(session: LiveSession) -> None:
 )  # fmt: skip
 def test_what_no_render_shows_is_in_nothings_way(session: LiveSession, hidden: str) -> None:
     build(session, FLOOR + crate(0.05) + hidden)
-    assert set(verified(session, "V2").idle) == {"V2"}
+    assert set(verified(session, "V2").not_applicable) == {"V2"}
 
 
 def test_what_is_rendered_but_not_evaluated_is_undecided(session: LiveSession) -> None:
@@ -228,4 +228,4 @@ def test_particles_are_no_surface_of_what_emits_them(session: LiveSession) -> No
 
 def test_one_mesh_alone_goes_through_nothing(session: LiveSession) -> None:
     build(session, FLOOR)
-    assert set(verified(session, "V2").idle) == {"V2"}
+    assert set(verified(session, "V2").not_applicable) == {"V2"}

@@ -75,7 +75,7 @@ def test_nothing_below_is_no_support(session: LiveSession) -> None:
 def test_what_hangs_below_does_not_rest(session: LiveSession, floor: str) -> None:
     height = -0.3 if floor == FLOOR else -0.2
     found = the_finding(resting(session, floor + CRATE.format(height=height)))
-    assert "nothing of it lies on top" in found.message
+    assert "no part of it lies on top" in found.message
 
 
 def test_what_touches_a_side_does_not_rest(session: LiveSession) -> None:
@@ -243,9 +243,9 @@ def test_turned_and_scaled_meshes_rest_as_others_do(session: LiveSession, more: 
 @pytest.mark.parametrize(
     ("more", "reason"),
     [
-        ('bpy.data.objects["Planks"].data.vertices[0].co.x = math.nan', "not finite"),
-        ('bpy.data.objects["Planks"].data.clear_geometry()', "nothing with a surface that is called 'Crate'"),
-        ('bpy.data.collections["Crate"].name = "Box"', "nothing with a surface that is called 'Crate'"),
+        ('bpy.data.objects["Planks"].data.vertices[0].co.x = math.nan', "not numbers"),
+        ('bpy.data.objects["Planks"].data.clear_geometry()', "no object named 'Crate' has a surface"),
+        ('bpy.data.collections["Crate"].name = "Box"', "no object named 'Crate' has a surface"),
     ],
 )
 def test_what_cannot_be_measured_is_undecided(session: LiveSession, more: str, reason: str) -> None:

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from agents.plan.part import STAGES, Stage
 from agents.protocol.rules.catalogue import BY_ID, RULES
-from agents.protocol.rules_by_stage import FROM, rules_of
+from agents.protocol.rules_by_stage import FIRST_STAGES, rules_of
 
 
 def ids(stage: Stage, **more: bool) -> list[str]:
@@ -32,7 +32,7 @@ def test_what_holds_at_one_stage_must_go_on_to_hold() -> None:
 
 def test_the_table_names_rules_and_families_that_there_are() -> None:
     families = {rule.id[0] for rule in RULES}
-    assert set(FROM) <= families | set(BY_ID)
+    assert set(FIRST_STAGES) <= families | set(BY_ID)
 
 
 def test_an_edited_file_has_no_plan_to_be_compared_with() -> None:

@@ -89,7 +89,7 @@ def test_a_sound_scene_is_0_and_says_what_was_checked(session: LiveSession, tmp_
     assert done.returncode == 0
     assert "Ok: no hard finding." in done.stdout
     assert "Checked: C1–C6, G1–G3, V1, V2, W1, W3–W5" in done.stdout
-    assert "there is no plan" in done.stdout
+    assert "no plan was given" in done.stdout
 
 
 def test_findings_are_1_and_come_as_table_json_and_picture(session: LiveSession, tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ def test_two_hundred_unorganised_primitives_get_a_useful_report_in_seconds(
     lines = done.stdout.splitlines()
     assert len(lines) < 45  # folded
     assert any(f"hard ×{len(crossing)}" in line for line in lines)
-    assert any("no collection carries a role of the protocol" in line for line in lines)
+    assert any("no collection has the tag protocol_role" in line for line in lines)
     assert any("blender_group" in line for line in lines)
 
 
@@ -149,7 +149,7 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(session: LiveSession,
     done = verify(tmp_path, "tagged.blend", "--rules", "C3")
     assert done.returncode == 1
     assert "Cube … Cube.049 (50)" in done.stdout
-    assert "The mesh … is in no object." in done.stdout
+    assert "The mesh … is not in any object." in done.stdout
     assert "hard ×200" in done.stdout
 
 
@@ -160,10 +160,10 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(session: LiveSession,
         (["text.blend"], "text.blend is not a .blend file."),
         (["empty.blend"], "empty.blend is empty."),
         (["folder.blend"], "it is a link or not a regular file"),
-        (["text.blend", "--rules", "X"], "--rules: There is no rule 'X'. There are: C1"),
+        (["text.blend", "--rules", "X"], "--rules: There is no rule 'X'. The rules are: C1"),
         (["text.blend", "--rules", ","], "--rules: No rule is named."),
         (["text.blend", "--plan", "absent.json"], "The plan absent.json cannot be read: No such file"),
-        (["text.blend", "--plan", "text.blend"], "plan: The plan is no JSON"),
+        (["text.blend", "--plan", "text.blend"], "plan: The plan is not valid JSON"),
         (
             ["text.blend", "--plan", "plan.json"],
             "relations[0].a: There is no object 'Lmap'; did you mean 'Lamp'",

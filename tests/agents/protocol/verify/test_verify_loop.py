@@ -69,7 +69,7 @@ async def test_untagged_meshes_become_a_scene_that_holds(tmp_path: Path) -> None
         fixes = await found(client)
         assert set(fixes) == {"V1", "V2"}
         assert fixes["V1"] == [
-            "Move 'Table root' 5.0 mm down (−Z); or take the declaration back if they are not to touch."
+            "Move 'Table root' 5.0 mm down (−Z); or remove the declaration if they should not touch."
         ]
         await moved(client, fixes["V1"][0])
 

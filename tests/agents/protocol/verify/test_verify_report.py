@@ -11,25 +11,20 @@ import pytest
 from rich.console import Console
 
 from agents.protocol.findings import Finding, Report
-from agents.protocol.report.folding import folded, plain, rows, told_ids, told_value
-from agents.protocol.report.report import (
-    Checked,
-    as_json,
-    as_sarif,
-    as_table,
-    as_text,
-    coverage,
-    dumped,
-    exit_code,
-    sarif_failure,
-    verdict,
-)
+from agents.protocol.report.grouping import group_findings
+from agents.protocol.report.json_report import as_json, dump_json
+from agents.protocol.report.markdown import as_text
+from agents.protocol.report.sarif import as_sarif, sarif_failure
+from agents.protocol.report.summary import VerificationScope, coverage, exit_code, verdict
+from agents.protocol.report.table import as_table
+from agents.protocol.report.text_format import fold_names, format_rule_ids, format_value, plain
+from agents.protocol.rule import NO_ROLES
 from agents.protocol.rules.catalogue import BY_ID, RULES
 
 V1, V2, C3, W2, W4 = (BY_ID[name] for name in ("V1", "V2", "C3", "W2", "W4"))
 GAP = V1.finding(
     ("Leg", "Floor"),
-    "'Leg' and 'Floor' are said to touch (contact_with of 'Leg'), but are 5.0 mm apart.",
+    "'Leg' and 'Floor' are declared to touch (contact_with of 'Leg'), but are 5.0 mm apart.",
     measured=0.005,
     tolerance=0.002,
     unit="m",
@@ -40,7 +35,7 @@ GAP = V1.finding(
 def crossing(a: str, b: str, depth: float) -> Finding:
     return V2.finding(
         (a, b),
-        f"{a!r} and {b!r} are {depth * 1000:.1f} mm deep in each other.",
+        f"{a!r} and {b!r} penetrate each other by {depth * 1000:.1f} mm.",
         measured=depth,
         tolerance=0.001,
         unit="m",
@@ -49,18 +44,18 @@ def crossing(a: str, b: str, depth: float) -> Finding:
 
 
 def homeless(name: str) -> Finding:
-    return C3.finding((name,), f"The mesh {name!r} is in no object.", measured=0.0)
+    return C3.finding((name,), f"The mesh {name!r} is not in any object.", measured=0.0)
 
 
-def checked(*names: str, **more: Any) -> Checked:
-    return Checked(tuple(BY_ID[name] for name in names) if names else RULES, **more)
+def checked(*names: str, **more: Any) -> VerificationScope:
+    return VerificationScope(tuple(BY_ID[name] for name in names) if names else RULES, **more)
 
 
-def report(*findings: Finding, passed: tuple[str, ...] = (), **idle: str) -> Report:
-    return Report(findings, passed, idle, 1.25)
+def report(*findings: Finding, passed: tuple[str, ...] = (), **not_applicable: str) -> Report:
+    return Report(findings, passed, not_applicable, 1.25)
 
 
-def shown(found: Report, what: Checked, width: int = 132) -> str:
+def shown(found: Report, what: VerificationScope, width: int = 132) -> str:
     console = Console(width=width, file=io.StringIO(), highlight=False)
     console.print(as_table(found, what, width))
     assert isinstance(console.file, io.StringIO)
@@ -93,14 +88,14 @@ def test_the_exit_code_is_1_for_what_is_broken_and_2_for_what_could_not_be_told(
 
 def test_findings_that_say_the_same_are_one_row_with_names_and_counts() -> None:
     names = ["Cube", *(f"Cube.{number:03d}" for number in range(1, 200))]
-    (row,) = rows(homeless(name) for name in names)
-    assert row.message == "The mesh … is in no object."
+    (row,) = group_findings(homeless(name) for name in names)
+    assert row.message == "The mesh … is not in any object."
     assert row.objects() == "Cube … Cube.199 (200)"
     assert len(row.findings) == 200
 
 
 def test_the_worst_comes_first_and_ranges_are_told() -> None:
-    (row,) = rows([crossing("A", "B", 0.002), crossing("C", "D", 0.25), crossing("E", "F", 0.01)])
+    (row,) = group_findings([crossing("A", "B", 0.002), crossing("C", "D", 0.25), crossing("E", "F", 0.01)])
     assert row.worst.objects == ("C", "D")
     assert row.objects().splitlines() == ["C · D", "E · F", "A · B"]
     assert (row.measured, row.tolerance) == ("2–250 mm", "1 mm")
@@ -110,24 +105,28 @@ def test_what_all_of_a_row_share_is_kept_in_its_message() -> None:
     findings = [
         V1.finding(("Leg", "Floor"), f"'Leg' and 'Floor' are {number} mm apart.") for number in (5, 7)
     ]
-    (row,) = rows(findings)
+    (row,) = group_findings(findings)
     assert row.message == "'Leg' and 'Floor' are … mm apart."
 
 
 def test_other_words_or_another_outcome_make_another_row() -> None:
     other = C3.finding(("Cube",), "The mesh 'Cube' is in 2 objects: 'A', 'B'.", measured=2.0)
     unsure = C3.undecided(("Cube",), "it is open")
-    assert [len(row.findings) for row in rows([homeless("A"), other, homeless("B"), unsure])] == [2, 1, 1]
+    assert [len(row.findings) for row in group_findings([homeless("A"), other, homeless("B"), unsure])] == [
+        2,
+        1,
+        1,
+    ]
 
 
 def test_hard_rows_come_before_soft_ones_and_broken_before_undecided() -> None:
     soft, unsure = W4.finding((), "The scene has no camera."), V1.undecided(("A", "B"), "it is open")
-    assert [row.worst for row in rows([soft, unsure, GAP])] == [GAP, unsure, soft]
+    assert [row.worst for row in group_findings([soft, unsure, GAP])] == [GAP, unsure, soft]
 
 
 def test_names_with_quotes_and_numbers_do_not_come_apart() -> None:
-    (row,) = rows([homeless("Bob's 3 chairs"), homeless('the "big" one')])
-    assert row.message == "The mesh … is in no object."
+    (row,) = group_findings([homeless("Bob's 3 chairs"), homeless('the "big" one')])
+    assert row.message == "The mesh … is not in any object."
 
 
 def test_a_part_that_all_share_is_told_once() -> None:
@@ -135,7 +134,7 @@ def test_a_part_that_all_share_is_told_once() -> None:
         BY_ID["G1"].finding((f"Leg.{number:03d}", "Chair"), f"The mesh 'Leg.{number:03d}' has no parent.")
         for number in range(5)
     ]
-    (row,) = rows(findings)
+    (row,) = group_findings(findings)
     assert row.objects() == "Leg.000 … Leg.004 (5) · Chair"
 
 
@@ -153,13 +152,13 @@ def test_a_part_that_all_share_is_told_once() -> None:
     ],
 )
 def test_names_are_folded_by_their_numbers(names: list[str], told: str) -> None:
-    assert folded(names) == told
+    assert fold_names(names) == told
 
 
 def test_rules_that_follow_each_other_are_told_by_their_ends() -> None:
     order = ["C1", "C2", "C3", "C4", "G1", "G2", "V1"]
-    assert told_ids(["C1", "C2", "C3", "G1", "V1"], order) == "C1–C3, G1, V1"
-    assert told_ids(["C4", "G1", "G2"], order) == "C4, G1, G2"
+    assert format_rule_ids(["C1", "C2", "C3", "G1", "V1"], order) == "C1–C3, G1, V1"
+    assert format_rule_ids(["C4", "G1", "G2"], order) == "C4, G1, G2"
 
 
 @pytest.mark.parametrize(
@@ -175,7 +174,7 @@ def test_rules_that_follow_each_other_are_told_by_their_ends() -> None:
     ],
 )
 def test_small_lengths_are_told_in_millimetres(value: float, unit: str, told: str) -> None:
-    assert told_value(value, unit) == told
+    assert format_value(value, unit) == told
 
 
 def test_what_steers_terminals_or_is_no_text_is_taken_out() -> None:
@@ -189,7 +188,7 @@ def test_json_keeps_every_finding_and_the_state_of_every_rule() -> None:
     found = report(
         *(homeless(f"Cube.{number:03d}") for number in range(200)), GAP, passed=("W4",), V2="there are fewer"
     )
-    data = json.loads(dumped(as_json(found, checked("C3", "V1", "V2", "W4", file="a.blend", frame=3))))
+    data = json.loads(dump_json(as_json(found, checked("C3", "V1", "V2", "W4", file="a.blend", frame=3))))
     assert len(data["findings"]) == 201
     assert data["findings"][-1] == {
         "rule": "V1",
@@ -216,7 +215,7 @@ def test_json_keeps_every_finding_and_the_state_of_every_rule() -> None:
 
 def test_json_is_json_whatever_was_measured_and_named() -> None:
     strange = V1.finding(("a\udcffb",), "x", measured=math.inf, tolerance=math.nan)
-    text = dumped(as_json(report(strange), checked("V1")))
+    text = dump_json(as_json(report(strange), checked("V1")))
     data = json.loads(text.encode())
     assert (data["findings"][0]["measured"], data["findings"][0]["tolerance"]) == (None, None)
     assert data["findings"][0]["objects"] == ["a\udcffb"]
@@ -229,7 +228,7 @@ def test_sarif_has_what_its_schema_requires() -> None:
     failed = Finding("V2", "hard", (), "The rule failed: ZeroDivisionError: x.", outcome="error")
     unsure, soft = V2.undecided(("A",), "it is open"), W4.finding((), "The scene has no camera.")
     what = checked("V1", "V2", "W4", file="scenes/a room.blend")
-    data = json.loads(dumped(as_sarif(report(GAP, unsure, failed, soft), what)))
+    data = json.loads(dump_json(as_sarif(report(GAP, unsure, failed, soft), what)))
     assert data["version"] == "2.1.0"
     assert data["$schema"].endswith("sarif-schema-2.1.0.json")
     (run,) = data["runs"]
@@ -317,14 +316,14 @@ def test_the_table_fits_a_narrow_terminal_and_tells_markup_as_it_is() -> None:
 
 def test_what_was_not_checked_is_told_with_its_reason() -> None:
     lines = coverage(
-        report(passed=("W4",), C1="no collection carries a role of the protocol", R1="there is no plan"),
+        report(passed=("W4",), C1=NO_ROLES, R1="no plan was given"),
         checked("C1", "W4", "R1"),
     )
     assert lines[:4] == [
         "Checked: W4.",
-        "Without any finding: W4.",
-        "Not checked: C1: no collection carries a role of the protocol.",
-        "Not checked: R1: there is no plan.",
+        "Passed: W4.",
+        f"Not checked: C1: {NO_ROLES}.",
+        "Not checked: R1: no plan was given.",
     ]
     assert "blender_group" in lines[4]
 
@@ -333,8 +332,8 @@ def test_what_was_not_decided_does_not_count_as_checked() -> None:
     unsure = V2.undecided((), "it is open")
     assert coverage(report(unsure, passed=("W4",)), checked("V2", "W4")) == [
         "Checked: W4.",
-        "Without any finding: W4.",
-        "Not decided, or not for everything: V2.",
+        "Passed: W4.",
+        "Undecided, at least in part: V2.",
     ]
     assert coverage(report(unsure, crossing("A", "B", 0.1)), checked("V2"))[0] == "Checked: V2."
 
@@ -351,7 +350,7 @@ def test_the_verdict_counts_what_is_hard_soft_and_undecided() -> None:
 def test_the_text_for_models_names_everything_once() -> None:
     found = report(crossing("A", "B", 0.002), crossing("C", "D", 0.25), GAP)
     text = as_text(found, checked("V1", "V2"))
-    assert "**V2 penetration** (hard), 2 times: … and … are … mm deep in each other." in text
+    assert "**V2 penetration** (hard), 2 times: … and … penetrate each other by … mm." in text
     assert "Objects: C · D; A · B." in text
     assert "[measured 2–250 mm, tolerance 1 mm]" in text
     assert GAP.message in text

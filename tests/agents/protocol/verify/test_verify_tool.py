@@ -70,7 +70,7 @@ def test_findings_come_as_data_and_as_words_that_say_what_to_do(session: LiveSes
     assert measured == pytest.approx(0.01, abs=1e-5)
     assert "but are 12.0 mm apart." in result.text
     assert "Fix: Move 'Leg' 12.0 mm down (−Z)" in result.text
-    assert "there is no plan" in result.text
+    assert "no plan was given" in result.text
 
 
 def test_chosen_rules_alone_are_run(session: LiveSession) -> None:
@@ -198,7 +198,7 @@ def test_a_close_up_shows_the_gap_as_wide_as_it_is(session: LiveSession) -> None
 @pytest.mark.parametrize(
     ("arguments", "why"),
     [
-        ({"rules": ["X9"]}, "There is no rule 'X9'. There are: C1, C2"),
+        ({"rules": ["X9"]}, "There is no rule 'X9'. The rules are: C1, C2"),
         ({"rules": [" "]}, "No rule is named"),
         ({"plan": {"title": "x"}}, "- systems: It is missing."),
         (

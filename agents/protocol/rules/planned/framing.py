@@ -1,0 +1,132 @@
+"""R14: the camera shows its planned subjects."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from agents.protocol.judging.measured_motion import followed_names
+from agents.protocol.measures.motion import CameraViewRequest
+from agents.protocol.measures.requests import Measures, Unmeasured
+from agents.protocol.rule import NotApplicable, Rule, RuleContext
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from agents.protocol.findings import Finding
+    from agents.protocol.measures.motion import CameraViewMeasure
+
+
+def _subjects(context: RuleContext) -> tuple[str, ...]:
+    subjects = tuple(dict.fromkeys(context.planned.camera.subjects))
+    if not subjects:
+        raise NotApplicable("the plan names no subjects of the camera")
+    return subjects
+
+
+def _frames(context: RuleContext) -> tuple[int | None, ...]:
+    """The first, middle and last frame; the current one (None) in a still scene."""
+    facts, plan, structure = context.facts, context.planned, context.structure
+    names = [*(mesh.name for mesh in structure.meshes), facts.camera or ""]
+    if plan.render.kind == "still" and not plan.motion.phases and not any(map(structure.can_move, names)):
+        return (None,)
+    return tuple(sorted({facts.frame_start, (facts.frame_start + facts.frame_end) // 2, facts.frame_end}))
+
+
+def _views(context: RuleContext, name: str) -> list[CameraViewRequest]:
+    names = followed_names(context, name)
+    return [CameraViewRequest(names, frame) for frame in _frames(context)] if names else []
+
+
+def _requests(context: RuleContext) -> Iterator[CameraViewRequest]:
+    if context.facts.camera is not None:
+        for name in _subjects(context):
+            yield from _views(context, name)
+
+
+def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
+    names = _subjects(context)
+    if context.facts.camera is None:
+        yield R14.finding(
+            names, "The scene has no active camera.", fix="Make a camera the active one (scene.camera)."
+        )
+        return
+    for name in names:
+        views = _views(context, name)
+        if not views:
+            yield R14.undecided((name,), f"no object is named {name!r}")
+            continue
+        try:
+            seen = [(view.frame, measures[view]) for view in views]
+        except Unmeasured as reason:
+            yield R14.undecided((name,), reason)
+            continue
+        # Particles that are not emitted yet are not missing.
+        seen = [(frame, view) for frame, view in seen if view.inside is not None]
+        if not seen:
+            yield R14.undecided((name,), "it does not exist at any of the checked frames")
+            continue
+        yield from _badly_framed(context, name, seen)
+
+
+def _badly_framed(
+    context: RuleContext, name: str, views: list[tuple[int | None, CameraViewMeasure]]
+) -> Iterator[Finding]:
+    """Findings, each at its worst frame; frames that do not show the subject are not judged further."""
+    camera, tolerances = context.facts.camera or "", context.tolerances
+    outsides = [(frame, 1 - (view.inside or 0.0), view) for frame, view in views]
+    frame, outside, view = max(outsides, key=lambda entry: entry[1])
+    if outside > tolerances.out_of_frame:
+        yield R14.finding(
+            (name, camera),
+            f"{outside:.0%} of {name!r} is outside the picture of {camera!r}{_at(frame)}.",
+            frame=frame,
+            measured=outside,
+            tolerance=tolerances.out_of_frame,
+            at=view.at,
+        )
+    views = [(frame, view) for frame, outside, view in outsides if outside <= tolerances.out_of_frame]
+    if not views:
+        return
+    frame, view = min(views, key=lambda entry: entry[1].cover or 0.0)
+    if (cover := view.cover or 0.0) < tolerances.frame_cover:
+        yield R14.finding(
+            (name, camera),
+            f"{name!r} covers only {cover:.2%} of the picture of {camera!r}{_at(frame)}.",
+            fix="Move the camera nearer, or use a longer lens.",
+            frame=frame,
+            measured=cover,
+            tolerance=tolerances.frame_cover,
+            at=view.at,
+        )
+    frame, view = max(views, key=lambda entry: entry[1].hidden or 0.0)
+    if (hidden := view.hidden or 0.0) > tolerances.occluded:
+        yield R14.finding(
+            (name, *view.by, camera),
+            f"{hidden:.0%} of {name!r} is hidden from {camera!r}{_at(frame)}, mostly by "
+            f"{', '.join(map(repr, view.by))}.",
+            fix="Move the camera, or the objects in the way.",
+            frame=frame,
+            measured=hidden,
+            tolerance=tolerances.occluded,
+            at=view.at,
+        )
+
+
+def _at(frame: int | None) -> str:
+    return "" if frame is None else f" at frame {frame}"
+
+
+R14 = Rule(
+    "R14",
+    "framing",
+    "hard",
+    "The active camera shows each planned subject: inside the picture, large enough, not hidden by other objects; in a "
+    "moving scene at the first, middle and last frame.",
+    "An object that the camera does not show was built for nothing.",
+    "Aim the camera at its subjects, from a place and with a lens that show them all.",
+    _judge,
+    _requests,
+    needs_plan=True,
+    tolerances=("out_of_frame", "frame_cover", "occluded"),
+)
+RULES = (R14,)

@@ -1,0 +1,104 @@
+"""V2: no undeclared penetration (paper, appendix "Scene Protocol and Verifier Ruleset")."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from agents.protocol.judging.declared_contacts import allowed_crossings
+from agents.protocol.judging.move_advice import describe_closing_move
+from agents.protocol.measures.geometry import Crossing, CrossingsRequest
+from agents.protocol.measures.requests import Measures, Unmeasured
+from agents.protocol.rule import NotApplicable, Rule, RuleContext
+from agents.protocol.tolerances import PENETRATION
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from agents.protocol.findings import Finding
+    from agents.protocol.measures.requests import Names
+
+_DECLARE = "or, if they should touch or fit into each other, declare it (contact_with, the plan)"
+_MAX_MOVE = 2.0  # times the depth; where a move along an axis is longer, another way out is shorter
+
+
+def _requests(context: RuleContext) -> Iterator[CrossingsRequest]:
+    facts = context.facts
+    rendered = [mesh.name for mesh in context.structure.meshes if mesh.surface and mesh.rendered]
+    if len(rendered) < 2:
+        raise NotApplicable("renders show fewer than two meshes")
+    names, noise = tuple(sorted(rendered)), context.tolerances.penetration
+    but = tuple(sorted((min(pair), max(pair)) for pair in allowed_crossings(context)))
+    yield CrossingsRequest(names, but=but, noise=noise)
+    moving = tuple(name for name in names if context.structure.can_move(name))
+    for frame in dict.fromkeys((facts.frame_start, facts.frame_end)):
+        if moving and frame != facts.frame:
+            yield CrossingsRequest(names, frame, moving, but, noise)
+
+
+def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
+    objects = context.structure.objects
+    allowed = allowed_crossings(context)
+    reported: set[frozenset[str]] = set()
+    for request in _requests(context):
+        try:
+            pairs = measures[request].pairs
+        except Unmeasured as reason:
+            yield V2.undecided((), reason, frame=request.frame)
+            continue
+        for pair in pairs:
+            key = frozenset((pair.a, pair.b))
+            if key in allowed or key in reported or any(objects[name].is_fluid_domain for name in key):
+                continue
+            if (finding := _finding(context, pair, request.frame)) is not None:
+                reported.add(key)
+                yield finding
+
+
+def _finding(context: RuleContext, pair: Crossing, frame: int | None) -> Finding | None:
+    """The finding for two meshes that cross; None where the depth is noise."""
+    names = tuple(dict.fromkeys((pair.a, pair.b)))
+    if pair.depth is None:
+        return V2.undecided(names, pair.undecided, frame=frame)
+    objects = context.structure.objects
+    sizes = [size for name in names for size in objects[name].dimensions or ()]
+    most = context.tolerances.noise(min(sizes, default=0.0))
+    if pair.depth <= most:
+        return None
+    when = f" at frame {frame}" if frame is not None else ""
+    fix = V2.fix
+    if frame is None and pair.way is not None and math.hypot(*pair.way) <= _MAX_MOVE * pair.depth:
+        first, second = _movable(context, pair.a, pair.b), _movable(context, pair.b, pair.a)
+        fix = f"{describe_closing_move(context, first, second, pair.way)}; {_DECLARE}."
+    return V2.finding(
+        names,
+        f"{pair.a!r} and {pair.b!r} penetrate each other by {pair.depth * 1000:.1f} mm{when}.",
+        fix=fix,
+        measured=pair.depth,
+        tolerance=most,
+        unit="m",
+        at=pair.at,
+        frame=frame,
+    )
+
+
+def _movable(context: RuleContext, name: str, other: str) -> tuple[str, Names]:
+    """What to move for a mesh: its whole object, unless the other mesh is part of that too."""
+    obj, others = context.structure.logical_object_of(name), context.structure.logical_object_of(other)
+    if obj is None or (others is not None and others.name == obj.name):
+        return name, (name,)
+    return obj.name, obj.surfaces
+
+
+V2 = Rule(
+    "V2",
+    "penetration",
+    "hard",
+    "Two meshes that penetrate each other deeper than numerical noise are declared to touch.",
+    "Meshes that penetrate each other flicker, explode in a simulation, and cannot be taken apart.",
+    f"Move them apart; {_DECLARE}.",
+    _judge,
+    _requests,
+    tolerances=PENETRATION,
+)
+RULES = (V2,)

@@ -1,0 +1,103 @@
+"""The pages of the MCP tools: those of the knowledge base, and those of a live Blender with its prompts."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from agents.blender import plan_check
+from agents.blender.team import PROMPTS
+from agents.blender.tool_catalogue import TOOLS
+from agents.plan.scene import ScenePlan
+from docs.generate.markdown import GENERATED, page, schema_table, table
+from kb_serve.server import BASE_LIST, INSTRUCTIONS, TEMPLATES
+from kb_serve.tool import tool
+from simworlds.schema_notation import shape_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from mcp_types import PromptArgument
+
+
+def docs_tool_page() -> str:
+    """The tool of the knowledge base, its arguments and result, and the resources, as Markdown."""
+    entry = tool()
+    assert entry.description
+    assert entry.annotations
+    assert entry.output_schema
+    hints = {
+        "read-only": entry.annotations.read_only_hint,
+        "idempotent": entry.annotations.idempotent_hint,
+        "destructive": entry.annotations.destructive_hint,
+        "open world": entry.annotations.open_world_hint,
+    }
+    return page(
+        "# MCP tools and resources",
+        GENERATED,
+        f"The server's instructions to clients: {INSTRUCTIONS}",
+        f"## `{entry.name}`",
+        entry.description,
+        "Hints: " + ", ".join(f"{name} {'yes' if value else 'no'}" for name, value in hints.items()) + ".",
+        "### Arguments",
+        schema_table(entry.input_schema),
+        "### Result",
+        "The Markdown is the result's text; the structured content is:",
+        schema_table(entry.output_schema),
+        "Errors (a query that cannot be answered, a version that was not built, a damaged base) are results "
+        "marked as errors; their text says what to do.",
+        "### Schemas",
+        _schema("Arguments", entry.input_schema),
+        _schema("Result", entry.output_schema),
+        "## Resources",
+        _resources(),
+    )
+
+
+def _schema(title: str, schema: Mapping[str, Any]) -> str:
+    return f"{title}:\n\n```json\n{json.dumps(schema, indent=2, ensure_ascii=False)}\n```"
+
+
+def _resources() -> str:
+    rows = [(f"`{BASE_LIST.uri}`", str(BASE_LIST.mime_type), str(BASE_LIST.description))]
+    rows += [
+        (f"`{template.uri_template}`", str(template.mime_type), str(template.description))
+        for template in TEMPLATES
+    ]
+    return table(("URI", "type", "what"), rows)
+
+
+def blender_tools_page() -> str:
+    """The tools that work in a live Blender, with their arguments, and the prompts beside them, as Markdown."""
+    parts = [
+        "# The Blender tools",
+        GENERATED,
+        "`simworlds mcp` serves these, and `blender_docs` ([tools.md](tools.md)) beside them.",
+    ]
+    for entry in TOOLS:
+        kind = "reads only" if entry.read_only else "changes the scene or writes files"
+        parts += [f"## `{entry.name}`", entry.description, f"It {kind}."]
+        parts.append(schema_table(entry.arguments.model_json_schema()))
+    return page(
+        *parts,
+        f"## `{plan_check.NAME}`",
+        plan_check.DESCRIPTION,
+        "It reads only, and needs no Blender. Its one argument, `plan`, is JSON of this shape (`name?` may be left "
+        "out; its default stands behind `=`, or is null):",
+        f"```\n{shape_of(ScenePlan)}\n```",
+        "# The prompts",
+        "Clients offer these to their users, as commands or in a menu. With them a model acts as the team that "
+        "`simworlds make` has: it plans, builds stage by stage, verifies, reviews and renders.",
+        *(
+            f"## `{prompt.name}`\n\n{prompt.description}\n\n{_arguments(prompt.arguments)}"
+            for prompt in PROMPTS
+        ),
+    )
+
+
+def _arguments(arguments: Iterable[PromptArgument]) -> str:
+    rows = [
+        (f"`{argument.name}`", "required" if argument.required else "optional", str(argument.description))
+        for argument in arguments
+    ]
+    return table(("name", "", "meaning"), rows)
