@@ -86,7 +86,7 @@ def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -
     marked = {id(mark.finding) for mark in marks}
     drawn = [mark.finding for mark in marks]
     # All faulty objects are coloured, even if not all are marked.
-    vague = [row for row in rows(report.findings) if _is_everywhere(row.findings)] if marks else []
+    vague = [row for row in group_findings(report.findings) if _is_everywhere(row.findings)] if marks else []
     vague = [row for row in vague if not marked & {id(finding) for finding in row.findings}]
     left_out = {id(finding) for row in vague for finding in row.findings}
     shown = marked | left_out
