@@ -15,7 +15,7 @@ from agents.blender.blender_sessions import SessionSetup
 from agents.blender.tools import previews
 from agents.loop import answer_source, judging
 from agents.loop.journal import NAME, Row, read_rows
-from agents.loop.options import Options, ResourceLimits
+from agents.loop.options import Limits, Options
 from agents.loop.session import Ended, Sitting, Stop, begin, resume
 from agents.loop.toolbox import Toolbox
 from simworlds.llm.claude import Claude
@@ -102,10 +102,8 @@ class Played:
         return [(row["stage"], row["taken"]) for row in self.of("decided")]
 
 
-def seat(
-    limits: ResourceLimits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None
-) -> Sitting:
-    return Sitting(limits or ResourceLimits(), Onlooker(on_row), stop or Stop(threading.Event()))
+def seat(limits: Limits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None) -> Sitting:
+    return Sitting(limits or Limits(), Onlooker(on_row), stop or Stop(threading.Event()))
 
 
 def sit(root: Path, at: Sitting | None = None, **options: Any) -> Played:

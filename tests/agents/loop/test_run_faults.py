@@ -16,7 +16,7 @@ from team import ABORT, DONE, Team, calls, last_words, reply, run, turn_of, use,
 
 from agents.loop import run as run_module
 from agents.roles.base import Desk
-from simworlds.llm.context import ResourceLimits as Kept
+from simworlds.llm.context import Limits as Kept
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

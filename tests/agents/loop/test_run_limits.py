@@ -14,7 +14,7 @@ from team import ABORT, DONE, Team, reply, run
 
 from agents.loop.errors import NoRun
 from agents.loop.journal import NAME, read_rows
-from agents.loop.options import ResourceLimits
+from agents.loop.options import Limits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,7 +31,7 @@ def _short() -> Team:
 
 
 def test_a_limit_of_nothing_asks_nobody(api: FakeMessagesAPI, tmp_path: Path) -> None:
-    played = sit(tmp_path / "run", seat(ResourceLimits(max_cost=0)))
+    played = sit(tmp_path / "run", seat(Limits(max_cost=0)))
     assert (played.ended.how, api.requests) == ("stopped", [])
     assert "The limit of $0.00 is reached" in played.ended.why
 
@@ -46,16 +46,16 @@ def test_no_call_is_made_beyond_the_limit_and_with_more_money_the_run_goes_on(
         return Reply(given.text, given.stop_reason, given.content, output_tokens=10_000)
 
     api.answer = dear
-    first = sit(tmp_path / "run", seat(ResourceLimits(max_cost=1.5)))
+    first = sit(tmp_path / "run", seat(Limits(max_cost=1.5)))
     assert first.ended.how == "stopped"
     assert "The limit of $1.50 is reached" in first.ended.why
     spent = sum(row["turn"]["cost"] for row in first.of("model.answered"))
     assert 0.2 <= spent <= 1.5
     asked = len(api.requests)
-    again = go_on(tmp_path / "run", seat(ResourceLimits(max_cost=1.5)))
+    again = go_on(tmp_path / "run", seat(Limits(max_cost=1.5)))
     assert (again.ended.how, len(api.requests)) == ("stopped", asked)
     assert f"${spent:.2f} are spent" in again.ended.why
-    more = go_on(tmp_path / "run", seat(ResourceLimits(max_cost=20)))
+    more = go_on(tmp_path / "run", seat(Limits(max_cost=20)))
     assert more.taken == [("modeling", "abort")]
     assert len(api.requests) == len(more.of("model.answered"))
 
@@ -63,7 +63,7 @@ def test_no_call_is_made_beyond_the_limit_and_with_more_money_the_run_goes_on(
 def test_a_model_without_a_known_price_has_no_limit_that_could_be_kept(
     api: FakeMessagesAPI, tmp_path: Path
 ) -> None:
-    played = sit(tmp_path / "run", seat(ResourceLimits(max_cost=5)), model="llama-of-mine")
+    played = sit(tmp_path / "run", seat(Limits(max_cost=5)), model="llama-of-mine")
     assert (played.ended.how, api.requests) == ("stopped", [])
     assert "No price is known for the model 'llama-of-mine'" in played.ended.why
 
@@ -83,10 +83,10 @@ def test_when_the_time_is_up_the_run_stops_at_the_next_safe_point(
     api: FakeMessagesAPI, tmp_path: Path
 ) -> None:
     api.answer = _short()
-    played = sit(tmp_path / "run", seat(ResourceLimits(max_minutes=1e-6)))
+    played = sit(tmp_path / "run", seat(Limits(max_minutes=1e-6)))
     assert (played.ended.how, api.requests) == ("stopped", [])
     assert "minutes is reached" in played.ended.why
-    assert go_on(tmp_path / "run", seat(ResourceLimits(max_minutes=60))).taken == [("modeling", "abort")]
+    assert go_on(tmp_path / "run", seat(Limits(max_minutes=60))).taken == [("modeling", "abort")]
 
 
 def test_a_stop_that_is_asked_for_lets_the_call_under_way_end(api: FakeMessagesAPI, tmp_path: Path) -> None:
