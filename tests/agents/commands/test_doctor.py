@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from live_session import LiveSession
 from places import REPO
-from test_escapes import works
+from sandboxes import skip_unless_it_works
 
 from agents.commands import doctor_checks
 from simworlds.sandbox import confine_self
@@ -169,7 +169,7 @@ def test_the_packages_are_those_that_the_readme_installs() -> None:
 
 def test_detects_a_sandbox_that_does_not_hold(tmp_path: Path) -> None:
     """Here, one that only limits amounts passes itself off as one that closes files."""
-    works("landlock")
+    skip_unless_it_works("landlock")
     open_one, told = best_sandbox("none"), best_sandbox("landlock")
     session = LiveSession(tmp_path / "run", sandbox=Sandbox("none", told.holds, told.lacks, open_one.limits))
     try:

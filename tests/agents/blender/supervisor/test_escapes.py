@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from live_session import LiveSession
 from places import REPO
+from sandboxes import skip_unless_it_works
 
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox
 from simworlds.sandbox.errors import Died, LeftBehind, LimitExceeded, Refusal, Untrustworthy
 
 if TYPE_CHECKING:
@@ -40,19 +41,11 @@ KINDS: tuple[Kind, ...] = ("bubblewrap", "landlock")
 DENIED = {"PermissionError", "FileNotFoundError", "OSError", "ProcessLookupError"}
 
 
-def works(kind: Kind) -> Kind:
-    if kind == "bubblewrap" and (fault := bubblewrap_fault()):
-        pytest.skip(f"bubblewrap does not work here: {fault}")
-    if kind == "landlock" and not confine_self.landlock_abi():
-        pytest.skip("this kernel has no Landlock")
-    return kind
-
-
 @pytest.fixture(scope="module", params=KINDS)
 def _confined(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[LiveSession]:
-    kind = works(request.param)
+    kind = skip_unless_it_works(request.param)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ANTHROPIC_API_KEY", SECRET)
         session = LiveSession(tmp_path_factory.mktemp(kind) / "run", sandbox=best_sandbox(kind, LIMITS))

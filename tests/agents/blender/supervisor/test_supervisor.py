@@ -17,6 +17,7 @@ import pytest
 from live_session import LiveSession
 from places import REPO
 from processes import becomes, of_run
+from sandboxes import skip_unless_it_works
 
 from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
@@ -397,10 +398,8 @@ def test_starts_no_blender_while_ending(own_session: LiveSession) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere it ends when it next looks at its channel")
 @pytest.mark.parametrize("kind", ["bubblewrap", "landlock", "none"])
 def test_blender_ends_with_its_supervisor_whatever_it_is_doing(tmp_path: Path, kind: str) -> None:
-    from test_escapes import works
-
     if kind != "none":
-        works(kind)
+        skip_unless_it_works(kind)
     script = f"""
 import sys
 sys.path[:0] = [{str(REPO / "tests" / "agents")!r}]
@@ -451,9 +450,7 @@ session.blender.close()
 
 def test_stops_before_the_disk_is_full(tmp_path: Path) -> None:
     """Also what is written to a file without a name, which no list of files shows, is written to the disk."""
-    from test_escapes import works
-
-    works("landlock")
+    skip_unless_it_works("landlock")
     place = tmp_path / "disk"
     place.mkdir()
     mount = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c"]
