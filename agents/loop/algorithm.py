@@ -37,10 +37,8 @@ def make(run: Run) -> RenderResult:
     run.write("plan.json", plan_file(plan))
     run.journal.note(PlanMade(plan=plan))
     staged = run.options.stages
-    task = RunTask(
-        format_plan(plan) if staged else f"{_WITHOUT_STAGES}\n\n{format_plan(plan)}", plan, _actors(plan)
-    )
-    run.task = task
+    text = format_plan(plan) if staged else f"{_WITHOUT_STAGES}\n\n{format_plan(plan)}"
+    run.task = task = RunTask(text, plan, _actors(plan))
     wanted = plan.stages if staged else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
     return finish(run, task, plan.render, last)

@@ -158,7 +158,7 @@ class ReferenceKept(Event):
 
 
 class StageMoved(Event):
-    """A stage began, was skipped (the plan does without it), or passed; ``file`` is its checkpoint."""
+    """A stage began, was skipped (the plan does not need it), or passed; ``file`` is its checkpoint."""
 
     type: Literal["stage.began", "stage.skipped", "stage.closed"] = "stage.began"
     attempts: Int = 0

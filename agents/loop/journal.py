@@ -1,8 +1,8 @@
 """The journal of a run: every event, written down and flushed to the disk before anything comes of it.
 
-A run is taken up again by running its code from the start: what the journal has answered is taken from there, so that
-no effect is made twice. Every row is therefore known by what it is about (``KEYS``), not by its place, and a row that
-the journal has already is not written again.
+A run is resumed by running its code from the start: what the journal has answered is taken from there, so that no
+effect happens twice. Rows are therefore found by what they are about (``KEYS``), not by their place, and a row that is
+there already is not written again.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a run is asked to do. It is written down at its beginning, and holds for every session of it."""
+"""The options of a run: journalled at its beginning, and valid for all its sessions."""
 
 from __future__ import annotations
 

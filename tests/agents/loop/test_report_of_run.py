@@ -214,7 +214,7 @@ def test_a_run_that_was_given_up_says_so(tmp_path: Path) -> None:
     assert words(page.select_one(".badge")) == "aborted"
     assert words(page.select_one(".notice")) == "The stage modeling could not be closed."
     assert "There is no result to show." in words(page.select_one("#result"))
-    assert "has not come to it" in words(stage(page, "Motion"))
+    assert "not reached yet" in words(stage(page, "Motion"))
 
 
 def test_a_run_without_anything_has_a_report_too(tmp_path: Path) -> None:
