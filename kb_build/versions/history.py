@@ -1,4 +1,4 @@
-"""Which symbol exists in which Blender version: identifiers and versions, nothing else.
+"""The history of the API: which identifier exists in which Blender version.
 
 The file is a table, CSV in gzip. Its columns: ``path``; ``items_of``, the shared enumeration whose items a property or
 parameter has (they are then not listed again); and one for each version, 1 where it has the symbol.
@@ -99,7 +99,7 @@ def _runs(mask: int) -> Iterator[tuple[int, int]]:
 
 
 @dataclass(slots=True)
-class History:
+class ApiHistory:
     """The known versions (minor ones, oldest first) and what existed in which.
 
     ``patches`` are the full versions that were looked at, in the same order. ``masks`` hold one bit a
@@ -112,7 +112,7 @@ class History:
     shared: dict[str, str] = field(default_factory=dict[str, str])
 
     @classmethod
-    def of(cls, paths: Mapping[str, Iterable[str]]) -> History:
+    def of(cls, paths: Mapping[str, Iterable[str]]) -> ApiHistory:
         """The history of these full versions and their paths (see :func:`history_paths`)."""
         patches = tuple(sorted(paths, key=version_key))
         masks: defaultdict[str, int] = defaultdict(int)
@@ -124,7 +124,7 @@ class History:
         return cls(tuple(map(minor_of, patches)), patches, *_share(plain))
 
     @classmethod
-    def load(cls, path: Path | None = None) -> History:
+    def load(cls, path: Path | None = None) -> ApiHistory:
         """The history in a file; by default the one that comes with the package. Raises StoreError."""
         source = path or HISTORY_FILE
         try:
@@ -134,12 +134,12 @@ class History:
                 f"{source} is not a readable history ({error}); make it again: simworlds kb history"
             ) from error
 
-    def including(self, version: str, paths: Iterable[str]) -> History:
+    def including(self, version: str, paths: Iterable[str]) -> ApiHistory:
         """This history, and where it does not know the version, with that full version's paths added."""
         if self._number(version) is not None:
             return self
         known = {patch: set(self.paths(patch)) for patch in self.patches}
-        return History.of({**known, version: paths})
+        return ApiHistory.of({**known, version: paths})
 
     def mask(self, path: str) -> int:
         """One bit a version, lowest the oldest; 0 for what no known version has."""
@@ -199,12 +199,12 @@ class History:
         if number is None:
             return {}
         full = (2 << number) - 1
-        found: dict[str, str] = {}
+        since: dict[str, str] = {}
         for path, mask in self.symbols():
             if mask >> number & 1 and mask & full != full:
                 first = next(first for first, last in _runs(mask) if last >= number)
-                found[path] = self.versions[first]
-        return found
+                since[path] = self.versions[first]
+        return since
 
     def to_bytes(self) -> bytes:
         """The file's content. Equal histories give equal bytes (with one release of zlib)."""
@@ -217,7 +217,7 @@ class History:
         return gzip.compress(text.getvalue().encode(), mtime=0)
 
     @classmethod
-    def from_bytes(cls, data: bytes) -> History:
+    def from_bytes(cls, data: bytes) -> ApiHistory:
         """The inverse of :meth:`to_bytes`. Raises OSError, EOFError, zlib.error, csv.Error, ValueError or UserError."""
         table = csv.reader(io.StringIO(gzip.decompress(data).decode(), newline=""))
         head = next(table, [])
