@@ -130,11 +130,6 @@ class SummaryStore:
                     answers.setdefault(row[0], []).append(BadAnswer(*row))
         return answers
 
-    def forget_failures(self) -> None:
-        """Let every page that was refused or answered badly be asked about again."""
-        with self._connection() as db:
-            db.execute("DELETE FROM failures")
-
     def announce(self, batch: SentBatch) -> None:
         """Write down a batch before it is sent: what is known if the process dies while sending."""
         with self._connection() as db, _transaction(db):

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 HISTORY_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "api.csv.gz"
 COLUMNS = ["path", "items_of"]  # and one for each version
 _PATH = re.compile(r'(.*)\.(inputs|outputs)\["(.*)"\]|(.*)\(([^()]*)\)', re.DOTALL)
-_JOINED = {"<": ("inputs", "<"), ">": ("outputs", ">")}
 _SHARED = "rna_enum_"
 
 
@@ -56,7 +55,9 @@ def history_paths(extract: Extract) -> Iterator[str]:
 
 
 def split_path(path: str) -> tuple[str, str, str]:
-    """(path above, mark, name): the last step of a path. Enum items follow the last ``:`` of a path."""
+    """Splits a path into (path above, mark, name). Marks: ``.`` member, ``(`` parameter, ``:`` enum item, ``<`` input
+    and ``>`` output of a node. Enum items follow the last ``:`` of a path.
+    """
     if match := _PATH.fullmatch(path):
         if match[2]:
             return match[1], "<" if match[2] == "inputs" else ">", match[3]
@@ -70,19 +71,6 @@ def split_path(path: str) -> tuple[str, str, str]:
         return above, ":", item
     above, _, name = path.rpartition(".")
     return above, ".", name
-
-
-def join_path(above: str, mark: str, name: str) -> str:
-    """The inverse of :func:`split_path`."""
-    match mark:
-        case ".":
-            return f"{above}.{name}" if above else name
-        case "(":
-            return f"{above}({name})"
-        case ":":
-            return f"{above}:{name}"
-        case _:
-            return f'{above}.{_JOINED[mark][0]}["{name}"]'
 
 
 def _runs(mask: int) -> Iterator[tuple[int, int]]:

@@ -147,7 +147,10 @@ def program(folder: Path, body: str) -> Path:
     [
         ('echo "out of memory in the depsgraph"; exit 11', "out of memory in the depsgraph"),
         ("echo I am fine", "its extract is not complete"),
-        ("""for word; do last=$word; done; echo '{"record":"blender","ver' > "$last\"""", "extract is not complete"),
+        (
+            """for word; do last=$word; done; echo '{"record":"blender","ver' > "$last\"""",
+            "extract is not complete",
+        ),
     ],
 )
 def test_a_blender_that_fails_half_way_is_named_with_its_output_kept(

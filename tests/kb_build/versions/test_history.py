@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import StoreError
-from kb_build.versions.history import ApiHistory, join_path, split_path
+from kb_build.versions.history import ApiHistory, split_path
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -109,9 +109,22 @@ def test_an_unknown_version_gives_neither_yes_nor_no() -> None:
     assert history.since("2.79") == {}
 
 
-@pytest.mark.parametrize("path", sorted(set().union(*PATHS.values())))
-def test_split_and_joined_paths_are_the_same(path: str) -> None:
-    assert join_path(*split_path(path)) == path
+@pytest.mark.parametrize(
+    ("path", "parts"),
+    [
+        ("bpy", ("", ".", "bpy")),
+        ("bpy.types.A.old", ("bpy.types.A", ".", "old")),
+        ("bpy.types.A.run(size)", ("bpy.types.A.run", "(", "size")),
+        ("bpy.types.A.run(mode):ONE", ("bpy.types.A.run(mode)", ":", "ONE")),
+        ("bpy.types.A.look:", ("bpy.types.A.look", ":", "")),
+        ("bpy.types.A.look:Two words", ("bpy.types.A.look", ":", "Two words")),
+        ('bpy.types.A.inputs["A: (b.c)"]', ("bpy.types.A", "<", "A: (b.c)")),
+        ('bpy.types.A.outputs[""]', ("bpy.types.A", ">", "")),
+        ('bpy.types.A.inputs["Mode"]:Fast one', ('bpy.types.A.inputs["Mode"]', ":", "Fast one")),
+    ],
+)
+def test_a_path_is_split_before_its_last_step(path: str, parts: tuple[str, str, str]) -> None:
+    assert split_path(path) == parts
 
 
 TABLE = b"path,items_of,4.2.1,4.3.0\n"
