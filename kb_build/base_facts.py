@@ -1,4 +1,4 @@
-"""What a base tells about itself: numbers and origins, in JSON's terms."""
+"""The facts that a build writes into its base: numbers and origins, ready for JSON."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.pages.sources import Source
+    from kb_build.pages.sources import DocumentationSource
     from kb_build.records import Page
-    from kb_build.summaries import SummaryRun
+    from kb_build.summaries.types import SummaryRun
 
 
 def counts(extract: Extract, pages: Sequence[Page]) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def counts(extract: Extract, pages: Sequence[Page]) -> dict[str, Any]:
     }
 
 
-def source_facts(source: Source, pages: Sequence[Page]) -> dict[str, Any]:
+def source_facts(source: DocumentationSource, pages: Sequence[Page]) -> dict[str, Any]:
     """Where a source came from and what it gave."""
     kind = "manual" if source.role == "manual" else "guide"
     own = [page for page in pages if page.source == kind]
@@ -48,11 +48,11 @@ def summary_facts(run: SummaryRun | None) -> dict[str, Any]:
     if run is None:
         return {"methods": {}}
     report = run.report
-    facts: dict[str, Any] = {"methods": dict(Counter(one.method for one in run.by_slug.values()))}
+    facts: dict[str, Any] = {"methods": dict(Counter(summary.method for summary in run.by_slug.values()))}
     if report.method == "claude":
         facts |= {
-            "models": dict(Counter(one.model for one in run.by_slug.values())),
+            "models": dict(Counter(summary.model for summary in run.by_slug.values())),
             "cost_usd": round(report.cost, 4),
-            "failed": [[one.slug, one.reason, one.detail] for one in report.failed],
+            "failed": [[failure.slug, failure.reason, failure.detail] for failure in report.failed],
         }
     return facts

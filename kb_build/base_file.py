@@ -1,4 +1,4 @@
-"""A finished base, looked at by those who build and check it."""
+"""Reads a finished base for the commands that build and check it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def open_base(path: Path) -> sqlite3.Connection:
 
 
 def read_meta(path: Path) -> dict[str, str]:
-    """The facts that a base carries about itself. Raises StoreError as :func:`open_base`."""
+    """Reads the facts that a base holds about itself. Raises StoreError as :func:`open_base`."""
     with closing(open_base(path)) as connection:
         try:
             return dict(connection.execute("SELECT name, value FROM meta"))
@@ -36,11 +36,11 @@ def read_meta(path: Path) -> dict[str, str]:
 
 
 def described(meta: dict[str, str]) -> dict[str, Any]:
-    """Meta with its structured values read: sources, missing, options, counts, faults, …"""
-    found: dict[str, Any] = {}
+    """Parses the structured values of meta: sources, missing, options, counts, faults, …"""
+    facts: dict[str, Any] = {}
     for name, value in meta.items():
         try:
-            found[name] = json.loads(value) if value[:1] in {"{", "["} else value
+            facts[name] = json.loads(value) if value[:1] in {"{", "["} else value
         except ValueError:
-            found[name] = value
-    return found
+            facts[name] = value
+    return facts

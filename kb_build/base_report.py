@@ -1,4 +1,4 @@
-"""What a build did and what a base holds, in lines for people."""
+"""Reports of builds and bases, as lines of text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SHOWN_FAILURES = 5
 
 
 def base_facts(path: Path) -> dict[str, Any]:
-    """All that a base knows of itself, with ``path`` and ``bytes``; ``fault`` where it cannot be read."""
+    """All facts of a base's meta, with ``path`` and ``bytes``; ``fault`` where it cannot be read."""
     try:
         meta = described(read_meta(path))
         return {"path": str(path), "bytes": path.stat().st_size, **meta}
@@ -31,7 +31,7 @@ def base_facts(path: Path) -> dict[str, Any]:
 
 
 def base_lines(facts: Mapping[str, Any]) -> Iterator[str]:
-    """One base at length."""
+    """Describes one base in full."""
     if fault := facts.get("fault"):
         yield f"Error: {fault}"
         return
@@ -65,9 +65,9 @@ def _content(facts: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _source(source: Mapping[str, Any]) -> str:
-    given = ", given by path" if source["given"] else ""
+    by_path = ", given by path" if source["given"] else ""
     return (
-        f"{source['role']} {source['version']} ({source['form'].upper()}{given}): {source['pages']:,} pages "
+        f"{source['role']} {source['version']} ({source['form'].upper()}{by_path}): {source['pages']:,} pages "
         f"from {source['origin']}, sha256 {source['sha256'][:16]}…"
     )
 
@@ -80,7 +80,7 @@ def _summaries(facts: Mapping[str, Any]) -> str:
 
 
 def bases_lines(bases: Sequence[Mapping[str, Any]], home: Path) -> Iterator[str]:
-    """All bases, one on a line."""
+    """Lists the bases, one on a line."""
     if not bases:
         yield f"No knowledge base in {home} yet. Build one: simworlds kb build"
     for facts in bases:
@@ -97,7 +97,7 @@ def bases_lines(bases: Sequence[Mapping[str, Any]], home: Path) -> Iterator[str]
 
 
 def build_lines(report: BuildReport) -> Iterator[str]:
-    """What a build came to."""
+    """Describes the outcome of a build."""
     facts = base_facts(report.path)
     if not report.built:
         yield (
@@ -112,7 +112,7 @@ def build_lines(report: BuildReport) -> Iterator[str]:
 
 
 def warning_lines(report: BuildReport) -> Iterator[str]:
-    """What the user must know about a build that went well."""
+    """The warnings of a build that succeeded."""
     for warning in report.warnings:
         yield f"WARNING: {warning}"
     if report.summaries is not None:
@@ -126,12 +126,12 @@ def warning_lines(report: BuildReport) -> Iterator[str]:
 
 
 def history_lines(report: HistoryReport) -> Iterator[str]:
-    """What the comparison of versions came to."""
+    """Describes the outcome of ``kb history``."""
     yield (
         f"{'Wrote' if report.written else 'Nothing to change in'} {report.path}: {report.symbols:,} symbols, "
         f"{report.size / 1e3:.0f} kB."
     )
-    yield _row("asked", ", ".join(report.asked) or "none")
+    yield _row("extracted", ", ".join(report.extracted) or "none")
     if report.kept:
         yield _row("kept", f"{', '.join(report.kept)} (from the file as it was)")
     for version, reason in report.missing.items():

@@ -30,7 +30,7 @@ _T = TypeVar("_T")
 
 
 def reports_errors(command: Callable[_P, _T]) -> Callable[_P, _T]:
-    """What goes wrong is one message and an exit code: 2, or 130 after Ctrl-C."""
+    """Turns errors into one message and an exit code: 2, or 130 after Ctrl-C."""
 
     @functools.wraps(command)
     def run(*args: _P.args, **kwargs: _P.kwargs) -> _T:
@@ -40,7 +40,7 @@ def reports_errors(command: Callable[_P, _T]) -> Callable[_P, _T]:
             click.echo(f"Error: {error}", err=True)
             sys.exit(2)
         except KeyboardInterrupt:
-            click.echo("Interrupted. What was there before still stands.", err=True)
+            click.echo("Interrupted. The old files are unchanged.", err=True)
             sys.exit(_INTERRUPTED)
 
     return run
@@ -127,10 +127,10 @@ def _tell(report: BuildReport) -> None:
 
 @kb.command()
 @click.argument("version", required=False)
-@click.option("--json", "as_json", is_flag=True, help="Everything that the base knows of itself, as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="All facts about the base, as JSON.")
 @reports_errors
 def info(version: str | None, as_json: bool) -> None:
-    """Tell what is in a base.
+    """Show what is in a base.
 
     VERSION is 5.1, or a base's path; without it, all bases are listed.
     """
@@ -172,23 +172,23 @@ def verify(version: str | None, reference: Path | None, as_json: bool) -> None:
     bases = list(built_bases(home_folder()).values())
     if version is None and not bases:
         raise KBBuildError("there is no knowledge base yet. Build one first: simworlds kb build")
-    found = verify_base(_base(version) if version else bases[-1], reference)
-    click.echo(json.dumps(found.as_json(), indent=2) if as_json else "\n".join(found.lines()))
-    sys.exit(0 if found.sound else 1)
+    verification = verify_base(_base(version) if version else bases[-1], reference)
+    click.echo(json.dumps(verification.as_json(), indent=2) if as_json else "\n".join(verification.lines()))
+    sys.exit(0 if verification.sound else 1)
 
 
 @kb.command("diff")
 @click.argument("old")
 @click.argument("new")
-@click.option("--prefix", default="", help="Only what is below this: bpy.types.Mesh, bpy.ops, …")
-@click.option("--interface", is_flag=True, help="Panels, menus and their like, too.")
-@click.option("--limit", type=click.IntRange(min=1), help="So many lines of each kind at most.")
+@click.option("--prefix", default="", help="Only symbols below this path: bpy.types.Mesh, bpy.ops, …")
+@click.option("--interface", is_flag=True, help="Include panels, menus and other interface classes.")
+@click.option("--limit", type=click.IntRange(min=1), help="Show at most this many lines of each kind.")
 @click.option("--json", "as_json", is_flag=True, help="The differences as JSON.")
 @reports_errors
 def diff_command(old: str, new: str, **given: Any) -> None:
     """Compare two Blenders' APIs.
 
-    Tells what NEW has added, removed and changed since OLD. Each is a version, or the path of a Blender
+    Lists what NEW has added, removed and changed since OLD. Each is a version, or the path of a Blender
     executable. A bpy package that is not at hand is installed, 350 MB.
     """
     from kb_build.versions.diff import diff, format_diff  # noqa: PLC0415 - only here
@@ -196,11 +196,15 @@ def diff_command(old: str, new: str, **given: Any) -> None:
 
     signal.signal(signal.SIGTERM, _terminated)
     with shown_progress() as progress:
-        found = diff(_ask(old, progress), _ask(new, progress), interface=given["interface"])
+        differences = diff(_ask(old, progress), _ask(new, progress), interface=given["interface"])
     if given["prefix"]:
-        found = found.under(given["prefix"])
+        differences = differences.under(given["prefix"])
     as_json = given["as_json"]
-    click.echo(json.dumps(found.to_json(), indent=2) if as_json else format_diff(found, limit=given["limit"]))
+    click.echo(
+        json.dumps(differences.to_json(), indent=2)
+        if as_json
+        else format_diff(differences, limit=given["limit"])
+    )
 
 
 def _ask(name: str, progress: Progress) -> Extract:
@@ -219,14 +223,14 @@ def _ask(name: str, progress: Progress) -> Extract:
 
 @kb.command()
 @click.argument("versions", nargs=-1)
-@click.option("--blender-exe", "blender_exes", type=_PATH, multiple=True, help="A Blender to ask, too.")
+@click.option("--blender-exe", "blender_exes", type=_PATH, multiple=True, help="Another Blender to include.")
 @click.option("--out", type=_PATH, help="The file to write (default: the one that SimWorlds came with).")
-@click.option("--force", is_flag=True, help="Write even if the file says more than is found now.")
+@click.option("--force", is_flag=True, help="Write even if the old file has more symbols.")
 @reports_errors
 def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path | None, force: bool) -> None:
-    """Write down since when symbols exist.
+    """Write the history file: which version has which symbol.
 
-    Asks VERSIONS (default: all that a bpy package is known of); each is installed on first use, 350 MB.
+    Asks VERSIONS (default: all that have a bpy package); each is installed on first use, 350 MB.
     """
     from kb_build.base_report import history_lines  # noqa: PLC0415
     from kb_build.versions.history import HISTORY_FILE  # noqa: PLC0415 - only here
@@ -235,10 +239,10 @@ def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
-    asked = versions or tuple(release.minor for release in releases())
+    wanted = versions or tuple(release.minor for release in releases())
     with shown_progress() as progress:
         report = build_history(
-            asked,
+            wanted,
             home=home_folder(),
             output=out or HISTORY_FILE,
             blender_exes=blender_exes,
@@ -252,11 +256,11 @@ def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path
 @click.argument("file", type=click.Path(path_type=Path, exists=True, dir_okay=False))
 @reports_errors
 def merge_summaries(file: Path) -> None:
-    """Take over a colleague's summaries.
+    """Merge a colleague's summaries into yours.
 
-    Those in FILE that are new are kept, so that they are not paid for twice.
+    Adds the summaries in FILE that are new, so that they are not paid for twice.
     """
-    from kb_build.summaries import SummaryStore  # noqa: PLC0415 - only here
+    from kb_build.summaries.store import SummaryStore  # noqa: PLC0415 - only here
 
     store = SummaryStore(summaries_path(home_folder()))
     new = store.merge(file)

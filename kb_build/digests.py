@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Digests:
-    """Digests with a memory in one JSON file; a memory that cannot be read is an empty one."""
+    """Digests cached in one JSON file; a cache that cannot be read counts as empty."""
 
     def __init__(self, memory: Path) -> None:
         self._memory = memory
@@ -48,7 +48,7 @@ class Digests:
         return self._recall(folder, listing.hexdigest(), compute)
 
     def save(self) -> None:
-        """Write what was learnt; what cannot be written is computed again next time."""
+        """Writes the cache; a cache that cannot be written is computed again next time."""
         if not self._changed:
             return
         try:

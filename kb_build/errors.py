@@ -1,4 +1,4 @@
-"""What can go wrong while a knowledge base is built.
+"""Errors of building a knowledge base.
 
 KBBuildError
 ├── SourceError      a documentation source is missing, unreadable, hostile or of the wrong version
@@ -15,7 +15,7 @@ from simworlds.errors import UserError
 
 
 class KBBuildError(UserError):
-    """Base of everything that a build reports to its user instead of a traceback."""
+    """Base class of the errors that a build reports to its user without a traceback."""
 
 
 class SourceError(KBBuildError):
@@ -27,7 +27,7 @@ class ExtractError(KBBuildError):
 
 
 class SummaryError(KBBuildError):
-    """Summaries were asked for and could not be had."""
+    """Summaries could not be made."""
 
 
 class StoreError(KBBuildError):

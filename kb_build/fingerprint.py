@@ -1,4 +1,4 @@
-"""What a base is made of, told in a few digests: equal fingerprints, equal bases.
+"""Fingerprints of bases: digests of everything a base is made from. Equal fingerprints mean equal bases.
 
 Nothing here starts Blender or loads what reads pages: a build that has nothing to do must know so at once.
 """
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from kb_build.digests import Digests
-    from kb_build.pages.sources import Missing, Source
+    from kb_build.pages.sources import DocumentationSource, MissingSource
     from simworlds.sandbox.runtime import Runtime
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -24,7 +24,7 @@ _DATA = _PACKAGE.parent / "corpora"
 # Packages whose versions show in the text of pages or in the index.
 _READERS = ("sphinx", "docutils", "beautifulsoup4", "lxml")
 _WRITERS = ("sqlite-utils", "snowballstemmer", "pystemmer")
-# What is asked of a base or shown of a build leaves the base as it is.
+# These only read or report bases; changing them does not change a base.
 _ONLOOKERS = frozenset(
     {
         "base_file.py",
@@ -54,13 +54,13 @@ def _code(files: Iterable[Path]) -> str:
 
 
 def _versions(packages: Iterable[str]) -> str:
-    found: list[str] = []
+    versions: list[str] = []
     for package in packages:
         try:
-            found.append(f"{package}=={metadata.version(package)}")
+            versions.append(f"{package}=={metadata.version(package)}")
         except metadata.PackageNotFoundError:
-            found.append(f"{package}: absent")
-    return ", ".join(found)
+            versions.append(f"{package}: absent")
+    return ", ".join(versions)
 
 
 def own_version() -> str:
@@ -73,27 +73,27 @@ def own_version() -> str:
 
 @cache
 def extractor_digest() -> str:
-    """What is run inside Blender."""
+    """Digest of the code that runs inside Blender."""
     return _code((_PACKAGE / "blender" / "inside").glob("*.py"))
 
 
 @cache
 def reader_digest() -> str:
-    """What turns sources into pages."""
+    """Digest of the code and packages that turn sources into pages."""
     files = [*(_PACKAGE / "pages" / "readers").rglob("*.py"), _PACKAGE / "records.py"]
     return _digest([_code(files), _versions(_READERS)])
 
 
 @cache
 def code_digest() -> str:
-    """Everything that shapes a base."""
+    """Digest of the code, packages and data that shape a base."""
     files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS]
     data = [path.read_bytes() for name in ("history", "words") for path in sorted((_DATA / name).glob("*"))]
     return _digest([_code(files), _versions((*_READERS, *_WRITERS)), *data])
 
 
 def runtime_digest(runtime: Runtime, digests: Digests) -> str:
-    """Which Blender it is, to the last byte, without starting it.
+    """Identifies a Blender by its files, without starting it.
 
     A wheel's list of files carries their digests; of an executable the program itself is read, once.
     """
@@ -110,14 +110,19 @@ def runtime_digest(runtime: Runtime, digests: Digests) -> str:
 
 
 def base_fingerprint(
-    runtime: str, sources: Sequence[Source], missing: Sequence[Missing], options: dict[str, Any]
+    runtime: str,
+    sources: Sequence[DocumentationSource],
+    missing: Sequence[MissingSource],
+    options: dict[str, Any],
 ) -> str:
     """The fingerprint of the base that a runtime (see :func:`runtime_digest`), sources and options give."""
     described = {
         "code": code_digest(),
         "runtime": runtime,
-        "sources": [[one.role, one.form, one.version, one.sha256, one.given] for one in sources],
-        "missing": [one.role for one in missing],
+        "sources": [
+            [source.role, source.form, source.version, source.sha256, source.given] for source in sources
+        ],
+        "missing": [source.role for source in missing],
         "options": options,
     }
     return _digest([json.dumps(described, sort_keys=True)])

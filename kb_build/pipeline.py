@@ -1,4 +1,4 @@
-"""The steps of a build, in order; nothing is done when nothing has changed."""
+"""The steps of a build, in order; an unchanged base is not built again."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ if TYPE_CHECKING:
 
     from kb_build.blender.extract_reader import Extract
     from kb_build.pages.reading import PageReader
-    from kb_build.pages.sources import Missing, Source
+    from kb_build.pages.sources import DocumentationSource, MissingSource
     from kb_build.records import Page
     from kb_build.store import Contents
-    from kb_build.summaries import SummaryReport, SummaryRun
-    from kb_build.versions.removed_symbols import Former
+    from kb_build.summaries.types import SummaryReport, SummaryRun
+    from kb_build.versions.removed_symbols import RemovedSymbols
     from simworlds.sandbox.runtime import Runtime
     from simworlds.terminal.progress import Progress
 
 SummaryMethod = Literal["extractive", "claude", "none"]
-_LOADED_AHEAD = ("kb_build.blender.extract_reader", "kb_build.summaries")
+_LOADED_AHEAD = ("kb_build.blender.extract_reader", "kb_build.summaries.methods")
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,14 +70,14 @@ class BuildOptions:
 
 @dataclass(frozen=True, slots=True)
 class BuildReport:
-    """What a build came to. ``meta`` is what the base carries; ``seconds`` is wall time."""
+    """The outcome of a build. ``meta`` are the base's facts; ``seconds`` is wall time."""
 
     path: Path
     version: str
     built: bool
     seconds: float
     meta: Mapping[str, str]
-    missing: tuple[Missing, ...] = ()
+    missing: tuple[MissingSource, ...] = ()
     warnings: tuple[str, ...] = ()
     summaries: SummaryReport | None = None
 
@@ -90,8 +90,8 @@ class _Build:
     home: Path
     progress: Progress
     runtime: Runtime
-    sources: Sequence[Source] = ()
-    missing: Sequence[Missing] = ()
+    sources: Sequence[DocumentationSource] = ()
+    missing: Sequence[MissingSource] = ()
     warnings: list[str] = field(default_factory=list[str])
 
     @property
@@ -102,7 +102,7 @@ class _Build:
 def build(
     version: str | None, *, options: BuildOptions, home: Path, progress: Progress = silent
 ) -> BuildReport:
-    """Builds the base of a Blender version, unless the one that is there is what would be built.
+    """Builds the base of a Blender version, unless it is up to date.
 
     ``version`` is ``"5.1"``, ``"5.1.2"`` or None for the Blender at hand. The old base answers until the new
     one is whole, whatever happens. Raises KBBuildError.
@@ -131,7 +131,7 @@ def build(
 
 @contextmanager
 def _paused_collector() -> Generator[None]:
-    """Records are no cycles, and nearly all live to the end: looking for garbage costs a second."""
+    """Pauses garbage collection: records have no cycles and live to the end, and collecting costs a second."""
     enabled = gc.isenabled()
     gc.disable()
     try:
@@ -155,10 +155,12 @@ def _find_sources(work: _Build) -> None:
         allow_download=not options.offline,
         progress=work.progress,
     )
-    for one in work.missing:
-        if one.role in options.require:
-            raise SourceError(f"{one.reason}. It was required (--require {one.role}); the old base stands")
-        work.warnings.append(one.reason)
+    for missing in work.missing:
+        if missing.role in options.require:
+            raise SourceError(
+                f"{missing.reason}. It was required (--require {missing.role}); the old base is kept"
+            )
+        work.warnings.append(missing.reason)
     minor = minor_of(work.runtime.version)
     for source in work.sources:
         if source.version != minor:
@@ -169,7 +171,7 @@ def _find_sources(work: _Build) -> None:
 
 
 def _sources_before(path: Path) -> dict[str, Origin]:
-    """Role → where the base that is there now had its pages from."""
+    """Role → where the present base's pages came from."""
     try:
         rows = json.loads(read_meta(path).get("sources", "[]"))
         return {row["role"]: Origin(Path(row["origin"]), bool(row["given"])) for row in rows}
@@ -211,7 +213,7 @@ def _page_reader(work: _Build) -> PageReader:
 
 
 def _load_ahead() -> None:
-    """Loads what comes after Blender's answer while Blender works on it."""
+    """Imports the modules of later steps while Blender is running."""
     for name in _LOADED_AHEAD:
         import_module(name)
 
@@ -234,7 +236,7 @@ def _extract(work: _Build) -> Extract:
         raise ExtractError(f"Blender {runtime.version} did not describe its classes or operators: {reason}")
     if minor_of(extract.version) != minor_of(runtime.version):
         raise ExtractError(
-            f"{runtime.executable} is Blender {extract.version}, though it passed for {runtime.version}"
+            f"{runtime.executable} is Blender {extract.version}, not {runtime.version}, as expected"
         )
     work.warnings += [
         f"a part of Blender {extract.version} could not be described: {fault.strip().splitlines()[-1]} "
@@ -259,13 +261,16 @@ def _summaries(work: _Build, pages: Sequence[Page]) -> SummaryRun | None:
     method = work.options.summaries
     if method == "none":
         return None
-    from kb_build.summaries import ClaudeOptions, SummaryStore, summarise  # noqa: PLC0415 - loaded ahead
+    from kb_build.summaries.methods import summarise  # noqa: PLC0415 - loaded ahead
 
     work.progress("Summarising pages", 0, None)
     if method == "extractive":
         return summarise(pages)
-    given = {"model": work.options.model, "max_cost": work.options.max_cost}
-    claude = ClaudeOptions(**{name: value for name, value in given.items() if value is not None})  # pyright: ignore[reportArgumentType]
+    from kb_build.summaries.store import SummaryStore  # noqa: PLC0415 - only here
+    from kb_build.summaries.types import ClaudeOptions  # noqa: PLC0415 - only here
+
+    choices = {"model": work.options.model, "max_cost": work.options.max_cost}
+    claude = ClaudeOptions(**{name: value for name, value in choices.items() if value is not None})  # pyright: ignore[reportArgumentType]
 
     def step(done: int, total: int, message: str) -> None:
         work.progress(message, done, total or None)
@@ -280,7 +285,7 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
 
     structured = {
         "sources": [source_facts(source, pages) for source in work.sources],
-        "missing": [{"role": one.role, "reason": one.reason} for one in work.missing],
+        "missing": [{"role": missing.role, "reason": missing.reason} for missing in work.missing],
         "options": _choices(work.options),
         "counts": counts(extract, pages),
         "faults": list(extract.faults),
@@ -305,20 +310,20 @@ def _write(
     work.progress(f"Writing {work.path.name}", 0, None)
     by_slug = run.by_slug if run else {}
     summaries = {slug: (summary.text, summary.method) for slug, summary in by_slug.items()}
-    with beside(partial(_former, extract)) as former:
+    with beside(partial(_removed_symbols, extract)) as removed_symbols:
         # Loaded now: a process is not forked safely from one that has NumPy's threads.
         from kb_build.store import Contents, write_base  # noqa: PLC0415
 
-        contents: Contents = Contents(extract.symbols, pages, extract.links, meta, summaries, former)
+        contents: Contents = Contents(extract.symbols, pages, extract.links, meta, summaries, removed_symbols)
         write_base(work.path, contents)
 
 
-def _former(extract: Extract) -> Former:
-    from kb_build.versions.history import History, history_paths  # noqa: PLC0415
-    from kb_build.versions.removed_symbols import former_symbols  # noqa: PLC0415 - not when nothing changed
+def _removed_symbols(extract: Extract) -> RemovedSymbols:
+    from kb_build.versions.history import ApiHistory, history_paths  # noqa: PLC0415
+    from kb_build.versions.removed_symbols import find_removed_symbols  # noqa: PLC0415 - not when nothing changed
 
-    history = History.load().including(extract.version, history_paths(extract))
-    return former_symbols(extract.symbols, history, minor_of(extract.version))
+    history = ApiHistory.load().including(extract.version, history_paths(extract))
+    return find_removed_symbols(extract.symbols, history, minor_of(extract.version))
 
 
 def _report(

@@ -191,11 +191,11 @@ def _enum_items(rows: list[dict[str, Any]]) -> tuple[EnumItem, ...]:
 
 
 def _parameters(rows: list[dict[str, Any]]) -> tuple[Parameter, ...]:
-    found: list[Parameter] = []
+    parameters: list[Parameter] = []
     for row in rows:
         values: dict[str, Any] = {**row, "enum_items": _enum_items(row.get("enum_items", []))}
-        found.append(Parameter(**values))
-    return tuple(found)
+        parameters.append(Parameter(**values))
+    return tuple(parameters)
 
 
 def symbol_from_json(data: dict[str, Any]) -> Symbol:

@@ -1,4 +1,4 @@
-"""A list of documented identifiers, held against a base: which resolve, and why the rest do not."""
+"""Checks a list of documented identifiers against a base: which resolve, and why the others do not."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _INTERFACE = re.compile(r"\.[A-Z0-9_]+_(PT|MT|HT|UL|OT|GT|GGT|AST|FH|KSI)_")
 
 
 @dataclass(frozen=True, slots=True)
-class Resolution:
-    """How a reference fares: ``exact`` of ``total`` identifiers; the others by reason."""
+class ReferenceResolution:
+    """How many identifiers of a reference resolve: ``exact`` of ``total``; the others by reason."""
 
     total: int
     exact: int
@@ -49,12 +49,12 @@ def read_reference(path: Path) -> list[str]:
     except OSError as error:
         raise KBBuildError(f"{path} cannot be read: {error}") from error
     try:
-        found = list(_inventory(data) if data.startswith(_INVENTORY) else _lines(data))
+        identifiers = list(_inventory(data) if data.startswith(_INVENTORY) else _lines(data))
     except (UnicodeDecodeError, zlib.error, ValueError) as error:
         raise KBBuildError(
             f"{path} is neither a Sphinx inventory nor a list with one identifier on each line: {error}"
         ) from error
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(identifiers))
 
 
 def _inventory(data: bytes) -> Iterator[str]:
@@ -75,7 +75,7 @@ def _lines(data: bytes) -> Iterator[str]:
         yield text
 
 
-def resolve(identifiers: Iterable[str], bases: Mapping[str, str]) -> Resolution:
+def resolve(identifiers: Iterable[str], bases: Mapping[str, str]) -> ReferenceResolution:
     """Looks every identifier up in ``bases``: path → the path of its base class, for all symbols."""
     spelled: dict[str, list[str]] = defaultdict(list)
     for path in bases:
@@ -87,9 +87,9 @@ def resolve(identifiers: Iterable[str], bases: Mapping[str, str]) -> Resolution:
         if identifier in bases:
             exact += 1
         else:
-            reason, found = _explain(identifier, bases, spelled)
-            others[reason].append(f"{identifier} → {found}" if found else identifier)
-    return Resolution(total, exact, {reason: tuple(rows) for reason, rows in sorted(others.items())})
+            reason, instead = _explain(identifier, bases, spelled)
+            others[reason].append(f"{identifier} → {instead}" if instead else identifier)
+    return ReferenceResolution(total, exact, {reason: tuple(rows) for reason, rows in sorted(others.items())})
 
 
 def _explain(identifier: str, bases: Mapping[str, str], spelled: Mapping[str, list[str]]) -> tuple[str, str]:

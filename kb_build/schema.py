@@ -1,4 +1,4 @@
-"""The knowledge-base file: its tables, and what is promised to readers of each.
+"""The knowledge-base file: its tables and what readers can rely on.
 
 One SQLite file per Blender minor version. ``SCHEMA_VERSION`` grows with every change that an older reader
 could not understand; readers refuse a newer one.
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SCHEMA_VERSION = 2
-APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's own place for telling whose file it is
+APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
 FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
@@ -28,7 +28,7 @@ POSTING_BYTES = 6  # a number as uint32, a weight as float16
 DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 
--- One row an identifier; ``line`` tells it in one line, ``record`` is the whole Symbol, packed (see pack).
+-- One row an identifier; ``line`` describes it in one line, ``record`` is the whole Symbol, packed (see pack).
 CREATE TABLE symbols (
     id INTEGER PRIMARY KEY,
     path TEXT NOT NULL UNIQUE,
@@ -99,11 +99,11 @@ CREATE TABLE levels (
     weights BLOB NOT NULL, code BLOB NOT NULL
 );
 
--- What people ask for, a phrase each: the document that it asks for (int32). One row.
+-- For each phrase of the query expansions the document that it leads to (int32). One row.
 CREATE TABLE phrases (targets BLOB NOT NULL);
 
 -- The inverted index. Units, topics and phrases are numbered through: for each stem how many units have it, the numbers
--- of all that do as uint32, and for each its weight as float16 (see kb_build.index.documents).
+-- of all that do as uint32, and for each its weight as float16 (see kb_build.index.postings).
 CREATE TABLE postings (stem TEXT NOT NULL UNIQUE, units INTEGER NOT NULL, data BLOB NOT NULL);
 
 -- The corpus' words: stem and most used spelling.
@@ -122,7 +122,7 @@ CREATE INDEX pages_parent ON pages (parent, position);
 
 
 class NoBase(Exception):  # noqa: N818 - reads as the state it names
-    """A file that is no base this SimWorlds reads; the message says why, and what helps besides building it again."""
+    """A file that this SimWorlds cannot read as a base; the message says why."""
 
 
 def open_read_only(path: Path, *, threads: bool = False) -> sqlite3.Connection:
@@ -154,10 +154,10 @@ def _check(connection: sqlite3.Connection) -> None:
     except sqlite3.Error as error:
         raise NoBase(f"not readable as a knowledge base ({error})") from error
     if application != APPLICATION_ID:
-        raise NoBase("an SQLite file of something else, not a knowledge base")
+        raise NoBase("an SQLite file, but not a knowledge base")
     if version > SCHEMA_VERSION:
         raise NoBase(
-            f"written by a newer SimWorlds (layout {version}, this one reads {SCHEMA_VERSION}), which reads it: upgrade"
+            f"written by a newer SimWorlds (layout {version}, this one reads {SCHEMA_VERSION}): upgrade SimWorlds"
         )
     if version < SCHEMA_VERSION:
         raise NoBase(f"of an older layout ({version}, needed {SCHEMA_VERSION})")

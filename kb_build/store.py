@@ -1,4 +1,4 @@
-"""Writes a knowledge base: one SQLite file, whole or not at all."""
+"""Writes a knowledge base as one SQLite file, atomically."""
 
 from __future__ import annotations
 
@@ -12,23 +12,19 @@ import numpy as np
 import sqlite_utils
 
 from kb_build.errors import StoreError
-from kb_build.index.analysis import key, short_path, telling_words, topic_key
-from kb_build.index.documents import (
+from kb_build.index.analysis import content_words, key, short_path, topic_key
+from kb_build.index.documents import Document, is_code, make_units, topic_documents, weight_of
+from kb_build.index.postings import (
     TOPIC_B,
     UNIT_B,
-    Cut,
-    Doc,
-    Postings,
-    is_code,
-    make_phrases,
-    make_postings,
-    make_units,
-    packed,
-    topic_docs,
+    PostingLists,
+    Tokenize,
+    document_postings,
+    pack_postings,
+    phrase_postings,
     vocabulary,
-    weight_of,
 )
-from kb_build.index.query_expansions import load_uses
+from kb_build.index.query_expansions import load_query_expansions
 from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
@@ -45,7 +41,7 @@ from kb_build.schema import (
     pack,
 )
 from kb_build.symbol_lines import member_line
-from kb_build.versions.removed_symbols import Former
+from kb_build.versions.removed_symbols import RemovedSymbols
 from simworlds.files import staged_file
 
 if TYPE_CHECKING:
@@ -57,7 +53,7 @@ if TYPE_CHECKING:
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are slug → (text, method); ``former`` is called late, so that it can be computed meanwhile.
+    ``summaries`` are slug → (text, method); ``removed_symbols`` is called last: it may still be computed meanwhile.
     """
 
     symbols: Sequence[Symbol]
@@ -65,7 +61,7 @@ class Contents:
     links: Sequence[Link]
     meta: Mapping[str, str]
     summaries: Mapping[str, tuple[str, str]] = field(default_factory=dict[str, tuple[str, str]])
-    former: Callable[[], Former] = Former
+    removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
@@ -142,11 +138,11 @@ def _explained(symbols: Sequence[Symbol], links: Sequence[Link]) -> Iterator[tup
             yield link.target.partition("#")[0], link.source
 
 
-def _write_former(connection: sqlite3.Connection, former: Former) -> None:
-    _insert(connection, "removed", former.removed, 3)
-    _insert(connection, "removed_names", former.names, 2)
-    _insert(connection, "replacements", former.replacements, 3)
-    _insert(connection, "since", former.since, 2)
+def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: RemovedSymbols) -> None:
+    _insert(connection, "removed", removed_symbols.removed, 3)
+    _insert(connection, "removed_names", removed_symbols.names, 2)
+    _insert(connection, "replacements", removed_symbols.replacements, 3)
+    _insert(connection, "since", removed_symbols.since, 2)
 
 
 def _write_pages(
@@ -172,39 +168,48 @@ def _write_pages(
 
 
 def _write_level(
-    connection: sqlite3.Connection, level: int, docs: Sequence[Doc], topics: Mapping[str, int], cut: Cut
-) -> Postings:
-    """One level of the retrieval index; returns its postings."""
-    rows = ((level, number, doc.ref, doc.kind, doc.title, doc.anchor) for number, doc in enumerate(docs))
+    connection: sqlite3.Connection,
+    level: int,
+    documents: Sequence[Document],
+    topics: Mapping[str, int],
+    tokenize: Tokenize,
+) -> PostingLists:
+    """Writes the documents of one level; returns their posting lists. ``topics``: ref → number."""
+    rows = (
+        (level, number, document.ref, document.kind, document.title, document.anchor)
+        for number, document in enumerate(documents)
+    )
     _insert(connection, "docs", rows, 6)
     chapters: dict[str, int] = {}
     arrays = (
-        np.array([topics.get(doc.topic, -1) for doc in docs], np.int32),
-        np.array([chapters.setdefault(doc.chapter, len(chapters)) for doc in docs], np.int32),
-        np.array([weight_of(doc) for doc in docs], np.float32),
-        np.array([is_code(doc) for doc in docs], np.bool_),
+        np.array([topics.get(document.topic, -1) for document in documents], np.int32),
+        np.array([chapters.setdefault(document.chapter, len(chapters)) for document in documents], np.int32),
+        np.array([weight_of(document) for document in documents], np.float32),
+        np.array([is_code(document) for document in documents], np.bool_),
     )
-    row = (level, len(docs), *(array.tobytes() for array in arrays))
+    row = (level, len(documents), *(array.tobytes() for array in arrays))
     connection.execute("INSERT INTO levels VALUES (?,?,?,?,?,?)", row)
-    return make_postings(docs, UNIT_B if level == UNITS else TOPIC_B, cut)
+    return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, tokenize)
 
 
-def _write_index(connection: sqlite3.Connection, units: Sequence[Doc], uses: Mapping[str, str]) -> None:
-    topics = [*topic_docs(units)]
-    numbers = {doc.ref: number for number, doc in enumerate(topics)}
-    cut = cache(telling_words)
-    told = _write_level(connection, UNITS, units, numbers, cut)
-    around = _write_level(connection, TOPICS, topics, numbers, cut)
-    # A symbol is one unit; a page is asked for with all its sections.
+def _write_index(
+    connection: sqlite3.Connection, units: Sequence[Document], expansions: Mapping[str, str]
+) -> None:
+    topics = [*topic_documents(units)]
+    numbers = {topic.ref: number for number, topic in enumerate(topics)}
+    tokenize = cache(content_words)
+    of_units = _write_level(connection, UNITS, units, numbers, tokenize)
+    of_topics = _write_level(connection, TOPICS, topics, numbers, tokenize)
+    # Phrases lead to a symbol's unit, but to a page as a whole.
     targets = {
-        doc.ref: len(units) + numbers[doc.ref] if doc.kind in PAGE_SOURCES else number
-        for number, doc in enumerate(units)
+        unit.ref: len(units) + numbers[unit.ref] if unit.kind in PAGE_SOURCES else number
+        for number, unit in enumerate(units)
     }
-    asked, phrases = make_phrases(uses, targets, len(units), told, cut)
-    connection.execute("INSERT INTO phrases VALUES (?)", (np.array(asked, np.int32).tobytes(),))
-    levels = (0, told), (len(units), around), (len(units) + len(topics), phrases)
-    _insert(connection, "postings", packed(*levels), 3)
-    _insert(connection, "vocabulary", vocabulary(units, cut), 2)
+    leads_to, of_phrases = phrase_postings(expansions, targets, len(units), of_units, tokenize)
+    connection.execute("INSERT INTO phrases VALUES (?)", (np.array(leads_to, np.int32).tobytes(),))
+    levels = (0, of_units), (len(units), of_topics), (len(units) + len(topics), of_phrases)
+    _insert(connection, "postings", pack_postings(*levels), 3)
+    _insert(connection, "vocabulary", vocabulary(units, tokenize), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:
@@ -220,7 +225,7 @@ def write_base(path: Path, contents: Contents) -> None:
                 os.fsync(file.fileno())
     except (OSError, sqlite3.Error) as error:
         raise StoreError(
-            f"{path}: the knowledge base cannot be written: {error}. The old one, if any, stands."
+            f"{path}: the knowledge base cannot be written: {error}. The old one, if any, is unchanged."
         ) from error
 
 
@@ -233,13 +238,13 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA application_id={APPLICATION_ID};"
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
-        uses = load_uses()
-        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, uses)
+        expansions = load_query_expansions()
+        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, expansions)
         with connection:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
-            _write_index(connection, units, uses)
-            _write_former(connection, contents.former())
+            _write_index(connection, units, expansions)
+            _write_removed_symbols(connection, contents.removed_symbols())
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

@@ -1,4 +1,4 @@
-"""Lines of text: a symbol told on one, as its owner lists it; the definition lists among a page's."""
+"""Lines of text: a symbol described on one line, and the definition lists in a page's lines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Is a base whole, and does everything in it lead somewhere?"""
+"""Verifies a base: it is complete, and every reference in it resolves."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from kb_build.base_file import open_base, read_meta
 from kb_build.index.analysis import key
 from kb_build.records import page_from_json, symbol_from_json
-from kb_build.reference_list import WANTED, Resolution, read_reference, resolve
+from kb_build.reference_list import WANTED, ReferenceResolution, read_reference, resolve
 from kb_build.schema import FORM_PATH, POSTING_BYTES, UNITS, unpack
 
 if TYPE_CHECKING:
@@ -27,8 +27,8 @@ _SHOWN = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Check:
-    """One thing that was looked at: how many, what is wrong with which, and what is merely worth knowing."""
+class BaseCheck:
+    """The outcome of one check: how many rows it looked at, faults, and notes that are not faults."""
 
     name: str
     looked_at: int
@@ -37,13 +37,13 @@ class Check:
 
 
 @dataclass(frozen=True, slots=True)
-class Verification:
-    """What :func:`verify_base` found. ``sound`` is whether nothing is wrong."""
+class BaseVerification:
+    """The outcome of :func:`verify_base`."""
 
     path: Path
     blender: str
-    checks: tuple[Check, ...]
-    reference: Resolution | None = None
+    checks: tuple[BaseCheck, ...]
+    reference: ReferenceResolution | None = None
 
     @property
     def sound(self) -> bool:
@@ -52,46 +52,46 @@ class Verification:
         return resolves and not any(check.faults for check in self.checks)
 
     def lines(self) -> Iterator[str]:
-        """For people."""
+        """The outcome as lines of text; long lists are shortened."""
         yield f"{self.path} (Blender {self.blender})"
         for check in self.checks:
             yield f"  {'FAULT' if check.faults else 'ok':<6} {check.name}: {check.looked_at:,} looked at"
             yield from (f"           {line}" for line in _shortened(check.faults, "wrong"))
             yield from (f"           {line}" for line in _shortened(check.notes, "worth knowing"))
         if self.reference is not None:
-            found = self.reference
+            reference = self.reference
             yield (
-                f"  {'ok' if found.share >= WANTED else 'FAULT':<6} reference: {found.exact:,} of "
-                f"{found.total:,} identifiers resolve exactly ({found.share:.2%}; wanted {WANTED:.1%})"
+                f"  {'ok' if reference.share >= WANTED else 'FAULT':<6} reference: {reference.exact:,} of "
+                f"{reference.total:,} identifiers resolve exactly ({reference.share:.2%}; wanted {WANTED:.1%})"
             )
-            for reason, rows in found.others.items():
+            for reason, rows in reference.others.items():
                 yield f"         {reason} ({len(rows):,})"
                 yield from (f"           {row}" for row in rows)
         yield "Sound." if self.sound else "Not sound: build it again with simworlds kb build --force"
 
     def as_json(self) -> dict[str, Any]:
-        """The same in JSON's terms, nothing shortened."""
-        found = self.reference
+        """The outcome as JSON-ready data, complete."""
+        reference = self.reference
         return {
             "path": str(self.path),
             "blender": self.blender,
             "sound": self.sound,
             "checks": [
                 {
-                    "name": one.name,
-                    "looked_at": one.looked_at,
-                    "faults": list(one.faults),
-                    "notes": list(one.notes),
+                    "name": check.name,
+                    "looked_at": check.looked_at,
+                    "faults": list(check.faults),
+                    "notes": list(check.notes),
                 }
-                for one in self.checks
+                for check in self.checks
             ],
             "reference": None
-            if found is None
+            if reference is None
             else {
-                "total": found.total,
-                "exact": found.exact,
-                "share": found.share,
-                "others": {reason: list(rows) for reason, rows in found.others.items()},
+                "total": reference.total,
+                "exact": reference.exact,
+                "share": reference.share,
+                "others": {reason: list(rows) for reason, rows in reference.others.items()},
             },
         }
 
@@ -102,7 +102,7 @@ def _shortened(rows: tuple[str, ...], what: str) -> Iterator[str]:
         yield f"… and {len(rows) - _SHOWN:,} more {what} (--json lists them)"
 
 
-def verify_base(path: Path, reference: Path | None = None) -> Verification:
+def verify_base(path: Path, reference: Path | None = None) -> BaseVerification:
     """Runs every check on the base at ``path``; ``reference`` is a file for read_reference.
 
     Raises StoreError when there is no base there that this SimWorlds understands, KBBuildError for a
@@ -110,8 +110,8 @@ def verify_base(path: Path, reference: Path | None = None) -> Verification:
     """
     meta = read_meta(path)
     identifiers = read_reference(reference) if reference else None
-    resolution: Resolution | None = None
-    checks: list[Check] = []
+    resolution: ReferenceResolution | None = None
+    checks: list[BaseCheck] = []
     with closing(open_base(path)) as connection:
         checks.append(_guarded("file", _file, connection))
         if not checks[0].faults:
@@ -119,19 +119,19 @@ def verify_base(path: Path, reference: Path | None = None) -> Verification:
             checks += [_guarded(name, check, base) for name, check in _CHECKS]
             if identifiers is not None:
                 resolution = resolve(identifiers, base.bases)
-    return Verification(path, meta.get("blender", "?"), tuple(checks), resolution)
+    return BaseVerification(path, meta.get("blender", "?"), tuple(checks), resolution)
 
 
-def _guarded(name: str, check: Callable[[Any], Check], subject: object) -> Check:
-    """A check that damage keeps from ending is a fault, too."""
+def _guarded(name: str, check: Callable[[Any], BaseCheck], subject: object) -> BaseCheck:
+    """Runs a check; one that fails on damaged data is a fault."""
     try:
         return check(subject)
     except (sqlite3.Error, zlib.error, ValueError, TypeError, KeyError) as error:
-        return Check(name, 0, (f"could not be checked: {type(error).__name__}: {error}",))
+        return BaseCheck(name, 0, (f"could not be checked: {type(error).__name__}: {error}",))
 
 
 class _Base:
-    """What the checks share."""
+    """The base under check, with the ids that all checks need."""
 
     def __init__(self, connection: sqlite3.Connection, meta: dict[str, str]) -> None:
         self.meta = meta
@@ -144,30 +144,30 @@ class _Base:
         return self._connection.execute(sql, values)
 
 
-def _file(connection: sqlite3.Connection) -> Check:
+def _file(connection: sqlite3.Connection) -> BaseCheck:
     messages = [str(row[0]) for row in connection.execute("PRAGMA integrity_check")]
     pages = int(connection.execute("PRAGMA page_count").fetchone()[0])
-    return Check("file", pages, tuple(message for message in messages if message != "ok"))
+    return BaseCheck("file", pages, tuple(message for message in messages if message != "ok"))
 
 
-def _counts(base: _Base) -> Check:
-    """The build wrote down how much it put in."""
+def _counts(base: _Base) -> BaseCheck:
+    """The numbers of rows are those that the build recorded."""
     promised = json.loads(base.meta["counts"])
-    found = {
+    counted = {
         "symbols": dict(base.rows("SELECT kind, count(*) FROM symbols GROUP BY kind")),
         "pages": dict(base.rows("SELECT source, count(*) FROM pages GROUP BY source")),
         "sections": next(base.rows("SELECT count(*) FROM sections"))[0],
         "links": dict(base.rows("SELECT kind, count(*) FROM links GROUP BY kind")),
     }
     faults = [
-        f"{name}: {promised[name]} were written, {found[name]} are there"
-        for name in found
-        if found[name] != promised[name]
+        f"{name}: {promised[name]} were written, {counted[name]} are there"
+        for name in counted
+        if counted[name] != promised[name]
     ]
-    return Check("counts", len(found), tuple(faults))
+    return BaseCheck("counts", len(counted), tuple(faults))
 
 
-def _symbols(base: _Base) -> Check:
+def _symbols(base: _Base) -> BaseCheck:
     """Owner, base, target and collection of every symbol exist, and its record can be read.
 
     Operators are exempt: Blender shows the classes of those that Python registered, and of no others.
@@ -191,18 +191,22 @@ def _symbols(base: _Base) -> Check:
         ]
         if symbol_from_json(unpack(record)).path != path:
             faults.append(f"{path}: its record is another symbol's")
-    return Check("symbols", looked_at, tuple(faults))
+    return BaseCheck("symbols", looked_at, tuple(faults))
 
 
-def _names(base: _Base) -> Check:
+def _names(base: _Base) -> BaseCheck:
     """Every identifier and every page is found by its own spelling."""
-    found = set(base.rows("SELECT key, id FROM names WHERE form = ?", FORM_PATH))
+    names = set(base.rows("SELECT key, id FROM names WHERE form = ?", FORM_PATH))
     ids = [*base.bases, *base.slugs]
-    faults = [f"{one} is not found by its own name" for one in ids if (key(one), one) not in found]
-    return Check("names", len(ids), tuple(faults))
+    faults = [
+        f"{identifier} is not found by its own name"
+        for identifier in ids
+        if (key(identifier), identifier) not in names
+    ]
+    return BaseCheck("names", len(ids), tuple(faults))
 
 
-def _pages(base: _Base) -> Check:
+def _pages(base: _Base) -> BaseCheck:
     """Every page has sections, and the page above it exists."""
     sections = Counter(slug for (slug,) in base.rows("SELECT slug FROM sections"))
     faults = [f"{slug}: sections without a page" for slug in sections.keys() - base.slugs]
@@ -217,10 +221,10 @@ def _pages(base: _Base) -> Check:
             for other in (parent, *page.children, *page.links)
             if other and other not in base.slugs
         ]
-    return Check("pages", len(base.slugs), tuple(faults))
+    return BaseCheck("pages", len(base.slugs), tuple(faults))
 
 
-def _links(base: _Base) -> Check:
+def _links(base: _Base) -> BaseCheck:
     """Both ends of every link exist. Blender's table also names pages that a manual no longer has."""
     anchors: dict[str, set[str]] = defaultdict(set)
     for slug, anchor in base.rows("SELECT slug, anchor FROM sections"):
@@ -245,15 +249,15 @@ def _links(base: _Base) -> Check:
             ] += 1
     if not manual:
         notes["without a manual, links to it lead nowhere"] += 1
-    return Check("links", looked_at, tuple(faults), _counted(notes))
+    return BaseCheck("links", looked_at, tuple(faults), _counted(notes))
 
 
 def _counted(notes: Counter[str]) -> tuple[str, ...]:
     return tuple(f"{note} ({count:,} symbols)" if count > 1 else note for note, count in notes.most_common())
 
 
-def _index(base: _Base) -> Check:
-    """Every unit of retrieval is something that can be answered, every posting is one of a unit."""
+def _index(base: _Base) -> BaseCheck:
+    """Every document is a symbol or page of the base, and the postings and phrases name documents."""
     faults: list[str] = []
     sizes: Counter[int] = Counter()
     for level, ref in base.rows("SELECT level, ref FROM docs"):
@@ -261,18 +265,18 @@ def _index(base: _Base) -> Check:
         if ref not in base.bases and ref not in base.slugs:
             faults.append(f"the index names {ref}, which is not in the base")
     documents = sum(sizes.values())
-    asked = [
+    targets = [
         target
         for (data,) in base.rows("SELECT targets FROM phrases")
         for target in memoryview(data).cast("i")
     ]
-    faults += [f"a phrase asks for document {target}" for target in asked if not 0 <= target < documents]
+    faults += [f"a phrase asks for document {target}" for target in targets if not 0 <= target < documents]
     faults += _postings(
-        base.rows("SELECT stem, units, data FROM postings"), sizes[UNITS], documents + len(asked)
+        base.rows("SELECT stem, units, data FROM postings"), sizes[UNITS], documents + len(targets)
     )
     if not documents:
         faults.append("the index is empty")
-    return Check("index", sum(sizes.values()), tuple(faults))
+    return BaseCheck("index", sum(sizes.values()), tuple(faults))
 
 
 def _postings(rows: Iterable[tuple[str, int, bytes]], units: int, end: int) -> Iterator[str]:
@@ -283,13 +287,15 @@ def _postings(rows: Iterable[tuple[str, int, bytes]], units: int, end: int) -> I
             yield f"the postings of {stem!r} are cut off"
             continue
         numbers = memoryview(data)[: count * 4].cast("I").tolist()
-        if any(one >= other for one, other in pairwise(numbers)) or (numbers and numbers[-1] >= end):
+        if any(number >= following for number, following in pairwise(numbers)) or (
+            numbers and numbers[-1] >= end
+        ):
             yield f"the postings of {stem!r} name documents out of order or of nothing"
         elif bisect_left(numbers, units) != having:
             yield f"the postings of {stem!r} are not of {having} units"
 
 
-_CHECKS: tuple[tuple[str, Callable[[_Base], Check]], ...] = (
+_CHECKS: tuple[tuple[str, Callable[[_Base], BaseCheck]], ...] = (
     ("counts", _counts),
     ("symbols", _symbols),
     ("names", _names),

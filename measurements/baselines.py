@@ -17,8 +17,8 @@ import numpy as np
 from rank_bm25 import BM25Okapi
 
 from kb_build.index.analysis import terms
-from kb_build.index.documents import Doc, make_units
-from kb_build.index.query_expansions import load_uses
+from kb_build.index.documents import Document, make_units
+from kb_build.index.query_expansions import load_query_expansions
 from kb_build.records import Link, symbol_from_json
 from kb_build.schema import unpack
 from kb_serve.knowledge_base import KnowledgeBase
@@ -32,7 +32,7 @@ CANDIDATES = 200
 _DEPTH = 50  # documents looked at for the first ids: sections of one page are one id
 
 
-def read_units(base: Path) -> list[Doc]:
+def read_units(base: Path) -> list[Document]:
     """The documents of a base, made anew from its records."""
     with closing(sqlite3.connect(f"file:{quote(str(base.resolve()))}?mode=ro", uri=True)) as connection:
         symbols = [
@@ -44,13 +44,13 @@ def read_units(base: Path) -> list[Doc]:
     with KnowledgeBase(base) as knowledge:
         pages = [page for slug, _, _ in rows if (page := knowledge.page(slug)) is not None]
     summaries = {slug: (text, method) for slug, text, method in rows if text}
-    return make_units(symbols, pages, links, summaries, load_uses())
+    return make_units(symbols, pages, links, summaries, load_query_expansions())
 
 
 class Baselines:
     """The three rankings. They share one set of documents."""
 
-    def __init__(self, units: Sequence[Doc]) -> None:
+    def __init__(self, units: Sequence[Document]) -> None:
         self._refs = [unit.ref for unit in units]
         analysed = cache(terms)
 
@@ -58,7 +58,7 @@ class Baselines:
             return list(chain.from_iterable(analysed(text) for text in texts if text))
 
         names = [found((*unit.name, *unit.heading)) for unit in units]
-        rests = [found((*unit.context, *unit.body, *unit.related, *unit.uses)) for unit in units]
+        rests = [found((*unit.context, *unit.body, *unit.related, *unit.expansions)) for unit in units]
         self._index = sqlite3.connect(":memory:")
         self._index.execute("CREATE VIRTUAL TABLE flat USING fts5 (name, rest, content='', detail=full)")
         self._index.executemany(

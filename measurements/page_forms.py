@@ -6,7 +6,7 @@ import argparse
 import time
 from pathlib import Path
 
-from kb_build.pages.readers.compare import Comparison, compare
+from kb_build.pages.readers.compare import ReaderComparison, compare
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
 
@@ -32,7 +32,7 @@ def main() -> None:
     report(compare(sources, download), options.show)
 
 
-def report(comparison: Comparison, show: int) -> None:
+def report(comparison: ReaderComparison, show: int) -> None:
     """Print a comparison and its ``show`` least similar pages."""
     shared = len(comparison.shared)
     print(

@@ -167,12 +167,12 @@ def _words_only(base: Path, stack: ExitStack) -> Callable[[str], Sequence[str]]:
     return lambda text: [found.ref for found in searcher.search(text, LIMIT)]
 
 
-def _base_without_uses(base: Path, home: Path, folder: Path) -> Path:
-    """A base of the same version and sources, without the table of :mod:`kb_build.index.query_expansions`."""
+def _base_without_expansions(base: Path, home: Path, folder: Path) -> Path:
+    """A base of the same version and sources, without query expansions."""
     with closing(BaseReader(base)) as reader:
         version = reader.meta["blender"]
     options = BuildOptions(corpora=corpora(), offline=True, output=folder / base.name)
-    with mock.patch("kb_build.store.load_uses", dict):
+    with mock.patch("kb_build.store.load_query_expansions", dict):
         return build(version, options=options, home=home).path
 
 
@@ -194,10 +194,10 @@ def compared(base: Path, home: Path, *, quick: bool) -> Iterator[tuple[str, Call
         with ExitStack() as stack:
             stack.enter_context(mock.patch.object(search, constant, 0.0))
             yield name, _ours(base, stack)
-    say("building a base without what people ask for")
+    say("building a base without query expansions")
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simworlds-bench-")))
-        yield "… without what people ask for", _ours(_base_without_uses(base, home, folder), stack)
+        yield "… without query expansions", _ours(_base_without_expansions(base, home, folder), stack)
     from measurements.baselines import CANDIDATES, Baselines, read_units  # noqa: PLC0415 - takes seconds and memory
 
     say("making the flat indexes of the same documents")

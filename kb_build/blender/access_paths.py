@@ -1,4 +1,4 @@
-"""How an instance of a class is reached: the shortest expression over RNA's pointers and collections."""
+"""Access paths: for each class the shortest expression over RNA pointers that leads to an instance."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _graph(symbols: Iterable[Symbol]) -> _Graph:
 
 
 def _key(target: str, graph: _Graph) -> str:
-    """What to write in the brackets of a collection: the name Blender gives by default, or an index."""
+    """The subscript of a collection: the name Blender gives by default, or an index."""
     if graph.named.isdisjoint(_lineage(target, graph)):
         return "[0]"
     label = graph.label.get(target, "") or target
@@ -98,7 +98,7 @@ def reached_expressions(symbols: Iterable[Symbol]) -> dict[str, str]:
     default ones, to be replaced by the scene's own.
     """
     graph = _graph(symbols)
-    found: dict[str, str] = {}
+    expressions: dict[str, str] = {}
     queue: list[tuple[int, int, str, str]] = []
     order = 0
     for root, cls, cost in _ROOTS:
@@ -107,24 +107,24 @@ def reached_expressions(symbols: Iterable[Symbol]) -> dict[str, str]:
         heapq.heappush(queue, (_TOLD_COST, order := order + 1, cls, expression))
     while queue:
         cost, _, cls, expression = heapq.heappop(queue)
-        if cls in found:
+        if cls in expressions:
             continue
-        found[cls] = expression
+        expressions[cls] = expression
         for name, target, many in _steps(cls, graph):
             step = cost + 1 + (1 if many else 0) + (_DETOUR_COST if name in _DETOURS else 0)
             here = f"{expression}.{name}"
-            if target not in found:
+            if target not in expressions:
                 order += 1
                 heapq.heappush(queue, (step, order, target, here + (_key(target, graph) if many else "")))
             # ``Object.data`` is any data-block to RNA; the collections of ``bpy.data`` say which.
             for child in _descendants(target, graph) if target != "ID" else ():
                 # Every tree's ``nodes`` takes every node as far as RNA knows.
-                if child not in found and cls in graph.trees.get(child, (cls,)):
+                if child not in expressions and cls in graph.trees.get(child, (cls,)):
                     order += 1
                     heapq.heappush(
                         queue, (step + 1, order, child, here + (_key(child, graph) if many else ""))
                     )
     # A shader's nodes live in a material, where there are others like it.
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
-        found[cls] = f"{found.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"
-    return found
+        expressions[cls] = f"{expressions.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"
+    return expressions

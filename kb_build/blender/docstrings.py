@@ -39,7 +39,7 @@ _QUIET = 5
 
 @dataclass(frozen=True, slots=True)
 class Docstring:
-    """What a docstring says: Markdown ``description``, call ``signature``, and types as text."""
+    """The content of a docstring: Markdown ``description``, call ``signature``, and types as text."""
 
     description: str = ""
     signature: str = ""
@@ -74,8 +74,8 @@ def _literal_role(
     _name: str, rawtext: str, text: str, *_position: object, **_options: object
 ) -> tuple[list[nodes.Node], list[nodes.system_message]]:
     """A cross-reference inside a docstring is the identifier it names."""
-    shown = text.partition(" <")[0] if text.endswith(">") else text
-    return [nodes.literal(rawtext, shown.lstrip("~!"))], []
+    name = text.partition(" <")[0] if text.endswith(">") else text
+    return [nodes.literal(rawtext, name.lstrip("~!"))], []
 
 
 class _Declared(nodes.General, nodes.Element):
@@ -83,7 +83,7 @@ class _Declared(nodes.General, nodes.Element):
 
 
 class _Declaration(Directive):
-    """``.. method:: f(a)`` with what is said below it; several signatures stand on a line each."""
+    """``.. method:: f(a)`` and its content; several signatures stand on a line each."""
 
     has_content = True
     required_arguments = 1
@@ -94,8 +94,8 @@ class _Declaration(Directive):
         lines = re.sub(r"\s*\\\s*\n\s*", " ", self.arguments[0]).split("\n")
         calls = [lines[0].strip(), *(line.strip() for line in lines[1:] if _CALL.match(line.strip()))]
         node = _Declared(kind=self.name.removeprefix(_OWN), calls=calls)
-        if said := [line for line in lines[1:] if not _CALL.match(line.strip())]:
-            node += nodes.paragraph("", "\n".join(said))
+        if remarks := [line for line in lines[1:] if not _CALL.match(line.strip())]:
+            node += nodes.paragraph("", "\n".join(remarks))
         self.state.nested_parse(self.content, self.content_offset, node)
         return [node]
 
@@ -172,33 +172,33 @@ def _block(node: nodes.Node) -> str:  # noqa: PLR0911 - one return a kind of nod
 
 
 def _title(node: nodes.Admonition) -> str:
-    given = node["title"] if isinstance(node, nodes.admonition) else ""
-    return given or type(node).__name__.title()
+    title = node["title"] if isinstance(node, nodes.admonition) else ""
+    return title or type(node).__name__.title()
 
 
 def _blocks(children: Sequence[nodes.Node]) -> str:
     return "\n\n".join(text for text in map(_block, children) if text)
 
 
-def _read_field(name: str, body: str, found: _Fields) -> None:
+def _read_field(name: str, body: str, fields: _Fields) -> None:
     keyword, _, argument = name.partition(" ")
     if keyword in {"arg", "param", "parameter", "argument", "key", "keyword"}:
         kind, _, argument = argument.rpartition(" ")
         argument = argument.lstrip("*")
-        found.texts[argument] = body
+        fields.texts[argument] = body
         if kind:
-            found.types[argument] = kind
+            fields.types[argument] = kind
     elif keyword == "type":
         if argument:
-            found.types[argument.strip().lstrip("*")] = body.replace("`", "")
+            fields.types[argument.strip().lstrip("*")] = body.replace("`", "")
         else:
-            found.own_type = body.replace("`", "")
+            fields.own_type = body.replace("`", "")
     elif keyword in {"return", "returns"}:
-        found.returns = body
+        fields.returns = body
     elif keyword == "rtype":
-        found.return_type = body.replace("`", "")
+        fields.return_type = body.replace("`", "")
     else:
-        found.other.append(f"**{name}**: {body}")
+        fields.other.append(f"**{name}**: {body}")
 
 
 def _literal(expression: ast.expr | None) -> Default:
@@ -228,7 +228,7 @@ def call_parameters(signature: str) -> list[Parameter]:
     defaults: list[ast.expr | None] = [None] * (len(positional) - len(arguments.defaults))
     pairs = [*zip(positional, [*defaults, *arguments.defaults], strict=True)]
     pairs += zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
-    found = [
+    parameters = [
         Parameter(
             name=argument.arg,
             type=ast.unparse(argument.annotation) if argument.annotation else "",
@@ -238,8 +238,8 @@ def call_parameters(signature: str) -> list[Parameter]:
         for argument, default in pairs
         if argument.arg != "self"
     ]
-    found += [Parameter(name=extra.arg) for extra in (arguments.vararg, arguments.kwarg) if extra]
-    return found
+    parameters += [Parameter(name=extra.arg) for extra in (arguments.vararg, arguments.kwarg) if extra]
+    return parameters
 
 
 def _split(text: str) -> tuple[str, str]:
@@ -253,18 +253,18 @@ def _split(text: str) -> tuple[str, str]:
     return "", text
 
 
-def _parameters(signature: str, found: _Fields) -> tuple[Parameter, ...]:
-    """The call's arguments, completed by what the field list says; the order is the call's."""
-    known = {parameter.name: parameter for parameter in call_parameters(signature)}
-    for name in found.texts | found.types:
-        known.setdefault(name, Parameter(name=name))
+def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
+    """The call's arguments in its order, completed from the field list."""
+    parameters = {parameter.name: parameter for parameter in call_parameters(signature)}
+    for name in fields.texts | fields.types:
+        parameters.setdefault(name, Parameter(name=name))
     return tuple(
         replace(
             parameter,
-            description=found.texts.get(parameter.name, ""),
-            type=found.types.get(parameter.name, "") or parameter.type,
+            description=fields.texts.get(parameter.name, ""),
+            type=fields.types.get(parameter.name, "") or parameter.type,
         )
-        for parameter in known.values()
+        for parameter in parameters.values()
     )
 
 
@@ -284,21 +284,21 @@ def parse_docstring(text: str, signature: str = "") -> Docstring:
     ``signature`` is what Python's own introspection found; a directive line in the docstring wins over it.
     Malformed markup loses its meaning, never its text.
     """
-    written, body = _split(text)
-    written = written or signature
+    call, body = _split(text)
+    call = call or signature
     body, slots = _bmesh_results(body) if text.startswith("BMeshOpFunc ") else (body, ())
     parser, settings = _parser()
     document = new_document("docstring", settings)
     parser.parse(_SPHINX.sub(rf"\1{_OWN}", body), document)
-    parsed = _interpreted(document.children, written, slots)
-    made = next((member.docstring for member in parsed.members if member.name == "__init__"), None)
-    if made and not written:
-        return replace(parsed, signature=made.signature, parameters=made.parameters)
+    parsed = _interpreted(document.children, call, slots)
+    constructor = next((member.docstring for member in parsed.members if member.name == "__init__"), None)
+    if constructor and not call:
+        return replace(parsed, signature=constructor.signature, parameters=constructor.parameters)
     return parsed
 
 
 def _member(node: _Declared) -> Member:
-    """Of several signatures the longest one counts, the others are mentioned."""
+    """A member with the longest of its signatures; the description mentions the others."""
     call, *others = sorted(node["calls"], key=len, reverse=True)
     parsed = _interpreted(node.children, call)
     if others:
@@ -310,26 +310,26 @@ def _member(node: _Declared) -> Member:
 def _interpreted(
     children: Sequence[nodes.Node], written: str, slots: tuple[Parameter, ...] = ()
 ) -> Docstring:
-    """The body of a docstring, or of a method within it; ``slots`` are results known beforehand."""
-    found = _Fields()
+    """Reads the body of a docstring, or of a method within it; ``slots`` are results known beforehand."""
+    fields = _Fields()
     described: list[nodes.Node] = []
     members: list[Member] = []
     for node in children:
         if isinstance(node, nodes.field_list):
             for row in node.children:
-                _read_field(row.children[0].astext(), _blocks(row.children[1].children), found)
+                _read_field(row.children[0].astext(), _blocks(row.children[1].children), fields)
         elif isinstance(node, _Declared):
             members.append(_member(node))
         else:
             described.append(node)
     returns = slots
-    if found.returns or found.return_type:
-        returns = (Parameter(name="", type=found.return_type, description=found.returns),)
+    if fields.returns or fields.return_type:
+        returns = (Parameter(name="", type=fields.return_type, description=fields.returns),)
     return Docstring(
-        description="\n\n".join(part for part in (_blocks(described), *found.other) if part),
+        description="\n\n".join(part for part in (_blocks(described), *fields.other) if part),
         signature=written,
-        type=found.own_type or (found.return_type if not written.endswith(")") else ""),
-        parameters=_parameters(written, found),
+        type=fields.own_type or (fields.return_type if not written.endswith(")") else ""),
+        parameters=_parameters(written, fields),
         returns=returns,
         members=tuple(members),
     )

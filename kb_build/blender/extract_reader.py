@@ -1,4 +1,4 @@
-"""What the script inside Blender wrote → symbols, links and templates."""
+"""Reads the extractor's output: symbols, links and templates."""
 
 from __future__ import annotations
 
@@ -62,10 +62,10 @@ class _Raw:
 
 
 def _complete_items(row: dict[str, Any] | None, identifiers: list[str]) -> None:
-    """The items that an instance listed take the place of RNA's placeholder."""
+    """Replaces RNA's placeholder by the items that an instance listed."""
     if row is not None:
-        known = {item["identifier"]: item for item in row.get("enum_items", ())}
-        row["enum_items"] = [known.get(name, {"identifier": name}) for name in identifiers]
+        items = {item["identifier"]: item for item in row.get("enum_items", ())}
+        row["enum_items"] = [items.get(name, {"identifier": name}) for name in identifiers]
 
 
 def _read(path: Path) -> _Raw:
@@ -107,7 +107,7 @@ def _read(path: Path) -> _Raw:
 
 
 def _substitute(rows: Iterable[dict[str, Any]]) -> None:
-    """Puts the texts that a module's docstring defines (``.. |NAME| replace::``) where its members name them."""
+    """Replaces ``|NAME|`` in the docstrings of members by the text that their module defines for it."""
     documented = [row for row in rows if "|" in row.get("docstring", "")]
     texts = {name: text for row in documented for name, text in _SUBSTITUTION.findall(row["docstring"])}
     for row in documented:
@@ -161,7 +161,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
 
 
 def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
-    """Methods that only the docstring of their class knows, as Freestyle's: the reference lists them."""
+    """Methods described only in the docstring of their class, as Freestyle's; the reference lists them."""
     for row in rows:
         if row["kind"] == "class" and row.get("docstring"):
             for member in parse_docstring(row["docstring"], row.get("signature", "")).members:
@@ -181,7 +181,7 @@ def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
 
 
 def _subclass_lookups(classes: Iterable[Symbol], prototypes: list[Symbol]) -> Iterator[Symbol]:
-    """``bl_rna_get_subclass`` and its twin, which the reference lists on every class."""
+    """``bl_rna_get_subclass`` and ``bl_rna_get_subclass_py``, which the reference lists on every class."""
     for cls in classes:
         for prototype in prototypes:
             yield replace(prototype, path=f"{cls.path}.{prototype.name}", owner=cls.path)
@@ -206,7 +206,7 @@ def manual_links(symbols: Iterable[Symbol], table: list[tuple[str, str]]) -> Ite
 
 
 def _structure(symbols: Iterable[Symbol]) -> Iterator[Link]:
-    """What RNA itself says about who belongs to whom."""
+    """Links from RNA: bases, owners of sockets, targets of pointers and collections."""
     for symbol in symbols:
         if symbol.kind == "class" and symbol.base:
             yield Link(symbol.path, symbol.base, "base")

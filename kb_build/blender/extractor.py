@@ -1,4 +1,4 @@
-"""Runs the extractor inside Blender; what it wrote is kept and used again for the same Blender."""
+"""Runs the extractor inside Blender and keeps its output for the next build of the same Blender."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _SECONDS = 600.0
 
 
 def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: Progress = silent) -> Path:
-    """The file in ``home`` with all that this Blender says of its API (see extract_reader.read_extract).
+    """Returns the file in ``home`` that describes this Blender's API (see extract_reader.read_extract).
 
-    Blender is started when its file is not there yet, or ``again`` asks for a fresh one. Raises ExtractError,
+    Starts Blender if there is no such file yet, or if ``again``. Raises ExtractError,
     naming the log with Blender's output.
     """
     digests = Digests(cache_folder(home) / "digests.json")
@@ -61,8 +61,8 @@ def _run(runtime: Runtime, part: Path, log: Path) -> None:
         raise ExtractError(str(error)) from error
     if not _is_whole(part):
         raise ExtractError(
-            f"Blender {runtime.version} ended well, but what it wrote is not whole. Its output is in {log}; "
-            "run the build again"
+            f"Blender {runtime.version} ended without an error, but its extract is not complete. "
+            f"Its output is in {log}; run the build again"
         )
 
 
@@ -76,7 +76,7 @@ def _is_whole(extract: Path) -> bool:
 
 
 def _remove_older(target: Path, minor: str) -> None:
-    """Of one minor version only the newest extract is kept."""
+    """Removes the other extracts of the minor version."""
     for path in target.parent.glob(f"blender-{minor}.*.jsonl"):
         if path != target:
             path.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""Text → terms, alike when the base is written and when it is asked. Part of the store's schema."""
+"""Text → terms, the same when a base is written and when it is queried. Part of the store's schema."""
 
 from __future__ import annotations
 
@@ -39,33 +39,33 @@ def stem(word: str) -> str:
 
 
 def words(text: str) -> list[str]:
-    """Lower-case words; identifiers are taken apart at ``_``, at dots and at CamelCase humps."""
-    found: list[str] = []
+    """Lower-case words; identifiers are split at ``_``, at dots and at CamelCase humps."""
+    parts: list[str] = []
     for token in _WORD.findall(text):
         if token.isascii() and token[0].isalpha() and not token.islower():
-            found.extend(part.lower() for part in _CAMEL.findall(token))
+            parts.extend(part.lower() for part in _CAMEL.findall(token))
         else:
-            found.append(token.lower())
-    return found
+            parts.append(token.lower())
+    return parts
 
 
-def telling_words(text: str) -> list[str]:
-    """A text's words, stop words left out, in order and with repetitions."""
+def content_words(text: str) -> list[str]:
+    """A text's words without stop words, in order and with repetitions."""
     return [word for word in words(text) if word not in STOP_WORDS]
 
 
 def terms(text: str) -> list[str]:
-    """The stems of a text's telling words."""
-    return [stem(word) for word in telling_words(text)]
+    """The stems of a text's content words."""
+    return [stem(word) for word in content_words(text)]
 
 
 def idf(documents: int, having: int) -> float:
-    """How much a stem tells that ``having`` of the ``documents`` have: ln(1 + (N - df + ½) / (df + ½)); 0 if none."""
+    """Inverse document frequency, ln(1 + (N - df + ½) / (df + ½)), of a stem in ``having`` documents; 0 if none."""
     return math.log(1 + (documents - having + 0.5) / (having + 0.5)) if having else 0.0
 
 
 def key(text: str) -> str:
-    """Spelling folded away: ``quality_steps``, ``qualitySteps`` and ``Quality Steps`` have one key."""
+    """One key for all spellings of a name: ``quality_steps``, ``qualitySteps`` and ``Quality Steps``."""
     return _NOT_KEY.sub("", text).lower()
 
 

@@ -1,4 +1,4 @@
-"""Unpacking archives that nobody vouches for.
+"""Unpacks untrusted archives safely.
 
 Only regular files are written, each below the target folder, as ordinary bytes with ordinary permissions.
 Links, devices and everything else that is not a file or a folder are passed over; a name that leads out of
@@ -52,8 +52,8 @@ _DAMAGE = (
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
-    """How much an archive may ask of the machine.
+class ArchiveLimits:
+    """Limits on what an archive may unpack to.
 
     ``total_bytes`` bounds everything that is unpacked or read past; ``ratio`` bounds it again as a multiple
     of the archive's own size, once ``free_bytes`` are exceeded. The manual's HTML packs 215 to 1.
@@ -74,7 +74,7 @@ def unpack(
     target: Path,
     *,
     wanted: Wanted | None = None,
-    limits: Limits | None = None,
+    limits: ArchiveLimits | None = None,
     progress: Progress | None = None,
 ) -> int:
     """Unpack a .zip or .tar (plain, .gz, .bz2, .xz) into the new folder ``target``; returns how many files.
@@ -86,7 +86,7 @@ def unpack(
     try:
         size = archive.stat().st_size
         with staged_folder(target) as folder, archive.open("rb") as file:
-            job = _Job(archive, folder, wanted, limits or Limits(), size, file, progress)
+            job = _Job(archive, folder, wanted, limits or ArchiveLimits(), size, file, progress)
             return job.run()
     except _DAMAGE as error:
         raise SourceError(
@@ -126,7 +126,7 @@ class _Job:
     archive: Path
     folder: Path
     wanted: Wanted | None
-    limits: Limits
+    limits: ArchiveLimits
     size: int
     file: io.BufferedReader
     progress: Progress | None
@@ -203,7 +203,7 @@ class _Job:
 
 
 class _Guarded(io.RawIOBase):
-    """A decompressed tar stream that is read forwards, in bounded steps, up to a bounded total.
+    """A decompressed tar stream, read forwards only, with limits on each step and on the total.
 
     tarfile reads an extended header in one piece, however long it claims to be; the bound on one step keeps
     that from filling the memory.

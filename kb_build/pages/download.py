@@ -1,4 +1,4 @@
-"""One archive from the official site: resumed where it broke off, given up where nothing answers."""
+"""Downloads an archive from the official site; resumes broken downloads and gives up on silent hosts."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ _Event = tuple[int, int | None] | Exception | None
 
 
 @dataclass(slots=True)
-class Patience:
-    """How many seconds addresses that do not answer may still cost, all of them together."""
+class DownloadPatience:
+    """The seconds left to wait for hosts that do not answer, all of them together."""
 
     seconds: float = 10.0
     silent_hosts: dict[str, str] = field(default_factory=dict[str, str])
 
     def spend(self, seconds: float, host: str, fault: str) -> None:
-        """Note that ``host`` gave nothing for so long; it is not asked again."""
+        """Records that ``host`` was silent for ``seconds``; it is not asked again."""
         self.seconds = max(0.0, self.seconds - seconds)
         self.silent_hosts[host] = fault
 
 
-def download(url: str, target: Path, *, patience: Patience, progress: Progress | None = None) -> str:
+def download(url: str, target: Path, *, patience: DownloadPatience, progress: Progress | None = None) -> str:
     """Fetch the zip archive at ``url`` into ``target``; returns its SHA-256, also written beside it.
 
     What has arrived stays in ``target``'s .part file when the transfer breaks off, and the next call goes on
@@ -50,7 +50,7 @@ def download(url: str, target: Path, *, patience: Patience, progress: Progress |
     host = urlsplit(url).netloc
     if host in patience.silent_hosts:
         raise SourceError(
-            f"{url} was not asked: {host} gave no answer before ({patience.silent_hosts[host]})"
+            f"{url} was not tried: {host} did not answer before ({patience.silent_hosts[host]})"
         )
     target.parent.mkdir(parents=True, exist_ok=True)
     part = target.with_name(target.name + ".part")
@@ -76,7 +76,7 @@ def _accept(url: str, part: Path, target: Path) -> str:
         with part.open("rb") as file:
             start = file.read(40)
         part.unlink()
-        raise SourceError(f"{url} gave something that is not a zip archive (it starts with {start!r})")
+        raise SourceError(f"{url} is not a zip archive (it starts with {start!r})")
     with part.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     target.with_name(target.name + ".sha256").write_text(f"{digest}  {target.name}\n", encoding="ascii")
@@ -100,7 +100,7 @@ class _Transfer:
 
     url: str
     part: Path
-    patience: Patience
+    patience: DownloadPatience
     progress: Progress | None
     label: str
     events: queue.SimpleQueue[_Event] = field(default_factory=queue.SimpleQueue[_Event])
@@ -202,7 +202,7 @@ class _Transfer:
 
 
 def _validator(response: httpx2.Response) -> str:
-    """What names this very state of the file: a strong ETag, else its date; empty when there is neither."""
+    """The validator of the file's state: a strong ETag, else its date; empty if there is neither."""
     etag = response.headers.get("ETag", "")
     return etag if etag.startswith('"') else response.headers.get("Last-Modified", "")
 

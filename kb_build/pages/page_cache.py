@@ -1,4 +1,4 @@
-"""Pages that were read from a source are kept: a new Blender does not make the manual be read again."""
+"""Cache of the pages read from a source: a new Blender does not mean reading the manual again."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from simworlds.files import remove_unfinished_files, staged_file
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_build.pages.sources import Source
+    from kb_build.pages.sources import DocumentationSource
     from kb_build.records import Page, PageSource
     from simworlds.terminal.progress import Progress
 
@@ -23,8 +23,8 @@ _KEPT = 12
 _LEVEL = 1  # a tenth of a second for a manual; better ones take a whole one
 
 
-def pages_file(source: Source, cache: Path) -> Path:
-    """Where a source's pages are kept: other contents, reader or version, another name."""
+def pages_file(source: DocumentationSource, cache: Path) -> Path:
+    """The cache file of a source's pages; its name depends on contents, reader and version."""
     return (
         cache
         / "pages"
@@ -32,8 +32,8 @@ def pages_file(source: Source, cache: Path) -> Path:
     )
 
 
-def kept_pages(source: Source, cache: Path) -> list[Page] | None:
-    """The pages of a source if they were read before; None if not, or if the file is damaged."""
+def kept_pages(source: DocumentationSource, cache: Path) -> list[Page] | None:
+    """The cached pages of a source; None if there are none, or the file is damaged."""
     path = pages_file(source, cache)
     try:
         with gzip.open(path, "rt", encoding="utf-8") as file:
@@ -42,8 +42,8 @@ def kept_pages(source: Source, cache: Path) -> list[Page] | None:
         return None
 
 
-def read_pages(source: Source, cache: Path, *, jobs: int, progress: Progress) -> list[Page]:
-    """Reads a source's pages and keeps them. Raises SourceError when it has none, or the disk is full."""
+def read_pages(source: DocumentationSource, cache: Path, *, jobs: int, progress: Progress) -> list[Page]:
+    """Reads a source's pages and caches them. Raises SourceError when it has none, or the disk is full."""
     label = f"Reading the {source.role} ({source.form.upper()})"
 
     def step(done: int, total: int) -> None:

@@ -1,4 +1,4 @@
-"""Pages are read in a process of their own, while this one asks Blender and reads its answer."""
+"""Reads pages in a process of its own, while this one extracts the API from Blender."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import TracebackType
 
-    from kb_build.pages.sources import Source
+    from kb_build.pages.sources import DocumentationSource
     from kb_build.records import Page
     from simworlds.terminal.progress import Progress
 
@@ -29,12 +29,14 @@ _REPORT_SECONDS = 0.1
 
 
 class PageReader:
-    """Context manager: starts reading what is not kept already; nothing of it is left running afterwards.
+    """Context manager: starts reading what is not cached; leaves no process behind.
 
     Where a process cannot be forked safely, the pages are read by :meth:`result` instead.
     """
 
-    def __init__(self, sources: Sequence[Source], cache: Path, *, jobs: int, progress: Progress) -> None:
+    def __init__(
+        self, sources: Sequence[DocumentationSource], cache: Path, *, jobs: int, progress: Progress
+    ) -> None:
         self._sources = sources
         self._cache = cache
         self._jobs = jobs
@@ -54,7 +56,7 @@ class PageReader:
         return self
 
     @property
-    def _unread(self) -> list[Source]:
+    def _unread(self) -> list[DocumentationSource]:
         return [source for source in self._sources if source.role not in self._pages]
 
     def _scratch(self) -> Path:
@@ -103,14 +105,14 @@ class PageReader:
 
 @dataclass(frozen=True, slots=True)
 class _Job:
-    sources: Sequence[Source]
+    sources: Sequence[DocumentationSource]
     cache: Path
     processes: int
     scratch: Path
 
 
 def _work(job: _Job, messages: Connection) -> None:
-    """The other process: reads, keeps, tells how far it is."""
+    """The other process: reads and caches pages, and reports its progress."""
     tempfile.tempdir = str(job.scratch)
     last = 0.0
 

@@ -1,4 +1,4 @@
-"""Where manual and guides come from: a path given, a folder of sources, the cache, the official site."""
+"""Finds the manual and the guides: by a given path, in a folder of sources, in the cache, on the official site."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from kb_build.digests import Digests
 from kb_build.errors import SourceError
 from kb_build.pages.archives import unpack
-from kb_build.pages.download import Patience, download
+from kb_build.pages.download import DownloadPatience, download
 from simworlds.releases import ROLES, Role, address, archive_suffixes, minor_of, source_names
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _FOLDERS = 5_000
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class DocumentationSource:
     """Pages to build from.
 
     ``path`` is the folder that the pages' slugs are relative to; ``version`` the documentation's own minor
@@ -45,15 +45,15 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a source was had from, and whether the user had named it."""
+    """Where a source came from, and whether the user named it."""
 
     path: Path
     given: bool
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
-    """A source that could not be had: what was tried, and what to do."""
+class MissingSource:
+    """A source that could not be found: what was tried, and what to do."""
 
     role: Role
     reason: str
@@ -69,10 +69,10 @@ def find_sources(  # noqa: PLR0913 - each names one place to look in
     before: Mapping[str, Origin] | None = None,
     allow_download: bool = True,
     base_url: str | None = None,
-    patience: Patience | None = None,
+    patience: DownloadPatience | None = None,
     progress: Progress | None = None,
-) -> tuple[list[Source], list[Missing]]:
-    """The manual and the guides of a Blender version: those found, and those that could not be had.
+) -> tuple[list[DocumentationSource], list[MissingSource]]:
+    """Finds the manual and the guides of a Blender version; returns the sources and what is missing.
 
     ``manual`` and ``guides`` are folders or archives named by the user, taken whatever their version;
     ``corpora`` is a folder with sources of several versions; ``before`` tells by role where the last build had
@@ -80,14 +80,16 @@ def find_sources(  # noqa: PLR0913 - each names one place to look in
     digests; ``base_url`` replaces the official site; silent addresses cost what ``patience`` allows
     (ten seconds), both roles together. Raises SourceError when a path that the user named cannot be used.
     """
-    waits = patience or Patience()
+    waits = patience or DownloadPatience()
     search = _Search(
         minor_of(version), cache, corpora, before or {}, allow_download, base_url, waits, progress
     )
     given = {"manual": manual, "guides": guides}
-    found = [search.find(role, given[role]) for role in ROLES]
+    results = [search.find(role, given[role]) for role in ROLES]
     search.digests.save()
-    return [s for s in found if isinstance(s, Source)], [s for s in found if isinstance(s, Missing)]
+    return [s for s in results if isinstance(s, DocumentationSource)], [
+        s for s in results if isinstance(s, MissingSource)
+    ]
 
 
 @dataclass(slots=True)
@@ -100,7 +102,7 @@ class _Search:
     before: Mapping[str, Origin]
     allow_download: bool
     base_url: str | None
-    patience: Patience
+    patience: DownloadPatience
     progress: Progress | None
     digests: Digests = field(init=False)
 
@@ -111,7 +113,7 @@ class _Search:
     def downloads(self) -> Path:
         return self.cache / "downloads"
 
-    def find(self, role: Role, given: Path | None) -> Source | Missing:
+    def find(self, role: Role, given: Path | None) -> DocumentationSource | MissingSource:
         if given is not None:
             return self._open(role, given.expanduser().absolute(), given=True)
         faults: list[str] = []
@@ -120,23 +122,23 @@ class _Search:
             if source := attempt(role, faults):
                 return source
         name = "manual" if role == "manual" else "API guides"
-        return Missing(
+        return MissingSource(
             role,
             f"no {name} of Blender {self.version}: {'; '.join(faults)}. "
             f"Give one with --{role} PATH (make kb {role.upper()}=PATH), or run again with a network",
         )
 
-    def _among_corpora(self, role: Role, faults: list[str]) -> Source | None:
+    def _among_corpora(self, role: Role, faults: list[str]) -> DocumentationSource | None:
         if self.corpora is None:
             faults.append("no folder of sources is named (SIMWORLDS_CORPORA)")
             return None
         return self._among(self.corpora, role, faults)
 
-    def _among_downloads(self, role: Role, faults: list[str]) -> Source | None:
+    def _among_downloads(self, role: Role, faults: list[str]) -> DocumentationSource | None:
         return self._among(self.downloads, role, faults)
 
-    def _as_before(self, role: Role, faults: list[str]) -> Source | None:
-        """Where the last build had it from: a build that names nothing must not lose what the base has."""
+    def _as_before(self, role: Role, faults: list[str]) -> DocumentationSource | None:
+        """Looks where the last build found it: a build that names no source must not lose pages of the base."""
         origin = self.before.get(role)
         if self.corpora is not None or origin is None or not origin.path.exists():
             return None
@@ -146,7 +148,7 @@ class _Search:
             faults.append(str(error))
             return None
 
-    def _among(self, folder: Path, role: Role, faults: list[str]) -> Source | None:
+    def _among(self, folder: Path, role: Role, faults: list[str]) -> DocumentationSource | None:
         """The first usable source of this version that lies in ``folder`` under one of the usual names."""
         for path in _candidates(folder, role, self.version):
             try:
@@ -156,7 +158,7 @@ class _Search:
         faults.append(f"{folder} has none" if folder.is_dir() else f"{folder} does not exist")
         return None
 
-    def _from_site(self, role: Role, faults: list[str]) -> Source | None:
+    def _from_site(self, role: Role, faults: list[str]) -> DocumentationSource | None:
         if not self.allow_download:
             faults.append("downloads are off")
             return None
@@ -169,14 +171,14 @@ class _Search:
             faults.append(str(error))
         return None
 
-    def _open(self, role: Role, path: Path, *, given: bool) -> Source:
+    def _open(self, role: Role, path: Path, *, given: bool) -> DocumentationSource:
         """The source at ``path``. Raises SourceError if it has no pages of this role, or another version."""
         try:
             return self._read(role, path, given=given)
         except OSError as error:
             raise SourceError(f"{path} cannot be read: {error}") from error
 
-    def _read(self, role: Role, path: Path, *, given: bool) -> Source:
+    def _read(self, role: Role, path: Path, *, given: bool) -> DocumentationSource:
         if path.is_dir():
             top, digest = path, None
         elif path.is_file():
@@ -190,7 +192,7 @@ class _Search:
         version = _version_of(pages, top, path)
         if not given and version not in {self.version, "unknown"}:
             raise SourceError(f"{path} holds Blender {version}")
-        return Source(
+        return DocumentationSource(
             role=role,
             path=pages,
             form=form,

@@ -28,7 +28,7 @@ from anthropic.types.messages import MessageBatch
 from pydantic import BaseModel, ValidationError
 
 from kb_build.errors import SummaryError
-from kb_build.summaries.prompt import Answer
+from kb_build.summaries.prompt import SummaryReply
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -80,7 +80,7 @@ class ItemResult(BaseModel):
     """What became of one request of a batch. ``type`` is the API's, or ``"malformed"``."""
 
     type: str
-    message: Answer | None = None
+    message: SummaryReply | None = None
     error: _ErrorReply | None = None
 
 
@@ -89,7 +89,9 @@ class BatchAPI:
 
     def __init__(self, api_key: str, options: ClaudeOptions, tell: Callable[[str], None]) -> None:
         if not (api_key.isascii() and api_key.isprintable()):
-            raise SummaryError("ANTHROPIC_API_KEY holds characters that no key has. Copy the key again.")
+            raise SummaryError(
+                "ANTHROPIC_API_KEY holds characters that a key cannot have. Copy the key again."
+            )
         try:
             self._client = Anthropic(
                 api_key=api_key,
@@ -100,12 +102,12 @@ class BatchAPI:
             url = self._client.base_url
         except httpx2.InvalidURL as error:
             raise SummaryError(
-                f"ANTHROPIC_BASE_URL is no address ({error}). Correct it or unset it."
+                f"ANTHROPIC_BASE_URL is not a valid address ({error}). Correct it or unset it."
             ) from error
         self.base_url = str(url)
         if url.scheme not in ("http", "https") or not url.host:
             raise SummaryError(
-                f"ANTHROPIC_BASE_URL ({self.base_url}) is no web address. Correct it or unset it."
+                f"ANTHROPIC_BASE_URL ({self.base_url}) is not a web address. Correct it or unset it."
             )
         self._options = options
         self._tell = tell
@@ -147,9 +149,9 @@ class BatchAPI:
                 return _checked(create(requests=requests))
             except _PASSING as error:
                 if not (isinstance(error, APIStatusError) and error.status_code in _NOT_RECEIVED):
-                    found = self.find(nonce, len(requests), sent, known)
-                    if found:
-                        return found
+                    batch = self.find(nonce, len(requests), sent, known)
+                    if batch:
+                        return batch
                 self._pause_or_give_up("send a batch", failed, error)
             except APIStatusError as error:
                 raise self._rejected("send a batch", error) from error
@@ -201,12 +203,12 @@ class BatchAPI:
 
         Lines that cannot be read are asked for again, then left out.
         """
-        found: dict[str, ItemResult] = {}
+        results: dict[str, ItemResult] = {}
         for _ in range(_READINGS):
-            found.update(self._patiently(f"read batch {batch_id}", lambda: self._read(batch_id)))
-            if len(found) >= count:
+            results.update(self._patiently(f"read batch {batch_id}", lambda: self._read(batch_id)))
+            if len(results) >= count:
                 break
-        return found
+        return results
 
     def _recent(self) -> list[MessageBatch]:
         try:

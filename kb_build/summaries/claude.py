@@ -1,4 +1,4 @@
-"""Summaries by Claude: which pages are asked about, what that may cost, what became of it.
+"""Summaries by Claude: which pages to ask about, what it may cost, and what came back.
 
 Every page is asked about at most twice in a run, and a page whose answers were refused or malformed twice is
 not asked about again with the same prompt and model. Batches of an earlier, interrupted run come first.
@@ -26,8 +26,8 @@ from kb_build.summaries.types import (
     ClaudeOptions,
     Failure,
     FailureReason,
+    PageSummary,
     Progress,
-    Summary,
     SummaryReport,
     summary_key,
 )
@@ -55,31 +55,31 @@ _ENDED_WITHOUT_ANSWER: dict[str, tuple[FailureReason, str]] = {
 
 def claude_summaries(
     pages: Sequence[Page], store: SummaryStore, options: ClaudeOptions, progress: Progress
-) -> tuple[dict[str, Summary], SummaryReport]:
+) -> tuple[dict[str, PageSummary], SummaryReport]:
     """The summaries that Claude wrote, by slug (pages without are absent), and the report.
 
-    Raises SummaryError, see :func:`kb_build.summaries.summarise`.
+    Raises SummaryError, see :func:`kb_build.summaries.methods.summarise`.
     """
     keys = {page.slug: summary_key(page.content_hash, PROMPT_VERSION, options.model) for page in pages}
     worthy = {keys[page.slug]: page for page in pages if len(page.text) >= MIN_CHARS}
-    found = store.get(worthy)
+    summaries = store.get(worthy)
     run = None
-    reused = set(found)
-    if len(found) < len(worthy):
+    reused = set(summaries)
+    if len(summaries) < len(worthy):
         with store.exclusive(progress):
-            found = store.get(worthy)  # another build may have made them while this one waited
-            reused = set(found)
-            missing = {key: page for key, page in worthy.items() if key not in found}
+            summaries = store.get(worthy)  # another build may have made them while this one waited
+            reused = set(summaries)
+            missing = {key: page for key, page in worthy.items() if key not in summaries}
             if missing:
                 run = _Run(missing, store, options, progress)
                 with contextlib.closing(run.api):
                     run.run()
-                found.update(run.made)
-    by_slug = {slug: found[key] for slug, key in keys.items() if key in found}
+                summaries.update(run.made)
+    by_slug = {slug: summaries[key] for slug, key in keys.items() if key in summaries}
     failed = [
         Failure(slug, bad.reason, bad.detail)
         for slug, key in keys.items()
-        if run and key not in found and (bad := run.failures.get(key))
+        if run and key not in summaries and (bad := run.failures.get(key))
     ]
     notes = list(run.notes) if run else []
     small = sum(1 for key in keys.values() if key not in worthy)
@@ -112,7 +112,9 @@ class _Run:
                 "them. Set ANTHROPIC_API_KEY, or use the method 'extractive', which needs none."
             )
         if options.max_cost is not None and not options.max_cost >= 0:
-            raise SummaryError(f"A spending limit of {options.max_cost} is none. Give US dollars, 0 or more.")
+            raise SummaryError(
+                f"The spending limit {options.max_cost} is not valid. Give US dollars, 0 or more."
+            )
         self.price = price_of(options.model, options.price)
         self.facts = facts(options.model)
         self.api = BatchAPI(api_key, options, lambda line: progress(len(self.made), len(pages), line))
@@ -120,7 +122,7 @@ class _Run:
         self.store = store
         self.options = options
         self.progress = progress
-        self.made: dict[str, Summary] = {}
+        self.made: dict[str, PageSummary] = {}
         self.failures: dict[str, BadAnswer] = {}
         self.notes: list[str] = []
         self.input_tokens = 0
@@ -249,7 +251,7 @@ class _Run:
         self.progress(len(self.made), len(self.pages), f"waiting for batch {batch_id}")
         self.api.wait(batch_id)
         results = self.api.results(batch_id, len(batch.items))
-        summaries: list[Summary] = []
+        summaries: list[PageSummary] = []
         failures: list[BadAnswer] = []
         for custom_id, key in batch.items.items():
             result = results.get(custom_id)
@@ -259,7 +261,7 @@ class _Run:
             except NoSummaryError as error:
                 failures.append(BadAnswer(key, error.reason, str(error)))
             else:
-                summaries.append(Summary(key, text, "claude", batch.model, batch.prompt_version))
+                summaries.append(PageSummary(key, text, "claude", batch.model, batch.prompt_version))
         lasting = [bad for bad in failures if bad.reason in ("refusal", "malformed")]
         self.store.settle(batch.nonce, summaries, lasting)
         self.made.update((one.key, one) for one in summaries if one.key in self.pages)
@@ -301,6 +303,6 @@ def _text_of(result: ItemResult | None) -> str:
             "errored", f"{error.type}: {error.message}"[:300] if error else "no reason given"
         )
     reason, detail = _ENDED_WITHOUT_ANSWER.get(
-        result.type, ("malformed", f"a result that is no result ({result.type[:40]})")
+        result.type, ("malformed", f"an unknown type of result ({result.type[:40]})")
     )
     raise NoSummaryError(reason, detail)

@@ -1,4 +1,4 @@
-"""Summaries out of a page's own sentences.
+"""Summaries from a page's own sentences.
 
 Which sentences: only prose counts. Headings, notes and other quotes, lists, definition and field lists,
 tables, code, captions, bare references (``See …``), statements that something is missing and sentences that
@@ -27,7 +27,7 @@ import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from kb_build.summaries.types import Summary, summary_key
+from kb_build.summaries.types import PageSummary, summary_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -72,13 +72,13 @@ _STOP_WORDS = frozenset(
 )
 
 
-def extractive_summaries(pages: Sequence[Page]) -> dict[str, Summary]:
+def extractive_summaries(pages: Sequence[Page]) -> dict[str, PageSummary]:
     """A summary for every page, by slug; at most ``MAX_CHARS`` characters of plain text, never empty."""
     titles = {page.slug: page.title for page in pages}
     return {page.slug: extractive_summary(page, titles) for page in pages}
 
 
-def extractive_summary(page: Page, titles: Mapping[str, str]) -> Summary:
+def extractive_summary(page: Page, titles: Mapping[str, str]) -> PageSummary:
     """The summary of one page; ``titles`` (by slug) names its children where it has no prose of its own."""
     lead = _best(page, page.sections[:1])
     if lead:
@@ -90,7 +90,7 @@ def extractive_summary(page: Page, titles: Mapping[str, str]) -> Summary:
         text = both if len(both) <= MAX_CHARS or not contents else contents
     key = summary_key(page.content_hash, EXTRACTIVE_VERSION, MODEL)
     text = _plain(text) or _plain(_place(page)) or page.content_hash[:12]
-    return Summary(key, _cut(text), "extractive", MODEL, EXTRACTIVE_VERSION)
+    return PageSummary(key, _cut(text), "extractive", MODEL, EXTRACTIVE_VERSION)
 
 
 def _best(page: Page, sections: Sequence[Section]) -> str:
@@ -148,15 +148,15 @@ def _plain(markdown: str) -> str:
 
 def _sentences(paragraph: str) -> list[str]:
     """The paragraph's sentences; text that does not end like one (a caption, a label) gives none."""
-    found: list[str] = []
+    sentences: list[str] = []
     for part in _SENTENCE_END.split(paragraph):
-        if found and _ABBREVIATION.search(found[-1][-12:]):
-            found[-1] = f"{found[-1]} {part}"
+        if sentences and _ABBREVIATION.search(sentences[-1][-12:]):
+            sentences[-1] = f"{sentences[-1]} {part}"
         else:
-            found.append(part)
-    if found and not found[-1].rstrip("\"')]").endswith((".", "!", "?", ":")):
-        found.pop()
-    return [sentence for sentence in found if len(sentence) > 20]
+            sentences.append(part)
+    if sentences and not sentences[-1].rstrip("\"')]").endswith((".", "!", "?", ":")):
+        sentences.pop()
+    return [sentence for sentence in sentences if len(sentence) > 20]
 
 
 def _weights(paragraphs: list[list[str]], page: Page) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Facts about Claude's models that a request and its cost depend on, all in one place."""
+"""Facts about Claude's models that requests and costs depend on."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from kb_build.errors import SummaryError
-from kb_build.summaries.types import Price
+from kb_build.summaries.types import TokenPrice
 
 BATCH_DISCOUNT = 0.5
 """What a token costs in a message batch, as a share of its price."""
@@ -26,7 +26,7 @@ class ModelFacts:
     easy), ``"none"`` (it does not think unless asked to), ``"unknown"``.
     """
 
-    price: Price | None
+    price: TokenPrice | None
     thinking: Literal["disable", "effort", "none", "unknown"]
 
     @property
@@ -43,29 +43,29 @@ class ModelFacts:
 # As published by Anthropic in November 2026. Haiku 5.5 costs five times as much for prompts of more than
 # 100,000 tokens, which the cap on a page's length rules out.
 MODELS: dict[str, ModelFacts] = {
-    "claude-haiku-5-5": ModelFacts(Price(0.10, 0.50), "disable"),
-    "claude-haiku-4-5": ModelFacts(Price(1.00, 5.00), "none"),
-    "claude-sonnet-5-5": ModelFacts(Price(2.00, 10.00), "effort"),
-    "claude-sonnet-5": ModelFacts(Price(2.00, 10.00), "effort"),
-    "claude-sonnet-4-6": ModelFacts(Price(3.00, 15.00), "none"),
-    "claude-sonnet-4-5": ModelFacts(Price(3.00, 15.00), "none"),
-    "claude-opus-5-5": ModelFacts(Price(4.00, 20.00), "effort"),
-    "claude-opus-5": ModelFacts(Price(5.00, 25.00), "disable"),
-    "claude-opus-4-8": ModelFacts(Price(5.00, 25.00), "none"),
-    "claude-opus-4-7": ModelFacts(Price(5.00, 25.00), "none"),
-    "claude-opus-4-6": ModelFacts(Price(5.00, 25.00), "none"),
-    "claude-opus-4-5": ModelFacts(Price(5.00, 25.00), "none"),
-    "claude-fable-5-2": ModelFacts(Price(8.00, 40.00), "effort"),
-    "claude-fable-5-1": ModelFacts(Price(10.00, 50.00), "effort"),
+    "claude-haiku-5-5": ModelFacts(TokenPrice(0.10, 0.50), "disable"),
+    "claude-haiku-4-5": ModelFacts(TokenPrice(1.00, 5.00), "none"),
+    "claude-sonnet-5-5": ModelFacts(TokenPrice(2.00, 10.00), "effort"),
+    "claude-sonnet-5": ModelFacts(TokenPrice(2.00, 10.00), "effort"),
+    "claude-sonnet-4-6": ModelFacts(TokenPrice(3.00, 15.00), "none"),
+    "claude-sonnet-4-5": ModelFacts(TokenPrice(3.00, 15.00), "none"),
+    "claude-opus-5-5": ModelFacts(TokenPrice(4.00, 20.00), "effort"),
+    "claude-opus-5": ModelFacts(TokenPrice(5.00, 25.00), "disable"),
+    "claude-opus-4-8": ModelFacts(TokenPrice(5.00, 25.00), "none"),
+    "claude-opus-4-7": ModelFacts(TokenPrice(5.00, 25.00), "none"),
+    "claude-opus-4-6": ModelFacts(TokenPrice(5.00, 25.00), "none"),
+    "claude-opus-4-5": ModelFacts(TokenPrice(5.00, 25.00), "none"),
+    "claude-fable-5-2": ModelFacts(TokenPrice(8.00, 40.00), "effort"),
+    "claude-fable-5-1": ModelFacts(TokenPrice(10.00, 50.00), "effort"),
 }
 
 
 def facts(model: str) -> ModelFacts:
-    """What is known of ``model`` (its name with or without a date)."""
+    """The facts of ``model`` (its name with or without a date)."""
     return MODELS.get(_DATE.sub("", model), ModelFacts(None, "unknown"))
 
 
-def price_of(model: str, override: Price | None) -> Price:
+def price_of(model: str, override: TokenPrice | None) -> TokenPrice:
     """The price to reckon with; ``override`` wins. Raises SummaryError for a model without a known price."""
     price = override or facts(model).price
     if price is None:
@@ -76,7 +76,7 @@ def price_of(model: str, override: Price | None) -> Price:
     return price
 
 
-def batch_cost(price: Price, input_tokens: float, output_tokens: float) -> float:
+def batch_cost(price: TokenPrice, input_tokens: float, output_tokens: float) -> float:
     """What so many tokens cost in a message batch, in US dollars."""
     usd = input_tokens * price.input_usd + output_tokens * price.output_usd
     return usd * BATCH_DISCOUNT / 1_000_000

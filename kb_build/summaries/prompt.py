@@ -1,4 +1,4 @@
-"""What Claude is asked about one page, and what counts as an answer.
+"""The request for the summary of a page, and the validation of the reply.
 
 Whoever changes the words, the schema or the cap on a page's length gives ``PROMPT_VERSION`` a new value:
 summaries made with another prompt are another thing, and are kept apart by it.
@@ -50,7 +50,7 @@ _SCHEMA: dict[str, object] = {
 _MARKUP = re.compile(r"```|\*\*|\]\(|^\s*(?:#{1,6}|[-*>])\s|</?[a-zA-Z][^<>]*>")
 
 
-class Usage(BaseModel):
+class ReplyUsage(BaseModel):
     """The tokens that an answer is charged for."""
 
     input_tokens: int = 0
@@ -66,7 +66,7 @@ class Usage(BaseModel):
         )
 
 
-class Block(BaseModel):
+class ReplyBlock(BaseModel):
     """One content block of an answer; only text matters."""
 
     type: str
@@ -80,13 +80,13 @@ class StopDetails(BaseModel):
     explanation: str | None = None
 
 
-class Answer(BaseModel):
+class SummaryReply(BaseModel):
     """A message of Claude's, as far as a summary depends on it."""
 
-    content: list[Block] = []
+    content: list[ReplyBlock] = []
     stop_reason: str | None = None
     stop_details: StopDetails | None = None
-    usage: Usage = Usage()
+    usage: ReplyUsage = ReplyUsage()
 
 
 class _Summary(BaseModel):
@@ -137,7 +137,7 @@ def document_text(page: Page) -> str:
     return f"{text[:_HEAD_CHARS]}\n\n[…]\n\nSections of the whole page: {titles[:_TITLES_CHARS]}"
 
 
-def summary_text(answer: Answer) -> str:
+def summary_text(answer: SummaryReply) -> str:
     """The summary in an answer, with its white space folded. Raises NoSummaryError where there is none."""
     if answer.stop_reason == "refusal":
         why = answer.stop_details and (answer.stop_details.explanation or answer.stop_details.category)

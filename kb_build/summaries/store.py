@@ -1,4 +1,4 @@
-"""The file that keeps summaries that were paid for, and the batches that are under way.
+"""The file of paid summaries and of batches under way.
 
 A SQLite file outside any knowledge base. Everything is written in whole transactions of SQLite's rollback
 journal: a process killed at any moment leaves the file as it was before or after, and the one file is all
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.errors import SummaryError
-from kb_build.summaries.types import FailureReason, Progress, Summary, silent
+from kb_build.summaries.types import FailureReason, PageSummary, Progress, silent
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping
@@ -66,7 +66,7 @@ class SentBatch:
 
 @dataclass(frozen=True, slots=True)
 class BadAnswer:
-    """An answer that is no summary: why, and a sentence about it."""
+    """An answer that is not a valid summary: why, and a sentence about it."""
 
     key: str
     reason: FailureReason
@@ -83,9 +83,9 @@ class SummaryStore:
     def __init__(self, path: Path) -> None:
         self.path = path
 
-    def get(self, keys: Iterable[str]) -> dict[str, Summary]:
+    def get(self, keys: Iterable[str]) -> dict[str, PageSummary]:
         """Those of ``keys`` that are there, with their summaries."""
-        found: dict[str, Summary] = {}
+        summaries: dict[str, PageSummary] = {}
         wanted = list(dict.fromkeys(keys))
         with self._connection() as db:
             for start in range(0, len(wanted), _VARIABLES):
@@ -94,10 +94,10 @@ class SummaryStore:
                 query = (
                     f"SELECT key, text, method, model, prompt_version FROM summaries WHERE key IN ({marks})"  # noqa: S608 - marks only
                 )
-                found.update((row[0], Summary(*row)) for row in db.execute(query, part))
-        return found
+                summaries.update((row[0], PageSummary(*row)) for row in db.execute(query, part))
+        return summaries
 
-    def add(self, summaries: Iterable[Summary]) -> int:
+    def add(self, summaries: Iterable[PageSummary]) -> int:
         """Keep ``summaries``; what is there already stays as it is. Returns how many were new."""
         with self._connection() as db, _transaction(db):
             return _insert(db, summaries)
@@ -113,7 +113,7 @@ class SummaryStore:
         theirs = SummaryStore(other)
         with theirs._connection(read_only=True) as db:
             rows = db.execute("SELECT key, text, method, model, prompt_version FROM summaries").fetchall()
-        return self.add(Summary(*row) for row in rows if _acceptable(row))
+        return self.add(PageSummary(*row) for row in rows if _acceptable(row))
 
     def count(self) -> int:
         """How many summaries there are."""
@@ -123,17 +123,12 @@ class SummaryStore:
     def failures(self, keys: Iterable[str]) -> dict[str, list[BadAnswer]]:
         """The refused and malformed answers so far to each of ``keys``, oldest first; no entry for none."""
         wanted = set(keys)
-        found: dict[str, list[BadAnswer]] = {}
+        answers: dict[str, list[BadAnswer]] = {}
         with self._connection() as db:
             for row in db.execute("SELECT key, reason, detail FROM failures ORDER BY id"):
                 if row[0] in wanted:
-                    found.setdefault(row[0], []).append(BadAnswer(*row))
-        return found
-
-    def forget_failures(self) -> None:
-        """Let every page that was refused or answered badly be asked about again."""
-        with self._connection() as db:
-            db.execute("DELETE FROM failures")
+                    answers.setdefault(row[0], []).append(BadAnswer(*row))
+        return answers
 
     def announce(self, batch: SentBatch) -> None:
         """Write down a batch before it is sent: what is known if the process dies while sending."""
@@ -159,7 +154,7 @@ class SummaryStore:
             query = "SELECT custom_id, key FROM batch_items WHERE nonce = ?"
             return [SentBatch(*row, items=dict(db.execute(query, row[:1]))) for row in rows]
 
-    def settle(self, nonce: str, summaries: Iterable[Summary], failures: Iterable[BadAnswer]) -> None:
+    def settle(self, nonce: str, summaries: Iterable[PageSummary], failures: Iterable[BadAnswer]) -> None:
         """Keep what came of a batch and forget the batch, all at once."""
         with self._connection() as db, _transaction(db):
             _insert(db, summaries)
@@ -216,7 +211,7 @@ class SummaryStore:
             foreign = db.execute("SELECT name FROM sqlite_schema WHERE type = 'table'").fetchall()
             if foreign and ("summaries",) not in foreign:
                 raise SummaryError(
-                    f"{self.path} is a database, but no summary store. Give another path for the summaries."
+                    f"{self.path} is a database, but not a summary store. Give another path for the summaries."
                 )
             for statement in _SCHEMA.split(";"):
                 db.execute(statement)
@@ -254,7 +249,7 @@ def _transaction(db: sqlite3.Connection) -> Generator[None]:
     db.execute("COMMIT")
 
 
-def _insert(db: sqlite3.Connection, summaries: Iterable[Summary]) -> int:
+def _insert(db: sqlite3.Connection, summaries: Iterable[PageSummary]) -> int:
     before = db.total_changes
     rows = ((one.key, one.text, one.method, one.model, one.prompt_version) for one in summaries)
     db.executemany("INSERT OR IGNORE INTO summaries VALUES (?, ?, ?, ?, ?)", rows)

@@ -1,4 +1,4 @@
-"""What goes into the making of summaries and what comes out of it."""
+"""Options, results and reports of making summaries."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FailureReason = Literal["refusal", "malformed", "errored", "expired", "canceled"
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class PageSummary:
     """One page's summary: plain text, at most 600 characters, without line breaks.
 
     ``model`` is the model that wrote it, ``"extractive"`` where the page's own sentences were chosen.
@@ -29,7 +29,7 @@ class Summary:
 
 
 @dataclass(frozen=True, slots=True)
-class Price:
+class TokenPrice:
     """What a model costs without any discount, in US dollars per million tokens."""
 
     input_usd: float
@@ -51,7 +51,7 @@ class ClaudeOptions:
 
     model: str = "claude-haiku-5-5"
     max_cost: float | None = 5.0
-    price: Price | None = None
+    price: TokenPrice | None = None
     api_key: str | None = None
     base_url: str | None = None
     timeout: float = 120.0
@@ -97,7 +97,7 @@ class SummaryReport:
 class SummaryRun:
     """The summaries by page slug, and the report."""
 
-    by_slug: dict[str, Summary]
+    by_slug: dict[str, PageSummary]
     report: SummaryReport
 
 
@@ -107,5 +107,5 @@ def summary_key(content_hash: str, prompt_version: str, model: str) -> str:
 
 
 def silent(done: int, total: int, message: str) -> None:
-    """Progress that nobody wants to see."""
+    """Ignores progress."""
     del done, total, message

@@ -1,4 +1,4 @@
-"""What two Blenders' APIs do not have in common: added, removed and changed symbols."""
+"""Compares two Blenders' APIs: added, removed and changed symbols."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NOT_DATA = frozenset({"ui", "operator"})
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class SymbolChange:
     """One difference of a symbol that both have.
 
     ``what`` is ``type``, ``default``, ``range``, ``unit``, ``base``, ``read-only``, ``deprecated``,
@@ -34,7 +34,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class DiffEntry:
     """A symbol that only one of the two has."""
 
     path: str
@@ -48,9 +48,9 @@ class Diff:
 
     old: str
     new: str
-    added: tuple[Entry, ...]
-    removed: tuple[Entry, ...]
-    changed: tuple[Change, ...]
+    added: tuple[DiffEntry, ...]
+    removed: tuple[DiffEntry, ...]
+    changed: tuple[SymbolChange, ...]
 
     def under(self, prefix: str) -> Diff:
         """The part whose paths are ``prefix`` or go on from it (``bpy.types.Mesh``, ``bpy.ops``)."""
@@ -72,7 +72,7 @@ class Diff:
 
 
 def diff(old: Extract, new: Extract, *, interface: bool = False) -> Diff:
-    """Compares two extracts. Panels, menus and their like are left out unless ``interface``."""
+    """Compares two extracts. Panels, menus and other interface classes are left out unless ``interface``."""
     before, after = (_compared(extract.symbols, interface) for extract in (old, new))
     both = before.keys() & after.keys()
     return Diff(
@@ -97,22 +97,22 @@ def _is_repeated(symbol: Symbol) -> bool:
     return _REPEATED in symbol.path or any(flag.startswith("same-as:") for flag in symbol.flags)
 
 
-def _entries(symbols: Iterable[Symbol]) -> tuple[Entry, ...]:
-    return tuple(Entry(symbol.path, symbol.kind, symbol.owner) for symbol in symbols)
+def _entries(symbols: Iterable[Symbol]) -> tuple[DiffEntry, ...]:
+    return tuple(DiffEntry(symbol.path, symbol.kind, symbol.owner) for symbol in symbols)
 
 
-def _changes(old: Symbol, new: Symbol) -> Iterator[Change]:
+def _changes(old: Symbol, new: Symbol) -> Iterator[SymbolChange]:
     before, after = _facts(old), _facts(new)
     for what in dict.fromkeys((*before, *after)):
         if before.get(what, "") != after.get(what, ""):
-            yield Change(new.path, what, before.get(what, ""), after.get(what, ""))
+            yield SymbolChange(new.path, what, before.get(what, ""), after.get(what, ""))
     yield from _items_change(new.path, old.enum_items, new.enum_items)
     if old.kind == new.kind:
         yield from _parameters_change(new.path, old.parameters, new.parameters)
 
 
 def _facts(symbol: Symbol) -> dict[str, str]:
-    """What is compared as a whole, as texts. Classes compare by base, members by type and value."""
+    """The facts that are compared, as texts: a class's base, a member's type and value."""
     if symbol.kind in {"class", "module"}:
         return {"base": symbol.base}
     facts = {
@@ -143,50 +143,55 @@ def _range(low: float | None, high: float | None) -> str:
 
 def _items_change(
     path: str, old: Sequence[EnumItem], new: Sequence[EnumItem], prefix: str = ""
-) -> Iterator[Change]:
+) -> Iterator[SymbolChange]:
     if not old or not new:
         return
     before, after = [item.identifier for item in old], [item.identifier for item in new]
     gone = [name for name in before if name not in set(after)]
     come = [name for name in after if name not in set(before)]
     if gone or come:
-        yield Change(path, f"{prefix}enum items", ", ".join(gone), ", ".join(come))
+        yield SymbolChange(path, f"{prefix}enum items", ", ".join(gone), ", ".join(come))
 
 
-def _parameters_change(path: str, old: Sequence[Parameter], new: Sequence[Parameter]) -> Iterator[Change]:
+def _parameters_change(
+    path: str, old: Sequence[Parameter], new: Sequence[Parameter]
+) -> Iterator[SymbolChange]:
     before = {parameter.name: parameter for parameter in old}
     after = {parameter.name: parameter for parameter in new}
     gone = [name for name in before if name not in after]
     come = [name for name in after if name not in before]
     if gone or come:
-        yield Change(path, "parameters", ", ".join(gone), ", ".join(come))
+        yield SymbolChange(path, "parameters", ", ".join(gone), ", ".join(come))
     for name in (name for name in after if name in before):
-        one, other = before[name], after[name]
-        if one.type != other.type:
-            yield Change(path, f"{name}: type", one.type, other.type)
-        elif (one.required, one.default) != (other.required, other.default) and not one.enum_items:
-            yield Change(path, f"{name}: default", _default(one), _default(other))
-        yield from _items_change(path, one.enum_items, other.enum_items, f"{name}: ")
+        previous, current = before[name], after[name]
+        if previous.type != current.type:
+            yield SymbolChange(path, f"{name}: type", previous.type, current.type)
+        elif (previous.required, previous.default) != (
+            current.required,
+            current.default,
+        ) and not previous.enum_items:
+            yield SymbolChange(path, f"{name}: default", _default(previous), _default(current))
+        yield from _items_change(path, previous.enum_items, current.enum_items, f"{name}: ")
 
 
 def _default(parameter: Parameter) -> str:
     return "required" if parameter.required else python_value(parameter.default)
 
 
-def format_diff(found: Diff, *, limit: int | None = None) -> str:
+def format_diff(differences: Diff, *, limit: int | None = None) -> str:
     """The differences as Markdown: counts first, then by owner. ``limit`` cuts each part to so many lines."""
     counts = [
-        f"# Blender {found.old} → {found.new}",
+        f"# Blender {differences.old} → {differences.new}",
         "",
-        f"- added: {_counted(entry.kind for entry in found.added)}",
-        f"- removed: {_counted(entry.kind for entry in found.removed)}",
-        f"- changed: {_counted(change.what.rpartition(': ')[2] for change in found.changed)}",
+        f"- added: {_counted(entry.kind for entry in differences.added)}",
+        f"- removed: {_counted(entry.kind for entry in differences.removed)}",
+        f"- changed: {_counted(change.what.rpartition(': ')[2] for change in differences.changed)}",
     ]
-    owners = {entry.path: entry.owner for entry in (*found.added, *found.removed)}
-    removed = {entry.path: entry.kind for entry in found.removed}
-    added = {entry.path: entry.kind for entry in found.added}
+    owners = {entry.path: entry.owner for entry in (*differences.added, *differences.removed)}
+    removed = {entry.path: entry.kind for entry in differences.removed}
+    added = {entry.path: entry.kind for entry in differences.added}
     changed: defaultdict[str, list[str]] = defaultdict(list)
-    for change in found.changed:
+    for change in differences.changed:
         changed[change.path].append(_change_text(change))
     parts = [
         _part("Removed", removed, owners, limit),
@@ -202,7 +207,7 @@ def _counted(kinds: Iterable[str]) -> str:
     return f"{counts.total()} ({listed})" if counts else "0"
 
 
-def _change_text(change: Change) -> str:
+def _change_text(change: SymbolChange) -> str:
     if change.what.endswith(("enum items", "parameters")):
         sides = (f"{sign}{names}" for sign, names in (("- ", change.old), ("+ ", change.new)) if names)
         return f"{change.what} {' '.join(sides)}"

@@ -1,4 +1,4 @@
-"""Weighted bags of features, one a candidate, for comparing a bag against all of them at once."""
+"""TF-IDF index of candidates' features, for comparing one bag of features with all candidates at once."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class FeatureIndex:
         }
         for number, vector in enumerate(self._vectors):
             for name, weight in vector.items():
-                if (found := self._postings.get(name)) is not None:
-                    found.append((number, weight))
+                if (postings := self._postings.get(name)) is not None:
+                    postings.append((number, weight))
 
     def __contains__(self, name: str) -> bool:
         return name in self._idf
@@ -80,13 +80,13 @@ class Mentions:
     """Which texts mention a rare word. ``texts`` are one a candidate; words are folded by ``fold``."""
 
     def __init__(self, texts: Iterable[str], common: int, fold: Callable[[str], str]) -> None:
-        found: dict[str, list[int]] = {}
+        by_word: dict[str, list[int]] = {}
         number = -1
         for number, text in enumerate(texts):
             for word in set(_WORD.findall(text.lower())):
-                found.setdefault(word, []).append(number)
+                by_word.setdefault(word, []).append(number)
         folded: dict[str, set[int]] = {}
-        for word, numbers in found.items():
+        for word, numbers in by_word.items():
             folded.setdefault(fold(word), set()).update(numbers)
         self._count = number + 1
         self._found = {word: numbers for word, numbers in folded.items() if len(numbers) <= common}

@@ -1,4 +1,4 @@
-"""Which symbol exists in which Blender version: identifiers and versions, nothing else.
+"""The history of the API: which identifier exists in which Blender version.
 
 The file is a table, CSV in gzip. Its columns: ``path``; ``items_of``, the shared enumeration whose items a property or
 parameter has (they are then not listed again); and one for each version, 1 where it has the symbol.
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 HISTORY_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "api.csv.gz"
 COLUMNS = ["path", "items_of"]  # and one for each version
 _PATH = re.compile(r'(.*)\.(inputs|outputs)\["(.*)"\]|(.*)\(([^()]*)\)', re.DOTALL)
-_JOINED = {"<": ("inputs", "<"), ">": ("outputs", ">")}
 _SHARED = "rna_enum_"
 
 
@@ -56,7 +55,9 @@ def history_paths(extract: Extract) -> Iterator[str]:
 
 
 def split_path(path: str) -> tuple[str, str, str]:
-    """(path above, mark, name): the last step of a path. Enum items follow the last ``:`` of a path."""
+    """Splits a path into (path above, mark, name). Marks: ``.`` member, ``(`` parameter, ``:`` enum item, ``<`` input
+    and ``>`` output of a node. Enum items follow the last ``:`` of a path.
+    """
     if match := _PATH.fullmatch(path):
         if match[2]:
             return match[1], "<" if match[2] == "inputs" else ">", match[3]
@@ -70,19 +71,6 @@ def split_path(path: str) -> tuple[str, str, str]:
         return above, ":", item
     above, _, name = path.rpartition(".")
     return above, ".", name
-
-
-def join_path(above: str, mark: str, name: str) -> str:
-    """The inverse of :func:`split_path`."""
-    match mark:
-        case ".":
-            return f"{above}.{name}" if above else name
-        case "(":
-            return f"{above}({name})"
-        case ":":
-            return f"{above}:{name}"
-        case _:
-            return f'{above}.{_JOINED[mark][0]}["{name}"]'
 
 
 def _runs(mask: int) -> Iterator[tuple[int, int]]:
@@ -99,7 +87,7 @@ def _runs(mask: int) -> Iterator[tuple[int, int]]:
 
 
 @dataclass(slots=True)
-class History:
+class ApiHistory:
     """The known versions (minor ones, oldest first) and what existed in which.
 
     ``patches`` are the full versions that were looked at, in the same order. ``masks`` hold one bit a
@@ -112,7 +100,7 @@ class History:
     shared: dict[str, str] = field(default_factory=dict[str, str])
 
     @classmethod
-    def of(cls, paths: Mapping[str, Iterable[str]]) -> History:
+    def of(cls, paths: Mapping[str, Iterable[str]]) -> ApiHistory:
         """The history of these full versions and their paths (see :func:`history_paths`)."""
         patches = tuple(sorted(paths, key=version_key))
         masks: defaultdict[str, int] = defaultdict(int)
@@ -124,7 +112,7 @@ class History:
         return cls(tuple(map(minor_of, patches)), patches, *_share(plain))
 
     @classmethod
-    def load(cls, path: Path | None = None) -> History:
+    def load(cls, path: Path | None = None) -> ApiHistory:
         """The history in a file; by default the one that comes with the package. Raises StoreError."""
         source = path or HISTORY_FILE
         try:
@@ -134,12 +122,12 @@ class History:
                 f"{source} is not a readable history ({error}); make it again: simworlds kb history"
             ) from error
 
-    def including(self, version: str, paths: Iterable[str]) -> History:
+    def including(self, version: str, paths: Iterable[str]) -> ApiHistory:
         """This history, and where it does not know the version, with that full version's paths added."""
         if self._number(version) is not None:
             return self
         known = {patch: set(self.paths(patch)) for patch in self.patches}
-        return History.of({**known, version: paths})
+        return ApiHistory.of({**known, version: paths})
 
     def mask(self, path: str) -> int:
         """One bit a version, lowest the oldest; 0 for what no known version has."""
@@ -199,12 +187,12 @@ class History:
         if number is None:
             return {}
         full = (2 << number) - 1
-        found: dict[str, str] = {}
+        since: dict[str, str] = {}
         for path, mask in self.symbols():
             if mask >> number & 1 and mask & full != full:
                 first = next(first for first, last in _runs(mask) if last >= number)
-                found[path] = self.versions[first]
-        return found
+                since[path] = self.versions[first]
+        return since
 
     def to_bytes(self) -> bytes:
         """The file's content. Equal histories give equal bytes (with one release of zlib)."""
@@ -217,7 +205,7 @@ class History:
         return gzip.compress(text.getvalue().encode(), mtime=0)
 
     @classmethod
-    def from_bytes(cls, data: bytes) -> History:
+    def from_bytes(cls, data: bytes) -> ApiHistory:
         """The inverse of :meth:`to_bytes`. Raises OSError, EOFError, zlib.error, csv.Error, ValueError or UserError."""
         table = csv.reader(io.StringIO(gzip.decompress(data).decode(), newline=""))
         head = next(table, [])

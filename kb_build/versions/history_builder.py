@@ -1,4 +1,4 @@
-"""Makes the history file: asks every Blender that can be had, keeps from the old file what cannot."""
+"""Makes the history file from every available Blender; keeps other versions from the old file."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.blender.extract_reader import read_extract
 from kb_build.blender.extractor import extract_api
 from kb_build.errors import ExtractError, KBBuildError, StoreError
-from kb_build.versions.history import History, history_paths, version_key
+from kb_build.versions.history import ApiHistory, history_paths, version_key
 from simworlds.errors import UserError
 from simworlds.files import staged_file
 from simworlds.releases import minor_of
@@ -28,16 +28,16 @@ _KEPT_SHARE = 0.98
 
 @dataclass(frozen=True, slots=True)
 class HistoryReport:
-    """What a run came to.
+    """The outcome of a run.
 
-    ``asked`` are the full versions that were extracted, ``kept`` those taken over from the old file,
-    ``missing`` what was asked for and could not be had → why (a kept version may be among them); ``faults``
-    are steps that failed inside Blender. ``written`` is False when the file already said all this.
+    ``extracted`` and ``kept`` (taken over from the old file) are full versions; ``missing`` versions or executables →
+    why they were not available (a kept version may be among them); ``faults`` are steps that failed inside Blender;
+    ``written`` is False when the file was up to date.
     """
 
     path: Path
     written: bool
-    asked: tuple[str, ...]
+    extracted: tuple[str, ...]
     kept: tuple[str, ...]
     symbols: int
     size: int
@@ -62,17 +62,17 @@ def build_history(  # noqa: PLR0913 - all but the first are named
     be had.
     """
     old = _old(output, force)
-    found, missing, faults = _collect(versions, blender_exes, home, progress)
-    if not found:
+    paths, missing, faults = _collect(versions, blender_exes, home, progress)
+    if not paths:
         reasons = "; ".join(f"{version}: {reason}" for version, reason in missing.items())
-        raise KBBuildError(f"not one Blender could be asked, {output} stays as it is. {reasons}")
+        raise KBBuildError(f"no Blender was available; {output} is unchanged. {reasons}")
     kept: tuple[str, ...] = ()
     if old is not None:
-        kept = _keep(old, found)
+        kept = _keep(old, paths)
         if not force:
-            _refuse_poorer(old, found, output)
+            _refuse_poorer(old, paths, output)
     progress("Writing the history", 0, None)
-    history = History.of(found)
+    history = ApiHistory.of(paths)
     data = history.to_bytes()
     written = old != history
     if written:
@@ -80,20 +80,20 @@ def build_history(  # noqa: PLR0913 - all but the first are named
     return HistoryReport(
         path=output,
         written=written,
-        asked=tuple(sorted(set(found) - set(kept), key=version_key)),
+        extracted=tuple(sorted(set(paths) - set(kept), key=version_key)),
         kept=kept,
-        symbols=len(set().union(*found.values())),
+        symbols=len(set().union(*paths.values())),
         size=len(data),
         missing=missing,
         faults=tuple(faults),
     )
 
 
-def _old(output: Path, force: bool) -> History | None:
+def _old(output: Path, force: bool) -> ApiHistory | None:
     if not output.is_file():
         return None
     try:
-        return History.load(output)
+        return ApiHistory.load(output)
     except StoreError:
         if force:
             return None
@@ -106,7 +106,7 @@ def _collect(
     """(full version → paths, what is missing → why, faults), each Blender asked in turn."""
     wanted: list[tuple[str, str | None, Path | None]] = [(version, version, None) for version in versions]
     wanted += [(str(executable), None, executable) for executable in blender_exes]
-    found: dict[str, set[str]] = {}
+    paths_of: dict[str, set[str]] = {}
     missing: dict[str, str] = {}
     faults: list[str] = []
     for number, (name, version, executable) in enumerate(wanted):
@@ -121,11 +121,14 @@ def _collect(
             faults += failed
             missing[name] = f"{len(failed)} step(s) of the extraction failed: what it lacks may well exist"
             continue
-        same = next((known for known in found if minor_of(known) == minor_of(runtime.version)), None)
+        same = next(
+            (patch for patch in paths_of if minor_of(patch) == minor_of(runtime.version)),
+            None,
+        )
         if same is None or version_key(same) < version_key(runtime.version):
-            found.pop(same or "", None)
-            found[runtime.version] = paths
-    return found, missing, faults
+            paths_of.pop(same or "", None)
+            paths_of[runtime.version] = paths
+    return paths_of, missing, faults
 
 
 def _paths(runtime: Runtime, home: Path, progress: Progress) -> tuple[set[str], list[str]]:
@@ -138,23 +141,23 @@ def _paths(runtime: Runtime, home: Path, progress: Progress) -> tuple[set[str], 
     return set(history_paths(extract)), [f"Blender {extract.version}: {fault}" for fault in extract.faults]
 
 
-def _keep(old: History, found: dict[str, set[str]]) -> tuple[str, ...]:
+def _keep(old: ApiHistory, paths: dict[str, set[str]]) -> tuple[str, ...]:
     """Adds to ``found`` what only the old file knows; returns those full versions."""
-    known = {minor_of(version) for version in found}
+    known = {minor_of(version) for version in paths}
     kept = tuple(patch for patch in old.patches if minor_of(patch) not in known)
     for patch in kept:
-        found[patch] = set(old.paths(patch))
+        paths[patch] = set(old.paths(patch))
     return kept
 
 
-def _refuse_poorer(old: History, found: Mapping[str, set[str]], output: Path) -> None:
-    for version, paths in found.items():
+def _refuse_poorer(old: ApiHistory, extracted: Mapping[str, set[str]], output: Path) -> None:
+    for version, paths in extracted.items():
         before = set(old.paths(version))
         if len(paths) < _KEPT_SHARE * len(before):
             lost = ", ".join(sorted(before - paths)[:5])
             raise StoreError(
                 f"{output} knows {len(before)} symbols of Blender {minor_of(version)}, the new extract only "
-                f"{len(paths)} (lost: {lost}, …). The file stays as it is; --force replaces it"
+                f"{len(paths)} (lost: {lost}, …). The file is unchanged; --force replaces it"
             )
 
 
@@ -164,4 +167,6 @@ def _write(output: Path, data: bytes) -> None:
         with staged_file(output) as part:
             part.write_bytes(data)
     except OSError as error:
-        raise StoreError(f"{output} cannot be written: {error}. The old one, if any, stands.") from error
+        raise StoreError(
+            f"{output} cannot be written: {error}. The old one, if any, is unchanged."
+        ) from error

@@ -1,4 +1,4 @@
-"""What a base tells of other versions: the symbols it lacks, what to use instead, since when it has the others."""
+"""Symbols of other versions that a base lacks, what replaces them, and since when it has the others."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kb_build.records import Symbol
-    from kb_build.versions.history import History
+    from kb_build.versions.history import ApiHistory
 
 
 @dataclass(frozen=True, slots=True)
-class Former:
+class RemovedSymbols:
     """Rows of the tables removed, removed_names, replacements and since (see schema.DDL)."""
 
     removed: tuple[tuple[str, str, str], ...] = ()
@@ -36,8 +36,8 @@ def _keys(path: str, items: Counter[str]) -> Iterator[str]:
         yield key(short)
 
 
-def former_symbols(symbols: Sequence[Symbol], history: History, version: str) -> Former:
-    """Compares the version (minor) whose symbols these are with the others that the history knows.
+def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version: str) -> RemovedSymbols:
+    """Compares ``symbols``, those of a (minor) version, with what the history knows of other versions.
 
     A symbol that extraction found is never called removed, whatever the history says.
     """
@@ -45,7 +45,7 @@ def former_symbols(symbols: Sequence[Symbol], history: History, version: str) ->
     known = {symbol.path for symbol in symbols}
     removed = [row for row in history.removed_from(version) if row[0] not in known and is_asked_for(row[0])]
     since = history.since(version)
-    return Former(
+    return RemovedSymbols(
         removed=tuple(removed),
         names=tuple((spelled, path) for path, _, _ in removed for spelled in _keys(path, items)),
         replacements=tuple(find_replacements(symbols, history, version)),

@@ -1,4 +1,4 @@
-"""The closest symbols that a version has to one that it lacks, found by comparing the versions' own schemas.
+"""Finds replacements: for a symbol that a version lacks, the closest symbols that it has, by comparing the schemas.
 
 What counts: rare words that two identifiers share (those of the owner for less), what lies below them
 (members, parameters, enum items), the same owner or the owner's own replacement, having come when the other
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import Symbol
-    from kb_build.versions.history import History
+    from kb_build.versions.history import ApiHistory
 
 KEPT = 5
 _LEAST = 0.3
@@ -81,7 +81,7 @@ def _name_bag(path: str) -> Bag:
 
 
 def _kind(path: str, below: Sequence[str]) -> str:
-    """What sort of thing a path names, told from the path and from what the history knows below it."""
+    """The kind of a symbol, from its path and from what the history has below it."""
     above, mark, name = split_path(path)
     if mark != ".":
         return "socket"
@@ -98,21 +98,21 @@ def _kind(path: str, below: Sequence[str]) -> str:
 
 def _directly_below(paths: Iterable[str]) -> dict[str, list[str]]:
     """Path → mark and name of all that is one step below it."""
-    found: defaultdict[str, list[str]] = defaultdict(list)
+    below: defaultdict[str, list[str]] = defaultdict(list)
     for path in paths:
         above, mark, name = split_path(path)
-        found[above].append(mark + name)
-    return dict(found)
+        below[above].append(mark + name)
+    return dict(below)
 
 
 def _holders(symbols: Iterable[Symbol]) -> dict[str, list[str]]:
-    """Class → the classes that have a collection of it: MeshEdge → Mesh. Of what many hold, none is the holder."""
-    found: defaultdict[str, set[str]] = defaultdict(set)
+    """Class → the classes that have a collection of it (MeshEdge → Mesh), unless many have."""
+    holders: defaultdict[str, set[str]] = defaultdict(set)
     for symbol in symbols:
         if symbol.type == "collection" and symbol.target:
-            found[_TYPES + symbol.target].add(symbol.owner)
+            holders[_TYPES + symbol.target].add(symbol.owner)
     return {
-        target: sorted(owners - {target}) for target, owners in found.items() if len(owners) <= _FEW_HOLDERS
+        target: sorted(owners - {target}) for target, owners in holders.items() if len(owners) <= _FEW_HOLDERS
     }
 
 
@@ -122,7 +122,7 @@ def _is_of_module(path: str) -> bool:
 
 
 def _text(symbol: Symbol) -> str:
-    """What a symbol says of itself, its enum items included."""
+    """A symbol's label, description and enum items."""
     items = (f"{item.identifier} {item.name}" for item in symbol.enum_items)
     return " ".join((symbol.label, symbol.description, *items))
 
@@ -130,7 +130,7 @@ def _text(symbol: Symbol) -> str:
 class Replacements:
     """Finds the closest symbols of one version, which the history must know. ``symbols`` are that version's."""
 
-    def __init__(self, symbols: Sequence[Symbol], history: History, version: str) -> None:
+    def __init__(self, symbols: Sequence[Symbol], history: ApiHistory, version: str) -> None:
         by_path = {symbol.path: symbol for symbol in symbols}
         self._candidates = [symbol for symbol in symbols if _is_candidate(symbol, by_path)]
         self._bases = {symbol.path: symbol.base for symbol in symbols if symbol.base}
@@ -212,7 +212,7 @@ class Replacements:
         return [(self._candidates[-number].path, round(score, 3)) for score, number in best]
 
     def _learn_successors(self) -> dict[str, list[str]]:
-        """Word that went → words that took its place, told from symbols alike in all but the name."""
+        """Removed word → words that took its place, learnt from symbols that differ only in the name."""
         changes = list(self._renamings())
         gone = Counter(word for lost, _ in changes for word in lost)
         pairs = Counter((word, other) for lost, won in changes for word in lost for other in won)
@@ -223,12 +223,12 @@ class Replacements:
             for other in won
         )
         before = Counter(word for path in self._missing if is_asked_for(path) for word in _name_bag(path))
-        found: defaultdict[str, list[str]] = defaultdict(list)
+        successors: defaultdict[str, list[str]] = defaultdict(list)
         for (word, other), count in sorted(pairs.items()):
             dying = before[word] > self._names.df(word)
             if dying and count >= _LEAST_PAIRS and count >= _LEAST_SHARE * gone[word]:
-                found[word].append(other)
-        return dict(found)
+                successors[word].append(other)
+        return dict(successors)
 
     def _renamings(self) -> Iterator[tuple[set[str], set[str]]]:
         """(words lost, words won) between a missing symbol and a newer one that has the same inside."""
@@ -249,15 +249,15 @@ class Replacements:
 
     def _today(self, bag: Bag) -> Bag:
         """The bag with what took its words' place; words no longer known are taken apart: clear|coat."""
-        found = dict(bag)
+        today = dict(bag)
         for word, weight in bag.items():
             if after := self._successors.get(word):
-                found[word] = weight * _OVERTAKEN
-                found.update((other, max(weight, found.get(other, 0.0))) for other in after)
+                today[word] = weight * _OVERTAKEN
+                today.update((other, max(weight, today.get(other, 0.0))) for other in after)
             elif word not in self._names and word[0] != "=":
                 for part in self._relatives(word):
-                    found[part] = max(weight * _PART, found.get(part, 0.0))
-        return found
+                    today[part] = max(weight * _PART, today.get(part, 0.0))
+        return today
 
     def _relatives(self, word: str) -> list[str]:
         """Known words that an unknown one is made of (clear|coat) or short for (sep: separate)."""
@@ -271,9 +271,9 @@ class Replacements:
         if owner in {"", "bpy.types", "bpy.ops"}:
             return
         if owner in self._missing:
-            found = [row for row in self.closest(owner)[:2] if row[1] >= _RIVAL * self.closest(owner)[0][1]]
-            for replacement, score in found:
-                worth = _OWNERS_REPLACEMENT * min(1.0, score) * score / found[0][1]
+            rivals = [row for row in self.closest(owner)[:2] if row[1] >= _RIVAL * self.closest(owner)[0][1]]
+            for replacement, score in rivals:
+                worth = _OWNERS_REPLACEMENT * min(1.0, score) * score / rivals[0][1]
                 yield replacement, worth
                 yield from ((base, worth * 0.8) for base in self._ancestors(replacement))
             return
@@ -294,8 +294,8 @@ class Replacements:
             for entry in self._below[owner]:
                 if entry[0] == "." and key(entry) == end:
                     there = owner + entry
-                    found = self.closest(there)[:1] if there in self._missing else [(there, 1.0)]
-                    return _TYPES + self._led_to.get(found[0][0], "") if found else ""
+                    successors = self.closest(there)[:1] if there in self._missing else [(there, 1.0)]
+                    return _TYPES + self._led_to.get(successors[0][0], "") if successors else ""
         return ""
 
     def _ancestors(self, path: str) -> Iterator[str]:
@@ -317,19 +317,19 @@ class Replacements:
 
     def _closest_items(self, enumeration: str, name: str, last: int) -> list[tuple[str, float]]:
         wanted = set(_stems(name))
-        found: list[tuple[float, str]] = []
+        scored: list[tuple[float, str]] = []
         for entry in self._below.get(enumeration, ()):
             mask = self._history.masks[enumeration + entry]
             if entry[0] == ":" and mask & self._bit:
                 having = set(_stems(entry[1:]))
                 alike = len(wanted & having) / len(wanted | having or {""})
                 came = mask & -mask == 2 << last
-                found.append((round(alike + (_ITEM_CAME_THEN if came else 0.0), 3), entry))
-        return [(entry, score) for score, entry in heapq.nlargest(KEPT, found) if score >= _LEAST]
+                scored.append((round(alike + (_ITEM_CAME_THEN if came else 0.0), 3), entry))
+        return [(entry, score) for score, entry in heapq.nlargest(KEPT, scored) if score >= _LEAST]
 
 
 def _is_candidate(symbol: Symbol, by_path: Mapping[str, Symbol]) -> bool:
-    """What people write: data API, operators, sockets; not the interface's classes, nor what repeats."""
+    """Whether a symbol can be a replacement: data API, operators, sockets; no interface, no repeated members."""
     if symbol.kind == "enum" or symbol.group in _NOT_DATA or ".bl_rna_get_subclass" in symbol.path:
         return False
     owner = by_path.get(symbol.owner)
@@ -343,7 +343,7 @@ def _candidate_kind(symbol: Symbol) -> str:
 
 
 def is_asked_for(path: str) -> bool:
-    """Whether people write it: not the interface's classes, parameters, nor items of shared enumerations."""
+    """Whether scripts use it: no interface classes, no parameters, no items of shared enumerations."""
     above, mark, name = split_path(path)
     if mark == "(" or "(" in above or path.startswith("rna_enum_"):
         return False
@@ -351,7 +351,7 @@ def is_asked_for(path: str) -> bool:
 
 
 def find_replacements(
-    symbols: Sequence[Symbol], history: History, version: str
+    symbols: Sequence[Symbol], history: ApiHistory, version: str
 ) -> Iterator[tuple[str, str, float]]:
     """(missing path, closest path, score) for what ``version`` lacks and an earlier version had.
 

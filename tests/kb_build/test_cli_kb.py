@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 from places import REPO
 
-from kb_build.summaries import Summary, SummaryStore, summary_key
+from kb_build.summaries.store import SummaryStore
+from kb_build.summaries.types import PageSummary, summary_key
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -55,7 +56,7 @@ def read_some(descriptor: int) -> bytes:
 
 
 @pytest.mark.blender
-def test_a_build_in_a_pipe_tells_its_steps_on_stderr_and_its_outcome_on_stdout(built: Built) -> None:
+def test_a_piped_build_prints_steps_to_stderr_and_the_outcome_to_stdout(built: Built) -> None:
     (built.home / "kb").rename(built.home / "old")
     done = run(built.home, "kb", "build", "--offline", corpora=built.corpora)
     assert done.returncode == 0
@@ -154,7 +155,7 @@ def test_verify_passes_a_sound_base_and_fails_a_damaged_one(built: Built) -> Non
 
 
 @pytest.mark.blender
-def test_verify_tells_its_findings_as_json(built: Built, tmp_path: Path) -> None:
+def test_verify_prints_its_findings_as_json(built: Built, tmp_path: Path) -> None:
     reference = tmp_path / "list.txt"
     reference.write_text("bpy.types.Mesh\nbpy.types.Nobody\n")
     done = run(built.home, "kb", "verify", str(built.path), "--reference", str(reference), "--json")
@@ -203,9 +204,7 @@ def test_two_blenders_are_compared(built: Built) -> None:
         (("kb", "diff", "nonsense", "5.1"), "'nonsense' is not a Blender version"),
     ],
 )
-def test_what_cannot_be_done_is_one_message_and_code_2(
-    tmp_path: Path, words: tuple[str, ...], message: str
-) -> None:
+def test_errors_are_one_message_and_code_2(tmp_path: Path, words: tuple[str, ...], message: str) -> None:
     done = run(tmp_path / "home", *words)
     assert done.returncode == 2
     assert message in done.stdout + done.stderr
@@ -219,10 +218,10 @@ def test_info_without_any_base_says_how_to_build_one(tmp_path: Path) -> None:
     assert json.loads(run(tmp_path, "kb", "info", "--json").stdout) == []
 
 
-def test_summaries_of_a_colleague_are_taken_over(tmp_path: Path) -> None:
+def test_a_colleagues_summaries_are_merged(tmp_path: Path) -> None:
     theirs = SummaryStore(tmp_path / "theirs.sqlite")
     key = summary_key("0" * 64, "1", "a-model")
-    theirs.add([Summary(key, "What it says.", "claude", "a-model", "1")])
+    theirs.add([PageSummary(key, "What it says.", "claude", "a-model", "1")])
     home = tmp_path / "home"
     assert run(home, "kb", "merge-summaries", str(theirs.path)).stdout.startswith(
         "1 summaries are new, 1 in all"

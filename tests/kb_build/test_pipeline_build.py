@@ -45,7 +45,7 @@ def test_a_base_holds_what_blender_and_both_sources_say(built: Built) -> None:
     assert rows(built.path, "SELECT count(*) FROM pages WHERE summary_method != 'extractive'") == [(0,)]
 
 
-def test_a_base_says_what_it_was_made_of(built: Built, blender_version: str) -> None:
+def test_a_base_names_its_sources(built: Built, blender_version: str) -> None:
     meta = dict(rows(built.path, "SELECT name, value FROM meta"))
     assert meta["blender"] == blender_version
     assert meta["minor"] == built.minor

@@ -63,7 +63,7 @@ def test_every_symbol_of_blender_comes_back_as_it_was(extract: Extract) -> None:
         assert symbol_from_json(json.loads(json.dumps(to_json(symbol)))) == symbol, symbol.path
 
 
-def test_what_holds_nothing_is_not_written() -> None:
+def test_empty_fields_are_not_written() -> None:
     assert to_json(Symbol("bpy", "module")) == {"path": "bpy", "kind": "module"}
 
 
@@ -85,7 +85,7 @@ def test_an_unknown_field_is_refused() -> None:
         ('bpy.types.N.outputs["say \\"x\\""]', "socket", 'say \\"x\\"'),
     ],
 )
-def test_the_name_is_what_one_writes_last(path: str, kind: str, name: str) -> None:
+def test_the_name_is_the_last_part_of_the_path(path: str, kind: str, name: str) -> None:
     assert Symbol(path, kind).name == name  # type: ignore[arg-type]
 
 
@@ -103,7 +103,7 @@ def test_the_text_of_a_page_holds_every_heading_and_section_in_order() -> None:
     assert PAGE.text == "# T\n\nLead.\n\n## X\n\n### Y\n\nEnd."
 
 
-def test_the_content_hash_looks_at_words_and_not_at_layout() -> None:
+def test_the_content_hash_ignores_layout() -> None:
     spread = replace(
         PAGE, sections=(Section("other", "T", 1, " Lead.\n\n"), *PAGE.sections[1:]), url="", links=()
     )

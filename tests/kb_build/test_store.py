@@ -15,7 +15,7 @@ from kb_build.index.analysis import key, short_path
 from kb_build.records import Deprecation, EnumItem, Link, Page, Parameter, Section, Symbol
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, pack, unpack
 from kb_build.store import Contents, write_base
-from kb_build.versions.removed_symbols import Former
+from kb_build.versions.removed_symbols import RemovedSymbols
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import BaseReader
 
@@ -57,7 +57,7 @@ PAGE = Page(
     "https://docs.blender.org/manual/en/5.1/physics/cloth/index.html", ("odd markup",),
 )  # fmt: skip
 SYMBOLS = (CLOTH, STEPS, ADD, SOCKET, PANEL)
-FORMER = Former(
+REMOVED_SYMBOLS = RemovedSymbols(
     (("bpy.types.ClothSettings.old", "4.2", "4.5"),), ((key("ClothSettings.old"), "bpy.types.ClothSettings.old"),),
     (("bpy.types.ClothSettings.old", STEPS.path, 0.9),), ((STEPS.path, "5.0"),),
 )  # fmt: skip
@@ -67,7 +67,7 @@ CONTENTS = Contents(
     links=(Link(STEPS.path, "physics/cloth/index#steps", "manual"), Link(ADD.path, "physics/index", "manual")),
     meta={"minor": "5.1", "fingerprint": "f"},
     summaries={PAGE.slug: ("In short.", "extractive")},
-    former=lambda: FORMER,
+    removed_symbols=lambda: REMOVED_SYMBOLS,
 )  # fmt: skip
 
 
@@ -147,7 +147,7 @@ def test_links_meta_and_other_versions_read_back(small: BaseReader) -> None:
     assert (small.since(STEPS.path), small.since(CLOTH.path)) == ("5.0", "")
 
 
-def test_the_file_says_whose_it_is_and_is_sound(path: Path) -> None:
+def test_the_file_has_our_application_id_and_is_sound(path: Path) -> None:
     with closing(sqlite3.connect(path)) as file:
         assert file.execute("PRAGMA application_id").fetchone() == (APPLICATION_ID,)
         assert file.execute("PRAGMA user_version").fetchone() == (SCHEMA_VERSION,)
@@ -160,7 +160,7 @@ def test_the_same_contents_give_the_same_bytes(path: Path, tmp_path: Path) -> No
     assert (tmp_path / "again.sqlite").read_bytes() == path.read_bytes()
 
 
-def test_a_base_of_nothing_answers_that_it_has_nothing(tmp_path: Path) -> None:
+def test_an_empty_base_answers_with_nothing(tmp_path: Path) -> None:
     write_base(tmp_path / "empty.sqlite", Contents((), (), (), {}))
     with KnowledgeBase(tmp_path / "empty.sqlite") as kb:
         for query in ("cloth", "ClothSettings.quality", "how do I bake?", "physics"):
@@ -174,7 +174,7 @@ def test_a_base_without_pages_answers_from_symbols(tmp_path: Path) -> None:
         assert kb.query("finer steps for the simulation").hits[0].id == STEPS.path
 
 
-def test_a_new_base_takes_the_place_of_an_open_one(tmp_path: Path) -> None:
+def test_a_new_base_replaces_an_open_one(tmp_path: Path) -> None:
     target = tmp_path / "kb.sqlite"
     write_base(target, CONTENTS)
     with KnowledgeBase(target) as old:

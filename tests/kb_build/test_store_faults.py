@@ -87,6 +87,6 @@ def test_a_disk_that_is_full_is_named_and_the_old_base_stands(base: Path, old: P
     assert process.returncode == 1
     assert errors.startswith("StoreError: ")
     assert str(old) in errors
-    assert "The old one, if any, stands" in errors
+    assert "The old one, if any, is unchanged" in errors
     assert_stands(old, before)
     assert parts_of(old) == []

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import KBBuildError, StoreError
-from kb_build.verify import Verification, verify_base
+from kb_build.verify import BaseVerification, verify_base
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,7 +25,7 @@ def alter(path: Path, sql: str) -> None:
         connection.executescript(sql)
 
 
-def faults(found: Verification) -> dict[str, tuple[str, ...]]:
+def faults(found: BaseVerification) -> dict[str, tuple[str, ...]]:
     return {check.name: check.faults for check in found.checks if check.faults}
 
 
@@ -112,7 +112,7 @@ def test_overwritten_bytes_are_found(built: Built) -> None:
         (b"not a database at all, but long enough to be one" * 50, "not readable as a knowledge base"),
     ],
 )
-def test_what_is_no_base_is_refused(tmp_path: Path, content: bytes | None, message: str) -> None:
+def test_a_file_that_is_not_a_base_is_refused(tmp_path: Path, content: bytes | None, message: str) -> None:
     path = tmp_path / "blender-5.1.sqlite"
     if content is not None:
         path.write_bytes(content)
@@ -124,7 +124,7 @@ def test_what_is_no_base_is_refused(tmp_path: Path, content: bytes | None, messa
     ("damage", "message"),
     [
         ("PRAGMA user_version = 99", "newer SimWorlds.*layout 99"),
-        ("PRAGMA application_id = 1", "of something else"),
+        ("PRAGMA application_id = 1", "not a knowledge base"),
     ],
 )
 def test_bases_of_another_make_are_refused(built: Built, damage: str, message: str) -> None:
@@ -179,7 +179,7 @@ def test_a_sphinx_inventory_is_a_reference_too(built: Built, tmp_path: Path) -> 
     assert (found.reference.exact, found.reference.total) == (3, 3)
 
 
-def test_what_the_reference_of_this_version_lists_resolves(built: Built, tmp_path: Path) -> None:
+def test_identifiers_of_this_versions_reference_resolve(built: Built, tmp_path: Path) -> None:
     """A sample of each kind of identifier, those that Blender's own tables repeat on subclasses included."""
     reference = tmp_path / "identifiers.txt"
     reference.write_text(
@@ -228,7 +228,7 @@ def test_what_the_reference_of_this_version_lists_resolves(built: Built, tmp_pat
 @pytest.mark.parametrize(
     "content", [b"two words\n", b"\xff\xfe\x00", b"# Sphinx inventory version 2\n#\n#\n#\nno"]
 )
-def test_a_reference_that_is_neither_is_refused(built: Built, tmp_path: Path, content: bytes) -> None:
+def test_a_reference_of_an_unknown_format_is_refused(built: Built, tmp_path: Path, content: bytes) -> None:
     reference = tmp_path / "reference"
     reference.write_bytes(content)
     with pytest.raises(KBBuildError, match="neither a Sphinx inventory nor a list"):

@@ -159,7 +159,7 @@ def test_another_programs_sqlite_file_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "kb.sqlite"
     with closing(sqlite3.connect(path)) as file:
         file.executescript("CREATE TABLE symbols (path TEXT); PRAGMA user_version = 1;")
-    with pytest.raises(BaseUnreadable, match=r"of something else.*simworlds kb build --force"):
+    with pytest.raises(BaseUnreadable, match=r"not a knowledge base.*simworlds kb build --force"):
         KnowledgeBase(path)
 
 

@@ -51,7 +51,7 @@ def ask(names, found):
 
 
 def ask_editors(names, found):
-    """The same from inside every kind of area of the window, where there is one."""
+    """Does the same in every kind of area of the window, if there is a window."""
     ask(names, found)
     window = bpy.context.window_manager.windows[0] if bpy.context.window_manager.windows else None
     if window is None or not hasattr(bpy.context, "temp_override"):

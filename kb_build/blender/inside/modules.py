@@ -24,7 +24,7 @@ PLAIN = (bool, int, float, str, bytes, tuple, list, dict, set, frozenset)
 
 
 def load(name):
-    """A module (or Blender's module-like object) by its dotted name; None where this version lacks it."""
+    """Returns a module (or Blender's module-like object) by its dotted name; None if this version lacks it."""
     try:
         return importlib.import_module(name)
     except ImportError:
@@ -40,7 +40,7 @@ def load(name):
 
 
 def belongs(value_name, owner, attribute):
-    """Whether a module found as ``owner.attribute`` is at home there, or was merely imported by it."""
+    """Whether the module ``owner.attribute`` is defined there, not only imported."""
     root, _, rest = value_name.partition(".")
     return root.lower() == owner.partition(".")[0] and rest.rpartition(".")[2] == attribute
 
@@ -192,7 +192,7 @@ class Walk:
         )
 
     def member(self, name, module, path, attribute, value):
-        """One thing that a module holds; what it merely imported is passed over."""
+        """Writes a member of a module, unless the module only imported it."""
         home = getattr(value, "__module__", None)
         if isinstance(value, type):
             if home != name and attribute not in getattr(module, "__all__", (attribute,)):

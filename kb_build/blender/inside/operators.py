@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators under ``bpy.ops``: what one may pass to each, with defaults."""
+"""Operators under ``bpy.ops``: their arguments with defaults."""
 
 import bpy
 

@@ -46,7 +46,7 @@ _PICTURE_NAME = re.compile(r"\S+\.(?:png|jpe?g|gif|svg|webp|bmp)$", re.IGNORECAS
 
 @dataclass(slots=True)
 class Article:
-    """What one article holds; ``links`` and ``children`` are slugs, in order, each once."""
+    """The content of one article; ``links`` and ``children`` are slugs, in order, each once."""
 
     sections: list[Section] = field(default_factory=list)
     links: dict[str, None] = field(default_factory=dict)
@@ -83,7 +83,7 @@ class ArticleReader:
                 self._open += self._block(child)
 
     def finish(self) -> Article:
-        """What was read."""
+        """The article that was read."""
         if not self._article.sections:
             self._article.sections.append(Section(anchor="", title="", level=1, text=""))
         self._close()
@@ -237,7 +237,7 @@ class ArticleReader:
         return [md.listing([self._blocks(item) for item in items])]
 
     def _table(self, node: Tag) -> list[str]:
-        grid = md.Grid()
+        grid = md.MarkdownGrid()
         header = False
         title = node.find("caption", recursive=False)
         for row in node.find_all("tr"):

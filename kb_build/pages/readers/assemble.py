@@ -1,4 +1,4 @@
-"""What a reader found in one file → the finished pages, with their place in the hierarchy."""
+"""Makes pages, with their place in the hierarchy, of what a reader found in each file."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def assemble(texts: Iterable[PageText], *, source: PageSource, version: str) -> 
     """Pages sorted by slug. Breadcrumbs come from who lists whom as a child: the first to do so, walking down
     from the page ``index``, is the parent. The front page itself stands above everything and is left out.
     """
-    known = {text.slug: text for text in texts}
-    titles = {slug: _title(text) for slug, text in known.items()}
-    children = {slug: _existing(text.children, known, slug) for slug, text in known.items()}
+    by_slug = {text.slug: text for text in texts}
+    titles = {slug: _title(text) for slug, text in by_slug.items()}
+    children = {slug: _existing(text.children, by_slug, slug) for slug, text in by_slug.items()}
     parents = _parents(children)
     pages: list[Page] = []
-    for slug in sorted(known):
-        text = known[slug]
+    for slug in sorted(by_slug):
+        text = by_slug[slug]
         first, *rest = text.sections
         sections = (
             text.sections
@@ -56,7 +56,7 @@ def assemble(texts: Iterable[PageText], *, source: PageSource, version: str) -> 
                 sections=sections,
                 breadcrumbs=tuple(titles[above] for above in _ancestors(slug, parents)),
                 children=children[slug],
-                links=_existing(text.links, known, slug),
+                links=_existing(text.links, by_slug, slug),
                 url=_URLS[source].format(version=version, slug=slug) if source in _URLS else "",
                 warnings=tuple(dict.fromkeys(text.warnings))[:_MOST_WARNINGS],
             )
@@ -71,8 +71,8 @@ def _title(text: PageText) -> str:
     return re.sub(r"[_-]+", " ", parts[-1]).strip().title()
 
 
-def _existing(slugs: Iterable[str], known: Mapping[str, PageText], own: str) -> tuple[str, ...]:
-    return tuple(slug for slug in dict.fromkeys(slugs) if slug in known and slug != own)
+def _existing(slugs: Iterable[str], by_slug: Mapping[str, PageText], own: str) -> tuple[str, ...]:
+    return tuple(slug for slug in dict.fromkeys(slugs) if slug in by_slug and slug != own)
 
 
 def _parents(children: Mapping[str, tuple[str, ...]]) -> dict[str, str]:

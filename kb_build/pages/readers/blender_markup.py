@@ -74,7 +74,7 @@ class Todo(_Box):
 
 
 class Dropped(Directive):
-    """Films, foreign markup, generated lists: nothing of them can be read."""
+    """Drops videos, foreign markup and generated lists: they have no readable text."""
 
     optional_arguments = 1
     final_argument_whitespace = True

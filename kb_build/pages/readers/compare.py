@@ -1,4 +1,4 @@
-"""How far two readings of the same documentation agree."""
+"""Compares two readings of the same documentation."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class PageDifference:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class ReaderComparison:
     """Two readings side by side. Shares and similarities lie between 0 and 1; they are 1 when nothing is
     shared, so look at ``shared`` first."""
 
@@ -50,14 +50,14 @@ class Comparison:
     """Least similar first; pages with equal outlines and tokens are left out."""
 
 
-def compare(first: Sequence[Page], second: Sequence[Page]) -> Comparison:
+def compare(first: Sequence[Page], second: Sequence[Page]) -> ReaderComparison:
     """Compare pages by slug."""
     left = {page.slug: page for page in first}
     right = {page.slug: page for page in second}
     shared = sorted(left.keys() & right.keys())
     pairs = [(left[slug], right[slug]) for slug in shared]
     rows = [_difference(a, b) for a, b in pairs]
-    return Comparison(
+    return ReaderComparison(
         shared=tuple(shared),
         only_first=tuple(sorted(left.keys() - right.keys())),
         only_second=tuple(sorted(right.keys() - left.keys())),

@@ -242,7 +242,7 @@ class DoctreeReader:
 
     def _table(self, node: nodes.Element) -> list[str]:
         title = next((child for child in node.children if isinstance(child, nodes.title)), None)
-        grid = md.Grid()
+        grid = md.MarkdownGrid()
         header = False
         for group in _children(node):
             if not isinstance(group, nodes.tgroup):

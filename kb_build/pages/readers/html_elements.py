@@ -1,4 +1,4 @@
-"""Small questions that are asked of HTML elements."""
+"""Helpers that read HTML elements."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def plain_text(node: Tag) -> str:
 
 
 def holds_heading(node: Tag) -> bool:
-    """Is this a plain division of the page with headings of its own?"""
+    """Whether this is a plain division of the page with headings of its own."""
     return (
         node.name == "div" and "admonition" not in classes_of(node) and node.find(list(HEADINGS)) is not None
     )

@@ -161,7 +161,7 @@ def definition(terms: list[str], body: list[str]) -> str:
     return "\n".join([*heads, *([indent(text)] if text else [])])
 
 
-class Grid:
+class MarkdownGrid:
     """Rows of a table being read. A cell that spans several is written once; the rest of it stays empty."""
 
     _MOST = 200  # a span in a hostile page may be any number

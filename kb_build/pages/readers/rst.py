@@ -198,7 +198,7 @@ def _report(app: Sphinx, progress: Progress, pages: int) -> None:
 
 
 class _PageWarnings(logging.Handler):
-    """Sorts what Sphinx complains about by page."""
+    """Collects Sphinx's warnings by page."""
 
     def __init__(self, app: Sphinx) -> None:
         super().__init__(logging.WARNING)

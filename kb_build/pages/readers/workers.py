@@ -1,4 +1,4 @@
-"""How many processes may share the reading of pages."""
+"""The number of processes for reading pages."""
 
 from __future__ import annotations
 

@@ -45,12 +45,12 @@ def test_the_header_says_which_blender_it_was(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("lines", [0, 1, 3, 99])
-def test_an_extract_whose_end_counts_otherwise_is_refused(tmp_path: Path, lines: int) -> None:
+def test_refuses_an_extract_with_a_wrong_line_count(tmp_path: Path, lines: int) -> None:
     with pytest.raises(ExtractError, match=r"x\.jsonl.*run the build again"):
         read_extract(write(tmp_path / "x.jsonl", HEADER, STRUCT, lines=lines))
 
 
-def test_an_extract_cut_off_anywhere_is_refused(tmp_path: Path) -> None:
+def test_refuses_a_truncated_extract(tmp_path: Path) -> None:
     whole = write(tmp_path / "x.jsonl", HEADER, STRUCT, symbol("bpy.types.A")).read_bytes()
     random.seed(4)
     for size in [0, 1, *random.sample(range(2, len(whole) - 1), 60)]:
@@ -59,7 +59,7 @@ def test_an_extract_cut_off_anywhere_is_refused(tmp_path: Path) -> None:
             read_extract(tmp_path / "cut.jsonl")
 
 
-def test_a_step_that_failed_is_told_and_the_rest_is_there(tmp_path: Path) -> None:
+def test_a_failed_step_is_reported_and_the_rest_kept(tmp_path: Path) -> None:
     extract = read(tmp_path, STRUCT, {"record": "fault", "step": "nodes", "traceback": "Boom"})
     assert extract.faults == ("nodes: Boom",)
     assert len(extract.symbols) == 1
@@ -70,7 +70,7 @@ def test_the_first_of_two_records_with_one_path_counts(tmp_path: Path) -> None:
     assert [row.label for row in extract.symbols if row.path == "bpy.types.A"] == ["one"]
 
 
-def test_items_that_an_instance_listed_take_the_place_of_a_placeholder(tmp_path: Path) -> None:
+def test_items_of_an_instance_replace_a_placeholder(tmp_path: Path) -> None:
     placeholder = [{"identifier": "NONE", "name": "None"}]
     extract = read(
         tmp_path,
@@ -116,7 +116,7 @@ def test_every_data_class_has_the_look_up_that_the_reference_lists_on_it(tmp_pat
     assert owners == ["bpy.types.bpy_struct", "bpy.types.A"]
 
 
-def test_texts_that_a_module_defines_are_put_where_its_members_name_them(tmp_path: Path) -> None:
+def test_substitutions_of_a_module_apply_to_its_members(tmp_path: Path) -> None:
     extract = read(
         tmp_path,
         symbol("m", "module", docstring=".. |NOTE| replace:: Take :class:`Care`.\n"),
@@ -125,7 +125,7 @@ def test_texts_that_a_module_defines_are_put_where_its_members_name_them(tmp_pat
     assert extract.symbols[1].description == "Does.\n\nTake `Care`. Then x|y."
 
 
-def test_methods_that_only_a_docstring_knows_are_symbols(tmp_path: Path) -> None:
+def test_methods_described_only_in_a_docstring_are_symbols(tmp_path: Path) -> None:
     docstring = (
         "Smooths.\n\n.. method:: __init__(a=1)\n\n   Makes.\n\n.. staticmethod:: shade(s)\n\n   Shades."
     )
@@ -143,7 +143,7 @@ def test_methods_that_only_a_docstring_knows_are_symbols(tmp_path: Path) -> None
 # The manual's table
 
 
-def test_the_first_pattern_that_fits_counts_whatever_its_case(tmp_path: Path) -> None:
+def test_the_first_matching_pattern_counts_in_any_case(tmp_path: Path) -> None:
     extract = read(
         tmp_path,
         symbol("bpy.types.ClothSettings.quality", "property"),

@@ -103,7 +103,7 @@ def test_every_step_ran_without_a_fault(extract: Extract) -> None:
     assert "cycles" in extract.addons
 
 
-def test_no_class_is_missing_and_the_three_groups_are_told_apart(rna_classes: dict[str, Symbol]) -> None:
+def test_no_class_is_missing_and_each_has_its_group(rna_classes: dict[str, Symbol]) -> None:
     groups = Counter(symbol.group for symbol in rna_classes.values())
     assert sum(groups.values()) >= 3_900
     assert groups["data"] >= 1_645
@@ -196,7 +196,7 @@ def test_a_property_carries_everything_a_coder_needs(symbols: dict[str, Symbol])
     assert symbols["bpy.types.ClothModifier.settings"].target == "ClothSettings"
 
 
-def test_deprecation_is_told_with_versions(extract: Extract) -> None:
+def test_deprecations_carry_versions(extract: Extract) -> None:
     deprecated = [symbol for symbol in extract.symbols if symbol.deprecation]
     assert deprecated
     for symbol in deprecated:
@@ -238,7 +238,7 @@ def test_methods_written_in_c_or_python_are_there_with_their_call(symbols: dict[
     assert returned[0].type == "ID"
 
 
-def test_functions_know_what_they_take_and_give(symbols: dict[str, Symbol]) -> None:
+def test_functions_have_parameters_and_results(symbols: dict[str, Symbol]) -> None:
     ray = symbols["bpy.types.Object.ray_cast"]
     assert [p.name for p in ray.parameters][:3] == ["origin", "direction", "distance"]
     assert [p.required for p in ray.parameters][:3] == [True, True, False]
@@ -305,7 +305,7 @@ def test_context_members_have_types(symbols: dict[str, Symbol]) -> None:
             assert (member.type, member.target) == told
 
 
-def test_templates_and_manual_links_come_along(extract: Extract) -> None:
+def test_templates_and_manual_links_are_extracted(extract: Extract) -> None:
     assert len(extract.templates) >= 38
     for page in extract.templates:
         assert page.slug.startswith("templates_py/")
@@ -346,7 +346,7 @@ def test_nodes_have_their_sockets(extract: Extract, symbols: dict[str, Symbol]) 
     assert "identifier:Specular IOR Level" in specular.flags
 
 
-def test_sockets_tell_in_which_modes_they_show(symbols: dict[str, Symbol]) -> None:
+def test_sockets_list_the_modes_that_show_them(symbols: dict[str, Symbol]) -> None:
     mix = {
         symbol.flags[0]: symbol.modes
         for symbol in symbols.values()
@@ -376,7 +376,7 @@ def test_a_socket_path_is_python_that_finds_the_socket(extract: Extract, tmp_pat
     assert {name: answer for name, answer in answers.items() if answer != expected[name]} == {}
 
 
-def test_asking_blender_twice_gives_the_same_bytes(base: Path, tmp_path: Path) -> None:
+def test_extracting_twice_gives_the_same_bytes(base: Path, tmp_path: Path) -> None:
     again = extract_api(find_runtime(None, home=tmp_path), home=tmp_path)
     first = next((base.parent.parent / "extracts").glob("*.jsonl"))
     assert again.read_bytes() == first.read_bytes()

@@ -57,11 +57,11 @@ def test_spellings_of_one_name_have_the_same_terms(spellings: tuple[str, ...]) -
         ("!?*\"'()[]{}\x00", []),
     ],
 )
-def test_identifiers_are_taken_apart_at_their_joints(text: str, expected: list[str]) -> None:
+def test_identifiers_are_split_into_words(text: str, expected: list[str]) -> None:
     assert words(text) == expected
 
 
-def test_words_keep_every_letter_and_digit_of_what_is_plain() -> None:
+def test_splitting_loses_no_letter() -> None:
     random.seed(11)
     for _ in range(500):
         text = "".join(random.choices(string.ascii_letters + string.digits + "_ .-[]\"'", k=30))
@@ -74,16 +74,16 @@ def test_words_keep_every_letter_and_digit_of_what_is_plain() -> None:
     [("collisions", "collision"), ("baking", "bake"), ("simulated", "simulate"), ("modifiers", "modifier"),
      ("particles", "particle")],
 )  # fmt: skip
-def test_forms_of_one_word_meet_in_one_stem(one: str, other: str) -> None:
+def test_forms_of_a_word_have_one_stem(one: str, other: str) -> None:
     assert stem(one) == stem(other)
 
 
-def test_words_that_only_frame_a_question_are_left_out() -> None:
+def test_stop_words_are_left_out() -> None:
     assert terms("How do I make the cloth with its own collisions?") == terms("cloth collisions")
     assert terms(" ".join(sorted(STOP_WORDS))) == []
 
 
-def test_any_text_is_taken() -> None:
+def test_terms_of_any_text_are_lower_case() -> None:
     random.seed(3)
     for _ in range(300):
         text = "".join(

@@ -16,7 +16,7 @@ import pytest
 from places import REPO
 
 from kb_build.errors import SourceError
-from kb_build.pages.archives import Limits, safe_path, unpack
+from kb_build.pages.archives import ArchiveLimits, safe_path, unpack
 
 FILES = {
     "manual/index.rst": b"Title\n=====\n",
@@ -109,7 +109,7 @@ HOSTILE = {
 
 @pytest.mark.parametrize("name", HOSTILE.values(), ids=HOSTILE)
 @pytest.mark.parametrize("make", [make_tar, make_zip])
-def test_a_hostile_name_condemns_the_archive(tmp_path: Path, make, name: str) -> None:
+def test_an_archive_with_a_hostile_name_is_refused(tmp_path: Path, make, name: str) -> None:
     place = tmp_path / "deep" / "place"
     place.mkdir(parents=True)
     archive = make(place / "a", files={"manual/index.rst": b"fine", name: b"evil"})
@@ -119,7 +119,7 @@ def test_a_hostile_name_condemns_the_archive(tmp_path: Path, make, name: str) ->
     assert only(tmp_path) == ["deep"]
 
 
-def test_an_undecodable_name_condemns_the_archive(tmp_path: Path) -> None:
+def test_an_archive_with_an_undecodable_name_is_refused(tmp_path: Path) -> None:
     archive = make_tar(tmp_path / "a.tar", "w", {"manual/\udcff.rst": b"x"})
     with pytest.raises(SourceError, match="invisible characters"):
         unpack(archive, tmp_path / "out")
@@ -128,7 +128,7 @@ def test_an_undecodable_name_condemns_the_archive(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["manual/ü/日本.rst", "./manual/a.rst", "manual//b c.rst", "manual/.hidden.rst"]
 )
-def test_an_ordinary_name_is_taken(name: str) -> None:
+def test_ordinary_names_are_accepted(name: str) -> None:
     assert safe_path(name, Path("a.zip")) == PurePosixPath(name)
 
 
@@ -165,9 +165,11 @@ def test_files_come_out_without_the_archives_permissions(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("make", [make_tar, make_zip])
 @pytest.mark.parametrize(
-    "limits", [Limits(total_bytes=1 << 20), Limits(ratio=2, free_bytes=1 << 20)], ids=["total", "ratio"]
+    "limits",
+    [ArchiveLimits(total_bytes=1 << 20), ArchiveLimits(ratio=2, free_bytes=1 << 20)],
+    ids=["total", "ratio"],
 )
-def test_a_bomb_is_stopped(tmp_path: Path, make, limits: Limits) -> None:
+def test_a_bomb_is_stopped(tmp_path: Path, make, limits: ArchiveLimits) -> None:
     archive = make(tmp_path / "a", files={"index.rst": bytes(8 << 20)})
     with pytest.raises(SourceError, match="as bombs do"):
         unpack(archive, tmp_path / "out", limits=limits)
@@ -177,17 +179,22 @@ def test_a_bomb_is_stopped(tmp_path: Path, make, limits: Limits) -> None:
 def test_a_bomb_of_unwanted_members_is_stopped(tmp_path: Path) -> None:
     archive = make_tar(tmp_path / "a", files={"big.bin": bytes(8 << 20), "index.rst": b"x"})
     with pytest.raises(SourceError, match="as bombs do"):
-        unpack(archive, tmp_path / "out", wanted=lambda path: path.suffix == ".rst", limits=Limits(1 << 20))
+        unpack(
+            archive,
+            tmp_path / "out",
+            wanted=lambda path: path.suffix == ".rst",
+            limits=ArchiveLimits(1 << 20),
+        )
 
 
-def test_a_zip_that_lies_about_its_sizes_is_stopped(tmp_path: Path) -> None:
+def test_a_zip_with_false_sizes_is_stopped(tmp_path: Path) -> None:
     archive = make_zip(tmp_path / "a.zip", files={"index.rst": bytes(8 << 20)})
     data = bytearray(archive.read_bytes())
     entry = data.index(b"PK\x01\x02")
     data[entry + 24 : entry + 28] = (10).to_bytes(4, "little")
     archive.write_bytes(data)
     with pytest.raises(SourceError, match="damaged"):
-        unpack(archive, tmp_path / "out", limits=Limits(total_bytes=1 << 20))
+        unpack(archive, tmp_path / "out", limits=ArchiveLimits(total_bytes=1 << 20))
     assert only(tmp_path) == ["a.zip"]
 
 
@@ -195,7 +202,7 @@ def test_a_zip_that_lies_about_its_sizes_is_stopped(tmp_path: Path) -> None:
 def test_a_flood_of_members_is_stopped(tmp_path: Path, make) -> None:
     archive = make(tmp_path / "a", files={f"{i}.rst": b"" for i in range(60)})
     with pytest.raises(SourceError, match="more than 50 members"):
-        unpack(archive, tmp_path / "out", limits=Limits(members=50))
+        unpack(archive, tmp_path / "out", limits=ArchiveLimits(members=50))
     assert only(tmp_path) == ["a"]
 
 
@@ -250,7 +257,7 @@ def test_flipped_bytes_are_noticed(tmp_path: Path) -> None:
     [b"", b"<html>not an archive</html>", b"PK\x03\x04junk", b"\x1f\x8bjunk", b"\xfd7zXZ\x00junk"],
     ids=["empty", "page", "zip", "gzip", "xz"],
 )
-def test_what_is_no_archive_is_named(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_not_an_archive_is_named(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a").write_bytes(content)
     with pytest.raises(SourceError, match="damaged or not an archive") as caught:
         unpack(tmp_path / "a", tmp_path / "out")
@@ -285,7 +292,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
     assert only(tmp_path) == ["a"]
 
 
-def test_what_a_killed_process_left_is_cleared_away(tmp_path: Path) -> None:
+def test_leftovers_of_a_killed_process_are_removed(tmp_path: Path) -> None:
     archive = make_tar(tmp_path / "a")
     script = f"""
         import os, pathlib, signal

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.pages.readers.compare import Comparison, compare
+from kb_build.pages.readers.compare import ReaderComparison, compare
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
 
@@ -35,7 +35,7 @@ def unpack(archive: Path, to: Path, *, every: int = 1) -> Path:
 
 
 @pytest.fixture(scope="module")
-def comparison(corpora: Path, tmp_path_factory: pytest.TempPathFactory) -> Comparison:
+def comparison(corpora: Path, tmp_path_factory: pytest.TempPathFactory) -> ReaderComparison:
     folder = tmp_path_factory.mktemp("manual")
     sources = unpack(corpora / "manual-4.4-rst.tar.xz", folder / "rst")
     download = unpack(corpora / "manual-4.4-html.tar.xz", folder / "html", every=EVERY)
@@ -43,12 +43,12 @@ def comparison(corpora: Path, tmp_path_factory: pytest.TempPathFactory) -> Compa
     return compare(read_rst(sources, source="manual", version="4.4"), pages)
 
 
-def test_titles_and_section_titles_agree_in_both_forms_of_the_manual(comparison: Comparison) -> None:
+def test_titles_and_section_titles_agree_in_both_forms_of_the_manual(comparison: ReaderComparison) -> None:
     assert len(comparison.shared) > 2_000 / EVERY
     assert comparison.outline_share >= 0.98
 
 
-def test_texts_agree_in_both_forms_of_the_manual(comparison: Comparison) -> None:
+def test_texts_agree_in_both_forms_of_the_manual(comparison: ReaderComparison) -> None:
     assert comparison.similarity >= 0.99
     assert comparison.identical / len(comparison.shared) >= 0.93
 

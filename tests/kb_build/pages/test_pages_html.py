@@ -134,7 +134,7 @@ def test_icons_leave_neither_marks_nor_empty_brackets(tmp_path: Path) -> None:
     assert page.sections[0].text == "Press or ."
 
 
-def test_file_names_are_no_picture_texts(tmp_path: Path) -> None:
+def test_file_names_are_not_captions(tmp_path: Path) -> None:
     page = read_article(
         tmp_path, '<p><img alt="_images/a.png" src="x"/></p><p><img alt="A cube" src="y"/></p>'
     )
@@ -207,7 +207,7 @@ def test_a_folder_without_pages_is_named_in_the_error(tmp_path: Path) -> None:
         read_html(tmp_path, source="guide", version="5.1")
 
 
-def test_a_comparison_tells_what_differs(from_html: list[Page], from_rst: list[Page]) -> None:
+def test_a_comparison_lists_the_differences(from_html: list[Page], from_rst: list[Page]) -> None:
     found = compare(from_rst, from_html)
     assert found.outline_share >= 14 / 16
     assert {row.slug for row in found.differences} <= FAULTY

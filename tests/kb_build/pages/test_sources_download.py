@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import SourceError
-from kb_build.pages.download import Patience, download
-from kb_build.pages.sources import Missing, Source, find_sources
+from kb_build.pages.download import DownloadPatience, download
+from kb_build.pages.sources import DocumentationSource, MissingSource, find_sources
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -123,25 +123,25 @@ def closed_port() -> str:
         return f"http://127.0.0.1:{listener.getsockname()[1]}"
 
 
-def look(tmp_path: Path, base_url: str, **options: object) -> dict[str, Source | Missing]:
-    patience = options.pop("patience", Patience(seconds=60.0))
+def look(tmp_path: Path, base_url: str, **options: object) -> dict[str, DocumentationSource | MissingSource]:
+    patience = options.pop("patience", DownloadPatience(seconds=60.0))
     found, missing = find_sources(
         "5.1", cache=tmp_path / "cache", base_url=base_url, patience=patience, **options
     )
     return {entry.role: entry for entry in (*found, *missing)}
 
 
-def source(entry: Source | Missing) -> Source:
-    assert isinstance(entry, Source), entry
+def source(entry: DocumentationSource | MissingSource) -> DocumentationSource:
+    assert isinstance(entry, DocumentationSource), entry
     return entry
 
 
-def reason(entry: Source | Missing) -> str:
-    assert isinstance(entry, Missing), entry
+def reason(entry: DocumentationSource | MissingSource) -> str:
+    assert isinstance(entry, MissingSource), entry
     return entry.reason
 
 
-def test_what_is_nowhere_else_is_downloaded_and_its_digest_written_down(tmp_path: Path, site: Site) -> None:
+def test_a_source_found_nowhere_else_is_downloaded_with_its_digest(tmp_path: Path, site: Site) -> None:
     found = look(tmp_path, site.url)
     manual, guides = source(found["manual"]), source(found["guides"])
     digest = hashlib.sha256(MANUAL).hexdigest()
@@ -159,7 +159,7 @@ def test_what_is_nowhere_else_is_downloaded_and_its_digest_written_down(tmp_path
     assert note == f"{digest}  blender_manual_v510_en.zip\n"
 
 
-def test_what_was_downloaded_is_not_asked_for_again(tmp_path: Path, site: Site) -> None:
+def test_downloads_are_not_requested_again(tmp_path: Path, site: Site) -> None:
     first = look(tmp_path, site.url)
     site.requests.clear()
     assert look(tmp_path, site.url) == first
@@ -176,7 +176,7 @@ def test_progress_ends_at_the_files_length(tmp_path: Path, site: Site) -> None:
     download(
         site.url + MANUAL_PATH,
         tmp_path / "m.zip",
-        patience=Patience(seconds=60.0),
+        patience=DownloadPatience(seconds=60.0),
         progress=lambda *report: seen.append(report),
     )
     assert len(seen) > 2
@@ -237,7 +237,7 @@ def test_a_server_that_never_gets_further_is_given_up_with_what_to_do(tmp_path: 
     assert len(site.requests) < 10
 
 
-def test_another_part_than_asked_for_is_refused(tmp_path: Path, site: Site) -> None:
+def test_a_reply_with_the_wrong_range_is_refused(tmp_path: Path, site: Site) -> None:
     break_off(tmp_path, site)
 
     def wrong_part(handler: Handler) -> None:
@@ -312,28 +312,28 @@ def test_a_closed_port_costs_nothing_and_is_asked_once(tmp_path: Path) -> None:
     base = closed_port()
     found = look(tmp_path, base)
     assert "could not be reached" in reason(found["manual"])
-    assert "was not asked" in reason(found["guides"])
+    assert "was not tried" in reason(found["guides"])
 
 
 def test_a_name_that_does_not_exist_is_named(tmp_path: Path) -> None:
     assert "could not be reached" in reason(
-        look(tmp_path, "http://docs.invalid", patience=Patience(seconds=5.0))["manual"]
+        look(tmp_path, "http://docs.invalid", patience=DownloadPatience(seconds=5.0))["manual"]
     )
 
 
 def test_an_address_that_never_answers_costs_what_patience_allows_for_both_sources(tmp_path: Path) -> None:
-    patience = Patience(seconds=0.3)
+    patience = DownloadPatience(seconds=0.3)
     started = time.monotonic()
     with silent_port() as base:
         found = look(tmp_path, base, patience=patience)
     assert "could not be reached" in reason(found["manual"])
-    assert "was not asked" in reason(found["guides"])
+    assert "was not tried" in reason(found["guides"])
     assert patience.seconds == 0.0
     assert time.monotonic() - started < 5
 
 
 def test_silent_hosts_share_one_patience(tmp_path: Path) -> None:
-    patience = Patience(seconds=0.3)
+    patience = DownloadPatience(seconds=0.3)
     with silent_port() as one, silent_port() as two:
         for base in (one, two):
             with pytest.raises(SourceError, match="could not be reached"):
@@ -351,13 +351,13 @@ def test_headers_without_a_body_count_as_silence(tmp_path: Path, site: Site) -> 
         site.released.wait()
 
     site.faults[MANUAL_PATH] = only_headers
-    patience = Patience(seconds=0.3)
+    patience = DownloadPatience(seconds=0.3)
     assert "could not be reached" in reason(look(tmp_path, site.url, patience=patience)["manual"])
     assert patience.seconds == 0.0
 
 
-def test_patience_is_ten_seconds_unless_told() -> None:
-    assert Patience().seconds == 10.0
+def test_the_default_patience_is_ten_seconds() -> None:
+    assert DownloadPatience().seconds == 10.0
 
 
 def test_a_file_of_absurd_length_is_not_begun(tmp_path: Path, site: Site) -> None:
@@ -376,10 +376,10 @@ def test_an_interrupt_keeps_what_has_arrived_for_the_next_run(tmp_path: Path, si
 
     target = tmp_path / "m.zip"
     with pytest.raises(KeyboardInterrupt):
-        download(site.url + MANUAL_PATH, target, patience=Patience(seconds=60.0), progress=interrupt)
+        download(site.url + MANUAL_PATH, target, patience=DownloadPatience(seconds=60.0), progress=interrupt)
     assert not target.exists()
     assert (
-        download(site.url + MANUAL_PATH, target, patience=Patience(seconds=60.0))
+        download(site.url + MANUAL_PATH, target, patience=DownloadPatience(seconds=60.0))
         == hashlib.sha256(MANUAL).hexdigest()
     )
 
@@ -387,4 +387,4 @@ def test_an_interrupt_keeps_what_has_arrived_for_the_next_run(tmp_path: Path, si
 def test_a_place_that_cannot_be_written_to_is_named(tmp_path: Path, site: Site) -> None:
     (tmp_path / "m.zip.part").mkdir()
     with pytest.raises(SourceError, match="could not be stored"):
-        download(site.url + MANUAL_PATH, tmp_path / "m.zip", patience=Patience(seconds=60.0))
+        download(site.url + MANUAL_PATH, tmp_path / "m.zip", patience=DownloadPatience(seconds=60.0))

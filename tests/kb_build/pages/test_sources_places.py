@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import SourceError
-from kb_build.pages.sources import Missing, Origin, Source, find_sources
+from kb_build.pages.sources import DocumentationSource, MissingSource, Origin, find_sources
 from simworlds.errors import UserError
 from simworlds.releases import releases, source_names
 
@@ -60,18 +60,20 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path / "corpora"
 
 
-def look(version: str, tmp_path: Path, **places: Path | None) -> dict[str, Source | Missing]:
+def look(
+    version: str, tmp_path: Path, **places: Path | None
+) -> dict[str, DocumentationSource | MissingSource]:
     found, missing = find_sources(version, cache=tmp_path / "cache", allow_download=False, **places)
     return {entry.role: entry for entry in (*found, *missing)}
 
 
-def source(entry: Source | Missing) -> Source:
-    assert isinstance(entry, Source), entry
+def source(entry: DocumentationSource | MissingSource) -> DocumentationSource:
+    assert isinstance(entry, DocumentationSource), entry
     return entry
 
 
-def reason(entry: Source | Missing) -> str:
-    assert isinstance(entry, Missing), entry
+def reason(entry: DocumentationSource | MissingSource) -> str:
+    assert isinstance(entry, MissingSource), entry
     return entry.reason
 
 
@@ -213,7 +215,7 @@ def test_a_damaged_archive_in_the_corpora_folder_is_named_and_the_next_one_used(
     assert source(look("5.1", tmp_path, corpora=folder)["manual"]).form == "html"
 
 
-def test_what_the_last_build_used_is_used_again_where_nothing_is_named(tmp_path: Path, folder: Path) -> None:
+def test_sources_of_the_last_build_are_used_again(tmp_path: Path, folder: Path) -> None:
     archive = tar(folder / "somewhere.tar.xz", "manual", RST_MANUAL)
     before = {"manual": Origin(archive, given=True), "guides": Origin(folder / "gone.zip", given=False)}
     found, missing = find_sources("5.1", cache=tmp_path / "cache", before=before, allow_download=False)
@@ -269,7 +271,7 @@ def test_the_same_pages_elsewhere_have_the_same_digest(tmp_path: Path) -> None:
     assert len(digests) == 1
 
 
-def test_a_damaged_memory_of_digests_does_no_harm(tmp_path: Path) -> None:
+def test_a_damaged_digest_cache_does_no_harm(tmp_path: Path) -> None:
     given = write(tmp_path / "manual", RST_MANUAL)
     first = look("5.1", tmp_path, manual=given)["manual"]
     for damage in ("{", "[]", '{"x": 3}', "\0"):
@@ -278,7 +280,7 @@ def test_a_damaged_memory_of_digests_does_no_harm(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("version", ["", "five", "5", "5.1.2.3", "5.1; rm", "../5.1", "5.1\n6"])
-def test_what_is_no_version_is_refused(tmp_path: Path, version: str) -> None:
+def test_an_invalid_version_is_refused(tmp_path: Path, version: str) -> None:
     with pytest.raises(UserError, match="is not a Blender version"):
         look(version, tmp_path)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from kb_build.records import Page, Section
-from kb_build.summaries import summarise
 from kb_build.summaries.extractive import MAX_CHARS
+from kb_build.summaries.methods import summarise
 
 PROSE = (
     "Cloth simulation is one of the hardest aspects of CG. Cloth has very complex internal and environmental "
@@ -138,7 +138,7 @@ def test_without_a_lead_the_contents_come_first_and_a_sentence_where_there_is_ro
 
 
 @pytest.mark.parametrize("text", ["See the other page for it all.", "This node has no properties.", ""])
-def test_a_page_that_says_nothing_is_placed_by_the_pages_above_it(text):
+def test_an_empty_page_is_summarised_by_the_pages_above_it(text):
     found = summary(page(text, "Blend Node", breadcrumbs=("Editors", "Texture Nodes")))
     assert found == "Blend Node (Editors > Texture Nodes)"
 

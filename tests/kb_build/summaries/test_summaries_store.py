@@ -13,8 +13,8 @@ import pytest
 from places import REPO
 
 from kb_build.errors import SummaryError
-from kb_build.summaries import Summary, SummaryStore, summary_key
-from kb_build.summaries.store import BadAnswer, SentBatch
+from kb_build.summaries.store import BadAnswer, SentBatch, SummaryStore
+from kb_build.summaries.types import PageSummary, summary_key
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 API = "http://127.0.0.1/"
 
 
-def one(number: int, text: str = "Cloth settings.") -> Summary:
-    return Summary(summary_key(str(number), "page-1", "m"), text, "claude", "m", "page-1")
+def one(number: int, text: str = "Cloth settings.") -> PageSummary:
+    return PageSummary(summary_key(str(number), "page-1", "m"), text, "claude", "m", "page-1")
 
 
 @pytest.fixture
@@ -73,12 +73,18 @@ def test_a_colleagues_copy_is_merged(store, tmp_path):
     assert store.under_way(API) == []
 
 
-def test_a_merge_takes_nothing_that_is_no_summary(store, tmp_path):
+def test_a_merge_leaves_out_invalid_summaries(store, tmp_path):
     theirs = SummaryStore(tmp_path / "theirs.sqlite")
     theirs.add(
-        [one(1, "x" * 601), one(2, "a\x1b[2J"), one(3, ""), Summary("short", "x", "claude", "m", "p"), one(4)]
+        [
+            one(1, "x" * 601),
+            one(2, "a\x1b[2J"),
+            one(3, ""),
+            PageSummary("short", "x", "claude", "m", "p"),
+            one(4),
+        ]
     )
-    theirs.add([Summary(one(5).key, "chosen", "extractive", "m", "p")])
+    theirs.add([PageSummary(one(5).key, "chosen", "extractive", "m", "p")])
     assert store.merge(theirs.path) == 1
 
 
@@ -110,7 +116,7 @@ def test_another_programs_database_is_left_alone(store):
     store.path.parent.mkdir(parents=True)
     with closing(sqlite3.connect(store.path)) as db:
         db.execute("CREATE TABLE letters (body TEXT)")
-    with pytest.raises(SummaryError, match="no summary store"):
+    with pytest.raises(SummaryError, match="not a summary store"):
         store.add([one(1)])
     with closing(sqlite3.connect(store.path)) as db:
         assert db.execute("SELECT name FROM sqlite_schema").fetchall() == [("letters",)]
@@ -176,11 +182,12 @@ def test_a_process_killed_while_writing_leaves_a_whole_file(store):
     code = """
 import itertools, sys
 from pathlib import Path
-from kb_build.summaries import Summary, SummaryStore, summary_key
+from kb_build.summaries.store import SummaryStore
+from kb_build.summaries.types import PageSummary, summary_key
 store = SummaryStore(Path(sys.argv[1]))
 for n in itertools.count():
     keys = [summary_key(f"{n} {m}", "p", "m") for m in range(100)]
-    store.add([Summary(key, "text " * 50, "claude", "m", "p") for key in keys])
+    store.add([PageSummary(key, "text " * 50, "claude", "m", "p") for key in keys])
     print(n, flush=True)
 """
     repo = REPO
@@ -204,7 +211,7 @@ def test_the_lock_of_a_killed_process_is_free(store):
     code = """
 import sys
 from pathlib import Path
-from kb_build.summaries import SummaryStore
+from kb_build.summaries.store import SummaryStore
 with SummaryStore(Path(sys.argv[1])).exclusive():
     print("locked", flush=True)
     sys.stdin.read()

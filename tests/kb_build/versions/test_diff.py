@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from kb_build.blender.extract_reader import Extract
 from kb_build.records import EnumItem, Parameter, Symbol
-from kb_build.versions.diff import Change, diff, format_diff
+from kb_build.versions.diff import SymbolChange, diff, format_diff
 
 
 def extract(version: str, *symbols: Symbol) -> Extract:
@@ -40,17 +40,17 @@ def test_type_default_range_and_base_are_compared() -> None:
     new = replace(SIZE, type="int", default=2, hard_max=None)
     found = diff(extract("4.5.0", CLASS, SIZE), extract("5.1.0", replace(CLASS, base="bpy.types.B"), new))
     assert set(found.changed) == {
-        Change("bpy.types.A", "base", "bpy.types.ID", "bpy.types.B"),
-        Change("bpy.types.A.size", "type", "float", "int"),
-        Change("bpy.types.A.size", "default", "1.0", "2"),
-        Change("bpy.types.A.size", "range", "0 … 10", "0 … inf"),
+        SymbolChange("bpy.types.A", "base", "bpy.types.ID", "bpy.types.B"),
+        SymbolChange("bpy.types.A.size", "type", "float", "int"),
+        SymbolChange("bpy.types.A.size", "default", "1.0", "2"),
+        SymbolChange("bpy.types.A.size", "range", "0 … 10", "0 … inf"),
     }
 
 
 def test_enum_items_that_came_and_went_are_listed() -> None:
     new = replace(KIND, enum_items=(EnumItem("TWO"), EnumItem("THREE")))
     found = diff(extract("4.5.0", KIND), extract("5.1.0", new))
-    assert found.changed == (Change("bpy.types.A.kind", "enum items", "ONE", "THREE"),)
+    assert found.changed == (SymbolChange("bpy.types.A.kind", "enum items", "ONE", "THREE"),)
 
 
 def test_an_operators_parameters_are_compared_one_by_one() -> None:
@@ -59,9 +59,9 @@ def test_an_operators_parameters_are_compared_one_by_one() -> None:
     )
     found = diff(extract("4.5.0", CALL), extract("5.1.0", new))
     assert found.changed == (
-        Change("bpy.ops.a.run", "parameters", "old", "new"),
-        Change("bpy.ops.a.run", "level: default", "1", "3"),
-        Change("bpy.ops.a.run", "mode: type", "enum", "string"),
+        SymbolChange("bpy.ops.a.run", "parameters", "old", "new"),
+        SymbolChange("bpy.ops.a.run", "level: default", "1", "3"),
+        SymbolChange("bpy.ops.a.run", "mode: type", "enum", "string"),
     )
 
 

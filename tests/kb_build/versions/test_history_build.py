@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import KBBuildError, StoreError
-from kb_build.versions.history import History
+from kb_build.versions.history import ApiHistory
 from kb_build.versions.history_builder import build_history
 from simworlds.releases import minor_of
 from simworlds.sandbox.runtime import installed_bpy
@@ -31,10 +31,10 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("history-home")
 
 
-def test_what_one_blender_has_is_written(version: str, home: Path, tmp_path: Path) -> None:
+def test_one_blenders_symbols_are_written(version: str, home: Path, tmp_path: Path) -> None:
     report = build_history([version], home=home, output=tmp_path / "api.csv.gz")
-    history = History.load(tmp_path / "api.csv.gz")
-    assert (report.written, report.asked, report.missing) == (True, (version,), {})
+    history = ApiHistory.load(tmp_path / "api.csv.gz")
+    assert (report.written, report.extracted, report.missing) == (True, (version,), {})
     assert history.patches == (version,)
     assert history.exists("bpy.ops.object.modifier_add(type):NODES", version)
     assert report.size == (tmp_path / "api.csv.gz").stat().st_size
@@ -42,36 +42,34 @@ def test_what_one_blender_has_is_written(version: str, home: Path, tmp_path: Pat
     assert not again.written
 
 
-def test_versions_that_cannot_be_had_are_named_and_kept_from_the_old_file(
+def test_unavailable_versions_are_named_and_kept_from_the_old_file(
     version: str, home: Path, tmp_path: Path
 ) -> None:
     output = tmp_path / "api.csv.gz"
-    output.write_bytes(History.of({"3.4.1": {"bpy", "bpy.old"}}).to_bytes())
+    output.write_bytes(ApiHistory.of({"3.4.1": {"bpy", "bpy.old"}}).to_bytes())
     absent = tmp_path / "no-blender-here"
     report = build_history([version], home=home, output=output, blender_exes=[absent])
     assert report.kept == ("3.4.1",)
     assert "no Blender executable" in report.missing[str(absent)]
-    assert History.load(output).span("bpy.old") == ("3.4", "3.4")
+    assert ApiHistory.load(output).span("bpy.old") == ("3.4", "3.4")
 
 
-def test_a_poorer_extract_does_not_replace_what_the_file_knows(
-    version: str, home: Path, tmp_path: Path
-) -> None:
+def test_a_poorer_extract_does_not_replace_the_file(version: str, home: Path, tmp_path: Path) -> None:
     output = tmp_path / "api.csv.gz"
     richer = {f"bpy.types.Lost.p{n}" for n in range(100_000)}
-    output.write_bytes(History.of({version: richer}).to_bytes())
+    output.write_bytes(ApiHistory.of({version: richer}).to_bytes())
     before = output.read_bytes()
     with pytest.raises(StoreError, match=r"lost: bpy\.types\.Lost\.p0"):
         build_history([version], home=home, output=output)
     assert output.read_bytes() == before
     assert build_history([version], home=home, output=output, force=True).written
-    assert not History.load(output).exists("bpy.types.Lost.p0", minor_of(version))
+    assert not ApiHistory.load(output).exists("bpy.types.Lost.p0", minor_of(version))
 
 
 def test_with_no_blender_at_all_the_file_stays_and_the_reasons_are_given(home: Path, tmp_path: Path) -> None:
     output = tmp_path / "api.csv.gz"
     output.write_text("whatever", encoding="utf-8")
-    with pytest.raises(KBBuildError, match="not one Blender"):
+    with pytest.raises(KBBuildError, match="no Blender was available"):
         build_history(["2.79"], home=home, output=output, force=True)
     assert output.read_text(encoding="utf-8") == "whatever"
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.blender.extract_reader import read_extract
-from kb_build.versions.history import History
+from kb_build.versions.history import ApiHistory
 from kb_build.versions.replacements import KEPT, Replacements, find_replacements
 from simworlds.releases import minor_of
 
@@ -32,12 +32,12 @@ def symbols(base: Path) -> Sequence[Symbol]:
 
 
 @pytest.fixture(scope="module")
-def history() -> History:
-    return History.load()
+def history() -> ApiHistory:
+    return ApiHistory.load()
 
 
 @pytest.fixture(scope="module")
-def finder(symbols: Sequence[Symbol], history: History) -> Replacements:
+def finder(symbols: Sequence[Symbol], history: ApiHistory) -> Replacements:
     return Replacements(symbols, history, JUDGED_FOR)
 
 
@@ -87,8 +87,8 @@ def test_five_of_six_judged_cases_are_among_the_closest(finder: Replacements) ->
 
 
 @pytest.mark.blender
-def test_everything_offered_exists_and_what_it_is_offered_for_does_not(
-    symbols: Sequence[Symbol], history: History
+def test_replacements_exist_and_the_replaced_symbols_do_not(
+    symbols: Sequence[Symbol], history: ApiHistory
 ) -> None:
     rows = list(find_replacements(symbols, history, JUDGED_FOR))
     known = {symbol.path for symbol in symbols}
@@ -101,7 +101,7 @@ def test_everything_offered_exists_and_what_it_is_offered_for_does_not(
 
 
 @pytest.mark.blender
-def test_at_most_five_are_offered_best_first(symbols: Sequence[Symbol], history: History) -> None:
+def test_at_most_five_are_offered_best_first(symbols: Sequence[Symbol], history: ApiHistory) -> None:
     offered: dict[str, list[float]] = {}
     for missing, _, score in find_replacements(symbols, history, JUDGED_FOR):
         offered.setdefault(missing, []).append(score)
@@ -111,14 +111,14 @@ def test_at_most_five_are_offered_best_first(symbols: Sequence[Symbol], history:
 
 @pytest.mark.blender
 def test_a_version_that_the_history_does_not_know_gets_none(
-    symbols: Sequence[Symbol], history: History
+    symbols: Sequence[Symbol], history: ApiHistory
 ) -> None:
     assert list(find_replacements(symbols, history, "9.9")) == []
 
 
 @pytest.mark.blender
 def test_a_history_extended_by_an_unknown_version_tells_what_that_one_lacks(
-    symbols: Sequence[Symbol], history: History
+    symbols: Sequence[Symbol], history: ApiHistory
 ) -> None:
     paths = [symbol.path for symbol in symbols if symbol.path != "bpy.types.Scene.compositing_node_group"]
     extended = history.including("9.9.0", paths)

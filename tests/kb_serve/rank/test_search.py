@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, of_data
 
-from kb_build.index.analysis import STOP_WORDS, stem, telling_words, terms
-from kb_build.index.query_expansions import load_uses
+from kb_build.index.analysis import STOP_WORDS, content_words, stem, terms
+from kb_build.index.query_expansions import load_query_expansions
 from kb_serve.rank import search
 from kb_serve.rank.search import Searcher
 
@@ -45,13 +45,13 @@ def test_a_description_finds_its_own_symbol(reader: BaseReader, searcher: Search
 
 def test_what_something_is_asked_for_by_finds_it_in_any_order(reader: BaseReader, searcher: Searcher) -> None:
     chance, found, asked = random.Random(SEED), 0, 0
-    uses = [
+    rows = [
         (path, row)
-        for path, row in load_uses().items()
+        for path, row in load_query_expansions().items()
         if path.startswith("bpy.types.") and reader.entry(path)
     ]
-    for path, row in chance.sample(uses, 300):
-        said = telling_words(chance.choice(row.split(";")))
+    for path, row in chance.sample(rows, 300):
+        said = content_words(chance.choice(row.split(";")))
         if len(said) < 3:
             continue
         asked += 1
@@ -63,7 +63,7 @@ def test_what_something_is_asked_for_by_finds_it_in_any_order(reader: BaseReader
 
 def test_a_query_that_is_a_phrase_gains_by_it(searcher: Searcher, monkeypatch: pytest.MonkeyPatch) -> None:
     path = "bpy.types.ClothSettings.use_pressure"
-    query = load_uses()[path].partition(";")[0]
+    query = load_query_expansions()[path].partition(";")[0]
 
     def lead() -> float:
         """The score of what is asked for, by the best of the others."""

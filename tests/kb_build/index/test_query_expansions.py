@@ -1,4 +1,4 @@
-"""The table of what people ask for, as it comes with the package and as it reaches the index."""
+"""The query expansions: the table itself, and how they reach the index."""
 
 from __future__ import annotations
 
@@ -8,22 +8,24 @@ import re
 from places import REPO
 
 from kb_build.index.documents import make_units
-from kb_build.index.query_expansions import load_uses
+from kb_build.index.query_expansions import load_query_expansions
 from kb_build.records import Link, Page, Section, Symbol
 
 QUERIES = REPO / "corpora" / "queries"
 
 
-def test_the_table_that_comes_along_is_sound() -> None:
-    table = load_uses()
+def test_every_topic_has_phrases() -> None:
+    table = load_query_expansions()
     assert len(table) > 2_000
     for topic, phrases in table.items():
         assert re.fullmatch(r"[\w./-]+", topic), topic
         assert all(phrase.strip() for phrase in phrases.split(";")), topic
 
 
-def test_the_table_holds_none_of_the_labelled_queries() -> None:
-    phrases = {phrase.strip().lower() for row in load_uses().values() for phrase in row.split(";")}
+def test_no_phrase_is_a_labelled_query() -> None:
+    phrases = {
+        phrase.strip().lower() for row in load_query_expansions().values() for phrase in row.split(";")
+    }
     for path in QUERIES.glob("*.jsonl"):
         queries = {
             json.loads(line)["query"].lower() for line in path.read_text(encoding="utf-8").splitlines()
@@ -31,28 +33,28 @@ def test_the_table_holds_none_of_the_labelled_queries() -> None:
         assert len({query for query in queries if len(query.split()) > 2} & phrases) == 0
 
 
-def test_a_page_and_the_class_that_it_explains_are_asked_for_alike() -> None:
+def test_a_class_has_the_phrases_of_the_page_that_explains_it() -> None:
     page = Page("physics/cloth", "manual", "5.1", "Cloth", (Section("", "Cloth", 1, ""),))
     cloth = Symbol(path="bpy.types.ClothModifier", kind="class", owner="bpy.types", group="data")
     quality = Symbol(path="bpy.types.ClothModifier.quality", kind="property", owner=cloth.path)
     links = [Link(symbol.path, page.slug, "manual") for symbol in (cloth, quality)]
     units = make_units([cloth, quality], [page], links, {}, {"physics/cloth": "flag in the wind"})
-    found = {unit.ref: unit.uses for unit in units}
-    assert found["physics/cloth"] == ("flag in the wind",)
-    assert found[cloth.path] == ("flag in the wind",)
-    assert found[quality.path] == ("",)
+    by_ref = {unit.ref: unit.expansions for unit in units}
+    assert by_ref["physics/cloth"] == ("flag in the wind",)
+    assert by_ref[cloth.path] == ("flag in the wind",)
+    assert by_ref[quality.path] == ("",)
 
 
-def test_a_page_is_asked_for_by_what_it_explains_too() -> None:
+def test_a_page_has_the_phrases_of_the_symbols_it_explains() -> None:
     page = Page("physics/cloth", "manual", "5.1", "Cloth", (Section("", "Cloth", 1, ""),))
     mass = Symbol(path="bpy.types.ClothSettings.mass", kind="property", owner="bpy.types.ClothSettings")
-    uses = {page.slug: "flag in the wind", mass.path: "heavy curtain"}
-    units = make_units([mass], [page], [Link(mass.path, page.slug, "manual")], {}, uses)
-    found = {unit.ref: unit.uses for unit in units}
-    assert found == {page.slug: ("flag in the wind; heavy curtain",), mass.path: ("heavy curtain",)}
+    expansions = {page.slug: "flag in the wind", mass.path: "heavy curtain"}
+    units = make_units([mass], [page], [Link(mass.path, page.slug, "manual")], {}, expansions)
+    by_ref = {unit.ref: unit.expansions for unit in units}
+    assert by_ref == {page.slug: ("flag in the wind; heavy curtain",), mass.path: ("heavy curtain",)}
 
 
-def test_phrases_of_its_own_go_before_those_of_its_page() -> None:
+def test_a_symbol_without_a_page_has_its_own_phrases() -> None:
     hit = Symbol(path="bpy.types.Object.ray_cast", kind="function", owner="bpy.types.Object")
     (unit,) = make_units([hit], [], [], {}, {hit.path: "what lies under the mouse"})
-    assert unit.uses == ("what lies under the mouse",)
+    assert unit.expansions == ("what lies under the mouse",)

@@ -56,15 +56,15 @@ SMALL = [
         ("BlendData", "bpy.data"),
     ],
 )
-def test_the_shortest_way_is_taken(name: str, expression: str) -> None:
+def test_takes_the_shortest_path(name: str, expression: str) -> None:
     assert reached_expressions(SMALL)[name] == expression
 
 
-def test_what_no_pointer_leads_to_has_no_expression() -> None:
+def test_an_unreachable_class_has_no_expression() -> None:
     assert "Far" not in reached_expressions(SMALL)  # a context member that only an editor has
 
 
-def test_classes_in_a_circle_end() -> None:
+def test_a_cycle_of_classes_ends() -> None:
     found = reached_expressions(
         [*SMALL, prop("ClothSettings.again", "Object"), prop("Object.self", "Object")]
     )
@@ -127,7 +127,7 @@ def test_every_expression_is_python_from_a_root(reached: dict[str, str]) -> None
         assert expression.startswith(("bpy.context", "bpy.data"))
 
 
-def test_no_node_is_said_to_live_in_a_tree_that_refuses_it(extract: Extract, reached: dict[str, str]) -> None:
+def test_no_node_is_placed_in_a_tree_that_refuses_it(extract: Extract, reached: dict[str, str]) -> None:
     holders = {
         "ShaderNodeTree": (".node_tree.",), "GeometryNodeTree": (".node_group.",),
         "CompositorNodeTree": (".compositing_node_group.", "scene.node_tree."), "TextureNodeTree": (".node_tree.",),

@@ -1,0 +1,120 @@
+"""The inverted index: which documents have a stem, and how strongly.
+
+Units, topics and phrases each have lists of BM25F term frequencies: the weighted sum over fields of
+tf / (1 - b + b · length / average length) (Robertson & Zaragoza 2009, "The Probabilistic Relevance Framework", section
+3.6). Saturation and idf are applied when a query is answered.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kb_build.index.analysis import content_words, idf, stem
+from kb_build.index.documents import FIELDS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from kb_build.index.documents import Document
+
+# A text → its content words. Texts come several times, in units, topics and the vocabulary: a cache pays.
+Tokenize = Callable[[str], Sequence[str]]
+
+FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.25, "expansions": 1.5}
+UNIT_B = 0.35  # how much a unit's length counts: most are a sentence
+TOPIC_B = 0.4
+
+
+@dataclass(slots=True)
+class PostingLists:
+    """Stem → (numbers of the documents that have it, weighted term frequencies), ascending by number."""
+
+    numbers: dict[str, list[int]] = field(default_factory=lambda: defaultdict(list))
+    weights: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
+
+
+def document_postings(
+    documents: Sequence[Document], b: float, tokenize: Tokenize = content_words
+) -> PostingLists:
+    """The posting lists of units or of topics; documents are numbered from 0."""
+    counts: list[dict[str, Counter[str]]] = []
+    lengths: dict[str, list[int]] = {name: [] for name in FIELDS}
+    for document in documents:
+        row: dict[str, Counter[str]] = {}
+        for name in FIELDS:
+            stems = [stem(word) for text in getattr(document, name) if text for word in tokenize(text)]
+            lengths[name].append(len(stems))
+            if stems:
+                row[name] = Counter(stems)
+        counts.append(row)
+    average = {name: sum(row) / max(1, sum(1 for n in row if n)) for name, row in lengths.items()}
+    postings = PostingLists()
+    for number, row in enumerate(counts):
+        weights: dict[str, float] = defaultdict(float)
+        for name, counter in row.items():
+            scale = FIELD_WEIGHTS[name] / (1 - b + b * lengths[name][number] / average[name])
+            for term, frequency in counter.items():
+                weights[term] += scale * frequency
+        for term, weight in weights.items():
+            postings.numbers[term].append(number)
+            postings.weights[term].append(weight)
+    return postings
+
+
+def phrase_postings(
+    expansions: Mapping[str, str],
+    targets: Mapping[str, int],
+    units: int,
+    unit_postings: PostingLists,
+    tokenize: Tokenize = content_words,
+) -> tuple[list[int], PostingLists]:
+    """The phrases of the query expansions: the document that each leads to, and their posting lists.
+
+    ``targets``: the document of each symbol and page. A phrase's weight is such that the idf (among the ``units``) of
+    what a query shares with it, weighed, is a share of 1.
+    """
+    leads_to: list[int] = []
+    postings = PostingLists()
+    for ref, row in expansions.items():
+        for phrase in row.split(";") if ref in targets else ():
+            stems = dict.fromkeys(stem(word) for word in tokenize(phrase))
+            whole = sum(idf(units, len(unit_postings.numbers.get(term, ()))) for term in stems)
+            if not whole:
+                continue
+            for term in stems:
+                postings.numbers[term].append(len(leads_to))
+                postings.weights[term].append(1 / whole)
+            leads_to.append(targets[ref])
+    return leads_to, postings
+
+
+def pack_postings(*levels: tuple[int, PostingLists]) -> Iterator[tuple[str, int, bytes]]:
+    """(stem, how many units have it, numbers as uint32 then weights as float16) of all levels together.
+
+    Each level comes with the number that its first document gets; the units' comes first.
+    """
+    for term in dict.fromkeys(term for _, postings in levels for term in postings.numbers):
+        having = [(start, postings) for start, postings in levels if term in postings.numbers]
+        numbers = [
+            np.asarray(postings.numbers[term], np.uint32) + np.uint32(start) for start, postings in having
+        ]
+        weights = [np.asarray(postings.weights[term], np.float16) for _, postings in having]
+        units = len(levels[0][1].numbers.get(term, ()))
+        yield term, units, np.concatenate(numbers).tobytes() + np.concatenate(weights).tobytes()
+
+
+def vocabulary(units: Iterable[Document], tokenize: Tokenize = content_words) -> Iterator[tuple[str, str]]:
+    """(stem, most used spelling) for every word of the corpus."""
+    spellings: dict[str, Counter[str]] = defaultdict(Counter)
+    for unit in units:
+        for name in FIELDS:
+            for text in getattr(unit, name):
+                for word in tokenize(text):
+                    spellings[stem(word)][word] += 1
+    for stemmed, counter in spellings.items():
+        yield stemmed, counter.most_common(1)[0][0]

@@ -1,0 +1,66 @@
+"""What a base is told of other versions' symbols."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.index.analysis import key
+from kb_build.records import Symbol
+from kb_build.versions.history import ApiHistory
+from kb_build.versions.removed_symbols import find_removed_symbols
+
+if TYPE_CHECKING:
+    from kb_build.blender.extract_reader import Extract
+    from kb_build.versions.removed_symbols import RemovedSymbols
+
+
+@pytest.fixture(scope="module")
+def removed_symbols(extract: Extract) -> RemovedSymbols:
+    return find_removed_symbols(extract.symbols, ApiHistory.load(), ".".join(extract.version.split(".")[:2]))
+
+
+def test_no_extracted_symbol_is_called_removed(extract: Extract, removed_symbols: RemovedSymbols) -> None:
+    known = {symbol.path for symbol in extract.symbols}
+    assert len(removed_symbols.removed) > 500
+    assert not known & {path for path, _, _ in removed_symbols.removed}
+
+
+def test_spans_end_with_the_last_version_that_had_the_symbol(removed_symbols: RemovedSymbols) -> None:
+    spans = {path: (first, last) for path, first, last in removed_symbols.removed}
+    assert spans["bpy.types.Action.fcurves"][1] == "4.5"
+    assert spans["bpy.types.Scene.node_tree"][1] == "4.5"
+    assert spans["bpy.types.Mesh.use_auto_smooth"][1] == "3.4"
+    for first, last in spans.values():
+        assert tuple(map(int, first.split("."))) <= tuple(map(int, last.split(".")))
+
+
+def test_a_removed_symbol_is_found_with_and_without_prefix(removed_symbols: RemovedSymbols) -> None:
+    names = set(removed_symbols.names)
+    path = "bpy.types.Action.fcurves"
+    assert (key(path), path) in names
+    assert (key("Action.fcurves"), path) in names
+    removed = {row[0] for row in removed_symbols.removed}
+    assert {path for _, path in names} == removed
+
+
+def test_replacements_exist_in_this_version(extract: Extract, removed_symbols: RemovedSymbols) -> None:
+    known = {symbol.path for symbol in extract.symbols}
+    assert {target.partition(":")[0] for _, target, _ in removed_symbols.replacements} <= known
+    assert all(score > 0 for _, _, score in removed_symbols.replacements)
+
+
+def test_since_names_new_symbols_of_this_version(extract: Extract, removed_symbols: RemovedSymbols) -> None:
+    known = {symbol.path for symbol in extract.symbols}
+    since = dict(removed_symbols.since)
+    assert set(since) <= known
+    assert since["bpy.types.Scene.compositing_node_group"] == "5.0"
+    assert "bpy.types.Object.location" not in since
+
+
+def test_a_symbol_that_came_back_is_not_removed() -> None:
+    history = ApiHistory.load()
+    gone = next(path for path, _, _ in history.removed_from("5.1") if path.startswith("bpy.types."))
+    here = Symbol(gone, "property", gone.rpartition(".")[0])
+    assert gone not in {path for path, _, _ in find_removed_symbols([here], history, "5.1").removed}
