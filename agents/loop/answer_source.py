@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from agents.loop.errors import NoRun
 from agents.loop.journal import NAME, read_rows
 from simworlds.llm.claude import Claude
-from simworlds.llm.recorded import Recorded, Recording, heard
+from simworlds.llm.recorded import Recorded, Recording, read_turns
 from simworlds.llm.spending import Metered
 
 if TYPE_CHECKING:
@@ -43,12 +43,12 @@ def answering(root: Path, options: Options, journal: Journal, line: Line) -> Mod
 
     Raises ModelError (no key, a record that is none), NoRun.
     """
-    for one in heard(journal.rows):
+    for one in read_turns(journal.rows):
         if one.turn.live:
             line.spending.carry(one.role, one.stage, one.turn)
     rows = _led_on(journal.rows)
     folders = {str(root): "run"}
-    skip = Counter((one.role, one.stage) for one in heard(rows))
+    skip = Counter((one.role, one.stage) for one in read_turns(rows))
     source = _source(options, folders, skip, line)
     first = max((row["n"] for row in journal.rows if row["type"] in _MODEL), default=0) + 1
     return Recorded(

@@ -33,7 +33,7 @@ from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
 from agents.protocol.findings import Finding
 from simworlds.llm.messages import Turn
-from simworlds.llm.spending import Row
+from simworlds.llm.spending import SpendingRow
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -250,9 +250,9 @@ def _model_answered(history: History, fields: Fields) -> History:
 
 
 def _charged(history: History, asked: ModelCall, turn: Turn) -> History:
-    row = Row(asked.role, asked.stage, recorded=1)
+    row = SpendingRow(asked.role, asked.stage, recorded=1)
     if turn.live:
-        row = Row(
+        row = SpendingRow(
             asked.role, asked.stage, 1, turn.usage + turn.lost, turn.cost or 0.0, int(turn.cost is None)
         )
     rows = {(one.role, one.stage): one for one in history.spending}

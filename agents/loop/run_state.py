@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from simworlds.llm.spending import Row
+from simworlds.llm.spending import SpendingRow
 from simworlds.llm.transcript import MODEL as HANDWRITTEN
 
 if TYPE_CHECKING:
@@ -202,7 +202,7 @@ class History:
     renderings: tuple[Rendering, ...] = ()
     changes: Changes | None = None
     ending: Ending | None = None
-    spending: tuple[Row, ...] = ()
+    spending: tuple[SpendingRow, ...] = ()
     pending: tuple[Step, ...] = ()
     settled: Step | None = None
 
@@ -227,9 +227,9 @@ class History:
         return self.ending.outcome if self.ending else "unfinished"
 
     @property
-    def total(self) -> Row:
+    def total(self) -> SpendingRow:
         """All that was used."""
-        return sum(self.spending, Row("", ""))
+        return sum(self.spending, SpendingRow("", ""))
 
     @property
     def answers(self) -> str:

@@ -62,7 +62,7 @@ class QueryRanker:
 
     def rank(self, query: str, limit: int = _FOUND) -> Ranking:
         """The ids that a query leads to; the first ``limit`` of them will be used."""
-        recognition = self._recogniser.identify(query)
+        recognition = self._recogniser.recognise(query)
         best = recognition.best
         if best is not None and best.sure >= 1.0:
             ranked = [RankedId(match.id, match.sure, match.why) for match in recognition.matches]

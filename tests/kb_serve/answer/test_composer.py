@@ -100,7 +100,7 @@ def test_a_part_beyond_the_last_is_refused_with_the_number_there_is(kb: Knowledg
     ("arguments", "said"),
     [
         ({"limit": 0}, "limit=0"), ({"limit": -1}, "limit=-1"), ({"part": 0}, "part=0"), ({"part": -3}, "part=-3"),
-        ({"max_tokens": 149}, "at least 150"), ({"max_tokens": 0}, "max_tokens=0"), ({"max_tokens": -5},
+        ({"max_tokens": 149}, "150 or more"), ({"max_tokens": 0}, "max_tokens=0"), ({"max_tokens": -5},
         "max_tokens=-5"),
     ],
 )  # fmt: skip

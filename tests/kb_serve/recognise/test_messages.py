@@ -65,8 +65,8 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ),
         ("RuntimeError: Operator bpy.ops.uv.unwrap.poll() failed, context is incorrect", "temp_override"),
         ("AttributeError: 'NoneType' object has no attribute 'mass'", "`.mass` is None"),
-        ("ReferenceError: StructRNA of type Object has been removed", "outlived its data"),
-        ('AttributeError: bpy_struct: attribute "type" from "Object" is read-only', "not assigned"),
+        ("ReferenceError: StructRNA of type Object has been removed", "data was removed, freed"),
+        ('AttributeError: bpy_struct: attribute "type" from "Object" is read-only', "cannot be assigned"),
         ("KeyError: 'bpy_prop_collection[key]: key \"Cub\" not found'", "no element `Cub`"),
     ],
 )

@@ -114,5 +114,5 @@ async def test_what_does_not_exist_is_a_clear_error(service: Service, uri: str) 
 @pytest.mark.parametrize("version", ["9.9", "latest", "..", "%2e%2e%2f"])
 async def test_a_version_that_was_not_built_is_a_clear_error(service: Service, version: str) -> None:
     async with Client(make_server(service)) as client:
-        with pytest.raises(MCPError, match=r"built are: 5\.1"):
+        with pytest.raises(MCPError, match=r"Built are: 5\.1"):
             await client.read_resource(f"blender://{version}/symbol/bpy.types.Object")

@@ -133,7 +133,7 @@ async def test_a_version_may_be_given_as_a_number_since_models_do(service: Servi
         ({"query": QUALITY, "part": 10**30}, "part="),
         ({"query": QUALITY, "blender": "9.9"}, "simworlds kb build 9.9"),
         ({"query": QUALITY, "blender": "latest"}, "5.1"),
-        ({"query": QUALITY, "blender": "../../etc/passwd"}, "no Blender version"),
+        ({"query": QUALITY, "blender": "../../etc/passwd"}, "not a Blender version"),
         ({"query": QUALITY, "blender": ["5.1"]}, "blender:"),
         ({"query": QUALITY, "version": "4.5"}, "version:"),
         ({"query": "x" * 20_001}, "20,000"),

@@ -100,7 +100,7 @@ def test_a_version_that_was_not_built_is_named_with_those_that_were(
     bases: Bases, make_base: Callable[..., Path]
 ) -> None:
     make_base("4.5.3")
-    with pytest.raises(BaseMissing, match=rf"built are: 4\.5, {minor(IN_USE)}.*simworlds kb build 4\.4"):
+    with pytest.raises(BaseMissing, match=rf"Built are: 4\.5, {minor(IN_USE)}.*simworlds kb build 4\.4"):
         bases.pick("4.4")
 
 

@@ -9,12 +9,12 @@ from asks import LOOK, RUN, ask, png
 from fake_messages_api import Reply
 
 from simworlds.llm import tokens
-from simworlds.llm.context import GONE, Limits, fit
+from simworlds.llm.context import GONE, ContextLimits, fit
 from simworlds.llm.errors import TooLong
 from simworlds.llm.messages import Kept, Message, Picture, Text, ToolResult, ToolUse, user
 
 PLAN = "The plan: a table with twelve dominoes."
-SMALL = Limits(budget=8000, pictures=6, down_to=0.6, newest=2, long=400)
+SMALL = ContextLimits(budget=8000, pictures=6, down_to=0.6, newest=2, long=400)
 
 
 def exchange(number: int, *, words: int = 300, pictures: int = 0, thought: bool = False) -> list[Message]:
@@ -155,7 +155,7 @@ def test_the_same_conversation_is_always_cut_the_same():
 def test_conversations_of_every_shape_stay_sound():
     chance = random.Random(3)
     for _ in range(40):
-        limits = Limits(
+        limits = ContextLimits(
             budget=chance.choice([6000, 9000, 20_000]),
             pictures=chance.choice([2, 8]),
             newest=chance.choice([0, 1, 4]),
@@ -194,7 +194,7 @@ def test_a_long_run_with_a_thinking_model_is_one_that_the_api_takes(api, claude)
         )
 
     api.answer = answer
-    limits = Limits(budget=3000, pictures=4, newest=2, long=300)
+    limits = ContextLimits(budget=3000, pictures=4, newest=2, long=300)
     frame = tokens.of_frame(ask().system, ask().tools)
     messages = (user("Build it."),)
     thoughts = []

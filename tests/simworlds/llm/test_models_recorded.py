@@ -13,7 +13,7 @@ from asks import Scripted, ask, png
 from fake_messages_api import Reply
 
 from simworlds.llm.canonical import alike, form_of, normal
-from simworlds.llm.errors import BadRecord, CutShort, Drifted, Refused, Stopped
+from simworlds.llm.errors import CutShort, Drifted, Refused, Stopped, UnreadableRecord
 from simworlds.llm.messages import Kept, Message, Picture, Text, ToolResult, ToolUse, Turn, Usage, user
 from simworlds.llm.recorded import Recorded, Recording
 
@@ -246,9 +246,9 @@ def test_a_torn_last_line_is_what_a_killed_writer_leaves(tmp_path: Path):
 def test_a_file_that_is_no_record_is_told(tmp_path: Path, lines, says_what):
     path = tmp_path / "journal.jsonl"
     path.write_text("\n".join(lines))
-    with pytest.raises(BadRecord, match=f"(?s){says_what}"):
+    with pytest.raises(UnreadableRecord, match=f"(?s){says_what}"):
         Recorded(path)
-    with pytest.raises(BadRecord, match="cannot be read"):
+    with pytest.raises(UnreadableRecord, match="cannot be read"):
         Recorded(tmp_path / "nothing.jsonl")
 
 

@@ -65,14 +65,14 @@ def test_of_several_that_fit_the_last_counts():
     [
         ("", "There is no JSON"),
         ("I would rather {not}.", "There is no JSON"),
-        ('{"decision": "advance",}', "It is no JSON: .* at line 1, near"),
-        ("{'decision': 'advance'}", "It is no JSON|There is no JSON"),
-        ('{"decision": "advance" // yes\n}', "It is no JSON"),
-        ('{"decision": "advance", "attempts": NaN}', "NaN is no number of JSON"),
-        ('{"decision": "advance", "decision": "retry"}', "'decision' is given twice"),
-        ('{"decision": "retry", "parts": [{"name": "a", ', "It is no JSON"),
-        ("[" * 100_000, "It is no JSON"),
-        ('{"decision": "abort"}', r"decision: Input should be 'advance' or 'retry' \(given: \"abort\"\)"),
+        ('{"decision": "advance",}', "It is not valid JSON: .* at line 1, near"),
+        ("{'decision': 'advance'}", "It is not valid JSON|There is no JSON"),
+        ('{"decision": "advance" // yes\n}', "It is not valid JSON"),
+        ('{"decision": "advance", "attempts": NaN}', "NaN is not a JSON number"),
+        ('{"decision": "advance", "decision": "retry"}', "'decision' occurs twice"),
+        ('{"decision": "retry", "parts": [{"name": "a", ', "It is not valid JSON"),
+        ("[" * 100_000, "It is not valid JSON"),
+        ('{"decision": "abort"}', r"decision: Input should be 'advance' or 'retry' \(it is \"abort\"\)"),
         ('{"decision": "retry", "attempts": "3"}', "attempts: Input should be a valid integer"),
         ('{"decision": "retry", "attempts": true}', "attempts: Input should be a valid integer"),
         ('{"decision": "retry", "attempts": 1.5}', "attempts"),
@@ -92,7 +92,7 @@ def test_what_does_not_fit_is_told_by_its_place(text, problem):
 
 
 def test_a_part_of_broken_json_is_not_taken_for_the_whole():
-    with pytest.raises(Misfit, match="It is no JSON"):
+    with pytest.raises(Misfit, match="It is not valid JSON"):
         read('{"plan": [oops], "inner": {"decision": "advance"}}', fits(Decision))
 
 
