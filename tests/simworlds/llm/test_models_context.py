@@ -117,14 +117,14 @@ def test_the_newest_stay_whole_as_long_as_they_fit():
     assert SMALL.budget * SMALL.down_to < size(kept) <= SMALL.budget
 
 
-def test_what_cannot_be_made_to_fit_is_told():
+def test_a_conversation_that_cannot_fit_is_an_error():
     with pytest.raises(TooLong, match="does not fit into 8000 tokens"):
         fit([user("word " * 20_000)], SMALL)
     with pytest.raises(TooLong):
         fit(conversation(2), SMALL, frame=7999)
 
 
-def test_what_is_pinned_is_always_there_and_said_once():
+def test_pinned_texts_stay_and_are_not_repeated():
     findings = "Open: R12, Domino 7 floats."
     messages = [user("Build it."), *exchange(0), *(one for n in range(1, 80) for one in exchange(n, words=2))]
     messages[2] = user(*messages[2].content, findings)

@@ -104,7 +104,7 @@ def test_a_session_plays_turn_by_turn(session: Path):
         ("R12: Domino 7 floats, the Table stands.", "it should not contain: Table stands"),
     ],
 )
-def test_a_question_that_the_writer_did_not_expect_is_a_drift(session: Path, said, misfit):
+def test_an_unexpected_request_is_a_drift(session: Path, said, misfit):
     played = Recorded(session)
     played.answer(ask("Begin."))
     with pytest.raises(Drifted, match=r"coder \(modeling\) is not the one that 03-fix\.md answers") as error:
@@ -156,13 +156,13 @@ def test_an_answer_may_hold_lines_of_dashes_and_nothing_at_all():
         ("role: coder\n---\n```json call run\n[1]\n```", "not a JSON object"),
     ],
 )
-def test_a_slip_of_the_pen_is_told_with_its_file(text, says):
+def test_mistakes_are_reported_with_their_file(text, says):
     with pytest.raises(UnreadableRecord, match=says) as error:
         read_turn("07-x.md", text)
     assert str(error.value).startswith("07-x.md: ")
 
 
-def test_folders_without_turns_and_files_without_text_are_told(tmp_path: Path):
+def test_empty_folders_and_unreadable_files_are_errors(tmp_path: Path):
     with pytest.raises(UnreadableRecord, match="has no turns"):
         Recorded(tmp_path)
     (tmp_path / "01-x.md").write_bytes(b"\xff\xfe")
