@@ -93,7 +93,7 @@ def is_lasting(error: Exception) -> bool:
 
 def is_midstream(error: APIStatusError) -> bool:
     """Whether the server failed after it had begun to answer; ``error.type`` says how, the status does not."""
-    return error.status_code < 400
+    return error.response.is_success
 
 
 def requested_pause(error: Exception) -> float:
