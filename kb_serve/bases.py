@@ -1,4 +1,4 @@
-"""The bases that are served: opened once, picked by version, opened anew when their file was replaced."""
+"""The open knowledge bases, by version; a base is opened again when its file is replaced."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kb_serve.knowledge_base import KnowledgeBase
 
-_LOOK_SECONDS = 1.0
+_CHECK_SECONDS = 1.0
 
 _Stamp = tuple[int, int, int]
 
@@ -28,17 +28,17 @@ _Stamp = tuple[int, int, int]
 class _Opened:
     base: KnowledgeBase
     stamp: _Stamp
-    looked: float
+    checked: float
 
 
 class Bases:
     """The bases in a home folder, by version. Safe to share between threads.
 
-    A base that ``pick`` returned is open until a later call finds its file replaced: use it at once.
+    A base that ``pick`` returns stays open until a later call finds its file replaced: use it at once.
     """
 
     def __init__(self, home: Path, *, default: str | None = None, blender_exe: Path | None = None) -> None:
-        """``default`` is the version that is meant where none is named."""
+        """``default`` is the version to use where a caller names none."""
         self.home = home
         self._default = default
         self._blender_exe = blender_exe
@@ -49,19 +49,19 @@ class Bases:
     def pick(self, version: str | None = None) -> KnowledgeBase:
         """The base of a version. Without one: of the default, of the Blender in use, or the newest.
 
-        Raises BaseMissing, saying which there are, and BaseUnreadable.
+        Raises BaseMissing, with a list of those built, and BaseUnreadable.
         """
         with self._lock:
             return self._open(self._file(version or self._default))
 
     def built(self) -> dict[str, Path]:
-        """Minor version → file, oldest Blender first; looked up at most once a second."""
+        """Minor version → file, oldest Blender first; read from disk at most once a second."""
         with self._lock:
-            at, found = self._built
-            if not found or time.monotonic() - at >= _LOOK_SECONDS:
-                found = built_bases(self.home)
-                self._built = (time.monotonic(), found)
-            return found
+            read_at, built = self._built
+            if not built or time.monotonic() - read_at >= _CHECK_SECONDS:
+                built = built_bases(self.home)
+                self._built = (time.monotonic(), built)
+            return built
 
     @cached_property
     def in_use(self) -> str | None:
@@ -85,18 +85,18 @@ class Bases:
     def _open(self, path: Path) -> KnowledgeBase:
         opened = self._opened.get(path)
         now = time.monotonic()
-        if opened is not None and now - opened.looked < _LOOK_SECONDS:
+        if opened is not None and now - opened.checked < _CHECK_SECONDS:
             return opened.base
         stamp = _stamp(path)
         if opened is not None:
-            opened.looked = now
+            opened.checked = now
             if stamp in (None, opened.stamp):
                 return opened.base
         from kb_serve.knowledge_base import KnowledgeBase  # noqa: PLC0415 - loaded while the client connects
 
         with contextlib.suppress(BaseUnreadable) if opened is not None else contextlib.nullcontext():
             base = KnowledgeBase(path)
-            # The stamp was taken before the file was opened: a file replaced in between is noticed next time.
+            # The stamp is older than the open file: a replacement in between is noticed next time.
             self._opened[path] = _Opened(base, stamp or (0, 0, 0), now)
             if opened is not None:
                 opened.base.close()

@@ -31,11 +31,13 @@ _BLENDER = click.option("--blender", metavar="VERSION", help="Blender version. D
 @click.command()
 @click.argument("query", nargs=-1, required=True)
 @_BLENDER
-@click.option("--limit", type=int, default=8, show_default=True, help="Hits at most.")
-@click.option("--max-tokens", type=int, default=1500, show_default=True, help="Length of one part at most.")
+@click.option("--limit", type=int, default=8, show_default=True, help="Maximum number of hits.")
+@click.option(
+    "--max-tokens", type=int, default=1500, show_default=True, help="Maximum length of one part, in tokens."
+)
 @click.option("--part", type=int, default=1, show_default=True, help="Which part of a long answer.")
-@click.option("--json", "as_json", is_flag=True, help="The answer as JSON.")
-@click.option("--raw", is_flag=True, help="The whole record of the best hit, as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print the answer as JSON.")
+@click.option("--raw", is_flag=True, help="Print the whole record of the best hit as JSON.")
 def docs(  # noqa: PLR0913 - one for each option
     *,
     query: tuple[str, ...],
@@ -46,13 +48,13 @@ def docs(  # noqa: PLR0913 - one for each option
     as_json: bool,
     raw: bool,
 ) -> None:
-    """Ask the knowledge base: a name, an expression, an error message, a question, a topic.
+    """Query the knowledge base with a name, an expression, an error message, a question or a topic.
 
     Prints Markdown. Exit code: 0 when something was found, 1 when nothing was, 2 on errors.
     """
     if as_json and raw:
         raise click.UsageError("--json and --raw exclude each other.")
-    # What is loaded now stays until the end, which is near: looking for garbage would only take time.
+    # The process ends soon: collecting garbage would only take time.
     gc.disable()
     try:
         from kb_serve.service import readable  # noqa: PLC0415 - not for --help
@@ -60,20 +62,20 @@ def docs(  # noqa: PLR0913 - one for each option
         with closing(_bases(blender)) as bases:
             base = bases.pick()
             answer = base.query(readable(" ".join(query)), limit=limit, max_tokens=max_tokens, part=part)
-            found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
+            is_found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
     except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
-    sys.exit(0 if found else _NOTHING_FOUND)
+    sys.exit(0 if is_found else _NOTHING_FOUND)
 
 
 def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
     if as_json:
-        from dataclasses import asdict  # noqa: PLC0415 - the other ways do without
+        from dataclasses import asdict  # noqa: PLC0415 - only for --json
 
         click.echo(json.dumps(asdict(answer), ensure_ascii=False, indent=2))
     elif sys.stdout.isatty():
-        from rich.console import Console  # noqa: PLC0415 - takes as long to load as the answer to find
+        from rich.console import Console  # noqa: PLC0415 - loading it takes as long as the query
         from rich.markdown import Markdown  # noqa: PLC0415
 
         Console().print(Markdown(answer.text))
@@ -83,10 +85,10 @@ def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
 
 
 def _print_raw(base: KnowledgeBase, answer: DocsAnswer) -> bool:
-    from kb_build.records import to_json  # noqa: PLC0415 - the other ways do without
+    from kb_build.records import to_json  # noqa: PLC0415 - only for --json
 
     for hit in answer.hits[:1]:
-        # An enum item and a parameter stand in the record of what they belong to.
+        # Enum items and parameters are in the record of their owner.
         whole = hit.id.partition(":")[0].partition("(")[0]
         record = base.symbol(hit.id) or base.page(hit.id) or base.symbol(whole)
         if record is not None:
@@ -107,12 +109,16 @@ def _bases(blender: str | None, blender_exe: Path | None = None) -> Bases:
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=_PORT, show_default=True, help="0 takes a free one."
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=_PORT,
+    show_default=True,
+    help="Port; 0 takes a free one.",
 )
-@click.option("--token", envvar="SIMWORLDS_TOKEN", show_envvar=True, help="What clients must send.")
-@click.option("--allow-host", multiple=True, metavar="NAME", help="A further name of this server.")
+@click.option("--token", envvar="SIMWORLDS_TOKEN", show_envvar=True, help="Secret that clients must send.")
+@click.option("--allow-host", multiple=True, metavar="NAME", help="A further host name of this server.")
 @click.option("--blender-exe", type=click.Path(path_type=Path), help="The Blender in use, if not bpy.")
-@click.option("--no-rebuild", is_flag=True, help="Build nothing when Blender is newer than its base.")
+@click.option("--no-rebuild", is_flag=True, help="Do not rebuild the base when Blender is newer.")
 @click.pass_context
 def serve(  # noqa: PLR0913 - one for each option
     context: click.Context,
@@ -128,15 +134,15 @@ def serve(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Serve the tool blender_docs over MCP, on stdio or HTTP.
 
-    When the Blender in use is newer than its knowledge base, the base is built again in the background. On an
-    address other than loopback clients must send a token: Authorization: Bearer …
+    When the Blender in use is newer than its knowledge base, the base is rebuilt in the background. Unless the
+    address is loopback, clients must send a token: Authorization: Bearer …
     """
     for_http = [
         name for name in ("host", "port", "allow_host") if context.get_parameter_source(name) is _TYPED
     ]
     if for_http and not over_http:
         raise click.UsageError("--host, --port and --allow-host go with --http.")
-    # Nothing of what is loaded is garbage: looking for it would take a tenth of the time to start.
+    # Nothing that is loaded is garbage: looking for it would take a tenth of the start-up.
     gc.disable()
     service = _service(blender, blender_exe, rebuild=not no_rebuild)
     try:

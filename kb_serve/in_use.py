@@ -1,4 +1,4 @@
-"""Which Blender is in use here: an executable that was named, else this environment's bpy."""
+"""Finds out which Blender is in use: the executable of the caller, else this environment's bpy."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _VERSION = re.compile(r"^Blender (\d+\.\d+\.\d+)", re.MULTILINE)
 def blender_in_use(executable: Path | None = None) -> str | None:
     """The full version (``"5.1.2"``) of ``executable``, else of this environment's bpy, if there is one.
 
-    bpy is not imported: what its distribution says is enough.
+    bpy is not imported: its distribution's metadata is enough.
     """
     return _version_of(executable) if executable is not None else _installed()
 
 
 def _installed() -> str | None:
-    from importlib import metadata  # noqa: PLC0415 - a look-up in the only base there is does without
+    from importlib import metadata  # noqa: PLC0415 - not needed where there is only one base
 
     try:
         return metadata.version("bpy")
@@ -47,7 +47,7 @@ def _version_of(executable: Path) -> str | None:
 
 
 def numbers(version: str) -> tuple[int, ...]:
-    """``"5.1.2"`` → ``(5, 1, 2)``, so that versions compare; what is not a number counts as nothing."""
+    """``"5.1.2"`` → ``(5, 1, 2)``, for comparing versions; text without numbers gives ()."""
     return tuple(int(number) for number in re.findall(r"\d+", version)[:3])
 
 

@@ -1,4 +1,4 @@
-"""The public face of a knowledge base: ``KnowledgeBase.open("5.1").query("cloth self collision")``."""
+"""The public API of a knowledge base: ``KnowledgeBase.open("5.1").query("cloth self collision")``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class KnowledgeBase:
     """One Blender version's knowledge base, read-only. Safe to share between threads."""
 
     def __init__(self, path: Path) -> None:
-        """Opens a base file. Raises BaseMissing or BaseUnreadable, saying what to do."""
+        """Opens a base file. Raises BaseMissing or BaseUnreadable, which say what to do."""
         self._reader = BaseReader(path)
         self._composer = AnswerComposer(self._reader)
         self._lock = Lock()
@@ -30,7 +30,7 @@ class KnowledgeBase:
         """Opens the base of a Blender version (``"5.1"``, ``"5.1.2"``), by default the newest that was built.
 
         ``home`` is the folder of the bases: by default what SIMWORLDS_HOME names, else the user's data folder.
-        Raises BaseMissing when it was not built.
+        Raises BaseMissing if it was not built.
         """
         return cls(find_base(version, home))
 
@@ -39,8 +39,8 @@ class KnowledgeBase:
     ) -> DocsAnswer:
         """Answers a query in any form: a name, an expression, an error message, a question, a topic.
 
-        ``limit`` bounds the hits, ``max_tokens`` the text of the answer; what does not fit is in the further
-        parts, counted from 1. Raises BadQuery when there is nothing to answer.
+        ``limit`` bounds the hits, ``max_tokens`` the text; what does not fit is in the further parts, counted
+        from 1. Raises BadQuery for an empty query or a wrong limit or part.
         """
         with self._lock:
             return self._composer.answer(text, limit, max_tokens, part)
@@ -51,7 +51,7 @@ class KnowledgeBase:
             return self._reader.symbol(path)
 
     def page(self, slug: str) -> Page | None:
-        """The raw record of a page, whole."""
+        """The whole raw record of a page."""
         with self._lock:
             return self._reader.page(slug)
 

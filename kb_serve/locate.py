@@ -1,4 +1,4 @@
-"""Which file is the base of a Blender version."""
+"""Finds the knowledge base file of a Blender version."""
 
 from __future__ import annotations
 
@@ -15,20 +15,24 @@ _VERSION = re.compile(r"(\d+)\.(\d+)(?:\.\d+)?")
 
 
 def find_base(version: str | None, home: Path | None = None) -> Path:
-    """The file of a version's base, by default of the newest. Raises BaseMissing, saying which there are."""
+    """The file of a version's base, by default of the newest. Raises BaseMissing with a list of those built."""
     folder = home or home_folder()
     built = built_bases(folder)
     if version is None:
         if not built:
-            raise BaseMissing(f"No knowledge base in {folder}. Build one first: simworlds kb build 5.1")
+            raise BaseMissing(
+                f"There is no knowledge base in {folder}. Build one first: simworlds kb build 5.1"
+            )
         return list(built.values())[-1]
     match = _VERSION.fullmatch(version.strip().removeprefix("v"))
     if not match:
-        raise BaseMissing(f"{version!r} is no Blender version. Write it as 5.1; built are: {_names(built)}.")
+        raise BaseMissing(
+            f"{version!r} is not a Blender version. Write it as 5.1. Built are: {_names(built)}."
+        )
     path = base_path(folder, f"{match[1]}.{match[2]}")
     if not path.is_file():
         raise BaseMissing(
-            f"No knowledge base for Blender {match[1]}.{match[2]}; built are: {_names(built)}. "
+            f"There is no knowledge base for Blender {match[1]}.{match[2]}. Built are: {_names(built)}. "
             f"Build it: simworlds kb build {match[1]}.{match[2]}"
         )
     return path

@@ -1,4 +1,4 @@
-"""Read-only access to one knowledge-base file: look-ups, no decisions."""
+"""Read-only look-ups in one knowledge base file."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _Record = TypeVar("_Record")
 TYPES = "bpy.types."
 STRUCT = "bpy.types.bpy_struct"
 COLLECTION = "bpy.types.bpy_prop_collection"
-_REBUILD = "Build it again: simworlds kb build --force"
+_REBUILD = "Rebuild it: simworlds kb build --force"
 
 
 @dataclass(frozen=True, slots=True)
 class SymbolEntry:
-    """The part of a symbol that resolving needs; the whole record is read when it is answered.
+    """The part of a symbol that resolving needs; the whole record is read only for answers.
 
-    ``line`` is how its owner lists it.
+    ``line`` describes it in the list of its owner's members.
     """
 
     path: str
@@ -63,17 +63,19 @@ _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
 
 def open_file(path: Path) -> sqlite3.Connection:
-    """Opens a base read-only and checks that it is one. Raises BaseMissing or BaseUnreadable."""
+    """Opens a base read-only and checks its format. Raises BaseMissing or BaseUnreadable."""
     try:
         return open_read_only(path, threads=True)
     except FileNotFoundError:
-        raise BaseMissing(f"{path}: no knowledge base here. Build it first: simworlds kb build") from None
+        raise BaseMissing(
+            f"{path}: there is no knowledge base here. Build it first: simworlds kb build"
+        ) from None
     except NoBase as error:
         raise BaseUnreadable(f"{path}: {error}. {_REBUILD}") from error
 
 
 class BaseReader:
-    """Look-ups in one base. Results of the hot ones are kept; the file never changes while it is open."""
+    """Look-ups in one base. Frequent ones are cached: the file never changes while it is open."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -90,20 +92,20 @@ class BaseReader:
         self._connection.close()
 
     def rows(self, sql: str, *values: object) -> list[Any]:
-        """Runs one query. A file that turns out damaged is BaseUnreadable."""
+        """Runs one SQL query. Raises BaseUnreadable for a damaged file."""
         try:
             return self._connection.execute(sql, values).fetchall()
         except UnicodeEncodeError:
-            return []  # half a character, which is in no base
+            return []  # a lone surrogate is in no base
         except sqlite3.DatabaseError as error:
             raise self.damaged(error) from error
 
     def rows_of(self, sql: str, keys: Collection[object]) -> list[Any]:
-        """The rows of any of the keys, in no order; ``sql`` ends with the column that has them."""
+        """The rows with any of the keys, unordered; ``sql`` ends with the keys' column."""
         return self.rows(f"{sql} IN ({','.join('?' * len(keys))})", *keys)
 
     def damaged(self, why: object) -> BaseUnreadable:
-        """The error to raise where the file turns out not to hold what it should."""
+        """The error to raise for a file with wrong content."""
         return BaseUnreadable(f"{self.path}: damaged ({why}). {_REBUILD}")
 
     def _record(self, make: Callable[[dict[str, Any]], _Record], data: bytes) -> _Record:
@@ -170,7 +172,7 @@ class BaseReader:
         return self.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)
 
     def removed(self, path: str) -> tuple[str, str] | None:
-        """(first, last) version that had a symbol which this one lacks."""
+        """(first, last) version of a symbol that this version lacks."""
         rows = self.rows("SELECT first, last FROM removed WHERE path = ?", path)
         return rows[0] if rows else None
 
@@ -181,17 +183,17 @@ class BaseReader:
         ]
 
     def replacements(self, path: str) -> list[tuple[str, float]]:
-        """What this version has that is closest to a symbol it lacks, best first."""
+        """The symbols closest to one that this version lacks, with scores, best first."""
         return self.rows("SELECT target, score FROM replacements WHERE path = ? ORDER BY score DESC", path)
 
     def since(self, path: str) -> str:
-        """The version that brought a symbol; empty for those older than the history."""
+        """The version that introduced a symbol; empty for those older than the history."""
         rows = self.rows("SELECT version FROM since WHERE path = ?", path)
         return rows[0][0] if rows else ""
 
     def units(self, numbers: Collection[int]) -> dict[int, tuple[str, str, str, str, str]]:
-        """Number → (ref, kind, title, anchor, page) of what is retrieved; page: the one that explains a class or
-        operator, as a link's target.
+        """Number → (ref, kind, title, anchor, page) of retrieval units; ``page`` explains a class or operator, as a
+        link's target.
         """
         sql = """SELECT number, ref, kind, title, anchor, CASE WHEN kind IN ('class', 'operator')
                 THEN ifnull((SELECT target FROM links WHERE source = ref AND links.kind = 'manual'), '') ELSE '' END
@@ -215,7 +217,7 @@ class BaseReader:
         return [PageEntry(*row) for row in rows]
 
     def symbols_of_page(self, slug: str) -> list[str]:
-        """The symbols that Blender's own table explains on a page."""
+        """The symbols that a page explains, by Blender's own table."""
         return [row[0] for row in self.rows("SELECT symbol FROM explained WHERE slug = ?", slug)]
 
     def classes_named(self, prefix: str) -> list[str]:

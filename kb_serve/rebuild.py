@@ -1,7 +1,7 @@
-"""Keeps the base of the Blender in use up to date: builds it in a process of its own, of low priority.
+"""Rebuilds the base of the Blender in use when that Blender is newer, in a process of low priority.
 
-``python -m kb_serve.rebuild VERSION --home FOLDER`` is that process. It says nothing but what went wrong, on
-stderr, and leaves a build that another process has begun to that one.
+``python -m kb_serve.rebuild VERSION --home FOLDER`` is that process. It prints only errors, on stderr, and ends at
+once while another process is building.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from kb_serve.bases import Bases
 
-_ELSEWHERE = 3
+_BUILDING_ELSEWHERE = 3
 _LONGEST_REASON = 300
 
 State = Literal["idle", "running", "failed"]
@@ -34,7 +34,7 @@ State = Literal["idle", "running", "failed"]
 
 @dataclass(slots=True)
 class Upkeep:
-    """Whether the base of the Blender in use is outdated, and what is being done about it."""
+    """Checks whether the base of the Blender in use is outdated, and rebuilds it."""
 
     bases: Bases
     blender_exe: Path | None = None
@@ -44,9 +44,9 @@ class Upkeep:
     _process: subprocess.Popen[bytes] | None = field(default=None, init=False)
 
     def run(self) -> None:
-        """Builds the base of the Blender in use if that Blender is newer; returns when the build has ended.
+        """Builds the base of the Blender in use if that Blender is newer.
 
-        Blocks: to be called in a thread. How it ended is in ``state`` and ``reason``.
+        Blocks until the build has ended: call it in a thread. ``state`` and ``reason`` tell how it ended.
         """
         in_use = self.bases.in_use
         if not self.enabled or in_use is None:
@@ -59,14 +59,14 @@ class Upkeep:
             self._build(in_use, meta)
 
     def stop(self) -> None:
-        """Ends a build that is under way; what was there before stands."""
+        """Ends a running build; the base that was there before stays."""
         if self._process is not None and self._process.poll() is None:
             self._process.terminate()
 
     def note(self, meta: Mapping[str, str], asked: str | None) -> str:
-        """What an answer drawn from the base with this meta must say: nothing, or that Blender is newer.
+        """The note for an answer from the base with this meta: empty, or that Blender is newer.
 
-        ``asked`` is the version that the caller named, if any: who names one wants no other.
+        ``asked`` is the version that the caller named, if any: then newer versions do not matter.
         """
         have, in_use = meta.get("blender", ""), self.bases.in_use
         if in_use is None or not _newer(in_use, have) or (asked and minor(in_use) != minor(have)):
@@ -74,7 +74,7 @@ class Upkeep:
         if self.state == "failed":
             then = f"Building its base failed: {self.reason}"
         elif self.enabled:
-            then = "Its base is being built in the background; until then this one answers."
+            then = "Its base is being built in the background; until then, answers come from this one."
         else:
             then = f"Build its base: simworlds kb build {minor(in_use)}"
         return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then}"
@@ -85,7 +85,7 @@ class Upkeep:
         return in_use is not None and (version is None or minor(version) == minor(in_use))
 
     def _nearest(self, in_use: str) -> Mapping[str, str] | None:
-        """The meta of the base that the Blender in use has outgrown; None when there is none."""
+        """The meta of the nearest base that is older than the Blender in use, if there is one."""
         built = self.bases.built()
         if minor(in_use) in built:
             meta = self.bases.pick(minor(in_use)).meta
@@ -106,11 +106,11 @@ class Upkeep:
         except OSError as error:
             self.state, self.reason = "failed", str(error)
             return
-        said = self._process.communicate()[1].decode(errors="replace").strip()
+        output = self._process.communicate()[1].decode(errors="replace").strip()
         if self._process.returncode == 0:
             self.state = "idle"
-        elif self._process.returncode != _ELSEWHERE:
-            last = (said.splitlines() or [f"exit code {self._process.returncode}"])[-1]
+        elif self._process.returncode != _BUILDING_ELSEWHERE:
+            last = (output.splitlines() or [f"exit code {self._process.returncode}"])[-1]
             self.state, self.reason = "failed", last[:_LONGEST_REASON]
 
 
@@ -119,7 +119,7 @@ def _newer(in_use: str, have: str) -> bool:
 
 
 def _as_before(meta: Mapping[str, str], version: str) -> list[str]:
-    """The arguments that build from what a base was built from, as far as that fits the version."""
+    """The arguments that repeat a base's build, as far as its sources fit the version."""
     options, sources = json.loads(meta.get("options", "{}")), json.loads(meta.get("sources", "[]"))
     arguments = [] if options.get("pages", True) else ["--no-pages"]
     arguments += ["--summaries", options.get("summaries", "extractive")]
@@ -135,9 +135,9 @@ def _as_before(meta: Mapping[str, str], version: str) -> list[str]:
 
 
 def build_base(given: argparse.Namespace, summaries: str) -> None:
-    """The server's only way into the build. Raises what the build raises.
+    """Builds a base without spending money: of claude's summaries, only those already paid for are used.
 
-    Nothing is spent on summaries: claude's are used where they were paid for already.
+    Raises what the build raises.
     """
     from kb_build import pipeline  # noqa: PLC0415 - the one place
     from simworlds.settings import corpora_folder  # noqa: PLC0415
@@ -158,7 +158,7 @@ def build_base(given: argparse.Namespace, summaries: str) -> None:
 
 @contextlib.contextmanager
 def _alone(home: Path) -> Generator[bool]:
-    """Whether no other process is building here; SQLite's own locks work on every system and end with us."""
+    """Whether no other process is building here. SQLite's lock works on every system and ends with the process."""
     home.mkdir(parents=True, exist_ok=True)
     with contextlib.closing(sqlite3.connect(home / "rebuild.lock", timeout=0, isolation_level=None)) as lock:
         try:
@@ -170,7 +170,7 @@ def _alone(home: Path) -> Generator[bool]:
 
 
 def _terminated(_number: int, _frame: object) -> NoReturn:
-    """Unwinds like Ctrl-C: no child process stays behind."""
+    """Unwinds like Ctrl-C, so that no child process stays behind."""
     raise KeyboardInterrupt
 
 
@@ -193,15 +193,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if hasattr(os, "nice"):
         os.nice(10)
     try:
-        with _alone(given.home) as alone:
-            if not alone:
-                return _ELSEWHERE
+        with _alone(given.home) as is_alone:
+            if not is_alone:
+                return _BUILDING_ELSEWHERE
             try:
                 build_base(given, given.summaries)
             except Exception:
                 if given.summaries != "claude":
                     raise
-                # Some of claude's summaries are still to be paid for, which nobody has asked for here.
+                # Some of claude's summaries would have to be paid for.
                 build_base(given, "extractive")
     except KeyboardInterrupt:
         return 130

@@ -37,9 +37,9 @@ SYMBOL = UriTemplate.parse("blender://{version}/symbol/{+path}")
 PAGE = UriTemplate.parse("blender://{version}/page/{+slug}")
 
 INSTRUCTIONS = (
-    "blender_docs answers from the schemas and the manual of the Blender version in use. Ask it before you "
+    "blender_docs answers from the schemas and the manual of the Blender version in use. Query it before you "
     "use a name of Blender's Python API that you have not looked up for that version, at the start of each "
-    "stage of work (with its topic: cloth, materials, compositor), and with every error message of Blender's."
+    "stage of work (with its topic: cloth, materials, compositor), and with every error message from Blender."
 )
 
 _LOG = logging.getLogger(__name__)
@@ -48,8 +48,8 @@ _LARGEST_REQUEST = 1024 * 1024
 
 
 def make_server(service: Service) -> Server[None]:
-    """The server, without a transport. Bases are opened, and brought up to date, while it runs."""
-    # Answers wait for it, the handshake does not.
+    """The MCP server, without a transport. It opens bases, and rebuilds outdated ones, while it runs."""
+    # Answers wait for this; the handshake does not.
     ready = anyio.Event()
 
     @asynccontextmanager
@@ -69,29 +69,33 @@ def make_server(service: Service) -> Server[None]:
                 service.upkeep.stop()
                 tasks.cancel_scope.cancel()
 
-    async def call_tool(_context: _Context, asked: types.CallToolRequestParams) -> types.CallToolResult:
-        if asked.name != NAME:
-            raise MCPError(types.INVALID_PARAMS, f"There is no tool {asked.name[:80]!r}; there is {NAME}.")
+    async def call_tool(_context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
+        if params.name != NAME:
+            raise MCPError(
+                types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. The only tool is {NAME}."
+            )
         await ready.wait()
         try:
-            return _answered(service, asked.arguments)
+            return _answered(service, params.arguments)
         except KBServeError as error:
             return _failed(str(error))
         except Exception as error:
-            _LOG.exception("%s failed on %.300r", NAME, asked.arguments)
-            return _failed(f"{NAME} failed on this query ({type(error).__name__}). Ask it otherwise.")
+            _LOG.exception("%s failed on %.300r", NAME, params.arguments)
+            return _failed(
+                f"{NAME} failed on this query ({type(error).__name__}). Rephrase it, or report it with the query."
+            )
 
     async def read_resource(
-        _context: _Context, asked: types.ReadResourceRequestParams
+        _context: _Context, params: types.ReadResourceRequestParams
     ) -> types.ReadResourceResult:
         await ready.wait()
-        uri = str(asked.uri)
+        uri = str(params.uri)
         try:
             text, kind = _resource(service, uri)
         except KBServeError as error:
             raise MCPError(types.INVALID_PARAMS, str(error), {"uri": uri[:500]}) from error
         return types.ReadResourceResult(
-            contents=[types.TextResourceContents(uri=asked.uri, text=text, mime_type=kind)]
+            contents=[types.TextResourceContents(uri=params.uri, text=text, mime_type=kind)]
         )
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
@@ -119,7 +123,7 @@ def make_server(service: Service) -> Server[None]:
 
 
 def make_app(service: Service, path: str, security: TransportSecuritySettings) -> ASGIApp:
-    """The server as an ASGI application. Sessions are not kept: every request can be answered by itself."""
+    """The server as an ASGI application, without sessions: every request is answered by itself."""
     return make_server(service).streamable_http_app(
         streamable_http_path=path,
         json_response=True,
@@ -137,9 +141,9 @@ def _own_version() -> str:
 
 
 def _answered(service: Service, arguments: dict[str, Any] | None) -> types.CallToolResult:
-    ask = parse(arguments)
+    query = parse(arguments)
     answer, version = service.ask(
-        ask.query, blender=ask.blender, limit=ask.limit, max_tokens=ask.max_tokens, part=ask.part
+        query.query, blender=query.blender, limit=query.limit, max_tokens=query.max_tokens, part=query.part
     )
     return types.CallToolResult(
         content=[types.TextContent(text=answer.text)],
@@ -157,7 +161,7 @@ BASE_LIST = types.Resource(
     uri=BASES,
     name="bases",
     title="Knowledge bases",
-    description="The Blender versions that can be asked about.",
+    description="The Blender versions that have a knowledge base.",
     mime_type=_JSON,
 )
 TEMPLATES = [
@@ -179,20 +183,20 @@ TEMPLATES = [
 
 
 def _resource(service: Service, uri: str) -> tuple[str, str]:
-    """A resource's text and MIME type. Raises MCPError when there is no such thing, and KBServeError."""
+    """A resource's text and MIME type. Raises MCPError for an unknown one, and KBServeError."""
     if uri == BASES:
         return json.dumps(service.built(), indent=2), _JSON
-    if (named := SYMBOL.match(uri)) is not None:
-        symbol = service.symbol(str(named["version"]), str(named["path"]))
+    if (parts := SYMBOL.match(uri)) is not None:
+        symbol = service.symbol(str(parts["version"]), str(parts["path"]))
         if symbol is not None:
             return json.dumps(to_json(symbol), ensure_ascii=False, indent=2), _JSON
-    if (named := PAGE.match(uri)) is not None:
-        page = service.page(str(named["version"]), str(named["slug"]))
+    if (parts := PAGE.match(uri)) is not None:
+        page = service.page(str(parts["version"]), str(parts["slug"]))
         if page is not None:
             return page.text, _MARKDOWN
     raise MCPError(
         types.INVALID_PARAMS,
-        "There is no such resource. Identifiers and slugs are written as in hits[].id of blender_docs: "
+        "There is no such resource. Write identifiers and slugs as in hits[].id of blender_docs: "
         "blender://5.1/symbol/bpy.types.ClothSettings.quality, blender://5.1/page/physics/cloth/introduction",
         {"uri": uri[:500]},
     )

@@ -1,4 +1,4 @@
-"""What the server answers, whatever carries it: the right base, its answer, and what must be said with it."""
+"""Answers calls, whatever the transport: picks the base, queries it, and adds a note on its version."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ LONGEST_QUERY = 20_000
 
 
 def readable(query: str) -> str:
-    """The query without what no file can hold: halves of characters, as undecodable input leaves them."""
+    """The query without lone surrogates, which undecodable input leaves."""
     return query.encode(errors="replace").decode()
 
 
 class Service:
-    """Answers from the bases there are."""
+    """Answers from the bases that are built."""
 
     def __init__(self, bases: Bases, upkeep: Upkeep) -> None:
         self.bases = bases
@@ -43,7 +43,7 @@ class Service:
         """The answer, and the full version of the Blender that it holds for. Raises KBServeError."""
         if len(query) > LONGEST_QUERY:
             raise BadQuery(
-                f"The query has {len(query):,} characters; {LONGEST_QUERY:,} are the most. Ask shorter."
+                f"The query has {len(query):,} characters, more than the limit of {LONGEST_QUERY:,}. Shorten it."
             )
         query = readable(query)
         base = self._base(blender)
@@ -56,9 +56,9 @@ class Service:
 
         lead = f"> {note}\n\n"
         room = max_tokens - tokens(lead) - 1
-        shown = room >= LEAST_TOKENS
-        answer = base.query(query, limit=limit, max_tokens=room if shown else max_tokens, part=part)
-        text = lead + answer.text if shown and part == 1 else answer.text
+        has_room = room >= LEAST_TOKENS
+        answer = base.query(query, limit=limit, max_tokens=room if has_room else max_tokens, part=part)
+        text = lead + answer.text if has_room and part == 1 else answer.text
         return replace(answer, text=text, notes=(note, *answer.notes)), version
 
     def symbol(self, blender: str, path: str) -> Symbol | None:
@@ -70,7 +70,7 @@ class Service:
         return self._base(blender).page(slug)
 
     def built(self) -> list[dict[str, Any]]:
-        """What there is: for each base its versions, when it was built, or why it cannot be read."""
+        """The bases: for each its versions and when it was built, or why it cannot be read."""
         return [self._facts(version) for version in self.bases.built()]
 
     def _facts(self, version: str) -> dict[str, Any]:
@@ -86,6 +86,6 @@ class Service:
         except BaseMissing as error:
             if self.upkeep.building(blender):
                 raise BaseMissing(
-                    f"{error} It is being built in the background: ask again in a minute."
+                    f"{error} It is being built in the background: try again in a minute."
                 ) from error
             raise

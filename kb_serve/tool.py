@@ -16,25 +16,25 @@ NAME = "blender_docs"
 DESCRIPTION = """\
 Look up Blender's Python API and manual: exact schemas (types, defaults, ranges, enum values, units, what \
 is read-only), operators with their arguments, node sockets, and the manual's pages, for the Blender \
-version in use. Answers come from that Blender itself. Ask before you write a name you are not sure of, \
-and again when Blender raises an error: a property from memory may be of another version.
+version in use. Answers come from that Blender itself. Query before you write a name you are not sure of, \
+and again when Blender raises an error: a property from memory may belong to another version.
 
-How to ask (`query`), one thing at a time:
+What to send as `query`, one thing at a time:
 - a name as Blender writes it: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, \
 `mathutils.Vector.lerp`, `ShaderNodeBsdfPrincipled`
 - an expression from your code: `bpy.context.object.modifiers["Cloth"].settings.quality`, \
 `mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]`; a name that does not exist is answered with \
-those that do
+similar ones that do
 - an error message, pasted whole: `AttributeError: 'Mesh' object has no attribute 'use_auto_smooth'`
 - an enum value: `BLENDER_EEVEE`
 - plain words: `make cloth collide with itself`, `bake rigid body simulation`
 - a topic, when you begin a stage of work: `cloth`, `rigid body`, `compositor`, `uv` give an overview of \
-what belongs to it
+its pages, classes and operators
 
-The answer names the best hit in full and lists others by `id`; ask for an id to see it. A long answer \
+The answer shows the best hit in full and lists others by `id`; query an id to see it. A long answer \
 comes in parts: repeat the call with `part=2`, `part=3`. `max_tokens` bounds one part. `blender="4.5"` \
-asks about another version that was built here. `notes` tell of corrections, missing sources and version \
-removed: heed them."""
+queries another version's base, if it was built here. `notes` report corrections, missing sources and \
+differences between versions: read them."""
 
 
 class DocsArguments(BaseModel):
@@ -46,13 +46,13 @@ class DocsArguments(BaseModel):
     blender: str | None = Field(
         default=None, description="Blender version, as 5.1. Default: the one in use, else the newest built."
     )
-    limit: int = Field(default=8, ge=1, description="Hits at most.")
-    max_tokens: int = Field(default=1500, ge=150, description="Length of one part of the answer at most.")
-    part: int = Field(default=1, ge=1, description="Which part of a long answer.")
+    limit: int = Field(default=8, ge=1, description="Maximum number of hits.")
+    max_tokens: int = Field(default=1500, ge=150, description="Maximum length of one part of the answer.")
+    part: int = Field(default=1, ge=1, description="Which part of a long answer, from 1.")
 
 
 class DocsHit(BaseModel):
-    """One thing that the answer is about."""
+    """A symbol or page that the answer is about."""
 
     id: str = Field(description="Symbol path or page slug; also a query that finds exactly this.")
     kind: str = Field(description="class, property, operator, …, or manual, guide, template for pages.")
@@ -67,12 +67,12 @@ class DocsReply(BaseModel):
     model_config = ConfigDict(title="blender_docs answer")
 
     kind: str = Field(
-        description="How well the query was met: by one thing, by several that may fit, or not at all.",
+        description="How well the query was met: by one symbol or page, by several candidates, or not at all.",
         json_schema_extra={"enum": ["schema", "page", "candidates", "none"]},
     )
     text: str = Field(description="The answer in Markdown.")
-    hits: list[DocsHit] = Field(description="What was found, best first.")
-    notes: list[str] = Field(description="Corrections, version removed, missing sources.")
+    hits: list[DocsHit] = Field(description="The symbols and pages found, best first.")
+    notes: list[str] = Field(description="Corrections, missing sources, differences between versions.")
     part: int
     parts: int = Field(description="How many parts the answer has.")
     blender: str = Field(description="The Blender version that the answer holds for.")
@@ -80,7 +80,7 @@ class DocsReply(BaseModel):
 
 @cache
 def tool() -> Tool:
-    """The tool's entry in the list of tools."""
+    """The tool as the list of tools has it."""
     return Tool(
         name=NAME,
         title="Blender documentation",
@@ -98,7 +98,7 @@ def tool() -> Tool:
 
 
 def parse(arguments: dict[str, Any] | None) -> DocsArguments:
-    """The arguments of a call, checked. Raises BadQuery, naming each that is wrong."""
+    """The arguments of a call, checked. Raises BadQuery, which names each wrong one."""
     try:
         return DocsArguments.model_validate(arguments or {})
     except ValidationError as error:

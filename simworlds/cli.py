@@ -1,4 +1,4 @@
-"""The command ``simworlds``. Commands are loaded when they are asked for: a look-up must start at once."""
+"""The command ``simworlds``. It loads only the subcommand that is called, so that look-ups start at once."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ class _Command(NamedTuple):
 _COMMANDS = {
     "bench": _Command("bench.commands.bench", "bench", "Score scenes of any system: 4DBuildBench."),
     "demo": _Command(
-        "agents.commands.runs", "demo", "Play a session without a key: real Blender, written answers."
+        "agents.commands.runs", "demo", "Play a prepared session without an API key, in a real Blender."
     ),
-    "docs": _Command("kb_serve.cli", "docs", "Ask the knowledge base."),
-    "doctor": _Command("agents.commands.doctor", "doctor", "Find out whether a live Blender can work here."),
-    "edit": _Command("agents.commands.runs", "edit", "Change a scene as told, and leave the rest alone."),
-    "kb": _Command("kb_build.cli", "kb", "Build, look into, check and compare knowledge bases."),
+    "docs": _Command("kb_serve.cli", "docs", "Query the knowledge base."),
+    "doctor": _Command("agents.commands.doctor", "doctor", "Check whether a live Blender can run here."),
+    "edit": _Command(
+        "agents.commands.runs", "edit", "Edit a scene as described, and leave the rest unchanged."
+    ),
+    "kb": _Command("kb_build.cli", "kb", "Build, inspect, check and compare knowledge bases."),
     "make": _Command("agents.commands.runs", "make", "Make a scene from a sentence."),
     "mcp": _Command("agents.commands.mcp", "mcp", "Serve a live Blender and blender_docs over MCP."),
-    "replay": _Command(
-        "agents.commands.runs", "replay", "Play a run's recorded answers, as a run of its own."
-    ),
-    "resume": _Command("agents.commands.runs", "resume", "Go on with a run."),
+    "replay": _Command("agents.commands.runs", "replay", "Replay a run's recorded answers as a new run."),
+    "resume": _Command("agents.commands.runs", "resume", "Continue a run."),
     "runs": _Command("agents.commands.runs", "runs", "List the runs."),
     "serve": _Command("kb_serve.cli", "serve", "Serve blender_docs over MCP."),
-    "show": _Command("agents.commands.runs", "show", "Show how a run stands."),
+    "show": _Command("agents.commands.runs", "show", "Show the state of a run."),
     "verify": _Command(
         "agents.commands.verify", "verify", "Check a .blend by the scene protocol and a plan."
     ),
@@ -39,7 +39,7 @@ _COMMANDS = {
 
 
 class _Lazy(click.Group):
-    """A group that knows its commands by name and loads the one that is called."""
+    """A group that loads only the command that is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names, sorted."""
@@ -66,4 +66,4 @@ class _Lazy(click.Group):
 @click.group(cls=_Lazy, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="simworlds", prog_name="simworlds")
 def main() -> None:
-    """From a sentence to a simulated scene, and what that needs: a knowledge base, a live Blender, a verifier."""
+    """From a sentence to a simulated scene: with a knowledge base, a live Blender and a verifier."""

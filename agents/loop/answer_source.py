@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from agents.loop.errors import NoRun
 from agents.loop.journal import NAME, read_rows
 from simworlds.llm.claude import Claude
-from simworlds.llm.recorded import Recorded, Recording, heard
+from simworlds.llm.recorded import Recorded, Recording, read_turns
 from simworlds.llm.spending import Metered
 
 if TYPE_CHECKING:
@@ -43,12 +43,12 @@ def make_model(root: Path, options: Options, journal: Journal, live: LiveOptions
 
     Raises ModelError (no key, a broken record), NoRun.
     """
-    for answer in heard(journal.rows):
+    for answer in read_turns(journal.rows):
         if answer.turn.live:
             live.spending.carry(answer.role, answer.stage, answer.turn)
     rows = _without_failed_end(journal.rows)
     folders = {str(root): "run"}
-    skip = Counter((answer.role, answer.stage) for answer in heard(rows))
+    skip = Counter((answer.role, answer.stage) for answer in read_turns(rows))
     source = _source(options, folders, skip, live)
     first = max((row["n"] for row in journal.rows if row["type"] in _MODEL), default=0) + 1
     return Recorded(

@@ -14,7 +14,7 @@ from agents.loop import events
 from agents.loop.journal import NAME, read_rows
 from agents.loop.run_state import Attempt, ModelCall, Rendering, RunState, StageRun, Step, ToolCall
 from simworlds.llm.messages import Text
-from simworlds.llm.spending import Row
+from simworlds.llm.spending import SpendingRow
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -211,9 +211,9 @@ def _model_answered(state: RunState, event: events.ModelAnswered) -> RunState:
 
 
 def _charged(state: RunState, asked: ModelCall, turn: Turn) -> RunState:
-    row = Row(asked.role, asked.stage, recorded=1)
+    row = SpendingRow(asked.role, asked.stage, recorded=1)
     if turn.live:
-        row = Row(
+        row = SpendingRow(
             asked.role, asked.stage, 1, turn.usage + turn.lost, turn.cost or 0.0, int(turn.cost is None)
         )
     rows = {(other.role, other.stage): other for other in state.spending}

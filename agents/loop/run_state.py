@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from simworlds.llm.spending import Row
+from simworlds.llm.spending import SpendingRow
 from simworlds.llm.transcript import MODEL as HANDWRITTEN
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ class RunState:
     renderings: tuple[Rendering, ...] = ()
     changes: Edited | None = None
     ending: RunEnded | None = None
-    spending: tuple[Row, ...] = ()
+    spending: tuple[SpendingRow, ...] = ()
     pending: tuple[Step, ...] = ()
     settled: Step | None = None
 
@@ -174,9 +174,9 @@ class RunState:
         return self.ending.outcome if self.ending else "unfinished"
 
     @property
-    def total(self) -> Row:
+    def total(self) -> SpendingRow:
         """All that was used."""
-        return sum(self.spending, Row("", ""))
+        return sum(self.spending, SpendingRow("", ""))
 
     @property
     def answers(self) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from simworlds.llm import tokens
-from simworlds.llm.context import Limits, fit
+from simworlds.llm.context import ContextLimits, fit
 from simworlds.llm.errors import CutShort, Misfit, Refused
 from simworlds.llm.messages import Ask, Text, ToolResult, user
 from simworlds.llm.structured import ask_for, complaint, read
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from agents.plan.part import Stage
     from simworlds.llm.messages import Block, Message, Model, Tool, ToolUse, Turn
-    from simworlds.llm.structured import Reader
+    from simworlds.llm.structured import AnswerReader
 
 T = TypeVar("T")
 
@@ -60,7 +60,7 @@ class RoleContext:
     saying: Callable[[str, str], object]
     safe: Callable[[], object]
     names: Mapping[str, str] = field(default_factory=dict[str, str])
-    limits: Limits = field(default_factory=Limits)
+    limits: ContextLimits = field(default_factory=ContextLimits)
     max_tokens: int = 32_000
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
@@ -102,7 +102,7 @@ class Conversation:
         last = next((one for one in reversed(self._messages) if one.role == "assistant"), None)
         return "\n".join(block.text for block in last.content if isinstance(block, Text)) if last else ""
 
-    def data(self, stage: str, reader: Reader[T], *said: Block | str, pinned: Sequence[str] = ()) -> T:
+    def data(self, stage: str, reader: AnswerReader[T], *said: Block | str, pinned: Sequence[str] = ()) -> T:
         """Asks for JSON that ``reader`` takes. What did not fit is not kept. Raises Misfit, ModelError."""
         self._hear(said, pinned)
         return self._read_on(stage, reader, self._messages)
@@ -136,7 +136,7 @@ class Conversation:
                 )
 
     def work_then_data(
-        self, stage: str, reader: Reader[T], *said: Block | str, pinned: Sequence[str] = ()
+        self, stage: str, reader: AnswerReader[T], *said: Block | str, pinned: Sequence[str] = ()
     ) -> T:
         """As ``work``; the last words are to be JSON that ``reader`` takes. Raises Misfit, ModelError."""
         worked = self.work(stage, *said, pinned=pinned)
@@ -151,7 +151,7 @@ class Conversation:
             whole, self._messages = self._messages, self._messages[:-1]
             return self._read_on(stage, reader, (*whole, complaint(worked.turn, misfit)))
 
-    def _read_on(self, stage: str, reader: Reader[T], messages: tuple[Message, ...]) -> T:
+    def _read_on(self, stage: str, reader: AnswerReader[T], messages: tuple[Message, ...]) -> T:
         found = ask_for(self._context, self._ask(stage, messages), reader, tries=_TRIES, on_text=self._say)
         self._messages = (*self._messages, replace(found.turn, content=_words(found.turn)).message())
         return found.value

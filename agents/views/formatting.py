@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from agents.loop.run_state import Attempt, RunState
     from simworlds.llm.messages import Usage
-    from simworlds.llm.spending import Row
+    from simworlds.llm.spending import SpendingRow
 
 
 def format_time(seconds: float | None) -> str:
@@ -52,7 +52,7 @@ def format_tokens(usage: Usage) -> str:
     return f"{format_count(usage.prompt)} in, {format_count(usage.output)} out"
 
 
-def format_cost(row: Row) -> str:
+def format_cost(row: SpendingRow) -> str:
     """What was paid, and whether that is all: recorded turns cost nothing, some have no known price."""
     if not row.calls and not row.unpriced and not row.cost:
         return "nothing"

@@ -14,7 +14,7 @@ from simworlds.llm.structured import ask_for
 if TYPE_CHECKING:
     from bench.judge.providers import Provider
     from simworlds.llm.messages import Ask
-    from simworlds.llm.structured import Reader
+    from simworlds.llm.structured import AnswerReader
 
 T = TypeVar("T")
 TRIES = 3
@@ -38,7 +38,7 @@ class Answered(Generic[T]):
     spent: Spent
 
 
-def asked(provider: Provider, ask: Ask, reader: Reader[T]) -> Answered[T]:
+def asked(provider: Provider, ask: Ask, reader: AnswerReader[T]) -> Answered[T]:
     """Asks a question; an invalid answer goes back with its faults, up to TRIES times in all. Raises NotJudged."""
     spending = Spending(prices=provider.prices)
     try:

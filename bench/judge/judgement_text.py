@@ -12,12 +12,14 @@ if TYPE_CHECKING:
     from bench.judge.agreement import Agreed, Agreement
     from bench.judge.estimate import Question
     from bench.judge.verdicts import Item, Judgement
-    from simworlds.llm.spending import Row
+    from simworlds.llm.spending import SpendingRow
 
 _WIDTH = 110
 
 
-def judgement_lines(judged: Sequence[Judgement], agreed: Agreement | None, spent: Row) -> Iterator[str]:
+def judgement_lines(
+    judged: Sequence[Judgement], agreed: Agreement | None, spent: SpendingRow
+) -> Iterator[str]:
     """Each judgement, how far they agree, and what they cost now."""
     for one in judged:
         yield from _judgement(one)

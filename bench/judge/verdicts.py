@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, NonNegativeFloat, computed_field
 
 from bench.judge.questions import Verdict, Verdicts
 from bench.judge.usage import Spent, Usage
-from simworlds.llm.structured import Reader, fits
+from simworlds.llm.structured import AnswerReader, fits
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -78,7 +78,7 @@ class Given(BaseModel):
     spent: Spent
 
 
-def reader_of(ids: Collection[str], frames: int) -> Reader[Verdicts]:
+def reader_of(ids: Collection[str], frames: int) -> AnswerReader[Verdicts]:
     """Accepts exactly one verdict for each item, with evidence in existing frames."""
     shaped = fits(Verdicts)
 

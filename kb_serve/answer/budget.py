@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_WORTH_FILLING = 0.25  # of a part: a block is not begun where less is left
-_BYTES_PER_TOKEN = (
-    3  # below what tokenizers need for English, Markdown and identifiers, so that the promise holds
-)
+_WORTH_FILLING = 0.25  # of a part: where less is left, a block begins in the next part
+_BYTES_PER_TOKEN = 3  # fewer than tokenizers reach with English, Markdown and names: the budget holds
 
 
 def tokens(text: str) -> int:
@@ -31,7 +29,7 @@ def clip(text: str, budget: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class AnswerBlock:
-    """A piece of an answer that belongs together; ``name`` is what a reader calls it when it did not fit."""
+    """A piece of an answer that belongs together; ``name`` is its name in the list of what is left."""
 
     text: str
     name: str = ""
@@ -40,7 +38,7 @@ class AnswerBlock:
 def _split(text: str, room: int) -> tuple[str, str]:
     """(what fits into ``room`` tokens, the rest), cut between lines; between words where one line is too long."""
     limit = room * _BYTES_PER_TOKEN
-    start = text[: limit + 1]  # no character takes less than a byte: what fits is in here
+    start = text[: limit + 1]  # a character takes at least a byte: all that fits is in here
     position = used = 0
     for line in start.split("\n"):
         used += len(line.encode(errors="replace")) + 1
@@ -56,10 +54,10 @@ def _split(text: str, room: int) -> tuple[str, str]:
 
 
 def paginate(blocks: Sequence[AnswerBlock], budget: int) -> list[tuple[str, list[str]]]:
-    """(text, names of the blocks that come later) for every part, each within ``budget`` tokens.
+    """(text, names of the blocks that are left) for every part, each within ``budget`` tokens.
 
-    Blocks keep their order. One that does not fit is continued in the next part, or moved there whole when
-    only a little room was left.
+    Blocks keep their order. One that does not fit continues in the next part, or moves there whole if there was
+    little room.
     """
     parts: list[tuple[str, list[str]]] = []
     current = ""

@@ -1,4 +1,4 @@
-"""A query → an answer within a token budget, in parts."""
+"""Composes the answer to a query: within a token budget, in parts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _LINE_TOKENS = 60
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """One thing the answer is about. ``id`` is a symbol path or a page slug."""
+    """A symbol or page that the answer is about. ``id`` is a symbol path or a page slug."""
 
     id: str
     kind: str
@@ -42,7 +42,7 @@ class Hit:
 
 @dataclass(frozen=True, slots=True)
 class DocsAnswer:
-    """What ``blender_docs`` returns. ``text`` is Markdown within the budget; ``parts`` of it exist in all."""
+    """What ``blender_docs`` returns. ``text`` is Markdown: part ``part`` of ``parts``, within the token budget."""
 
     kind: AnswerKind
     text: str
@@ -54,7 +54,7 @@ class DocsAnswer:
 
 @dataclass(frozen=True, slots=True)
 class _Draft:
-    """Everything an answer could say, before it is cut into parts."""
+    """The whole answer, before it is cut into parts."""
 
     kind: AnswerKind
     hits: tuple[Hit, ...]
@@ -73,18 +73,18 @@ class AnswerComposer:
         self._draft = lru_cache(maxsize=256)(self._make_draft)
 
     def answer(self, query: str, limit: int, max_tokens: int, part: int) -> DocsAnswer:
-        """Answers a query. Raises BadQuery for an empty one, or a part that does not exist."""
-        # Half a character (a lone surrogate) can be part of nothing that a base holds.
+        """Answers a query. Raises BadQuery for an empty one, a wrong limit, or a part that does not exist."""
+        # No base holds lone surrogates.
         text = " ".join(query.encode(errors="ignore").decode().replace("\0", " ").split())
         if not text:
             raise BadQuery(
-                "The query is empty. Ask for a name (ClothSettings.quality) or say what you want to do."
+                "The query is empty. Send a name (ClothSettings.quality), or say what you want to do."
             )
         if limit < 1 or part < 1:
-            raise BadQuery(f"limit and part count from 1 (given: limit={limit}, part={part}).")
+            raise BadQuery(f"limit and part must be at least 1 (they are limit={limit}, part={part}).")
         if max_tokens < LEAST_TOKENS:
             raise BadQuery(
-                f"max_tokens={max_tokens} is too little to say anything; give at least {LEAST_TOKENS}."
+                f"max_tokens={max_tokens} is too small for an answer. Set it to {LEAST_TOKENS} or more."
             )
         draft = self._draft(text, min(limit, MAX_LIMIT))
         return _paged(text, draft, max_tokens, part)
@@ -97,7 +97,7 @@ class AnswerComposer:
         hits = tuple(self._hit(row) for row in ranking.ranked[:limit])
         notes = (*ranking.notes, *self._source_notes(ranking, hits))
         if not hits:
-            text = "Nothing in this knowledge base fits the query. Try other words, or a name as Blender writes it."
+            text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
             return _Draft("none", (), notes, (AnswerBlock(text),))
         if ranking.named:
             blocks = tuple(self._whole(hits[0], ranking.ranked[0])) + self._others(hits[1:])
@@ -106,15 +106,15 @@ class AnswerComposer:
         return _Draft("candidates", hits, notes, blocks)
 
     def _source_notes(self, ranking: Ranking, hits: Sequence[Hit]) -> Iterator[str]:
-        """What the caller should know of the documentation behind the answer."""
+        """Notes on the documentation behind the answer: pages of other versions, missing sources."""
         meta = self._reader.meta
         minor = meta.get("minor", "")
         pages = [page for hit in hits if _is_page(hit) and (page := self._reader.page_entry(hit.id))]
         for version in sorted({page.version for page in pages} - {minor, ""}):
-            yield f"These pages are of the documentation for Blender {version}, not {minor}."
+            yield f"These pages are from the documentation of Blender {version}, not {minor}."
         missing = [row["role"] for row in json.loads(meta.get("missing", "[]"))]
         if missing and not ranking.named:
-            yield f"This base lacks the {' and the '.join(missing)}; `simworlds kb info` says why."
+            yield f"This base was built without the {' and the '.join(missing)}; `simworlds kb info` says why."
 
     def _hit(self, row: RankedId) -> Hit:
         score = round(row.score, 3)
@@ -127,7 +127,7 @@ class AnswerComposer:
             return Hit(row.id, "unknown", row.id, score)
         return Hit(row.id, entry.kind, entry.label or entry.name, score, self._renderer.manual_page(row.id))
 
-    # What is said
+    # The text
 
     def _whole(self, hit: Hit, row: RankedId) -> Iterator[AnswerBlock]:
         symbol = self._reader.symbol(hit.id)
@@ -137,7 +137,7 @@ class AnswerComposer:
             yield from self._renderer.page(hit.id, row.anchor)
 
     def _excerpt(self, ranking: Ranking, hit: Hit) -> Iterator[AnswerBlock]:
-        """The best hit as far as a part of the budget reaches: its description, or the section that fits."""
+        """The beginning of the best hit: its description, or the heading and the section that matches."""
         first = ranking.ranked[0]
         yield from list(self._whole(hit, first))[:2]
 
@@ -151,16 +151,16 @@ class AnswerComposer:
         entry = None if _is_page(hit) else self._reader.entry(hit.id)
         if entry is not None:
             owner = f"{entry.owner}." if entry.kind != "socket" else ""
-            told = (
+            text = (
                 entry.line.partition(" — ")[2]
                 if entry.kind in {"operator", "function", "class"}
                 else entry.line
             )
-            told = told.removeprefix(f"`{entry.name}`").strip()
-            return clip(f"`{owner + entry.name if owner else hit.id}` {told}", _LINE_TOKENS)
+            text = text.removeprefix(f"`{entry.name}`").strip()
+            return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS)
         page = self._reader.page_entry(hit.id)
-        told = first_sentence(page.summary) if page else ""
-        return clip(f"`{hit.id}` ({hit.title}) {told}", _LINE_TOKENS)
+        text = first_sentence(page.summary) if page else ""
+        return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
 
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:
         overview = self._topics.overview(topic)
@@ -174,7 +174,7 @@ def _is_page(hit: Hit) -> bool:
 
 
 def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> DocsAnswer:
-    """Cuts a draft into parts and adds to each what is missing from it and how to get it."""
+    """Cuts a draft into parts, and adds to each what is left and how to get it. Raises BadQuery."""
     notes = clip("\n".join(f"> {note}" for note in draft.notes), max_tokens // 3)
     room = max_tokens - _FOOTER_TOKENS - (tokens(notes) + 1 if notes else 0)
     pages = paginate(draft.blocks, room)
@@ -190,7 +190,7 @@ def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> DocsAnswer:
 
 
 def _footer(query: str, part: int, parts: int, left: Sequence[str]) -> str:
-    """What is left, and the call that fetches it; with the blank line above it, within ``_FOOTER_TOKENS``."""
+    """What is left, and the call that gets it; with a blank line above it within ``_FOOTER_TOKENS``."""
     head = f"_Part {part} of {parts}. Left: "
     tail = f'. Next: blender_docs("{clip(query, _ASKED_TOKENS)}", part={part + 1})_'
     names = clip(", ".join(dict.fromkeys(left)), _FOOTER_TOKENS - 1 - tokens(head + tail))

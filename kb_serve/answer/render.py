@@ -1,4 +1,4 @@
-"""Symbols and pages as Markdown: what a coder needs in one look, then the rest."""
+"""Renders symbols and pages as Markdown: what a coder needs first, then the rest."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
-_NAMED_ITEMS = 40  # of an argument, beside it; all of them follow
+_NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
 _UNITS = {
     "LENGTH": "metres", "ROTATION": "radians", "TIME": "frames", "TIME_ABSOLUTE": "seconds", "MASS": "kg",
     "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
     "TEMPERATURE": "K", "WAVELENGTH": "nm", "COLOR_TEMPERATURE": "K", "FREQUENCY": "Hz",
 }  # fmt: skip
-_WORTH_SAYING = (
+_SHOWN_FLAGS = (
     "readonly",
     "animatable",
     "enum-flag",
@@ -54,7 +54,7 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield f"unit: {_UNITS.get(symbol.unit, symbol.unit.lower())}"
     if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:
         yield f"subtype: {symbol.subtype}"
-    if flags := [flag for flag in symbol.flags if flag in _WORTH_SAYING]:
+    if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS]:
         yield ", ".join(flags)
     if symbol.modes:
         yield "shown when " + " and ".join(symbol.modes)
@@ -63,8 +63,8 @@ def facts(symbol: Symbol) -> Iterator[str]:
 def _items(items: Sequence[EnumItem]) -> str:
     lines: list[str] = []
     for item in items:
-        said = item.name if item.name and item.name != item.identifier else ""
-        text = " — ".join(part for part in (said, item.description) if part)
+        name = item.name if item.name != item.identifier else ""
+        text = " — ".join(filter(None, (name, item.description)))
         lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else ""))
     return "\n".join(lines)
 
@@ -110,12 +110,12 @@ def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
 
 @dataclass(frozen=True, slots=True)
 class MarkdownRenderer:
-    """Writes ids as Markdown blocks, most wanted first."""
+    """Renders symbols and pages as Markdown blocks, the most useful first."""
 
     reader: BaseReader
 
     def symbol(self, symbol: Symbol) -> Iterator[AnswerBlock]:
-        """One identifier. A class lists its members compactly, an operator or function its call."""
+        """A symbol: a class with a list of its members, an operator or function with its parameters."""
         yield AnswerBlock(self._head(symbol), "description")
         if symbol.kind == "class":
             yield from self._class(symbol)
@@ -127,10 +127,10 @@ class MarkdownRenderer:
             yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
         definition = self.manual_definition(symbol)
         if definition:
-            yield AnswerBlock(definition, "the manual on it")
+            yield AnswerBlock(definition, "the manual's definition")
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
-        """A page of the manual or a guide; the section with ``anchor`` comes before the others."""
+        """A page of the manual or a guide; the section ``anchor`` comes first."""
         page, entry = self.reader.page(slug), self.reader.page_entry(slug)
         if page is None or entry is None:
             return
@@ -140,8 +140,7 @@ class MarkdownRenderer:
         if len(others) > 1:
             head += "\n\nSections: " + ", ".join(others)
         yield AnswerBlock(head, "heading")
-        wanted = [section for section in page.sections if anchor and section.anchor == anchor]
-        for section in (*wanted, *(section for section in page.sections if section not in wanted)):
+        for section in sorted(page.sections, key=lambda section: not anchor or section.anchor != anchor):
             mark = "#" * min(6, section.level + 2)
             if section.text:
                 yield AnswerBlock(f"{mark} {section.title}\n\n{section.text}", section.title)
@@ -157,15 +156,16 @@ class MarkdownRenderer:
         if symbol.signature and symbol.kind in {"operator", "function", "class"}:
             lines.append(f"```python\n{self._call(symbol)}\n```")
         label = f"**{symbol.label}** — " if symbol.label else ""
-        said = symbol.description.strip()
-        if label or said:
-            lines.append(label + said if said else label.removesuffix(" — "))
-        if known := " · ".join(facts(symbol)):
-            lines.append(known)
+        if text := (label + symbol.description.strip()).removesuffix(" — "):
+            lines.append(text)
+        if line := " · ".join(facts(symbol)):
+            lines.append(line)
         if symbol.deprecation:
-            gone = f", removal planned for {symbol.deprecation.removal}" if symbol.deprecation.removal else ""
+            removal = (
+                f", removal planned for {symbol.deprecation.removal}" if symbol.deprecation.removal else ""
+            )
             since = f" since {symbol.deprecation.since}" if symbol.deprecation.since else ""
-            lines.append(f"**Deprecated**{since}{gone}: {symbol.deprecation.note}")
+            lines.append(f"**Deprecated**{since}{removal}: {symbol.deprecation.note}")
         lines.extend(self._place(symbol))
         return "\n\n".join(lines)
 
@@ -179,7 +179,7 @@ class MarkdownRenderer:
         return f"{owner}.{symbol.signature}" if owner else symbol.signature
 
     def _place(self, symbol: Symbol) -> Iterator[str]:
-        """How the symbol is reached, the version that brought it, and its manual page."""
+        """How to reach the symbol, the version that introduced it, and its manual page."""
         cls = symbol if symbol.kind == "class" else self.reader.symbol(symbol.owner)
         reached = cls.reached if cls else ""
         if reached and symbol.kind in {"class", "property", "socket", "function"}:
@@ -197,7 +197,7 @@ class MarkdownRenderer:
             yield f"manual: {page}"
 
     def manual_page(self, path: str) -> str:
-        """The address of the manual page that Blender's own table gives for a symbol."""
+        """The URL of a symbol's manual page, by Blender's own table; empty for none."""
         for target in self.reader.links_from(path, "manual"):
             slug, _, anchor = target.partition("#")
             page = self.reader.page_entry(slug)
@@ -206,7 +206,7 @@ class MarkdownRenderer:
         return ""
 
     def manual_definition(self, symbol: Symbol) -> str:
-        """What the linked manual page says under the symbol's own label, if it says anything."""
+        """What the linked manual page says under the symbol's label; empty for nothing."""
         if not symbol.label:
             return ""
         for target in self.reader.links_from(symbol.path, "manual"):
@@ -252,7 +252,7 @@ class MarkdownRenderer:
 
 
 def definition_of(label: str, sections: Iterable[Section]) -> str:
-    """The definition-list entry of a manual page whose term is ``label``; empty when there is none."""
+    """The definition of the term ``label`` in a manual page; empty for none."""
     wanted = label.lower()
     for section in sections:
         for term, below in definitions_in(section.text):

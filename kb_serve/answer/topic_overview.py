@@ -1,4 +1,4 @@
-"""Topic words (``cloth``, ``rigid body``, ``uv``): an overview of what belongs together."""
+"""Overviews of topics (``cloth``, ``rigid body``, ``uv``): their pages, classes and operators."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ if TYPE_CHECKING:
 
 ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _MAX_WORDS = 4
-_MOST = 200  # of one list: an overview has parts, but must end
+_MOST = 200  # entries of one list
 
 
 @dataclass(frozen=True, slots=True)
 class TopicOverview:
-    """What is said of a topic, and the ids it names in the order of their use."""
+    """The text on a topic, and the ids of its main classes and operators."""
 
     blocks: tuple[AnswerBlock, ...]
     members: tuple[str, ...]
 
 
 class Topics:
-    """Finds the manual's page for a topic and what Blender's own table ties to it."""
+    """Finds the manual page of a topic, and the symbols that Blender's own table links to it."""
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
     def find(self, text: str) -> str:
-        """The slug of the part of the manual that a few plain words name; empty when they name none.
+        """The slug of the manual page that a few plain words name; empty for none.
 
-        Of several pages with the title, whatever its grammatical number, the one that most hangs on; a page that
-        nothing hangs on is no topic.
+        Of several pages with that title, in singular or plural, the one with the most pages and symbols; a page
+        without any is not a topic.
         """
         plain = text.strip().strip("`'\"?!.")
         if len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
@@ -50,7 +50,7 @@ class Topics:
         return max(sizes, key=lambda slug: (sizes[slug], slug)) if sizes else ""
 
     def _is_class(self, text: str) -> bool:
-        """Whether a capital may mean a class: ``Camera``, ``Particle System``, unlike ``Rigid Body``."""
+        """Whether a text in capitals may mean a class: ``Camera``, ``Particle System``, unlike ``Rigid Body``."""
         entries = (self._reader.entry(identifier) for _, identifier in self._reader.by_key(key(text)))
         return any(entry is not None and entry.kind == "class" for entry in entries)
 
@@ -64,7 +64,7 @@ class Topics:
         return self._reader.page_children(slug)
 
     def _size(self, slug: str) -> int:
-        """How many symbols and pages hang on a chapter: what people mean is rarely the smaller one."""
+        """The number of pages and symbols below a page: people rarely mean the smaller chapter."""
         below = self._subtree(slug)
         return len(below) + sum(len(self._reader.symbols_of_page(child)) for child in below)
 
@@ -75,7 +75,7 @@ class Topics:
         return slugs
 
     def overview(self, slug: str) -> TopicOverview:
-        """The page, those below it, and the classes and operators that belong to it."""
+        """The page's summary, the pages below it, and the classes and operators that belong to it."""
         page = self._reader.page_entry(slug)
         assert page is not None
         words = set(terms(page.title))
@@ -91,13 +91,13 @@ class Topics:
         operators = [entry for entry in entries if entry.kind == "operator"]
         operators.sort(key=lambda entry: key(entry.owner.rpartition(".")[2]) not in names)
         blocks = [AnswerBlock(f"## {page.title}\n\n{page.summary}\n\n{page.url}", "summary")]
-        blocks += _listed("Classes", [_told(entry) for entry in classes])
-        blocks += _listed("Operators", [_told(entry) for entry in operators])
-        blocks += _listed("Pages", list(self._page_lines(slug)))
+        blocks += _list_of("Classes", [_line(entry) for entry in classes])
+        blocks += _list_of("Operators", [_line(entry) for entry in operators])
+        blocks += _list_of("Pages", list(self._page_lines(slug)))
         return TopicOverview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
 
     def _order(self, entry: SymbolEntry, words: set[str]) -> tuple[bool, bool, int]:
-        """Classes that bear the topic's name come first, modifiers before the settings they lead to."""
+        """Sorts classes with the topic's name first, and modifiers before their settings."""
         return (
             not words <= set(terms(entry.name)),
             not entry.name.endswith("Modifier"),
@@ -111,15 +111,15 @@ class Topics:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
 
 
-def _told(entry: SymbolEntry) -> str:
+def _line(entry: SymbolEntry) -> str:
     return f"`{entry.path}` — {first_sentence(entry.line.partition(' — ')[2]) or entry.label}"
 
 
-def _listed(title: str, lines: list[str]) -> list[AnswerBlock]:
+def _list_of(title: str, lines: list[str]) -> list[AnswerBlock]:
     if not lines:
         return []
-    shown = "\n".join(
+    items = "\n".join(
         f"- {line}" if not line.startswith("  ") else f"  - {line.strip()}" for line in lines[:_MOST]
     )
     more = f"\n- … {len(lines) - _MOST} more" if len(lines) > _MOST else ""
-    return [AnswerBlock(f"**{title}**\n{shown}{more}", title.lower())]
+    return [AnswerBlock(f"**{title}**\n{items}{more}", title.lower())]

@@ -58,7 +58,7 @@ _NOWHERE = StemPostings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0.0)
 
 
 class InvertedIndex:
-    """What one base's index tells of stems."""
+    """The inverted index of one base."""
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
@@ -69,7 +69,7 @@ class InvertedIndex:
         """Units and topics. Raises BaseUnreadable."""
         units, topics = self._read_level(UNITS), self._read_level(TOPICS)
         if not _within(units.topics, -1, topics.count):
-            raise self._reader.damaged("its index points at topics that it has not")
+            raise self._reader.damaged("its index refers to topics that do not exist")
         return units, topics
 
     @cached_property
@@ -81,7 +81,7 @@ class InvertedIndex:
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
         if not _within(asked, 0, sum(level.count for level in self.levels)):
-            raise self._reader.damaged("its phrases ask for what it has not")
+            raise self._reader.damaged("its phrases refer to documents that do not exist")
         return asked
 
     @cached_property

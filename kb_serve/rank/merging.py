@@ -1,4 +1,4 @@
-"""Names and prose together: one ranked list of ids for a query, and whether it was asked for by name."""
+"""Merges what a query names with what the search finds: one ranked list of ids, with notes."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from kb_serve.recognise.corrections import RemovedSymbol
     from kb_serve.recognise.recognition import Recognition
 
-SURE = 0.8  # from here on, what was named comes before what was found
-_FOUND = 12  # at least: what stands in for a class that is named already must be found too
-_CLOSE = 0.6  # share of the closest one's score down to which others are said to be close too
+SURE = 0.8  # from here on, named ids come before search hits
+_LEAST_HITS = 12  # of the search, so that it also finds alternatives to a named class
+_CLOSE = 0.6  # replacements with at least this share of the best one's score are named too
 
 
 @dataclass(frozen=True, slots=True)
 class RankedId:
-    """One id with the reason why it is here; ``score`` falls from 1 down the list."""
+    """An id and why it is in the list; ``score`` falls from 1 down the list."""
 
     id: str
     score: float
@@ -32,7 +32,7 @@ class RankedId:
 
 @dataclass(slots=True)
 class Ranking:
-    """Everything a query leads to, best first. ``named`` when the first was asked for by its name."""
+    """The ids for a query, best first. ``named`` tells whether the query names the first."""
 
     ranked: list[RankedId]
     recognition: Recognition
@@ -47,7 +47,7 @@ def _span_text(removed: RemovedSymbol) -> str:
 
 
 class QueryRanker:
-    """Brings what a query names and what it describes into one order."""
+    """Ranks the ids that a query names or describes."""
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
@@ -60,20 +60,20 @@ class QueryRanker:
 
         return Searcher(self._reader)
 
-    def rank(self, query: str, limit: int = _FOUND) -> Ranking:
-        """The ids that a query leads to; the first ``limit`` of them will be used."""
-        recognition = self._recogniser.identify(query)
+    def rank(self, query: str, limit: int = _LEAST_HITS) -> Ranking:
+        """The ids for a query, at least ``limit`` of them if there are."""
+        recognition = self._recogniser.recognise(query)
         best = recognition.best
         if best is not None and best.sure >= 1.0:
             ranked = [RankedId(match.id, match.sure, match.why) for match in recognition.matches]
             return Ranking(ranked, recognition, named=True, notes=self._notes(recognition))
-        found = self.searcher.search(prose_of(query), max(limit, _FOUND), failed=is_message(query))
-        ranked = self._merged(recognition, found)
+        hits = self.searcher.search(prose_of(query), max(limit, _LEAST_HITS), failed=is_message(query))
+        ranked = self._merged(recognition, hits)
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         return Ranking(ranked, recognition, named, self._notes(recognition))
 
     def _notes(self, recognition: Recognition) -> list[str]:
-        """What the caller should know about the names that were typed."""
+        """Notes on the names in the query: corrections, removed and missing ones."""
         version = self._reader.meta.get("minor", "this version")
         notes: list[str] = []
         for correction in recognition.corrections:
@@ -86,25 +86,25 @@ class QueryRanker:
             notes.append(
                 f"`{removed.path}` does not exist in Blender {version}; {_span_text(removed)}.{closest}"
             )
-        former = {removed.path.rpartition(".")[2] for removed in recognition.removed}
+        removed_names = {removed.path.rpartition(".")[2] for removed in recognition.removed}
         similar = [f"`{match.id}`" for match in recognition.matches if match.why == "similar name"][:3]
         closest = f" Closest: {', '.join(similar)}." if similar else ""
         for missing in recognition.missing:
-            if missing.owner and missing.name not in former:
+            if missing.owner and missing.name not in removed_names:
                 notes.append(f"`{missing.owner}` has no `{missing.name}`.{closest}")
         return list(dict.fromkeys((*notes, *recognition.notes)))
 
     @staticmethod
-    def _merged(recognition: Recognition, found: list[SearchHit]) -> list[RankedId]:
-        """Sure names first, then what was found; unsure names stand behind the first three found."""
+    def _merged(recognition: Recognition, hits: list[SearchHit]) -> list[RankedId]:
+        """Sure names first, then the search hits, with unsure names after the first three."""
         sure = [
             RankedId(match.id, match.sure, match.why) for match in recognition.matches if match.sure >= SURE
         ]
         maybe = [
             RankedId(match.id, match.sure, match.why) for match in recognition.matches if match.sure < SURE
         ]
-        top = found[0].score if found else 1.0
-        prose = [RankedId(f.ref, SURE * f.score / top, "found", f.anchor) for f in found]
+        top = hits[0].score if hits else 1.0
+        prose = [RankedId(hit.ref, SURE * hit.score / top, "found", hit.anchor) for hit in hits]
         merged: dict[str, RankedId] = {}
         for row in (*sure, *prose[:3], *maybe, *prose[3:]):
             merged.setdefault(row.id, row)

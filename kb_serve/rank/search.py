@@ -1,4 +1,4 @@
-"""Ranks what the base holds for a query in plain words.
+"""Searches the base for a query in plain words.
 
 BM25F over two levels (a unit and the topic around it), with five additions, each measured in ``make bench``:
 
@@ -197,7 +197,7 @@ class Searcher:
             wanted = numbers[start : start + _READ_AHEAD]
             units = self._reader.units(wanted)
             if len(units) < len(wanted):
-                raise self._reader.damaged("documents of its index are gone")
+                raise self._reader.damaged("documents of its index are missing")
             yield from (units[number] for number in wanted)
 
 

@@ -1,4 +1,4 @@
-"""Addresses in a query: of the manual and the reference on the web, and of pages in a base."""
+"""Recognises URLs of the manual and the API reference, and slugs of pages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _BEFORE_SLUG = {"manual": 2, "api": 1}  # language and version; version
 
 
 def ids_in_urls(query: str, reader: BaseReader) -> Iterator[str]:
-    """The symbols and pages whose web addresses stand in a query; of one address, the closest first."""
+    """The ids of the symbols and pages whose URLs are in a query; of one URL, the closest first."""
     for site, rest in _URL.findall(query):
         page, _, anchor = rest.rstrip(".,;:!?").partition("#")
         parts = page.partition("?")[0].removesuffix(".html").strip("/").split("/")
@@ -28,7 +28,7 @@ def ids_in_urls(query: str, reader: BaseReader) -> Iterator[str]:
 
 
 def find_page(text: str, reader: BaseReader) -> str:
-    """The slug of the page that a text names: as it is, without ``/index``, or with a suffix; "" for none."""
+    """The slug of the page that a text names, with a suffix or without ``/index`` too; "" for none."""
     if reader.page_entry(text):
         return text
     slug = text.strip("/").removesuffix(".html").removesuffix(".rst").strip("/")

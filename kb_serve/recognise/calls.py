@@ -1,4 +1,4 @@
-"""Arguments of a call that a symbol does not take."""
+"""Finds wrong arguments in calls of operators and functions."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 OVERRIDE = "bpy.types.Context.temp_override"
 NO_OVERRIDE = (
-    f"Operators take keyword arguments, after the execution context at most: a context is no argument of theirs, "
-    f"`{OVERRIDE}` gives one."
+    "Operators take keyword arguments only, after an optional execution context. A context is not an argument: "
+    f"set it with `{OVERRIDE}`."
 )
 _FEW = 3
 _NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
@@ -25,7 +25,7 @@ _DEPTH = 5
 
 
 def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
-    """A sentence for each of ``names`` that is no parameter of ``symbol``, with the parameters most like it."""
+    """A sentence for each of ``names`` that is not a parameter of ``symbol``, with the most similar parameters."""
     known = [parameter.name for parameter in symbol.parameters]
     for name in names:
         if not known or name in known or any(other.startswith("*") for other in known):
@@ -37,7 +37,7 @@ def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
 
 
 def wrong_arguments(chain: Chain, symbol: Symbol) -> Iterator[str]:
-    """What is wrong with the arguments of a call, as far as its text tells."""
+    """Sentences on the wrong arguments of a call, as far as its text shows."""
     last = chain.steps[-1] if chain.steps else None
     if last is None or last.kind != "call" or symbol.kind not in {"operator", "function"}:
         return
@@ -51,6 +51,6 @@ def wrong_arguments(chain: Chain, symbol: Symbol) -> Iterator[str]:
 
 
 def _gives_context(arguments: str) -> bool:
-    """Whether the first argument is a dictionary, or a variable called like one that overrides the context."""
+    """Whether the first argument is a dictionary, or a variable named like a context override."""
     first = arguments.strip()
     return bool(re.match(r"\{|dict\(|\w*(?:override|context|ctx)\w*(?:\.copy\(\))?\s*(?:,|$)", first))

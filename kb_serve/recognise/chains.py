@@ -1,7 +1,4 @@
-"""Code in a query → chains of steps: ``obj.modifiers["Cloth"].settings.quality`` and its like.
-
-Reads any text, Python or not; what is no code is simply not found.
-"""
+"""Finds dotted expressions in any text: ``obj.modifiers["Cloth"].settings.quality`` → a chain of steps."""
 
 from __future__ import annotations
 
@@ -59,7 +56,7 @@ class Chain:
 
     @property
     def is_code(self) -> bool:
-        """Whether it can only be code: a lone word of prose is not."""
+        """Whether it can only be code, unlike a single word of prose."""
         if self.steps:
             return True
         return "_" in self.root.strip("_") or bool(re.search(r"[a-z0-9][A-Z]", self.root))
@@ -100,7 +97,7 @@ def _step(text: str, position: int) -> tuple[ChainStep, int] | None:
 
 def find_chains(text: str) -> list[Chain]:
     """Every name or dotted expression in a text, in order; at most a dozen with code in them."""
-    found: list[Chain] = []
+    chains: list[Chain] = []
     position, code = 0, 0
     text = text[:MAX_QUERY]
     while match := _IDENTIFIER.search(text, position):
@@ -111,11 +108,11 @@ def find_chains(text: str) -> list[Chain]:
             steps.append(step)
         assigned = _ASSIGNMENT.match(text, position) is not None
         if steps and steps[0].kind == "call" and match.group() in _BUILTINS:
-            position = match.end() + 1  # what Python's own functions are given is what it is about
+            position = match.end() + 1  # the arguments of Python's own functions may be Blender's
             continue
         chain = Chain(match.group(), tuple(steps), text[start:position], assigned)
-        found.append(chain)
+        chains.append(chain)
         code += chain.is_code
         if code >= _MAX_CHAINS:
             break
-    return found
+    return chains

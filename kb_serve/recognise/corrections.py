@@ -1,4 +1,4 @@
-"""Names that do not exist: what was probably meant, and what other versions had."""
+"""Corrections of names that do not exist, and symbols that only other versions have."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
-_CONTAINED = 0.8  # of a name whose words are all in the other: ``select`` and ``select_set``
+_CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` and ``select_set``
 _ROUNDS = 3
-_LONG = 8  # letters of a name that is looked for among all others
+_LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
 
 
@@ -34,7 +34,7 @@ class Correction:
 
 @dataclass(frozen=True, slots=True)
 class RemovedSymbol:
-    """A symbol of another version: its path, first and last version, and what this version has instead."""
+    """A symbol that only other versions have: its path, their first and last, and replacements in this version."""
 
     path: str
     first: str
@@ -43,7 +43,7 @@ class RemovedSymbol:
 
 
 def similarity(written: str, name: str) -> float:
-    """How alike two names are: 1 when only the spelling differs, else by edits and by shared words."""
+    """How similar two names are: 1 if only their spelling differs, else by edits and by shared words."""
     return _alike(key(written), set(words(written)), name)
 
 
@@ -54,14 +54,14 @@ def _alike(written: str, mine: set[str], name: str) -> float:
     if written == right:
         return 1.0
     alike = OSA.normalized_similarity(written, right)
-    # Only names that may hold all the words are taken apart: that is what costs among thousands of names.
+    # Only names that may contain all the words are split: that is slow for thousands of names.
     if mine and all(word in right for word in mine) and mine < (theirs := set(words(name))):
         alike = max(alike, _CONTAINED + 0.1 * len(mine) / len(theirs))
     return alike
 
 
 def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[str, float]]:
-    """The most similar names that are likely meant, best first."""
+    """The names that are similar enough to be meant, best first."""
     left, mine = key(written), set(words(written))
     scored = [(name, _alike(left, mine, name)) for name in names]
     likely = [row for row in scored if row[1] >= LIKELY]
@@ -69,7 +69,7 @@ def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[st
 
 
 class Corrector:
-    """Finds what a chain with a wrong name in it was meant to be."""
+    """Corrects the wrong names in a chain."""
 
     def __init__(self, reader: BaseReader, resolver: Resolver) -> None:
         self._reader = reader
@@ -77,35 +77,35 @@ class Corrector:
 
     @cached_property
     def _roots(self) -> dict[str, str]:
-        """key → name for everything that code starts with: classes and modules."""
+        """key → name of everything that code starts with: classes and modules."""
         rows = self._reader.rows(
             "SELECT name, path FROM symbols WHERE kind IN ('class', 'module') AND grp NOT IN ('ui', 'operator') "
-            "ORDER BY kind DESC"  # of ``bpy.ops.collection`` and ``Collection`` the class stays
+            "ORDER BY kind DESC"  # of ``bpy.ops.collection`` and ``Collection`` keep the class
         )
         return {key(name): path.removeprefix(TYPES) for name, path in rows}
 
     def root(self, written: str) -> Correction | None:
-        """A class or module that a misspelt first name stands for."""
+        """The class or module that a misspelt first name means."""
         if len(written) < 5:
             return None
         return _closest(written, self._roots, 0.8)
 
     @cached_property
     def _members(self) -> dict[str, str]:
-        """key → name for everything that has an owner, and a name of several words."""
+        """key → name of every member whose name has several words."""
         rows = self._reader.rows(
             "SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function', 'operator')"
         )
         return {key(name): name for (name,) in rows if len(name) >= _LONG and "_" in name}
 
     def member(self, written: str) -> Correction | None:
-        """A name of several words, ``use_self_colision``, whose owner was not given."""
+        """Corrects a name of several words, ``use_self_colision``, without its owner."""
         if len(written) < _LONG or "_" not in written:
             return None
         return _closest(written, self._members, _CLOSE)
 
     def member_names(self, owner: str) -> list[str]:
-        """The names that may follow after ``owner``: own, inherited, and its contents for a module."""
+        """The members of a class, inherited ones included, or of a module."""
         names: dict[str, None] = {}
         for ancestor in self._reader.lineage(owner):
             names.update(dict.fromkeys(self._reader.members(ancestor.path)))
@@ -114,7 +114,7 @@ class Corrector:
         return list(names)
 
     def corrected(self, chain: Chain) -> tuple[ResolvedChain, list[Correction]] | None:
-        """A chain read with its wrong names replaced by likely ones; None when nothing likely was found."""
+        """A chain with its wrong names corrected, and the corrections; None if no likely ones were found."""
         corrections: list[Correction] = []
         readings = self._resolver.resolve(chain)
         if not readings or readings[0].fit < 1.0:
@@ -127,11 +127,12 @@ class Corrector:
             if not readings or readings[0].complete:
                 break
             resolved = readings[0]
-            found = nearest(resolved.missing, self.member_names(resolved.owner), 1)
-            if not found:
+            similar = nearest(resolved.missing, self.member_names(resolved.owner), 1)
+            if not similar:
                 break
-            corrections.append(Correction(resolved.missing, found[0][0], found[0][1]))
-            chain = _with_step(chain, len(chain.steps) - resolved.steps_left, found[0][0])
+            name, alike = similar[0]
+            corrections.append(Correction(resolved.missing, name, alike))
+            chain = _with_step(chain, len(chain.steps) - resolved.steps_left, name)
             readings = self._resolver.resolve(chain)
         if corrections and readings and readings[0].complete:
             return readings[0], corrections
@@ -158,20 +159,20 @@ def _with_step(chain: Chain, number: int, name: str) -> Chain:
 
 
 class RemovedSymbols:
-    """Looks up symbols that other versions had."""
+    """Looks up symbols that only other versions have."""
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
     def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
-        """A former member of a class, of its bases, or of a module."""
+        """A removed member of a class, of its bases, or of a module."""
         for ancestor in [entry.path for entry in self._reader.lineage(owner)] or [owner]:
             if removed := self.of_path(f"{ancestor}.{name}"):
                 return removed
         return None
 
     def of_socket(self, owner: str, name: str, variable: str) -> RemovedSymbol | None:
-        """A former socket, ``inputs["Subsurface"]``, of a node below ``owner``: the variable may tell which."""
+        """A removed socket, ``inputs["Subsurface"]``, of a node below ``owner``: the variable may tell which."""
         paths = [path for path in self._reader.removed_by_key(key(name)) if '["' in path]
         below = [
             path
@@ -182,7 +183,7 @@ class RemovedSymbols:
         return self.of_path(below[0]) if below else None
 
     def of_variables_socket(self, chain: Chain) -> RemovedSymbol | None:
-        """A former socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells of."""
+        """A removed socket, ``bsdf.inputs["Transmission"]``, of a node known only by the variable's name."""
         for before, step in pairwise(chain.steps[:2]):
             if step.kind == "key" and before.text in {"inputs", "outputs"}:
                 paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
@@ -191,12 +192,12 @@ class RemovedSymbols:
         return None
 
     def of_path(self, path: str) -> RemovedSymbol | None:
-        """A symbol of another version by its exact path."""
+        """A removed symbol by its exact path."""
         span = self._reader.removed(path)
         return RemovedSymbol(path, *span, tuple(self._reader.replacements(path))) if span else None
 
     def spelled(self, text: str) -> Iterator[RemovedSymbol]:
-        """Symbols of other versions under any usual spelling; enum items alone only as code writes them."""
+        """Removed symbols in any usual spelling; bare enum items only as code writes them."""
         for path in self._reader.removed_by_key(key(text)):
             if (
                 ":" in path

@@ -1,4 +1,4 @@
-"""Enum values in a query (``'EMITTER'``, ``view_transform 'AgX'``) → the properties that take them."""
+"""Recognises enum values (``'EMITTER'``, ``view_transform 'AgX'``): the properties that take them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
-_FITTING = 0.5  # how far the words around a bare value must fit the property that takes it
+_FITTING = 0.5  # how well the words around a bare value must fit its property
 
 
 class EnumValues:
@@ -27,7 +27,7 @@ class EnumValues:
         self._reader = reader
 
     def recognise(self, query: str, recognition: Recognition) -> None:
-        """Adds the properties and parameters that take the values in a query, and classes that are quoted."""
+        """Adds the properties and parameters that take the values in a query, and quoted classes."""
         text = _ERROR.sub(" ", query)
         quoted = [a or b for a, b in _QUOTED.findall(text)]
         values = self.values(query)
@@ -51,12 +51,12 @@ class EnumValues:
 
     @staticmethod
     def values(query: str) -> list[str]:
-        """What may be a value: what is quoted, and words in capitals."""
+        """Possible values: quoted texts, and words in capitals."""
         text = _ERROR.sub(" ", query)
         return list(dict.fromkeys([*(a or b for a, b in _QUOTED.findall(text)), *_CAPITALS.findall(text)]))
 
     def owners(self, values: Iterable[str], around: set[str] | None = None) -> Iterator[tuple[str, float]]:
-        """(owner, share of the values it has), the fullest first, then the one the other words fit."""
+        """(owner, share of the values that it has), by that share, then by fit to the other words."""
         wanted = list(values)
         held: dict[str, set[str]] = defaultdict(set)
         for value in wanted:
@@ -69,7 +69,7 @@ class EnumValues:
             yield owner, len(held[owner]) / max(1, len(wanted))
 
     def _is_class(self, value: str) -> bool:
-        """Whether a label, ``Matrix``, is a class's own name: then it was hardly meant as an item."""
+        """Whether a label, ``Matrix``, is the name of a class: then it is hardly meant as an item."""
         return any(entry.kind == "class" for entry in self._reader.by_name(value))
 
     def _owner_fit(self, owner: str, around: set[str]) -> float:

@@ -1,4 +1,4 @@
-"""Code in a query → the symbols that its expressions lead to, and what its bare names may be."""
+"""Recognises code: the symbols that its expressions resolve to, and those its bare names may mean."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
-_NEARLY = 0.9  # how alike a class must be for a name to be its misspelling, not a variable's
-_CLEAR = 0.85  # a variable's name that hardly means another class
-_LIKELY = 0.5  # readings that fit less well than this share of the best are no readings
-_OWN_CLASS = 0.2  # from this fit on, a variable's name speaks for the class at all
+_NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
+_CLEAR = 0.85  # fit of a variable's name that hardly means another class
+_LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
+_OWN_CLASS = 0.2  # from this fit on, a variable's name supports the class at all
 
-# Python's own names, which are nobody's API.
+# Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
 
 
 def _is_api(chain: Chain) -> bool:
-    """Whether a chain may be Blender's; ``object.location`` is, though Python has an ``object`` too."""
+    """Whether a chain may be Blender's; ``object.location`` is, although Python has an ``object`` too."""
     return chain.root not in _NOT_API or bool(chain.attributes)
 
 
@@ -44,7 +44,7 @@ class Expressions:
         self._removed = removed
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
-        """Adds what the expressions among ``chains`` lead to, and what bare words of them name."""
+        """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
         self._expressions(chains, recognition)
         self._class_with_member(chains, recognition)
 
@@ -72,10 +72,10 @@ class Expressions:
 
     @staticmethod
     def _trusted(chain: Chain, resolved: ResolvedChain, broken: ResolvedChain | None) -> bool:
-        """Whether a reading stands on more than a guess at what a variable or a bare word is.
+        """Whether a reading rests on more than a guess at what a variable or a bare word is.
 
-        A variable that clearly bears a class' name, and lacks the one attribute, is believed before a class that
-        merely has it.
+        For a variable clearly named after a class that lacks the attribute, that class is believed, not another
+        one that has the attribute.
         """
         if not resolved.complete:
             return False
@@ -84,17 +84,17 @@ class Expressions:
         return resolved.fit >= 1.0 or len(chain.attributes) >= (1 if resolved.fit >= _OWN_CLASS else 2)
 
     def _misspelt(self, chain: Chain, resolved: ResolvedChain) -> bool:
-        """Whether what looks like a class is nearly one: ``PoimtLight`` is no variable that holds a light."""
+        """Whether a root is a misspelt class: ``PoimtLight`` is hardly a variable that holds a light."""
         if resolved.fit >= 1.0 or not chain.root[:1].isupper():
             return False
         meant = self._corrector.root(chain.root)
         return meant is not None and _NEARLY <= meant.similarity < 1.0
 
     def _names_removed(self, chain: Chain, readings: list[ResolvedChain], recognition: Recognition) -> bool:
-        """Whether the chain names what another version had: on the likeliest class, or under its own path."""
+        """Adds the removed symbol that a chain names, on the likeliest class or by its path; whether there is one."""
         if not (readings and readings[0].complete and readings[0].fit >= 0.85):
             if removed := self._removed.of_variables_socket(chain):
-                recognition.removed.append(removed)  # beside what else has a socket of the name
+                recognition.removed.append(removed)  # in addition to other nodes with such a socket
             if whole := self._removed.of_path(chain.dotted) if chain.steps else None:
                 recognition.removed.append(whole)
                 return True
@@ -108,10 +108,10 @@ class Expressions:
         return False
 
     def _removed_symbol(self, chain: Chain, resolved: ResolvedChain) -> RemovedSymbol | None:
-        """The former symbol that a broken reading stops at."""
+        """The removed symbol at which an incomplete reading stops."""
         if "puts[" in resolved.missing:
-            former = self._removed.of_member(resolved.owner, resolved.missing)
-            return former or self._removed.of_socket(resolved.owner, resolved.missing, chain.root)
+            removed = self._removed.of_member(resolved.owner, resolved.missing)
+            return removed or self._removed.of_socket(resolved.owner, resolved.missing, chain.root)
         return (
             self._removed.of_member(resolved.owner, resolved.missing)
             if resolved.missing and resolved.fit >= 0.6
@@ -121,7 +121,7 @@ class Expressions:
     def _reading(
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
     ) -> None:
-        """The best reading of one chain, and what lies on the way to it."""
+        """Adds the best readings of a chain, and the symbols on the way to the first."""
         bare = not chain.attributes  # a class with a call or an index behind it
         likely = [
             resolved
@@ -135,13 +135,13 @@ class Expressions:
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
 
     def _corrected(self, chain: Chain, later: float, recognition: Recognition) -> bool:
-        """Reads a chain with its misspelt names mended."""
+        """Adds a chain with its misspelt names corrected; whether that is possible."""
         if not chain.steps and not chain.root[:1].isupper():
             return False
-        mended = self._corrector.corrected(chain)
-        if mended is None:
+        corrected = self._corrector.corrected(chain)
+        if corrected is None:
             return False
-        resolved, corrections = mended
+        resolved, corrections = corrected
         recognition.corrections += corrections
         recognition.add(
             resolved.symbols[-1], 0.93 * min(c.similarity for c in corrections) ** 0.25 - later, "correction"
@@ -152,7 +152,7 @@ class Expressions:
 
     @staticmethod
     def _broken_off(chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
-        """As far as a chain could be followed."""
+        """Adds a chain as far as it could be resolved, and its missing name."""
         assigned = chain.assigned and resolved.steps_left == 1
         recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned))
         for step, symbol in enumerate(reversed(resolved.symbols)):
@@ -162,7 +162,7 @@ class Expressions:
             recognition.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
 
     def _loose_name(self, chain: Chain, prose: set[str], recognition: Recognition) -> None:
-        """A name of code without its owner (``thickness_outer``): its owners, by the words around it."""
+        """Adds the owners of a name without its owner (``thickness_outer``), by the words around it."""
         name = chain.attributes[-1] if chain.attributes else chain.root
         rows = [
             entry
@@ -170,11 +170,11 @@ class Expressions:
             if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
         ]
         rows = [entry for entry in rows if entry.name == name] or rows  # before the same letters
-        if not rows and not name.isupper() and (mended := self._corrector.member(name)):
-            recognition.corrections.append(mended)
-            rows = [entry for entry in self._reader.by_name(mended.meant) if entry.group != "ui"]
+        if not rows and not name.isupper() and (correction := self._corrector.member(name)):
+            recognition.corrections.append(correction)
+            rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
         if chain.attributes and len(rows) > _FEW:
-            return  # a common name whose owner was given, and does not have it
+            return  # a common name that its owner in the query does not have
         for rank, entry in enumerate(sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]):
             sure = 0.9 if len(rows) == 1 else 0.84
             if chain.attributes and (len(rows) > 1 or "_" not in name):
@@ -184,7 +184,7 @@ class Expressions:
             recognition.add(entry.path, sure - 0.03 * rank, "name")
 
     def _affinity(self, entry: SymbolEntry, prose: set[str]) -> float:
-        """How many of the words around a name belong to its owner, and how usual the owner is."""
+        """How many words around a name belong to its owner, and how usual the owner is."""
         owner = self._reader.entry(entry.owner)
         about = set(terms(entry.owner.replace("bpy.types.", "") + " " + (owner.label if owner else "")))
         about |= set(terms(entry.label))
@@ -192,7 +192,7 @@ class Expressions:
         return len(about & prose) - 0.05 * len(about) + usual
 
     def _class_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
-        """``SoftBodySettings goal_spring``: a class and one of its members, side by side."""
+        """Adds a class's member that stands beside the class: ``SoftBodySettings goal_spring``."""
         classes = [
             entry
             for chain in chains

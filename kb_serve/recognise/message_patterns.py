@@ -1,11 +1,11 @@
-"""What error messages look like: which text is Blender's own, which is the caller's, and which names something."""
+"""Patterns of error messages: which text is Blender's wording, which is the caller's, and which names symbols."""
 
 from __future__ import annotations
 
 import re
 
 _EXCEPTION = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?|\b(?:Error|Warning):")
-_REPORT = re.compile(r"Error:\s*Error:|^\s*(?:Error|Warning):\s")  # what an operator or C code reports itself
+_REPORT = re.compile(r"Error:\s*Error:|^\s*(?:Error|Warning):\s")  # reported by an operator or C code
 _TRACEBACK = re.compile(r"Traceback \(most recent call last\):|File \"[^\"]*\", line \d+(?:, in \S+)?|\^{2,}")
 _QUOTED = re.compile(r"(?<!\w)(['\"])[^'\"\n]{0,60}\1")
 
@@ -28,7 +28,7 @@ POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
 NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")
 
-# What reads like code, or like the names of classes and their members, and is the message's own wording.
+# The wording of messages that looks like code, or like names of classes and members.
 _WORDING = re.compile(
     r"""bpy_struct:\ item\.attr\s*=\s*val:|bpy_\w+\[(?:key|index|slice)\](?:\ =\ value)?:|BMElemSeq\[index\]:
     |(?:object\ )?has\ no\ attribute\ '\w+'|and\ no\ __dict__\ for\ setting\ new\ attributes
@@ -49,19 +49,19 @@ def is_message(query: str) -> bool:
 
 
 def without_wording(query: str) -> str:
-    """A query without the parts of messages that only look like code or like names."""
+    """A query without the wording of messages that looks like code or names."""
     return _WORDING.sub(" ", _TRACEBACK.sub(" ", query))
 
 
 def without_callers_names(query: str) -> str:
-    """A query without what a report quotes: names of the caller's own data (``Object 'Cube' already in …``)."""
+    """A query without the quoted names of the caller's data in a report (``Object 'Cube' already in …``)."""
     return _QUOTED.sub(" ", query) if _REPORT.search(query) else query
 
 
 def prose_of(query: str) -> str:
-    """What a message says in words: without the exception's name, its wording, and the caller's names."""
+    """A message without the exception's name, the wording that looks like code, and the caller's names."""
     if not is_message(query):
         return query
     names = " ".join(match["name"] for match in HAS_NO.finditer(query))
-    said = _EXCEPTION.sub(" ", without_callers_names(without_wording(query)))
-    return f"{said} {names}".strip(" :") or query
+    words = _EXCEPTION.sub(" ", without_callers_names(without_wording(query)))
+    return f"{words} {names}".strip(" :") or query

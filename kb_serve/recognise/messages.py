@@ -1,4 +1,4 @@
-"""Blender's error messages in a query → what they are about, and what they mean there."""
+"""Recognises Blender's error messages: the symbols they are about, and what they mean."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
-_MANY = 8  # places that may hold None: of more, none is likely enough to be named
+_MANY = 8  # where more properties may be None, none is likely enough to be named
 # Pages of the API's own guides that explain a kind of message; named where the base has them.
 _ON_OPERATORS = "info_gotchas_operators"
 _ON_FREED = "info_gotchas_crashes"
@@ -38,14 +38,14 @@ class Messages:
         self._enum_values = enum_values
 
     def recognise(self, query: str, recognition: Recognition) -> None:
-        """Adds what a message names: a class without an attribute, an operator, the owner of an enumeration."""
+        """Adds what a message is about: a class without an attribute, an operator, the owner of an enum."""
         self._attributes(query, recognition)
         self._operators(query, recognition)
         self._values(query, recognition)
         self._data(query, recognition)
 
     def explain(self, query: str, recognition: Recognition) -> None:
-        """Adds what can be said only once the query's names are known: the right argument, a former socket."""
+        """Adds notes that need the query's names: the right argument, a removed socket."""
         for match in forms.BAD_KEYWORD.finditer(query):
             self._keyword(match["name"], recognition)
         for match in forms.NO_KEY.finditer(query):
@@ -60,8 +60,8 @@ class Messages:
                     self._none(match["name"], query, recognition)
                     continue
                 owner = self._class_path(match["owner"])
-                if former := self._removed_owner(match["owner"], match["name"], owner):
-                    recognition.removed.extend(former)
+                if removed := self._removed_owner(match["owner"], match["name"], owner):
+                    recognition.removed.extend(removed)
                 elif owner and not self._resolver.member(owner, match["name"]):
                     recognition.missing.append(MissingName(match["name"], owner))
                     recognition.add(owner, 0.6, "error message")
@@ -70,15 +70,15 @@ class Messages:
             entry = self._named(owner, match["context"] or match["name"])
             if entry:
                 recognition.add(entry.path, 0.98, "error message")
-                recognition.notes.append(f"`{entry.path}` can be read, not assigned.")
+                recognition.notes.append(f"`{entry.path}` is read-only: it cannot be assigned.")
         for match in forms.WRONG_TYPE.finditer(query):
             if match["path"] and (entry := self._named(*match["path"].rpartition(".")[::2])):
                 recognition.add(entry.path, 0.98, "error message")
 
     def _none(self, name: str, query: str, recognition: Recognition) -> None:
-        """What may be None where ``.name`` was asked of it: the pointers to classes that have the name."""
+        """What may have been None before ``.name``: the pointers to classes that have the name."""
         recognition.notes.append(
-            f"What stands before `.{name}` is None: it does not exist (yet), or was not found."
+            f"The object before `.{name}` is None: it does not exist (yet), or was not found."
         )
         owners = {
             entry.owner.removeprefix(TYPES)
@@ -94,19 +94,21 @@ class Messages:
             if entry.group != "ui" and not self._is_never_none(entry)
         ]
         around = set(terms(query))
-        told = [entry for entry in holders if set(terms(f"{entry.owner} {entry.name}")) <= around | {"type"}]
+        likely = [
+            entry for entry in holders if set(terms(f"{entry.owner} {entry.name}")) <= around | {"type"}
+        ]
         if len(owners) <= _FEW and len(holders) <= _MANY:
-            told = told or holders
-        for rank, entry in enumerate(told[:_FEW]):
+            likely = likely or holders
+        for rank, entry in enumerate(likely[:_FEW]):
             recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
-            recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "asked of None")
+            recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
 
     def _is_never_none(self, entry: SymbolEntry) -> bool:
         symbol = self._reader.symbol(entry.path)
         return symbol is not None and "never-none" in symbol.flags
 
     def _removed_owner(self, written: str, name: str, owner: str) -> list[RemovedSymbol]:
-        """The members, or else the classes, that other versions had under a name that is not a class here."""
+        """The members, or else the classes, that other versions had under a name that is no class in this one."""
         if self._reader.entry(TYPES + written):
             return []
         members = [*self._removed.spelled(f"{written}.{name}")]
@@ -133,8 +135,8 @@ class Messages:
             if self._reader.entry(match["path"]):
                 recognition.add(match["path"], 0.98, "error message")
                 recognition.notes.append(
-                    f"`{match['path']}.poll()` refuses: the operator wants another mode, active object, selection "
-                    f"or editor than the context has. `{OVERRIDE}` gives it one."
+                    f"`{match['path']}.poll()` failed: the operator needs another mode, active object, selection "
+                    f"or editor than the context has. `{OVERRIDE}` can provide it."
                 )
                 self._page(_ON_OPERATORS, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
@@ -155,7 +157,7 @@ class Messages:
             recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")
 
     def _keyword(self, name: str, recognition: Recognition) -> None:
-        """The arguments that a call has, in place of one that it has not."""
+        """The arguments most like an unknown one, by the surest match that has any."""
         for match in sorted(recognition.matches, key=lambda match: -match.sure):
             symbol = self._reader.symbol(match.id)
             if symbol is not None and symbol.parameters:
@@ -175,13 +177,15 @@ class Messages:
                 if removed := self._removed.of_path(f"{path}:{match['name']}"):
                     recognition.removed.append(removed)
             if similar := [f"`{name}`" for name, _ in nearest(match["name"], items)]:
-                recognition.notes.append(f"`{match['name']}` is no item here; closest: {', '.join(similar)}.")
+                recognition.notes.append(
+                    f"`{match['name']}` is not an item of this enum; closest: {', '.join(similar)}."
+                )
 
     def _key(self, collection: str, name: str, query: str, recognition: Recognition) -> None:
-        """A collection has no such element; what was a socket's name in another version is likely that."""
+        """A collection without such an element; it may be a socket's name in another version."""
         if collection == "bpy_prop_collection":
             recognition.notes.append(
-                f'The collection has no element `{name}`; `.get("{name}")` would give None.'
+                f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error.'
             )
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
@@ -196,13 +200,13 @@ class Messages:
             if removed := self._removed.of_path(path):
                 recognition.removed.append(removed)
 
-    # Data that is gone
+    # Removed data
 
     def _data(self, query: str, recognition: Recognition) -> None:
         for match in forms.FREED.finditer(query):
             recognition.notes.append(
-                "The variable outlived its data, which was removed or freed, or moved by an undo or by another "
-                "element's adding: look it up again, by name."
+                "The variable's data was removed, freed, or moved by an undo or by adding another element: "
+                "look it up again by name."
             )
             self._page(_ON_FREED, recognition)
             if match["module"]:

@@ -1,7 +1,5 @@
-"""What a caller typed → the symbols and pages that it names.
-
-Spellings, calls, expressions, error messages, enum values, addresses: everything that names something.
-What only describes something is left to the search.
+"""Recognises the symbols and pages that a query names, in any form: a spelling, call, expression, error message,
+enum value or URL. Descriptions are left to the search.
 """
 
 from __future__ import annotations
@@ -26,7 +24,7 @@ _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n]*/[^'"\n]*\1""")
 _FEW = 3
 _SURE = 0.9
 _MANY = 12
-_OWNER_ALONE = 0.81  # how sure it is that who asks for a member that nobody knows is helped by its class
+_OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
 
 
 def _name(chain: Chain) -> str:
@@ -46,7 +44,7 @@ class Recogniser:
         self._messages = Messages(reader, self._resolver, self._removed, self._enum_values)
         self._expressions = Expressions(reader, self._resolver, self._corrector, self._removed)
 
-    def identify(self, query: str) -> Recognition:
+    def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
         recognition = Recognition()
         for identifier in ids_in_urls(query, self._reader):
@@ -65,7 +63,7 @@ class Recogniser:
         return recognition
 
     def _check_calls(self, query: str, recognition: Recognition) -> None:
-        """What is wrong with the arguments of the calls that were recognised."""
+        """Adds notes on wrong arguments of the recognised calls."""
         if "(" not in query:
             return
         chains = [chain for chain in find_chains(query) if chain.steps and chain.steps[-1].kind == "call"]
@@ -76,20 +74,20 @@ class Recogniser:
                 if match.sure >= _SURE and match.id.endswith(f".{_name(chain)}")
             ]
             if paths and (symbol := self._reader.symbol(paths[0])):
-                said = list(wrong_arguments(chain, symbol))
-                recognition.notes += said
-                if NO_OVERRIDE in said and recognition.matches:
+                notes = list(wrong_arguments(chain, symbol))
+                recognition.notes += notes
+                if NO_OVERRIDE in notes and recognition.matches:
                     recognition.add(OVERRIDE, 0.85, "error message")
 
     def _removed_values(self, text: str, recognition: Recognition) -> None:
-        """Values that a property named in the query had in other versions, and has no more."""
+        """Adds enum items that a property in the query has only in other versions."""
         for value in self._enum_values.values(text):
             for match in [match for match in recognition.matches if match.sure >= _SURE]:
                 if removed := self._removed.of_path(f"{match.id}:{value}"):
                     recognition.removed.append(removed)
 
     def _explain_missing(self, recognition: Recognition) -> None:
-        """What stands in for names that do not exist: replacements of former ones, similar members."""
+        """Adds replacements for names that do not exist: of removed symbols, and similar members."""
         for missing in recognition.missing:
             if missing.owner and (removed := self._removed.of_member(missing.owner, missing.name)):
                 recognition.removed.append(removed)
@@ -100,7 +98,7 @@ class Recogniser:
         for missing in recognition.missing:
             names = self._corrector.member_names(missing.owner) if missing.owner else []
             similar = nearest(missing.name, names)
-            if missing.assigned:  # of ``select_get`` and ``select_set``, who assigns means the latter
+            if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
                 similar.sort(
                     key=lambda row: (-row[1], not row[0].startswith("set_") and not row[0].endswith("_set"))
                 )
@@ -111,10 +109,7 @@ class Recogniser:
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
 
     def _elsewhere(self, missing: MissingName, recognition: Recognition) -> bool:
-        """The same name on other classes (``CollectionObjects.link``), those called most alike first.
-
-        Returns whether there is one.
-        """
+        """Adds the name on other classes (``CollectionObjects.link``), similar ones first; whether there is any."""
         rows = [
             entry
             for entry in self._reader.by_name(missing.name)

@@ -1,4 +1,4 @@
-"""What was recognised in a query: the leaf that the recognisers fill."""
+"""What was recognised in a query; filled by the recognisers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class NameMatch:
-    """One thing that the query names. ``sure`` is 1 for an exact spelling and less for a likely reading."""
+    """A symbol or page that the query names. ``sure`` is 1 for an exact spelling and less for a likely reading."""
 
     id: str
     sure: float
@@ -22,7 +22,7 @@ class NameMatch:
 class MissingName:
     """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty.
 
-    ``assigned`` tells whether a value was to be given to it.
+    ``assigned`` tells whether the query assigns to it.
     """
 
     name: str
@@ -32,9 +32,9 @@ class MissingName:
 
 @dataclass(slots=True)
 class Recognition:
-    """What was recognised: ``matches`` best first, and what was wrong with the names that were typed.
+    """What was recognised: ``matches``, and what was wrong with the names in the query.
 
-    ``said`` is what else the caller should know.
+    ``notes`` are further sentences for the caller.
     """
 
     matches: list[NameMatch] = field(default_factory=list)
@@ -44,7 +44,7 @@ class Recognition:
     notes: list[str] = field(default_factory=list)
 
     def add(self, identifier: str, sure: float, why: str) -> None:
-        """Adds a match, or raises the certainty of the same one."""
+        """Adds a match, or raises the certainty of the one with the same id."""
         for number, match in enumerate(self.matches):
             if match.id == identifier:
                 if sure > match.sure:

@@ -1,4 +1,4 @@
-"""Follows an expression through RNA's types: which symbol each step of a chain is."""
+"""Resolves expressions through RNA's types: which symbol each step of a chain is."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _NUMBERED = re.compile(r"\.\d{3}$")
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _CUSTOMISABLE = frozenset({"ID", "Bone", "EditBone", "PoseBone", "PropertyGroup", "Strip", "ViewLayer"})
-_COLLECTION_FIT = 0.7  # a variable called like a collection property and indexed is likely that collection
+_COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
 _USUAL = 0.05
 _MAX_BRANCHES = 60
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
@@ -40,7 +40,7 @@ _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "b
 
 @dataclass(frozen=True, slots=True)
 class ChainValue:
-    """Where a walk stands: on an instance of ``cls``, on a collection of it, or on a module or function.
+    """What a chain stands for up to a step: an instance of ``cls``, a collection of it, a module or a function.
 
     ``origin`` is the class that the last attribute was read from, which may inherit it.
     """
@@ -54,11 +54,11 @@ class ChainValue:
 
 @dataclass(frozen=True, slots=True)
 class ResolvedChain:
-    """A chain as far as it could be followed.
+    """A chain as far as it could be resolved.
 
-    ``symbols`` are the ids of the steps that were found, in order; ``missing`` is the first name that the
-    class ``owner`` does not have (empty when the whole chain resolved); ``fit`` tells how well a variable's
-    name suits the class it was taken for, 0 to 1.
+    ``symbols`` are the ids of the resolved steps, in order; ``missing`` is the first name that the class ``owner``
+    does not have (empty if the whole chain resolved); ``fit`` tells how well a variable's name suits the class
+    that was assumed for it, 0 to 1.
     """
 
     symbols: tuple[str, ...]
@@ -69,7 +69,7 @@ class ResolvedChain:
 
     @property
     def complete(self) -> bool:
-        """Whether every step was found."""
+        """Whether every step was resolved."""
         return bool(self.symbols) and not self.missing
 
 
@@ -100,16 +100,15 @@ class Resolver:
     def member(self, cls: str, name: str) -> SymbolEntry | None:
         """A class's own or inherited member."""
         for ancestor in self._reader.lineage(cls):
-            found = self._reader.members(ancestor.path).get(name)
-            if found:
-                return found
+            if entry := self._reader.members(ancestor.path).get(name):
+                return entry
         return None
 
     def resolve(self, chain: Chain) -> list[ResolvedChain]:
-        """Every reading of a chain, best first: most steps found, then the likelier class for a variable."""
+        """Every reading of a chain, best first: most steps resolved, then the likelier class for a variable."""
         readings = [
-            replace(self._follow(place, chain.steps[used:]), fit=fit)
-            for place, used, fit in self._starts(chain)
+            replace(self._follow(value, chain.steps[used:]), fit=fit)
+            for value, used, fit in self._starts(chain)
         ]
         unique = {
             (resolved.symbols[-1:], resolved.missing): resolved
@@ -119,10 +118,10 @@ class Resolver:
 
     @staticmethod
     def _ranked(readings: Iterable[ResolvedChain]) -> list[ResolvedChain]:
-        return sorted(readings, key=lambda w: (w.steps_left, -w.fit, -len(w.symbols)))
+        return sorted(readings, key=lambda reading: (reading.steps_left, -reading.fit, -len(reading.symbols)))
 
     def _starts(self, chain: Chain) -> Iterator[tuple[ChainValue, int, float]]:
-        """(place, steps used, fit) for everything that the chain's root can stand for."""
+        """(value, steps used, fit) for everything that the chain's root can stand for."""
         exact = self._rooted(chain)
         if exact:
             yield exact
@@ -137,13 +136,12 @@ class Resolver:
             for entry in self._reader.by_name(chain.root)[:_MAX_BRANCHES]:
                 if (
                     entry.kind == "property"
-                    and (place := self._place(entry)).many
-                    and self._has(place, chain)
+                    and (value := self._value_of(entry)).many
+                    and self._is_used_as(value, chain)
                 ):
-                    usual = self._reader.descends(
-                        entry.owner, f"{TYPES}ID"
-                    )  # an Object's modifiers, not an FCurve's
-                    yield place, 0, _COLLECTION_FIT + (_USUAL if usual else 0.0)
+                    # An Object's modifiers are likelier than an FCurve's.
+                    is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
+                    yield value, 0, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
         if chain.steps and first:
             for entry in self._reader.by_name(first)[:_MAX_BRANCHES]:
                 owner = self._reader.entry(entry.owner)
@@ -151,15 +149,15 @@ class Resolver:
                     seen.add(entry.owner)
                     yield ChainValue(owner.path, owner.path), 0, 0.3 * variable_fit(chain.root, owner.name)
 
-    def _has(self, place: ChainValue, chain: Chain) -> bool:
-        """Whether a collection can be what a variable of its name is: indexed, or asked for what only it has."""
+    def _is_used_as(self, value: ChainValue, chain: Chain) -> bool:
+        """Whether a variable with a collection's name is used as one: indexed, or with a member of the collection."""
         step = chain.steps[0]
         return step.kind in {"key", "index"} or (
-            step.kind == "attr" and self.member(place.container, step.text) is not None
+            step.kind == "attr" and self.member(value.container, step.text) is not None
         )
 
     def _rooted(self, chain: Chain) -> tuple[ChainValue, int, float] | None:
-        """The longest leading part that is a path of its own: a module, a class, ``bpy.context``."""
+        """The longest leading part that is a path itself: a module, a class, ``bpy.context``."""
         names = chain.dotted.split(".")
         names[:1] = _ROOTS.get(names[0], names[0]).split(".")
         extra = len(names) - len(chain.dotted.split("."))
@@ -168,11 +166,11 @@ class Resolver:
             for candidate in (path, TYPES + path):
                 entry = self._reader.entry(candidate)
                 if entry and not (length == 1 and entry.kind not in {"module", "class"}):
-                    return self._place(entry), max(0, length - 1 - extra), 1.0
+                    return self._value_of(entry), max(0, length - 1 - extra), 1.0
         return None
 
     def _typed_variables(self, name: str) -> Iterator[tuple[str, float]]:
-        """Classes a bare variable may stand for: context members and properties of that name, similar classes."""
+        """The classes a bare variable may have: by context members and properties of its name, similar classes."""
         for entry in self._reader.by_name(name):
             if entry.target and entry.kind == "context":
                 yield TYPES + entry.target, 1.0
@@ -187,8 +185,8 @@ class Resolver:
             if entry and entry.kind == "class":
                 yield entry.path, 0.9
 
-    def _place(self, entry: SymbolEntry, came_from: str = "") -> ChainValue:  # noqa: PLR0911 - one return a kind
-        """Where one stands after a step to ``entry``."""
+    def _value_of(self, entry: SymbolEntry, came_from: str = "") -> ChainValue:  # noqa: PLR0911 - one return a kind
+        """What a step to ``entry`` leads to."""
         if entry.path in _INSTANCES:
             return ChainValue(entry.path, _INSTANCES[entry.path])
         if entry.kind in {"module", "class"}:
@@ -202,12 +200,12 @@ class Resolver:
             return ChainValue(entry.path, TYPES + entry.target)
         if entry.kind == "function":
             return ChainValue(entry.path, container=came_from)
-        if found := self._classes_in(entry.type, entry.path, whole=True):
-            return self._sequence(entry.path, found)
+        if classes := self._classes_in(entry.type, entry.path, whole=True):
+            return self._sequence(entry.path, classes)
         return ChainValue(entry.path, self._value_class(entry))
 
     def _socket_class(self, entry: SymbolEntry) -> str:
-        """A socket's own class: what the record calls its target may be the data-block that it takes."""
+        """A socket's own class: the target in its record may be the data-block that it takes."""
         own = f"{TYPES}NodeSocket{entry.type.title()}"
         return (
             own
@@ -223,26 +221,28 @@ class Resolver:
         return ""
 
     def _classes_in(self, text: str, path: str, *, whole: bool = False) -> list[str]:
-        """The classes that a type in words names, ``BMElemSeq[BMEdge]``; those nearest to ``path`` first.
+        """The classes in the text of a type, ``BMElemSeq[BMEdge]``; each the nearest to ``path`` of that name.
 
-        ``whole`` asks for a type that is a class itself, not Python's list or tuple of one.
+        With ``whole`` the type must be a class itself, not Python's list or tuple of one.
         """
-        found: list[str] = []
+        paths: list[str] = []
         if whole and not _CLASS_NAME.match(text):
-            return found
+            return paths
         for name in _CLASS_NAME.findall(text):
-            places = [path[:at] for at in range(len(path), 0, -1) if path[at : at + 1] == "."]
+            scopes = [path[:at] for at in range(len(path), 0, -1) if path[at : at + 1] == "."]
             last = name.rpartition(".")[2]
-            candidates = (name, *(f"{place}.{last}" for place in places), TYPES + last)
+            candidates = (name, *(f"{scope}.{last}" for scope in scopes), TYPES + last)
             classes = (
-                entry for one in candidates if (entry := self._reader.entry(one)) and entry.kind == "class"
+                entry
+                for candidate in candidates
+                if (entry := self._reader.entry(candidate)) and entry.kind == "class"
             )
             if first := next(classes, None):
-                found.append(first.path)
-        return found
+                paths.append(first.path)
+        return paths
 
     def _sequence(self, symbol: str, classes: list[str]) -> ChainValue:
-        """An instance of the first class; where that is a sequence, its elements are what it names or makes."""
+        """An instance of the first class; of a sequence, the elements are of the class that it names or creates."""
         first, *others = classes
         if first.endswith("Seq"):
             makes = self.member(first, "new")
@@ -250,82 +250,82 @@ class Resolver:
             return ChainValue(symbol, element, many=True, container=first)
         return ChainValue(symbol, first)
 
-    def _follow(self, place: ChainValue, steps: tuple[ChainStep, ...]) -> ResolvedChain:
-        """One step after the other; alternatives are tried where a base class stands for its descendants."""
-        symbols = [place.symbol]
-        places = [place]
+    def _follow(self, value: ChainValue, steps: tuple[ChainStep, ...]) -> ResolvedChain:
+        """Resolves step after step; a base class is tried as each of its descendants."""
+        symbols = [value.symbol]
+        values = [value]
         for number, step in enumerate(steps):
-            following = [after for before in places for after in self._step(before, step)]
+            following = [after for before in values for after in self._step(before, step)]
             if not following:
-                missing, owner = self._lost(places[0], step)
+                missing, owner = self._unresolved(values[0], step)
                 return ResolvedChain(tuple(symbols), missing, owner, steps_left=len(steps) - number)
-            places = following[:_MAX_BRANCHES]
-            if step.kind == "attr" or places[0].symbol != symbols[-1]:
-                symbols.append(places[0].symbol)
+            values = following[:_MAX_BRANCHES]
+            if step.kind == "attr" or values[0].symbol != symbols[-1]:
+                symbols.append(values[0].symbol)
         return ResolvedChain(tuple(symbols))
 
     @staticmethod
-    def _lost(place: ChainValue, step: ChainStep) -> tuple[str, str]:
-        """(name, owner) of a step that leads nowhere; a socket is missing on its node, not on its collection."""
-        if step.kind == "key" and place.many:
-            return f'{place.symbol.rpartition(".")[2]}["{step.text}"]', place.origin or place.cls
-        return step.text, place.cls or place.symbol
+    def _unresolved(value: ChainValue, step: ChainStep) -> tuple[str, str]:
+        """(name, owner) of an unresolved step; a socket is missing on its node, not on its collection."""
+        if step.kind == "key" and value.many:
+            return f'{value.symbol.rpartition(".")[2]}["{step.text}"]', value.origin or value.cls
+        return step.text, value.cls or value.symbol
 
-    def _step(self, place: ChainValue, step: ChainStep) -> Iterator[ChainValue]:
+    def _step(self, value: ChainValue, step: ChainStep) -> Iterator[ChainValue]:
         if step.kind == "attr":
-            yield from self._attribute(place, step.text)
+            yield from self._attribute(value, step.text)
         elif step.kind == "call":
-            yield self._call(place)
-        elif place.many:
-            yield from self._item(place, step)
+            yield self._call(value)
+        elif value.many:
+            yield from self._item(value, step)
         elif step.kind == "index":
-            yield replace(place, cls="")  # an element of a vector
-        elif not place.cls or self._takes_custom_properties(place.cls):
-            yield replace(place, cls="")
+            yield replace(value, cls="")  # an element of a vector
+        elif not value.cls or self._takes_custom_properties(value.cls):
+            yield replace(value, cls="")
 
     def _takes_custom_properties(self, cls: str) -> bool:
         return any(entry.name in _CUSTOMISABLE for entry in self._reader.lineage(cls))
 
-    def _attribute(self, place: ChainValue, name: str) -> Iterator[ChainValue]:
-        if place.many:
-            found = self.member(place.container, name) or self.member(COLLECTION, name)
-            if found:
-                yield self._place(found, place.cls)
+    def _attribute(self, value: ChainValue, name: str) -> Iterator[ChainValue]:
+        if value.many:
+            entry = self.member(value.container, name) or self.member(COLLECTION, name)
+            if entry:
+                yield self._value_of(entry, value.cls)
             return
-        if name in _OPERATOR_METHODS and place.symbol.startswith("bpy.ops."):
-            yield place
+        if name in _OPERATOR_METHODS and value.symbol.startswith("bpy.ops."):
+            yield value
             return
-        socket = place.symbol if "puts[" in place.symbol else ""
-        found = self.member(place.cls, name) if place.cls else self._reader.members(place.symbol).get(name)
-        if found:
-            yield replace(self._place(found, place.cls), symbol=socket or found.path, origin=place.cls)
+        socket = value.symbol if "puts[" in value.symbol else ""
+        own = self.member(value.cls, name) if value.cls else self._reader.members(value.symbol).get(name)
+        if own:
+            yield replace(self._value_of(own, value.cls), symbol=socket or own.path, origin=value.cls)
             return
-        if not place.cls and hasattr(list, name) and self._is_list(place.symbol):
-            yield place
-        if place.cls.startswith(TYPES):
+        if not value.cls and hasattr(list, name) and self._is_list(value.symbol):
+            yield value
+        if value.cls.startswith(TYPES):
             for entry in self._reader.by_name(name):
-                if entry.kind != "socket" and self._reader.descends(entry.owner, place.cls):
-                    yield self._place(entry, entry.owner)
+                if entry.kind != "socket" and self._reader.descends(entry.owner, value.cls):
+                    yield self._value_of(entry, entry.owner)
 
     def _is_list(self, path: str) -> bool:
         entry = self._reader.entry(path)
         return entry is not None and entry.type.startswith("list")
 
-    def _item(self, place: ChainValue, step: ChainStep) -> Iterator[ChainValue]:
-        """An element of a collection; the name in the brackets may tell its class or its socket."""
-        declared, _, side = place.symbol.rpartition(".")
-        owner = place.origin or declared
+    def _item(self, value: ChainValue, step: ChainStep) -> Iterator[ChainValue]:
+        """An element of a collection; the key may tell its class or socket."""
+        declared, _, side = value.symbol.rpartition(".")
+        owner = value.origin or declared
         if step.kind == "key" and side in {"inputs", "outputs"}:
             yield from self._socket(owner, side, step.text)
             return
-        named = set(self._named_classes(place.cls, step.text)) if step.kind == "key" else set[str]()
+        named = set(self._named_classes(value.cls, step.text)) if step.kind == "key" else set[str]()
         for path in self._in_tree(sorted(named, key=lambda path: (len(path), path)), owner):
             yield ChainValue(path, path)
         if not named:
-            yield ChainValue(place.symbol, place.cls)
+            yield ChainValue(value.symbol, value.cls)
 
     def _in_tree(self, nodes: list[str], tree: str) -> list[str]:
-        """Of nodes that share a name, those that the tree takes; all where that does not tell them apart."""
+        """Of nodes with one name, those that the tree can hold; all if that does not tell them apart."""
         if len(nodes) < 2:
             return nodes
         name = tree.removeprefix(TYPES)
@@ -347,25 +347,25 @@ class Resolver:
         for entry in self._reader.by_name(name):
             on_side = entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
             if on_side and self._reader.descends(entry.owner, owner):
-                yield self._place(entry)
+                yield self._value_of(entry)
 
-    def _call(self, place: ChainValue) -> ChainValue:
-        """What a call returns; a function that promises some ID returns what it was called on."""
-        entry = self._reader.entry(place.symbol)
+    def _call(self, value: ChainValue) -> ChainValue:
+        """What a call returns; a function that returns a base class of its owner returns the owner's class."""
+        entry = self._reader.entry(value.symbol)
         if entry is None or entry.kind != "function":
-            return replace(place)
-        returned = self._returned(place.symbol)
+            return replace(value)
+        returned = self._returned(value.symbol)
         if (
-            place.container
+            value.container
             and returned
-            and any(base.path == returned for base in self._reader.lineage(place.container))
+            and any(base.path == returned for base in self._reader.lineage(value.container))
         ):
-            returned = place.container
-        return ChainValue(place.symbol, returned)
+            returned = value.container
+        return ChainValue(value.symbol, returned)
 
     def _returned_class(self, path: str) -> str:
         symbol = self._reader.symbol(path)
         for result in symbol.returns if symbol else ():
-            if found := self._classes_in(result.type, path):
-                return found[0]
+            if classes := self._classes_in(result.type, path):
+                return classes[0]
         return ""

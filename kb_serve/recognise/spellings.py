@@ -1,4 +1,4 @@
-"""The whole query as one spelling of one thing: a path, a label, a slug, a title, in any case and punctuation."""
+"""Recognises a query that is one name as a whole: a path, label, slug or title, in any case and punctuation."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
-_OTHERWISE = 0.85  # how sure a name is that shares only its key with what was typed
+_OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
 
 
 def _strangeness(text: str, identifier: str) -> int:
-    """How far an identifier is from what was typed, of those that share its key (see analysis.key)."""
-    if "_OT_" in text.upper():  # its class says nothing that the operator does not
+    """How unlike the query an identifier with the same key (see analysis.key) is, from 0."""
+    if "_OT_" in text.upper():  # the operator says all that its class does
         return 0 if identifier.startswith("bpy.ops.") else 1
     if identifier == f"bpy.ops.{text}":  # a module of operators is rarely what a bare word means
         return 2
@@ -34,7 +34,7 @@ def _strangeness(text: str, identifier: str) -> int:
 
 
 def _called(text: str) -> str:
-    """``f`` of ``f(a, b)``; the text itself where it is no call, or more follows upon it."""
+    """``f`` of ``f(a, b)``; the text itself if it is not a call, or continues after it."""
     start, depth = text.find("("), 0
     if start < 0 or not text.endswith(")"):
         return text
@@ -53,7 +53,7 @@ class Spellings:
         self._removed = removed
 
     def recognise(self, query: str, recognition: Recognition) -> None:
-        """Adds what the query as a whole is a spelling of."""
+        """Adds the symbols and pages that the whole query names."""
         text = query.strip().strip("`'\"").rstrip(".:;,?!")
         for path in (text, f"bpy.{text}"):
             if self._reader.entry(path):
@@ -72,14 +72,14 @@ class Spellings:
             recognition.removed.extend(self._removed.spelled(called))
 
     def _spelled(self, text: str, rows: list[tuple[int, str]], recognition: Recognition) -> None:
-        """Symbols and pages that share the key of what was typed; the fuller the spelling, the surer."""
+        """Adds the symbols and pages with the query's key; the fuller the spelling, the surer."""
         dotted = "." in text
         plain = " " not in text.strip()
         strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
         typed = 0 in strange.values() or self._is_enum_item(text) or self._is_removed(text)
         for form, identifier in sorted(rows, key=lambda row: strange[row[1]]):
             if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
-                # ``view_layers`` and ``ViewLayers`` share a key: what is written otherwise was hardly meant.
+                # ``view_layers`` and ``ViewLayers`` share a key: the one in another spelling is hardly meant.
                 recognition.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")
             elif form in {FORM_NAME, FORM_LABEL} and not dotted:
                 same = self._last_part(identifier) == text
@@ -88,7 +88,7 @@ class Spellings:
                 recognition.add(identifier, 0.75, "title")
 
     def _labelled(self, text: str, recognition: Recognition) -> None:
-        """The classes and operators that the interface calls just so; of modifiers, what Blender names new ones."""
+        """Adds classes and operators with exactly this label; for modifiers, Blender's default name will do."""
         entries = [
             entry
             for label in (f"{text} Modifier", f"{text} Constraint", text)

@@ -1,1 +1,1 @@
-"""The language model behind the roles: asked for a turn, live or from a record, counted and kept within limits."""
+"""Language models: live or played back from a record, metered, and within limits of cost and context."""

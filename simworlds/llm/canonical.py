@@ -52,7 +52,7 @@ _RULES = (
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class FormPart:
     """The system prompt, the tools or a message, as text."""
 
     name: str
@@ -69,7 +69,7 @@ class Form:
     """A whole request: the system prompt, the tools, then the messages."""
 
     role: str
-    parts: tuple[Part, ...]
+    parts: tuple[FormPart, ...]
 
     @property
     def digest(self) -> str:
@@ -90,7 +90,7 @@ def form_of(ask: Ask, folders: Mapping[str, str] | None = None) -> Form:
             for number, message in enumerate(ask.messages, 1)
         ),
     ]
-    return Form(ask.role, tuple(Part(name, normal(text, folders)) for name, text in written))
+    return Form(ask.role, tuple(FormPart(name, normal(text, folders)) for name, text in written))
 
 
 def normal(text: str, folders: Mapping[str, str] | None = None) -> str:

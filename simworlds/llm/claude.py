@@ -1,7 +1,7 @@
-"""Claude, or whatever speaks Anthropic's Messages API at another address.
+"""Claude, or any server that speaks Anthropic's Messages API.
 
-Answers are streamed. What passes (no connection, an overloaded server, a stream that breaks anywhere) is waited out
-and asked again; what does not is a ModelError at once. Ctrl-C leaves at once, whatever is being waited for.
+Answers are streamed. After a passing fault (no connection, an overloaded server, a stream that breaks anywhere) the
+request is retried; any other is a ModelError at once. Ctrl-C ends the call at once.
 """
 
 from __future__ import annotations
@@ -21,7 +21,15 @@ from simworlds.llm.errors import ModelError, Rejected, TooLong, Unreachable, rai
 from simworlds.llm.messages import Usage
 from simworlds.llm.prices import Prices
 from simworlds.llm.request import params_of
-from simworlds.llm.retries import FAULTS, Patience, Retry, asked_pause, in_words, is_midstream, lasting
+from simworlds.llm.retries import (
+    FAULTS,
+    Retry,
+    RetryPolicy,
+    describe_fault,
+    is_lasting,
+    is_midstream,
+    requested_pause,
+)
 from simworlds.llm.stream import LimitedBytes, StreamedAnswer
 
 if TYPE_CHECKING:
@@ -41,28 +49,28 @@ _TOO_LONG = ("prompt is too long", "exceed context limit", "too many tokens")
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How Claude is reached.
+    """How to reach Claude.
 
     ``api_key`` and ``base_url`` default to the environment's ANTHROPIC_API_KEY (or ANTHROPIC_AUTH_TOKEN) and
-    ANTHROPIC_BASE_URL. An answer may pause for ``silence`` seconds and take ``longest`` in all.
+    ANTHROPIC_BASE_URL. An answer may pause for ``silence`` seconds, and take ``longest`` seconds in all.
     """
 
     api_key: str | None = None
     base_url: str | None = None
     silence: float = 180.0
     longest: float = 1800.0
-    patience: Patience = field(default_factory=Patience)
+    patience: RetryPolicy = field(default_factory=RetryPolicy)
     prices: Prices = field(default_factory=Prices)
 
 
-class _Fault(Exception):  # noqa: N818 - carries what a server did past what a caller's own code may raise
+class _Fault(Exception):  # noqa: N818 - sets faults of the server apart from errors of the caller's own code
     def __init__(self, error: Exception) -> None:
         self.error = error
         super().__init__(str(error))
 
 
 class Claude:
-    """A Model. May be asked from several threads at once."""
+    """A Model. Safe to call from several threads at once."""
 
     def __init__(
         self,
@@ -73,7 +81,7 @@ class Claude:
         clock: Callable[[], float] = time.monotonic,
         chance: random.Random | None = None,
     ) -> None:
-        """``tell`` hears of every Retry before it; what it raises ends the call. Raises Rejected without a key."""
+        """``tell`` is called before every Retry; what it raises ends the call. Raises Rejected without a key."""
         self._settings = settings or Settings()
         self._tell = tell
         self._pause = pause
@@ -122,34 +130,32 @@ class Claude:
             raise _Fault(error) from error
 
     def _wait(self, ask: Ask, failed: int, error: Exception, lost: list[Usage]) -> None:
-        """Returns when the request may be sent again. Raises Rejected, TooLong, Unreachable."""
+        """Waits until the request may be sent again. Raises Rejected, TooLong, Unreachable."""
         used = sum(lost, Usage())
-        if lasting(error):
+        if is_lasting(error):
             raise _with(used, self._rejected(error)) from error
         patience = self._settings.patience
         self._heard = self._heard or isinstance(error, APIStatusError)
         tries = patience.tries if self._heard else min(patience.unheard, patience.tries)
-        asked = asked_pause(error)
-        if failed >= tries or asked > patience.most_asked:
-            why = (
-                f"{failed} times in a row"
-                if failed >= tries
-                else f"it wants to be left alone for {asked:.0f} s"
-            )
-            message = f"No answer from {self.address}: {in_words(error)} ({why})."
+        requested = requested_pause(error)
+        if failed >= tries or requested > patience.most_asked:
+            why = f"{failed} times in a row" if failed >= tries else f"it asks to wait {requested:.0f} s"
+            message = f"No answer from {self.address}: {describe_fault(error)} ({why})."
             raise _with(used, Unreachable(message)) from error
-        retry = Retry(ask, failed, in_words(error), patience.pause(failed, asked, self._chance), used)
+        retry = Retry(
+            ask, failed, describe_fault(error), patience.pause(failed, requested, self._chance), used
+        )
         if self._tell:
             self._tell(retry)
         self._pause(retry.pause)
 
     def _rejected(self, error: Exception) -> Rejected:
         status = error.status_code if isinstance(error, APIStatusError) and not is_midstream(error) else 0
-        words = in_words(error)
+        words = describe_fault(error)
         if status == 413 or any(sign in words for sign in _TOO_LONG):
             return TooLong(f"The conversation is too long for the model: {words}.", status)
         advice = _ADVICE.get(status, "")
-        return Rejected(f"{self.address} does not take the request: {words}.{advice}", status)
+        return Rejected(f"{self.address} rejects the request: {words}.{advice}", status)
 
     def _priced(self, turn: Turn, ask: Ask, lost: list[Usage]) -> Turn:
         costs = [self._settings.prices.cost(ask.model, usage) for usage in (turn.usage, *lost)]
@@ -167,7 +173,7 @@ def _with(lost: Usage, error: _E) -> _E:
 
 
 def _client(settings: Settings) -> Anthropic:
-    """The package's client, without its own retries: they could not be told, nor mend a stream."""
+    """The package's client, without its own retries: it does not report them, nor retry broken streams."""
     key = (settings.api_key or os.environ.get("ANTHROPIC_API_KEY") or "").strip()
     token = "" if key else os.environ.get("ANTHROPIC_AUTH_TOKEN", "").strip()
     if not key and not token:
@@ -175,7 +181,9 @@ def _client(settings: Settings) -> Anthropic:
             "There is no key for the model: set ANTHROPIC_API_KEY (to any word for a server that needs none)."
         )
     if not (key + token).isascii() or not (key + token).isprintable():
-        raise Rejected("ANTHROPIC_API_KEY holds characters that no key has. Copy the key again.")
+        raise Rejected(
+            "ANTHROPIC_API_KEY contains characters that are not allowed in keys. Copy the key again."
+        )
     timeout = httpx2.Timeout(settings.silence, connect=min(settings.silence, _CONNECT_SECONDS))
     try:
         client = Anthropic(
@@ -186,7 +194,11 @@ def _client(settings: Settings) -> Anthropic:
             max_retries=0,
         )
     except (httpx2.InvalidURL, ValueError) as error:
-        raise Rejected(f"The model's address (ANTHROPIC_BASE_URL) or a proxy's is none: {error}.") from error
+        raise Rejected(
+            f"The address of the model (ANTHROPIC_BASE_URL) or of a proxy is invalid: {error}."
+        ) from error
     if client.base_url.scheme not in ("http", "https") or not client.base_url.host:
-        raise Rejected(f"The model's address (ANTHROPIC_BASE_URL), {client.base_url}, is no web address.")
+        raise Rejected(
+            f"The address of the model (ANTHROPIC_BASE_URL) is not an HTTP URL: {client.base_url}."
+        )
     return client

@@ -1,4 +1,4 @@
-"""Keeps a conversation within a budget of tokens.
+"""Keeps a conversation within a token budget.
 
 ``fit`` takes the conversation as it was last sent, with what is new at its end, and gives the one to send now and to go
 on with. Within the budget nothing changes, so that the prompt cache holds. Beyond it, enough goes at once to have room
@@ -34,7 +34,7 @@ GONE = "[Earlier exchanges are left out to save space. The scene is as they left
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class ContextLimits:
     """How much of a conversation is kept.
 
     Beyond ``budget`` tokens (by estimate) or ``pictures`` (of more than 20, the API takes only small ones) it shrinks
@@ -50,14 +50,18 @@ class Limits:
 
 
 def fit(
-    messages: Sequence[Message], limits: Limits | None = None, *, pinned: Sequence[str] = (), frame: int = 0
+    messages: Sequence[Message],
+    limits: ContextLimits | None = None,
+    *,
+    pinned: Sequence[str] = (),
+    frame: int = 0,
 ) -> tuple[Message, ...]:
     """The conversation within ``limits``. The last message is the user's, and was not sent yet.
 
-    ``frame`` is the size of the system prompt and the tools (``tokens.of_frame``). Raises TooLong for what cannot be
-    made to fit.
+    ``frame`` is the size of the system prompt and the tools (``tokens.of_frame``). Raises TooLong if it cannot
+    be made to fit.
     """
-    limits = limits or Limits()
+    limits = limits or ContextLimits()
     fitting = _with_pinned(messages, pinned)
     if not _is_over(fitting, limits, 1.0, frame):
         return fitting
@@ -68,12 +72,14 @@ def fit(
     if _is_over(fitting, limits, 1.0, frame):
         size = frame + sum(map(tokens.of_message, fitting))
         raise TooLong(
-            f"The conversation does not fit into {limits.budget} tokens: what has to stay is about {size}."
+            f"The conversation does not fit into {limits.budget} tokens: what must stay has about {size}."
         )
     return _without_stale_thinking(messages, fitting)
 
 
-def _smaller(messages: Sequence[Message], limits: Limits) -> Iterator[tuple[tuple[Message, ...], float]]:
+def _smaller(
+    messages: Sequence[Message], limits: ContextLimits
+) -> Iterator[tuple[tuple[Message, ...], float]]:
     """The conversation ever smaller, a step at a time, each with the share of the limits that is small enough."""
     calls = {
         block.id: block for message in messages for block in message.content if isinstance(block, ToolUse)
@@ -117,7 +123,7 @@ def _with_pinned(messages: Sequence[Message], pinned: Sequence[str]) -> tuple[Me
     return (*before, replace(last, content=(*last.content, *missing)))
 
 
-def _is_over(messages: Sequence[Message], limits: Limits, share: float, frame: int) -> bool:
+def _is_over(messages: Sequence[Message], limits: ContextLimits, share: float, frame: int) -> bool:
     pictures = sum(_pictures(message.content) for message in messages)
     size = frame + sum(map(tokens.of_message, messages))
     return size > limits.budget * share or pictures > limits.pictures * share
@@ -135,13 +141,13 @@ def _without_stale_thinking(before: Sequence[Message], after: tuple[Message, ...
     return (*after[:same], *fresh)
 
 
-def _shorter_message(message: Message, calls: dict[str, ToolUse], limits: Limits) -> Message:
+def _shorter_message(message: Message, calls: dict[str, ToolUse], limits: ContextLimits) -> Message:
     if message.role == "assistant":
         return message
     return replace(message, content=tuple(_shorter(block, calls, limits) for block in message.content))
 
 
-def _shorter(block: Block, calls: dict[str, ToolUse], limits: Limits) -> Block:
+def _shorter(block: Block, calls: dict[str, ToolUse], limits: ContextLimits) -> Block:
     if not isinstance(block, ToolResult):
         return _reference(block, "", limits) if isinstance(block, (Text, Picture)) else block
     call = calls.get(block.id)
@@ -149,7 +155,7 @@ def _shorter(block: Block, calls: dict[str, ToolUse], limits: Limits) -> Block:
     return replace(block, content=tuple(_reference(one, again, limits) for one in block.content))
 
 
-def _reference(block: Text | Picture, again: str, limits: Limits) -> Text:
+def _reference(block: Text | Picture, again: str, limits: ContextLimits) -> Text:
     if isinstance(block, Picture):
         return Text(f"[A picture is left out to save space{again}.]")
     more = len(block.text) - _HEAD

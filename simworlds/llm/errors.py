@@ -1,16 +1,16 @@
-"""What can go wrong between a role and its model.
+"""Errors of language models.
 
 ModelError
-├── Rejected           the server does not take the request: a wrong key, no credit, a request that is none
-│   └── TooLong        the conversation is more than the model takes
-├── Unreachable        no whole answer is to be had, however often it is asked for
-├── Stopped            the model answered, but not with a turn to go on from
+├── Rejected           the server rejects the request: a wrong key, no credit, an invalid request
+│   └── TooLong        the conversation is too long for the model
+├── Unreachable        no attempt gave a whole answer
+├── Stopped            the model answered, but not with a turn that the conversation can go on from
 │   ├── Refused        it declined
 │   └── CutShort       it ran into its limit
-├── Misfit             it does not give the JSON that is asked for, however often it is told
-├── OverBudget         the call might cost more than may still be spent
+├── Misfit             no answer was the JSON that was requested
+├── OverBudget         the call could cost more than the limit leaves
 ├── Drifted            the conversation is not the recorded one
-└── BadRecord          what should be a record is none
+└── UnreadableRecord   a record cannot be read
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
 
 class ModelError(Exception):
-    """Anything below. ``lost`` is what was used up without a turn to show for it, as far as that is known."""
+    """Base of the errors here. ``lost`` is the usage of attempts without a turn, as far as it is known."""
 
     lost: Usage | None = None
 
 
 class Rejected(ModelError):  # noqa: N818 - these read as the states they name
-    """The server does not take the request; asking again would not help. ``status`` is HTTP's, 0 without one."""
+    """The server rejects the request; retrying would not help. ``status`` is HTTP's, 0 without one."""
 
     def __init__(self, message: str, status: int = 0) -> None:
         self.status = status
@@ -38,15 +38,15 @@ class Rejected(ModelError):  # noqa: N818 - these read as the states they name
 
 
 class TooLong(Rejected):
-    """The conversation is more than the model, or the budget for it, takes."""
+    """The conversation is longer than the model or its budget allows."""
 
 
 class Unreachable(ModelError):  # noqa: N818
-    """No whole answer: no connection, an overloaded server, streams that break."""
+    """No attempt gave a whole answer: no connection, an overloaded server, broken streams."""
 
 
 class Stopped(ModelError):  # noqa: N818
-    """The model answered, and is paid for it, but ``turn`` is nothing to go on from."""
+    """The model answered, and that was paid for, but the conversation cannot go on from ``turn``."""
 
     def __init__(self, message: str, turn: Turn) -> None:
         self.turn = turn
@@ -62,7 +62,7 @@ class CutShort(Stopped):
 
 
 class Misfit(ModelError):  # noqa: N818
-    """The text is not the JSON that is asked for. ``problems`` are sentences; ``text`` is what the model wrote."""
+    """The text is not the requested JSON. ``problems`` are sentences; ``text`` is what the model wrote."""
 
     def __init__(self, problems: Sequence[str], text: str) -> None:
         self.problems = tuple(problems)
@@ -71,13 +71,13 @@ class Misfit(ModelError):  # noqa: N818
 
 
 class OverBudget(ModelError):  # noqa: N818
-    """The call is not made: at worst it would cost more than the limit leaves."""
+    """The call was not made: at worst it would cost more than the limit leaves."""
 
 
 class Drifted(ModelError):  # noqa: N818
     """The conversation is not the recorded one, from ``message`` on (counted from 1; 0: the system prompt or tools).
 
-    ``expected`` and ``found`` are the two texts, ``diff`` where they part.
+    ``expected`` and ``found`` are the two texts, ``diff`` their difference.
     """
 
     def __init__(  # noqa: PLR0913
@@ -88,7 +88,7 @@ class Drifted(ModelError):  # noqa: N818
         super().__init__(f"{where}\n{diff}" if diff else where)
 
 
-class BadRecord(ModelError):  # noqa: N818
+class UnreadableRecord(ModelError):  # noqa: N818
     """A record that cannot be read; the message says where and why."""
 
 

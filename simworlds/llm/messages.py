@@ -1,4 +1,4 @@
-"""What a model is asked and what it answers, whoever answers: plain records that never change."""
+"""Requests to models and their answers, as immutable records, for every provider."""
 
 from __future__ import annotations
 

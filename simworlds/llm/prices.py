@@ -66,7 +66,7 @@ PRICES: dict[str, Price] = {
 
 
 class Prices:
-    """The prices to reckon with: those of a caller (by the model's exact name) before the list's."""
+    """The prices in use: the caller's (by the model's exact name) before the list's."""
 
     def __init__(self, own: Mapping[str, Price] | None = None) -> None:
         self._own = dict(own or {})
@@ -88,5 +88,5 @@ def read_price(text: str) -> Price:
     except ValueError:
         dollars_in = dollars_out = -1.0
     if not (0 <= dollars_in < float("inf") and 0 <= dollars_out < float("inf")):
-        raise ValueError(f"{text!r} is no price: give dollars per million tokens in and out, as 4/20.")
+        raise ValueError(f"{text!r} is not a price. Give dollars per million tokens in and out, as 4/20.")
     return Price(dollars_in, dollars_out)

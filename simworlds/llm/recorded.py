@@ -1,4 +1,4 @@
-"""Records what a model is asked and answers, and plays it back without a key or a network.
+"""Records requests to a model and its answers, and plays them back without a key or a network.
 
 A record is made of rows (JSON objects, one a line in a file). Before a call::
 
@@ -7,8 +7,8 @@ A record is made of rows (JSON objects, one a line in a file). Before a call::
 
 and after it ``{"type": "model.answered", "n": 7, "turn": {…}}``. ``parts`` are digests of the system prompt, the tools
 and each message in the form that ``canonical`` describes; ``texts`` are those that no earlier row has. Rows of other
-types and further fields are passed over; a question without an answer was not answered. A record that a person writes
-is a folder, see ``handwritten``.
+types and further fields are ignored; a request without an answer was not answered. A record that a person writes is a
+folder, see ``transcript``.
 
 Playing back, a request gets the turn that was recorded for the same role and stage and the same request: by content, in
 the order of the record. When nothing fits, the conversation has drifted; that ends it. A turn of a record is never
@@ -28,9 +28,9 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import BaseModel, ValidationError
 
 from simworlds.llm.canonical import Form, alike, form_of
-from simworlds.llm.errors import BadRecord, Drifted, Stopped, raise_for_stop
+from simworlds.llm.errors import Drifted, Stopped, UnreadableRecord, raise_for_stop
 from simworlds.llm.messages import Text, ToolResult, Turn
-from simworlds.llm.transcript import Written, read_folder
+from simworlds.llm.transcript import WrittenTurn, read_folder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -43,7 +43,7 @@ _UNKNOWN = "(not in the record)"
 
 
 class Recording:
-    """A Model that answers as another does, and writes it down."""
+    """A Model that passes requests to another one, and records them with its answers."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class Recording:
         folders: Mapping[str, str] | None = None,
         first: int = 1,
     ) -> None:
-        """``write`` gets each row before anything comes of it. ``first`` is the number of the next call."""
+        """``write`` gets each row before it has any effect. ``first`` is the number of the next call."""
         self._model = model
         self._write = write
         self._folders = dict(folders or {})
@@ -95,8 +95,8 @@ class Recording:
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
-    """A turn of a journal, and the request that it answered."""
+class RecordedTurn:
+    """A turn in a journal, and the request that it answers."""
 
     name: str
     role: str
@@ -121,13 +121,13 @@ class Recorded:
         """``record``: a hand-written folder, a file of rows, or rows.
 
         ``then`` is asked when the record has no turn left for the role and stage. ``skip``: so many turns of a role
-        and stage were played before. Raises BadRecord.
+        and stage were played before. Raises UnreadableRecord.
         """
         self._folders = dict(folders or {})
         self._then = then
-        self._lanes: defaultdict[tuple[str, str], list[Heard | Written]] = defaultdict(list)
+        self._lanes: defaultdict[tuple[str, str], list[RecordedTurn | WrittenTurn]] = defaultdict(list)
         self._lock = threading.Lock()
-        turns = read_folder(record) if isinstance(record, Path) and record.is_dir() else heard(record)
+        turns = read_folder(record) if isinstance(record, Path) and record.is_dir() else read_turns(record)
         for turn in turns:
             self._lanes[turn.role, turn.stage].append(turn)
         for lane, count in (skip or {}).items():
@@ -153,7 +153,7 @@ class Recorded:
             on_text(turn.text)
         return raise_for_stop(turn)
 
-    def _find(self, ask: Ask, lane: list[Heard | Written]) -> Heard | Written | None:
+    def _find(self, ask: Ask, lane: list[RecordedTurn | WrittenTurn]) -> RecordedTurn | WrittenTurn | None:
         """The turn for ``ask``; None: it is for ``then``. Raises Drifted."""
         form = form_of(ask, self._folders)
         if not lane and self._then:
@@ -162,20 +162,20 @@ class Recorded:
             where = f"The record has no further turn for the {_whose(ask)}."
             raise _drifted(where, ask, len(ask.messages), "", _said(ask))
         for turn in lane:
-            if isinstance(turn, Heard) and turn.digest == form.digest:
+            if isinstance(turn, RecordedTurn) and turn.digest == form.digest:
                 return turn
         first = lane[0]
-        if isinstance(first, Written):
+        if isinstance(first, WrittenTurn):
             misfit = first.misfit(_said(ask))
             if misfit:
-                where = f"The {_whose(ask)} asks something else than {first.name} answers: {misfit}"
+                where = f"The request of the {_whose(ask)} is not the one that {first.name} answers: {misfit}"
                 raise _drifted(where, ask, len(ask.messages), misfit, _said(ask))
             return first
         _compare(first, form, ask)
         return first
 
 
-def _compare(heard: Heard, form: Form, ask: Ask) -> None:
+def _compare(heard: RecordedTurn, form: Form, ask: Ask) -> None:
     """Raises Drifted where ``form`` is not, nearly enough, what was asked."""
     for place in range(max(len(heard.parts), len(form.parts))):
         part = form.parts[place] if place < len(form.parts) else None
@@ -195,9 +195,9 @@ def _drifted(where: str, ask: Ask, message: int, expected: str, found: str) -> D
     lines = difflib.unified_diff(
         expected.splitlines(), found.splitlines(), "recorded", "now", lineterm="", n=1
     )
-    shown = [line if len(line) <= _DIFF_WIDTH else f"{line[:_DIFF_WIDTH]}…" for line in lines]
-    if len(shown) > _DIFF_LINES:
-        shown = [*shown[:_DIFF_LINES], f"… and {len(shown) - _DIFF_LINES} lines more"]
+    rows = [line if len(line) <= _DIFF_WIDTH else f"{line[:_DIFF_WIDTH]}…" for line in lines]
+    if len(rows) > _DIFF_LINES:
+        rows = [*rows[:_DIFF_LINES], f"… and {len(rows) - _DIFF_LINES} more lines"]
     return Drifted(
         where,
         role=ask.role,
@@ -205,7 +205,7 @@ def _drifted(where: str, ask: Ask, message: int, expected: str, found: str) -> D
         message=message,
         expected=expected,
         found=found,
-        diff="\n".join(shown),
+        diff="\n".join(rows),
     )
 
 
@@ -239,12 +239,12 @@ class _Answered(BaseModel):
     turn: Turn
 
 
-def heard(record: Path | Iterable[Mapping[str, Any]]) -> list[Heard]:
-    """The turns of a journal, in the order in which they were answered. Raises BadRecord."""
+def read_turns(record: Path | Iterable[Mapping[str, Any]]) -> list[RecordedTurn]:
+    """The turns of a journal, in the order in which they were answered. Raises UnreadableRecord."""
     name = str(record) if isinstance(record, Path) else "the record"
     texts: dict[str, str] = {}
     asked: dict[int, _Asked] = {}
-    turns: list[Heard] = []
+    turns: list[RecordedTurn] = []
     for number, row in enumerate(_rows(record) if isinstance(record, Path) else record, 1):
         try:
             if row.get("type") == "model.asked":
@@ -255,7 +255,7 @@ def heard(record: Path | Iterable[Mapping[str, Any]]) -> list[Heard]:
                 answered = _Answered.model_validate(row)
                 ask = asked.pop(answered.n)
                 turns.append(
-                    Heard(
+                    RecordedTurn(
                         f"call {ask.n}",
                         ask.role,
                         ask.stage,
@@ -267,16 +267,16 @@ def heard(record: Path | Iterable[Mapping[str, Any]]) -> list[Heard]:
                 )
         except (ValidationError, KeyError) as error:
             why = "an answer to no question" if isinstance(error, KeyError) else str(error)
-            raise BadRecord(f"{name}, row {number}, is no part of a record: {why}") from error
+            raise UnreadableRecord(f"{name}, row {number}, is no part of a record: {why}") from error
     return turns
 
 
 def _rows(path: Path) -> list[Mapping[str, Any]]:
-    """The rows in a file. The last may be torn, where its writer was killed. Raises BadRecord."""
+    """The rows in a file. The last may be torn, where its writer was killed. Raises UnreadableRecord."""
     try:
         lines = path.read_bytes().rstrip().split(b"\n")
     except OSError as error:
-        raise BadRecord(f"{path} cannot be read: {error}") from error
+        raise UnreadableRecord(f"{path} cannot be read: {error}") from error
     rows: list[Mapping[str, Any]] = []
     for number, line in enumerate(lines, 1):
         try:
@@ -286,5 +286,5 @@ def _rows(path: Path) -> list[Mapping[str, Any]]:
         if isinstance(row, dict):
             rows.append(row)
         elif number < len(lines):
-            raise BadRecord(f"{path}, line {number}, is no row of a record: {line[:80]!r}")
+            raise UnreadableRecord(f"{path}, line {number}, is not a journal record: {line[:80]!r}")
     return rows

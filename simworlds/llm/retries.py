@@ -1,4 +1,4 @@
-"""Which faults pass, and how long to wait for them."""
+"""Which faults are worth a retry, and how long to wait before it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FAULTS = (
     UnicodeDecodeError,
     BrokenStream,
 )
-"""What asking can raise through a server's fault; of these, ``lasting`` tells those that do not pass."""
+"""What a request can raise through a fault of the server; ``is_lasting`` tells those not worth a retry."""
 
 _LASTING = (
     "invalid_request_error",
@@ -42,11 +42,11 @@ _LONGEST_WORDS = 300
 
 
 @dataclass(frozen=True, slots=True)
-class Patience:
+class RetryPolicy:
     """How often in a row the server may fail, and how long to wait for it (seconds).
 
-    ``unheard`` failures end it where no server has ever answered: then the address is wrong rather than busy. A server
-    that wants more than ``most_asked`` seconds is not waited for.
+    If no server has ever answered, ``unheard`` failures are enough: then the address is wrong rather than busy. A
+    server that asks for more than ``most_asked`` seconds is given up.
     """
 
     tries: int = 8
@@ -64,9 +64,9 @@ class Patience:
 
 @dataclass(frozen=True, slots=True)
 class Retry:
-    """Told before a request is sent again: the ``failed``-th failure, why, and the seconds until then.
+    """A retry to come: after the ``failed``-th failure, for the reason ``why``, in ``pause`` seconds.
 
-    ``lost`` is what all failed attempts at ``ask`` have used up so far, as far as it is known.
+    ``lost`` is what all failed attempts at ``ask`` have used so far, as far as it is known.
     """
 
     ask: Ask
@@ -79,25 +79,25 @@ class Retry:
         return f"{self.why}; asking again in {self.pause:.0f} s"
 
 
-def lasting(error: Exception) -> bool:
-    """Whether a fault of ``FAULTS`` would be the same another time."""
+def is_lasting(error: Exception) -> bool:
+    """Whether a fault of ``FAULTS`` would occur again."""
     if not isinstance(error, APIStatusError):
         return False
     if is_midstream(error):
         return error.type in _LASTING
-    told = error.response.headers.get("x-should-retry")
-    if told in ("true", "false"):
-        return told == "false"
+    should_retry = error.response.headers.get("x-should-retry")
+    if should_retry in ("true", "false"):
+        return should_retry == "false"
     return not (error.status_code in (408, 409, 429) or error.status_code >= 500)
 
 
 def is_midstream(error: APIStatusError) -> bool:
     """Whether the server failed after it had begun to answer; ``error.type`` says how, the status does not."""
-    return error.status_code < 400
+    return error.response.is_success
 
 
-def asked_pause(error: Exception) -> float:
-    """The seconds that the server asks to be left alone; 0 where it does not."""
+def requested_pause(error: Exception) -> float:
+    """The seconds that the server asks to wait; 0 if it does not."""
     if not isinstance(error, APIStatusError):
         return 0.0
     headers = error.response.headers
@@ -114,16 +114,16 @@ def asked_pause(error: Exception) -> float:
     return max(0.0, until.timestamp() - time.time())
 
 
-def in_words(error: Exception) -> str:
-    """A fault for people, in a line."""
+def describe_fault(error: Exception) -> str:
+    """Describes a fault in one line."""
     if isinstance(error, APIStatusError):
         words = error.api_message or error.message
         status = f"the server broke off with {error.type}:" if is_midstream(error) else error.status_code
-        said = f"{status} {words}"
+        text = f"{status} {words}"
     elif isinstance(error, BrokenStream):
-        said = f"the answer is not whole: {error}"
+        text = f"the answer is incomplete: {error}"
     else:
-        # The package wraps what the network raised in words of its own.
+        # The package hides what the network raised behind its own words.
         cause = (isinstance(error, AnthropicError) and error.__cause__) or error
-        said = f"{type(cause).__name__}: {cause}" if str(cause) else type(cause).__name__
-    return " ".join(said.split())[:_LONGEST_WORDS]
+        text = f"{type(cause).__name__}: {cause}" if str(cause) else type(cause).__name__
+    return " ".join(text.split())[:_LONGEST_WORDS]

@@ -1,4 +1,4 @@
-"""Counts tokens and cost by role and stage, and keeps a limit.
+"""Counts tokens and cost by role and stage, and enforces a limit.
 
 The limit is a promise: a call is made only if its worst case (nothing of it read from the prompt cache, an answer of
 the greatest length) still fits beside the worst case of every call under way. Recorded turns cost nothing.
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Ask, Model, Turn
     from simworlds.llm.retries import Retry
 
-_MARGIN = 1.3  # so far an estimate of tokens may fall short, until real counts have been seen
-_SURE = 1.1  # on top of the worst that was seen
+_MARGIN = 1.3  # factor by which token estimates may fall short, until real counts are known
+_SURE = 1.1  # on top of the worst factor seen
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class SpendingRow:
     """What one role used in one stage. ``cost`` (dollars) leaves out the ``unpriced`` of the ``calls``.
 
-    ``recorded`` turns came from a record; nothing else here counts them.
+    ``recorded`` turns came from a record; no other number includes them.
     """
 
     role: str
@@ -41,8 +41,8 @@ class Row:
     unpriced: int = 0
     recorded: int = 0
 
-    def __add__(self, other: Row) -> Row:
-        return Row(
+    def __add__(self, other: SpendingRow) -> SpendingRow:
+        return SpendingRow(
             self.role if self.role == other.role else "",
             self.stage if self.stage == other.stage else "",
             self.calls + other.calls,
@@ -57,24 +57,24 @@ class Spending:
     """What a run has spent. Safe to use from several threads."""
 
     def __init__(self, max_cost: float | None = None, prices: Prices | None = None) -> None:
-        """``max_cost`` is in US dollars; None: no limit. Raises ValueError for one that is none."""
+        """``max_cost`` is in US dollars; None: no limit. Raises ValueError for an invalid one."""
         if max_cost is not None and not max_cost >= 0:
-            raise ValueError(f"A spending limit of {max_cost} is none. Give US dollars, 0 or more.")
+            raise ValueError(f"A spending limit of {max_cost} is invalid. Give US dollars, 0 or more.")
         self.max_cost = max_cost
         self._prices = prices or Prices()
-        self._rows: dict[tuple[str, str], Row] = {}
+        self._rows: dict[tuple[str, str], SpendingRow] = {}
         self._held = 0.0
         self._margins: dict[str, float] = {}
         self._lock = threading.Lock()
 
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[SpendingRow, ...]:
         """What was used, by role and stage, in the order in which they first spent."""
         with self._lock:
             return tuple(self._rows.values())
 
-    def total(self) -> Row:
+    def total(self) -> SpendingRow:
         """All rows in one, its role and stage empty."""
-        return sum(self.rows(), Row("", ""))
+        return sum(self.rows(), SpendingRow("", ""))
 
     def worst(self, ask: Ask) -> float | None:
         """The most that ``ask`` can cost, in dollars; None without a known price."""
@@ -108,23 +108,23 @@ class Spending:
     def count(self, ask: Ask, turn: Turn) -> None:
         """Counts an answer."""
         if not turn.live:
-            self._add(Row(ask.role, ask.stage, recorded=1))
+            self._add(SpendingRow(ask.role, ask.stage, recorded=1))
             return
         self._learn(ask, turn.usage)
         self._add(_row(ask.role, ask.stage, turn))
 
     def count_lost(self, ask: Ask, lost: Usage) -> None:
-        """Counts what was used up without an answer."""
+        """Counts the usage of attempts without an answer."""
         if lost != Usage():
             cost = self._prices.cost(ask.model, lost)
-            self._add(Row(ask.role, ask.stage, 0, lost, cost or 0.0, int(cost is None)))
+            self._add(SpendingRow(ask.role, ask.stage, 0, lost, cost or 0.0, int(cost is None)))
 
     def carry(self, role: str, stage: str, turn: Turn) -> None:
-        """Counts what was paid for this run before now: a turn of its own record, when it is taken up again."""
+        """Counts a turn that this run paid for before it was resumed."""
         self._add(_row(role, stage, turn))
 
     def before_retry(self, retry: Retry) -> None:
-        """To be told of every Retry: raises OverBudget where the request cannot be paid for once more."""
+        """For Claude's ``tell``: raises OverBudget if the limit does not allow the retry."""
         if self.max_cost is None:
             return
         lost = self._prices.cost(retry.ask.model, retry.lost) or 0.0
@@ -151,20 +151,20 @@ class Spending:
             seen = usage.prompt / max(1, tokens.of_ask(ask))
             self._margins[ask.model] = max(self._margins.get(ask.model, 1.0), seen * _SURE)
 
-    def _add(self, row: Row) -> None:
+    def _add(self, row: SpendingRow) -> None:
         with self._lock:
             key = (row.role, row.stage)
-            self._rows[key] = self._rows.get(key, Row(row.role, row.stage)) + row
+            self._rows[key] = self._rows.get(key, SpendingRow(row.role, row.stage)) + row
 
 
-def _row(role: str, stage: str, turn: Turn) -> Row:
-    return Row(role, stage, 1, turn.usage + turn.lost, turn.cost or 0.0, int(turn.cost is None))
+def _row(role: str, stage: str, turn: Turn) -> SpendingRow:
+    return SpendingRow(role, stage, 1, turn.usage + turn.lost, turn.cost or 0.0, int(turn.cost is None))
 
 
 class Metered:
     """A Model whose answers are counted, and which makes no call beyond the limit.
 
-    It belongs around the live model alone: in front of a record it would hold money back for what costs nothing.
+    Put it around the live model only: around a record it would reserve money for calls that cost nothing.
     """
 
     def __init__(self, model: Model, spending: Spending) -> None:

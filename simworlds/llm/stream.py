@@ -1,4 +1,4 @@
-"""One streamed answer of the Messages API, of which nothing counts until it is whole.
+"""Reads a streamed answer of the Messages API; it counts only when it is whole.
 
 The anthropic package accumulates the events, but leniently: it makes a message of a stream that ends early, of blocks
 that were never closed, and of half a tool call. Here these are errors. Kinds of events, blocks and deltas that are not
@@ -26,7 +26,7 @@ _LARGEST = 50_000_000  # bytes of one answer
 _CUT = ("max_tokens", "model_context_window_exceeded", "refusal")
 _DELTAS = {"text_delta": "text", "thinking_delta": "thinking", "input_json_delta": "partial_json"}
 _JUNK = (ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, TypeError, ValueError)
-"""What the package raises for events that are not of the API's form: it does not validate them."""
+"""What the package raises for invalid events: it does not validate them."""
 
 
 class BrokenStream(Exception):  # noqa: N818 - reads as the state it names

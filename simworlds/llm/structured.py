@@ -1,7 +1,7 @@
-"""Answers that are data: JSON that fits a schema, however the model wraps it.
+"""Structured answers: JSON that fits a schema, however the model wraps it.
 
-The JSON may stand bare, in a fence, or among prose; it has to be JSON (no comments, no NaN, no name twice) and to fit
-the schema without being bent. What does not is sent back with what is wrong, a few times.
+The JSON may be bare, in a fence, or in prose. It has to be strict JSON (no comments, no NaN, no repeated name) and to
+fit the schema without coercion. Other answers are sent back with what is wrong, a few times.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 M = TypeVar("M", bound=BaseModel)
-Reader: TypeAlias = "Callable[[Any], tuple[T | None, Sequence[object]]]"
-"""Takes decoded JSON and gives what it stands for, or None and what is wrong with it, as sentences."""
+AnswerReader: TypeAlias = "Callable[[Any], tuple[T | None, Sequence[object]]]"
+"""Takes decoded JSON; returns its value, or None and what is wrong with it, as sentences."""
 
 _FENCE = re.compile(r"^[ \t]*(`{3,}|~{3,})[ \t]*(?:json\w*)?[ \t]*\n(.*?)^[ \t]*\1", re.MULTILINE | re.DOTALL)
 _BEGIN = re.compile(r"[{\[]")
 _MOST_PROBLEMS = 20
 _LONGEST_VALUE = 80
 _NONE = "There is no JSON in the answer."
-_LATER = "Not now: the answer has to be the JSON that is asked for, without calls."
+_LATER = "Not executed: the answer has to be the requested JSON, without tool calls."
 
 
 @dataclass(frozen=True, slots=True)
-class Found(Generic[T]):
-    """What the model gave, the turn that it came in, and how many turns it took."""
+class StructuredAnswer(Generic[T]):
+    """The value, the turn that contains it, and how many turns it took."""
 
     value: T
     turn: Turn
@@ -46,14 +46,14 @@ class Found(Generic[T]):
 def ask_for(
     model: Model,
     ask: Ask,
-    reader: Reader[T],
+    reader: AnswerReader[T],
     *,
     tries: int = 3,
     on_text: Callable[[str], object] | None = None,
-) -> Found[T]:
-    """Asks until the answer is what ``reader`` takes, at most ``tries`` times.
+) -> StructuredAnswer[T]:
+    """Asks until ``reader`` accepts the answer, at most ``tries`` times.
 
-    Raises Misfit (or CutShort) for the last answer that was not, and what the model raises.
+    Raises Misfit (or CutShort) if it never does, and what the model raises.
     """
     messages = ask.messages
     for left in reversed(range(tries)):
@@ -62,21 +62,21 @@ def ask_for(
         except CutShort as cut:
             if not left:
                 raise
-            # Its beginning would only be read again.
-            shorter = f"Your answer was cut off after {cut.turn.usage.output} tokens. Give it again, shorter."
+            # Sending back its beginning would not help.
+            shorter = f"Your answer was cut off after {cut.turn.usage.output} tokens. Send it again, shorter."
             messages = (*messages, user(shorter))
             continue
         try:
-            return Found(read(turn.text, reader), turn, tries - left)
+            return StructuredAnswer(read(turn.text, reader), turn, tries - left)
         except Misfit as misfit:
             if not left:
                 raise
             messages = (*messages, turn.message(), complaint(turn, misfit))
-    raise ValueError(f"{tries} tries are none.")
+    raise ValueError(f"tries must be at least 1, not {tries}.")
 
 
-def fits(shape: type[M]) -> Reader[M]:
-    """A reader of JSON that fits a pydantic model, whose values have the very types of the schema."""
+def fits(shape: type[M]) -> AnswerReader[M]:
+    """A reader for JSON that fits a pydantic model, with exactly the types of the schema."""
 
     def reader(data: Any) -> tuple[M | None, list[str]]:
         try:
@@ -90,8 +90,8 @@ def fits(shape: type[M]) -> Reader[M]:
     return reader
 
 
-def read(text: str, reader: Reader[T]) -> T:
-    """What the JSON in ``text`` stands for; of several, the last that fits. Raises Misfit."""
+def read(text: str, reader: AnswerReader[T]) -> T:
+    """The value of the JSON in ``text``; of several, the last that fits. Raises Misfit."""
     fitting: list[T] = []
     problems: list[str] = []
     for data, wrong in _values(text):
@@ -108,20 +108,20 @@ def read(text: str, reader: Reader[T]) -> T:
 
 
 def complaint(turn: Turn, misfit: Misfit) -> Message:
-    """What a model is told of a ``turn`` that is not what was asked for."""
+    """The message that tells a model what is wrong with its ``turn``, and to send it again."""
     listed = "\n".join(f"- {problem}" for problem in misfit.problems)
-    words = f"Your answer is not the JSON that is asked for:\n{listed}\nGive the whole JSON again, corrected."
+    words = f"Your answer is not the requested JSON:\n{listed}\nSend the whole JSON again, corrected."
     refused = [ToolResult(call.id, (Text(_LATER),), failed=True) for call in turn.calls]
     return user(*refused, words)
 
 
 def _values(text: str) -> Iterator[tuple[Any, str]]:
-    """The JSON in a text, decoded, each with what is wrong with it ("" for nothing).
+    """The JSON in a text, decoded, each with its error ("" for none).
 
-    A text that is JSON holds just that; one with fences of JSON, those; any other, what begins as JSON does.
+    Of a text that is JSON as a whole, that; else of its JSON fences; else of everything that begins like JSON.
     """
     data, wrong = _decoded(text)
-    fenced = [found[2] for found in _FENCE.finditer(text) if _BEGIN.match(found[2].lstrip())]
+    fenced = [fence[2] for fence in _FENCE.finditer(text) if _BEGIN.match(fence[2].lstrip())]
     if not wrong:
         yield data, ""
     elif fenced:
@@ -139,8 +139,8 @@ def _bare(text: str) -> Iterator[tuple[Any, str]]:
             yield data, ""
         except (ValueError, RecursionError) as error:
             at += 1
-            words = isinstance(error, json.JSONDecodeError) and not text[at : error.pos].strip()
-            if not words:  # it began as JSON: what is inside of it is not the answer
+            is_prose = isinstance(error, json.JSONDecodeError) and not text[at : error.pos].strip()
+            if not is_prose:  # it began as JSON: what is inside of it is not the answer
                 yield None, _words(error)
                 return
 
@@ -155,21 +155,21 @@ def _decoded(text: str) -> tuple[Any, str]:
 def _words(error: Exception) -> str:
     if isinstance(error, json.JSONDecodeError):
         near = " ".join(error.doc[max(0, error.pos - 20) : error.pos + 20].split())
-        return f"It is no JSON: {error.msg} at line {error.lineno}, near {near!r}."
-    return f"It is no JSON: {error if isinstance(error, ValueError) else 'it is nested too deeply'}."
+        return f"It is not valid JSON: {error.msg} at line {error.lineno}, near {near!r}."
+    return f"It is not valid JSON: {error if isinstance(error, ValueError) else 'it is nested too deeply'}."
 
 
 def _pairs(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    data = dict(pairs)
+    if len(data) < len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"{twice!r} is given twice in one object")
-    return found
+        raise ValueError(f"{twice!r} occurs twice in one object")
+    return data
 
 
 def _constant(name: str) -> float:
-    raise ValueError(f"{name} is no number of JSON")
+    raise ValueError(f"{name} is not a JSON number")
 
 
 _DECODER = json.JSONDecoder(object_pairs_hook=_pairs, parse_constant=_constant)
@@ -185,5 +185,5 @@ def _place(parts: Sequence[int | str]) -> str:
 def _given(fault: Any) -> str:
     if fault["type"] == "missing":
         return ""
-    shown = json.dumps(fault["input"], ensure_ascii=False, default=str)
-    return f" (given: {shown if len(shown) <= _LONGEST_VALUE else shown[:_LONGEST_VALUE] + '…'})"
+    value = json.dumps(fault["input"], ensure_ascii=False, default=str)
+    return f" (it is {value if len(value) <= _LONGEST_VALUE else value[:_LONGEST_VALUE] + '…'})"

@@ -1,4 +1,4 @@
-"""How many tokens something is, by estimate: without asking anybody, the same every time, rather too many."""
+"""Estimates numbers of tokens: offline, deterministic, and rather too high."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-r"""Model turns that a person wrote, for sessions that play without a model.
+r"""Model turns written by a person, for sessions that play without a model.
 
 A session is a folder with one Markdown file a turn, in the order of their names (``01-planner.md``, ``02-coder.md``);
-files whose names do not begin with a digit are passed over. A file has a head, a line of dashes, and the answer::
+files whose names do not begin with a digit are ignored. A file has a head, a line of dashes, and the answer::
 
     role: coder
     stage: modeling
@@ -21,8 +21,8 @@ lines does not matter. ``stop: refusal`` or ``stop: max_tokens`` makes the answe
 
 In the answer, a fence whose first line says ``call TOOL`` after a language is a tool call. A word behind the tool's
 name is the argument that gets the fence's text, ``NAME=VALUE`` (JSON, or else a string) are further ones; without such
-a word the fence is a JSON object with all of them. Longer fences may hold shorter ones. All else is what the model
-says.
+a word the fence is a JSON object with all of them. Longer fences may hold shorter ones. All other text is the
+model's.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ import shlex
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from simworlds.llm.errors import BadRecord
+from simworlds.llm.errors import UnreadableRecord
 from simworlds.llm.messages import Text, ToolUse, Turn
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ _CALL = re.compile(r"\s*\S+\s+call\s+(\S+)\s*(.*)")
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class WrittenTurn:
     """A turn, and what has to be asked for it to fit. ``name`` is its file's."""
 
     name: str
@@ -71,24 +71,24 @@ class Written:
         return None
 
 
-def read_folder(folder: Path) -> list[Written]:
-    """The turns in ``folder``. Raises BadRecord."""
+def read_folder(folder: Path) -> list[WrittenTurn]:
+    """The turns in ``folder``. Raises UnreadableRecord."""
     files = sorted(path for path in folder.glob("*.md") if path.name[:1].isdigit())
     if not files:
-        raise BadRecord(f"{folder} has no turns: files like 01-planner.md.")
+        raise UnreadableRecord(f"{folder} has no turns: files like 01-planner.md.")
     return [read_turn(path.name, _text_of(path)) for path in files]
 
 
-def read_turn(name: str, text: str) -> Written:
-    """The turn in the text of a file called ``name``. Raises BadRecord."""
+def read_turn(name: str, text: str) -> WrittenTurn:
+    """The turn in the text of a file called ``name``. Raises UnreadableRecord."""
     head, *answer = _LINE.split(text, maxsplit=1)
     if not answer:
-        raise BadRecord(f"{name}: there is no line of dashes between the head and the answer.")
+        raise UnreadableRecord(f"{name}: there is no line of dashes between the head and the answer.")
     fields = _head(name, head)
     content = tuple(_blocks(name, answer[0]))
     calls = any(isinstance(block, ToolUse) for block in content)
     stop = fields["stop"][0] if fields["stop"] else "tool_use" if calls else "end_turn"
-    return Written(
+    return WrittenTurn(
         name=name,
         role=fields["role"][0],
         stage=fields["stage"][0] if fields["stage"] else "",
@@ -102,7 +102,7 @@ def _text_of(path: Path) -> str:
     try:
         return path.read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise BadRecord(f"{path} cannot be read: {error}") from error
+        raise UnreadableRecord(f"{path} cannot be read: {error}") from error
 
 
 def _spaced(text: str) -> str:
@@ -114,16 +114,16 @@ def _head(name: str, head: str) -> dict[str, list[str]]:
     for line in filter(None, map(str.strip, head.splitlines())):
         key, colon, value = (part.strip() for part in line.partition(":"))
         if not colon or key not in fields:
-            raise BadRecord(
-                f"{name}: {line!r} is no line of a head; those are {', '.join(_KEYS)}, with a colon."
+            raise UnreadableRecord(
+                f"{name}: {line!r} is not a line of a head. Use 'KEY: VALUE'; the keys are {', '.join(_KEYS)}."
             )
         if key in _ONCE and fields[key]:
-            raise BadRecord(f"{name}: {key} is given twice.")
+            raise UnreadableRecord(f"{name}: {key} occurs twice.")
         if not value and key != "stage":
-            raise BadRecord(f"{name}: {key} is empty.")
+            raise UnreadableRecord(f"{name}: {key} is empty.")
         fields[key].append(value)
     if not fields["role"]:
-        raise BadRecord(f"{name}: the head does not say whose turn it is (role: coder).")
+        raise UnreadableRecord(f"{name}: the head does not say whose turn it is (role: coder).")
     return fields
 
 
@@ -157,7 +157,7 @@ def _fenced(name: str, fence: str, lines: Iterator[str]) -> Iterator[str]:
         end = line.strip()
         if len(end) >= len(fence) and not end.strip(fence[0]):
             return
-    raise BadRecord(f"{name}: a fence is not closed.")
+    raise UnreadableRecord(f"{name}: a fence is not closed.")
 
 
 def _call(name: str, empty: ToolUse, rest: str, inside: str) -> ToolUse:
@@ -165,11 +165,11 @@ def _call(name: str, empty: ToolUse, rest: str, inside: str) -> ToolUse:
     try:
         words = shlex.split(rest)
     except ValueError as error:
-        raise BadRecord(f"{name}: the arguments of {tool} cannot be read: {rest} ({error})") from error
+        raise UnreadableRecord(f"{name}: the arguments of {tool} cannot be read: {rest} ({error})") from error
     named = dict(word.split("=", 1) for word in words if "=" in word)
     taking = [word for word in words if "=" not in word]
     if len(taking) > 1:
-        raise BadRecord(
+        raise UnreadableRecord(
             f"{name}: only one argument of {tool} can get the fence's text, not {', '.join(taking)}."
         )
     given: dict[str, Any] = {key: _value(value) for key, value in named.items()}
@@ -178,9 +178,9 @@ def _call(name: str, empty: ToolUse, rest: str, inside: str) -> ToolUse:
     try:
         whole = json.loads(inside) if inside.strip() else {}
     except ValueError as error:
-        raise BadRecord(f"{name}: the arguments of {tool} are no JSON: {error}") from error
+        raise UnreadableRecord(f"{name}: the arguments of {tool} are not valid JSON: {error}") from error
     if not isinstance(whole, dict):
-        raise BadRecord(f"{name}: the arguments of {tool} are no JSON object.")
+        raise UnreadableRecord(f"{name}: the arguments of {tool} are not a JSON object.")
     return replace(empty, input={**whole, **given})
 
 

@@ -80,7 +80,7 @@ def test_an_empty_query_is_refused_with_an_example(kb: KnowledgeBase, query: str
 
 
 @pytest.mark.parametrize("name", ["nul in a name", "surrogate in a name", "zero width"])
-def test_what_cannot_be_part_of_a_name_does_not_hide_it(kb: KnowledgeBase, name: str) -> None:
+def test_characters_outside_names_do_not_hide_a_name(kb: KnowledgeBase, name: str) -> None:
     assert any("Cloth" in hit.id or "cloth" in hit.id for hit in kb.query(NASTY[name], limit=20).hits)
 
 

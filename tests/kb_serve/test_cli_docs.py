@@ -96,7 +96,7 @@ def test_nothing_found_is_exit_code_1(home: Path, way: tuple[str, ...]) -> None:
         ((QUALITY, "--max-tokens", "1"), "max_tokens"),
         ((QUALITY, "--max-tokens", "many"), "--max-tokens"),
         ((QUALITY, "--blender", "9.9"), "simworlds kb build 9.9"),
-        ((QUALITY, "--blender", "../../etc"), "no Blender version"),
+        ((QUALITY, "--blender", "../../etc"), "not a Blender version"),
         ((QUALITY, "--json", "--raw"), "--raw"),
         ((), "QUERY"),
         (("--no-such-option", QUALITY), "--no-such-option"),

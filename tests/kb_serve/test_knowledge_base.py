@@ -38,7 +38,7 @@ def test_the_raw_record_of_a_page_is_whole(kb: KnowledgeBase) -> None:
     assert kb.page("nowhere") is None
 
 
-def test_meta_tells_what_the_base_is_of(kb: KnowledgeBase, base: Path) -> None:
+def test_meta_describes_the_base(kb: KnowledgeBase, base: Path) -> None:
     assert kb.meta["blender"].startswith(kb.meta["minor"])
     assert kb.meta["fingerprint"]
     assert kb.path == base

@@ -45,8 +45,10 @@ def test_a_version_that_was_not_built_is_missing_with_those_that_were(folder: Pa
 @pytest.mark.parametrize(
     "asked", ["", "newest", "5", "5.x", "5.1.2.3", "../../etc", "5.1\n5.2", "5,1", "-1.2"]
 )
-def test_what_is_no_version_is_refused(folder: Path, asked: str) -> None:
-    with pytest.raises(BaseMissing, match=r"no Blender version.*Write it as 5\.1|No knowledge base"):
+def test_invalid_versions_are_refused(folder: Path, asked: str) -> None:
+    with pytest.raises(
+        BaseMissing, match=r"not a Blender version.*Write it as 5\.1|There is no knowledge base"
+    ):
         find_base(asked, folder)
 
 

@@ -78,7 +78,7 @@ def test_entries_and_records_agree(reader: BaseReader) -> None:
 @pytest.mark.parametrize(
     "text", ["", "x_y_z", "bpy.types.", "' OR 1=1 --", "%", "*", "\x00", "\ud800", "x" * 10_000]
 )
-def test_what_is_not_there_is_not_found(reader: BaseReader, text: str) -> None:
+def test_unknown_symbols_and_pages_are_none(reader: BaseReader, text: str) -> None:
     assert reader.entry(text) is None
     assert reader.symbol(text) is None
     assert reader.page(text) is None
@@ -148,7 +148,7 @@ def test_a_file_that_is_not_there_is_missing_with_the_command_that_makes_it(tmp_
 @pytest.mark.parametrize(
     "content", [b"", b"\x00" * 5_000, b"hello", b"SQLite format 3\x00" + b"x" * 84, b"PK\x03\x04" * 99]
 )
-def test_a_file_of_something_else_is_refused_with_what_to_do(tmp_path: Path, content: bytes) -> None:
+def test_a_file_of_another_kind_is_refused_with_advice(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "kb.sqlite"
     path.write_bytes(content)
     with pytest.raises(BaseUnreadable, match=r"kb\.sqlite.*simworlds kb build --force"):
@@ -172,7 +172,7 @@ def set_number(path: Path, name: str, value: int) -> None:
     ("version", "said"),
     [(SCHEMA_VERSION + 1, "newer SimWorlds.*upgrade"), (99, "newer"), (0, "older layout.*--force")],
 )
-def test_another_layout_is_refused_with_what_to_do(copy: Path, version: int, said: str) -> None:
+def test_another_schema_version_is_refused_with_advice(copy: Path, version: int, said: str) -> None:
     set_number(copy, "user_version", version)
     with pytest.raises(BaseUnreadable, match=f"(?s){said}"):
         KnowledgeBase(copy)
@@ -194,7 +194,7 @@ def test_a_base_cut_off_anywhere_never_answers_wrongly(copy: Path) -> None:
     assert all("simworlds kb build --force" in said for said in refused)
 
 
-def test_a_base_with_damaged_pages_is_said_to_be_damaged(copy: Path) -> None:
+def test_damaged_pages_are_reported(copy: Path) -> None:
     whole, chance = copy.read_bytes(), random.Random(SEED)
     refused: list[str] = []
     for _ in range(12):
@@ -213,7 +213,7 @@ def test_a_base_with_damaged_pages_is_said_to_be_damaged(copy: Path) -> None:
     assert all(str(copy) in said for said in refused)
 
 
-def test_a_base_that_lacks_a_table_is_said_to_be_damaged(copy: Path) -> None:
+def test_a_missing_table_is_reported_as_damage(copy: Path) -> None:
     for table in ("symbols", "names", "docs", "phrases", "postings", "pages"):
         with closing(sqlite3.connect(copy)) as file:
             file.execute(f"ALTER TABLE {table} RENAME TO gone")

@@ -27,7 +27,7 @@ from agents.views.report.relation_graph import draw_graph
 from agents.views.report.tables import objects_of, relations_of
 from agents.views.report.timeline import draw_timeline
 from simworlds.files import write_whole
-from simworlds.llm.spending import Row as Spent
+from simworlds.llm.spending import SpendingRow as Spent
 from simworlds.terminal.text import shortened
 
 if TYPE_CHECKING:

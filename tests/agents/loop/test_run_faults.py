@@ -16,7 +16,7 @@ from team import ABORT, DONE, Team, calls, last_words, reply, run, turn_of, use,
 
 from agents.loop import run as run_module
 from agents.roles.base import RoleContext
-from simworlds.llm.context import Limits as Kept
+from simworlds.llm.context import ContextLimits as Kept
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,7 +50,7 @@ def test_a_run_with_all_these_troubles_ends_well(troubled: Played) -> None:
 
 def test_an_answer_without_json_is_sent_back(troubled: Played) -> None:
     second = next(one for one in of_role(troubled, "planner", "") if turn_of(one) == 1)
-    assert "Your answer is not the JSON that is asked for" in last_words(second)
+    assert "Your answer is not the requested JSON" in last_words(second)
     assert "There is no JSON in the answer." in last_words(second)
 
 

@@ -15,7 +15,7 @@ from bench.judge.openai_chat import Chat
 from bench.judge.providers import Provider
 from simworlds.llm.claude import Claude, Settings
 from simworlds.llm.prices import Prices
-from simworlds.llm.retries import Patience
+from simworlds.llm.retries import RetryPolicy
 from simworlds.llm.spending import Spending
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ class Anthropic:
         self.pauses: list[float] = []
 
     def provider(self, *, model: str = "", max_cost: float | None = None, tries: int = 4) -> Provider:
-        settings = Settings(api_key="key", base_url=self.server.base_url, patience=Patience(tries=tries))
+        settings = Settings(api_key="key", base_url=self.server.base_url, patience=RetryPolicy(tries=tries))
         connect = lambda: Claude(settings, pause=self.pauses.append)  # noqa: E731
         return Provider(self.name, model or self.model, connect, spending=Spending(max_cost))
 

@@ -72,7 +72,7 @@ def test_every_part_fits_and_nothing_is_lost(seed: int) -> None:
     assert parts[-1][1] == []
 
 
-def test_what_is_left_is_named_in_order() -> None:
+def test_remaining_blocks_are_named_in_order() -> None:
     blocks = [
         AnswerBlock("a " * 60, "first"),
         AnswerBlock("b " * 60, "second"),
@@ -81,7 +81,7 @@ def test_what_is_left_is_named_in_order() -> None:
     assert [left for _, left in paginate(blocks, 45)] == [["second", "third"], ["third"], []]
 
 
-def test_what_fits_together_stays_together() -> None:
+def test_blocks_that_fit_share_a_part() -> None:
     blocks = [AnswerBlock("one", "a"), AnswerBlock("two", "b"), AnswerBlock("three", "c")]
     assert paginate(blocks, 100) == [("one\n\ntwo\n\nthree", [])]
 

@@ -43,7 +43,7 @@ def whole(kb: KnowledgeBase, query: str, max_tokens: int) -> list[DocsAnswer]:
 
 
 @pytest.mark.parametrize("query", QUERIES)
-def test_no_part_exceeds_the_budget_and_together_they_say_everything(kb: KnowledgeBase, query: str) -> None:
+def test_parts_fit_the_budget_and_are_complete_together(kb: KnowledgeBase, query: str) -> None:
     chance = random.Random(query)
     everything = kb.query(query, max_tokens=1_000_000)
     assert everything.parts == 1
@@ -80,7 +80,7 @@ def test_the_footer_names_what_is_left_and_the_call_that_fetches_it(kb: Knowledg
     assert "_Part" not in last.text
 
 
-def test_a_short_query_can_be_asked_again_as_the_footer_says(kb: KnowledgeBase) -> None:
+def test_the_footers_call_repeats_a_short_query(kb: KnowledgeBase) -> None:
     first = kb.query("bpy.types.Object", max_tokens=300)
     match = re.search(r'blender_docs\("(.+)", part=(\d+)\)', first.text)
     assert match is not None
@@ -100,11 +100,11 @@ def test_a_part_beyond_the_last_is_refused_with_the_number_there_is(kb: Knowledg
     ("arguments", "said"),
     [
         ({"limit": 0}, "limit=0"), ({"limit": -1}, "limit=-1"), ({"part": 0}, "part=0"), ({"part": -3}, "part=-3"),
-        ({"max_tokens": 149}, "at least 150"), ({"max_tokens": 0}, "max_tokens=0"), ({"max_tokens": -5},
+        ({"max_tokens": 149}, "150 or more"), ({"max_tokens": 0}, "max_tokens=0"), ({"max_tokens": -5},
         "max_tokens=-5"),
     ],
 )  # fmt: skip
-def test_numbers_out_of_range_are_refused_with_what_to_give(
+def test_numbers_out_of_range_are_refused_with_advice(
     kb: KnowledgeBase, arguments: dict[str, int], said: str
 ) -> None:
     with pytest.raises(BadQuery, match=said):
@@ -112,7 +112,7 @@ def test_numbers_out_of_range_are_refused_with_what_to_give(
 
 
 @pytest.mark.parametrize("limit", [1, 2, 8, MAX_LIMIT, 10_000])
-def test_no_more_hits_than_asked_for_and_none_twice(kb: KnowledgeBase, limit: int) -> None:
+def test_hits_keep_the_limit_and_are_unique(kb: KnowledgeBase, limit: int) -> None:
     for query in ("quality", "cloth", "modifier", "how to bake a simulation", "bpy.types.Object.location"):
         hits = kb.query(query, limit=limit).hits
         assert len(hits) <= min(limit, MAX_LIMIT)
@@ -151,7 +151,7 @@ def test_candidates_show_the_best_and_list_the_others(kb: KnowledgeBase) -> None
         assert f"`{hit.id}`" in answer.text
 
 
-def test_a_correction_is_said_before_everything_else(kb: KnowledgeBase) -> None:
+def test_corrections_come_before_the_answer(kb: KnowledgeBase) -> None:
     answer = kb.query("ClothSettings.qualiti")
     assert answer.text.startswith("> `qualiti` does not exist; read as `quality`.")
     assert kb.query("ClothSettings.qualiti").notes == answer.notes

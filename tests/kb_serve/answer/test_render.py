@@ -53,7 +53,7 @@ def test_a_property_in_one_look(kb: KnowledgeBase) -> None:
         (Symbol("a", "property"), []),
     ],
 )  # fmt: skip
-def test_facts_are_what_is_known(symbol: Symbol, expected: list[str]) -> None:
+def test_facts_list_known_properties(symbol: Symbol, expected: list[str]) -> None:
     assert list(facts(symbol)) == expected
 
 
@@ -86,7 +86,7 @@ def test_an_operator_shows_its_call_with_defaults_and_every_argument(
             assert all(repr(item.identifier) in text for item in parameter.enum_items), parameter.name
 
 
-def test_a_function_shows_what_it_takes_and_gives(kb: KnowledgeBase) -> None:
+def test_a_function_shows_parameters_and_returns(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.types.Object.ray_cast").text
     assert "```python\nObject.ray_cast(origin, direction, " in text
     for part in ("**Parameters**", "- `origin` (float[3], required)", "**Returns**", "- `location`"):
@@ -134,14 +134,14 @@ def test_a_context_member_says_which_editors_provide_it(kb: KnowledgeBase) -> No
     assert "provided by: " in kb.query("bpy.context.active_bone").text
 
 
-def test_deprecation_is_said_with_versions(renderer: MarkdownRenderer) -> None:
+def test_deprecation_is_shown_with_versions(renderer: MarkdownRenderer) -> None:
     symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b.", "5.0", "6.0"))
     assert "**Deprecated** since 5.0, removal planned for 6.0: Use b." in shown(renderer, symbol)
     symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b."))
     assert "**Deprecated**: Use b." in shown(renderer, symbol)
 
 
-def test_what_later_versions_brought_says_which(renderer: MarkdownRenderer, reader: BaseReader) -> None:
+def test_newer_symbols_show_their_version(renderer: MarkdownRenderer, reader: BaseReader) -> None:
     ((path, version),) = reader.rows("SELECT path, version FROM since WHERE path LIKE 'bpy.types.%' LIMIT 1")
     for named, expected in ((path, True), ("bpy.types.Object.location", False)):
         symbol = reader.symbol(named)
@@ -165,7 +165,7 @@ def test_arguments_tell_type_default_range_unit_and_choices(renderer: MarkdownRe
     assert all(f"Meaning {n}" in text for n in range(50))
 
 
-def test_choices_that_nothing_is_said_of_are_all_named_too(renderer: MarkdownRenderer) -> None:
+def test_undescribed_enum_items_are_all_listed(renderer: MarkdownRenderer) -> None:
     items = tuple(EnumItem(f"ICON_{n}") for n in range(300))
     symbol = Symbol("m.f", "function", "m", parameters=(Parameter("icon", "enum", enum_items=items),))
     text = shown(renderer, symbol)
@@ -192,7 +192,7 @@ def test_the_section_asked_for_comes_first(renderer: MarkdownRenderer, kb: Knowl
     assert sorted(block.text for block in blocks) == sorted(block.text for block in renderer.page(page.slug))
 
 
-def test_what_is_not_there_is_shown_as_nothing(renderer: MarkdownRenderer) -> None:
+def test_an_unknown_page_renders_nothing(renderer: MarkdownRenderer) -> None:
     assert list(renderer.page("nowhere")) == []
     assert renderer.manual_page("bpy.types.Nothing") == ""
 
@@ -214,7 +214,7 @@ DEFINITIONS = (
      "  The gap.\n\n  > **Note:** Half.\n"), ("Lead", ""),
      ("Gap", ""), ("", "")],
 )  # fmt: skip
-def test_what_the_manual_says_of_a_property_is_found_by_its_label(label: str, text: str) -> None:
+def test_manual_definitions_are_found_by_label(label: str, text: str) -> None:
     sections = [Section("", "A", 1, "No list."), Section("b", "B", 2, DEFINITIONS)]
     assert definition_of(label, sections).strip() == text.strip()
 

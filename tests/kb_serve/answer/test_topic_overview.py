@@ -46,7 +46,7 @@ def test_an_overview_tells_the_page_its_classes_operators_and_pages_below(kb: Kn
         assert part in answer.text
 
 
-def test_the_hits_of_an_overview_are_what_it_names(kb: KnowledgeBase) -> None:
+def test_hits_of_an_overview_are_the_ids_it_names(kb: KnowledgeBase) -> None:
     ids = [hit.id for hit in kb.query("rigid body").hits]
     assert ids[0] == "physics/rigid_body/index"
     assert "bpy.types.RigidBodyObject" in ids[:5]

@@ -42,7 +42,7 @@ def test_prose_names_nothing(ranker: QueryRanker, query: str) -> None:
         "ClothSettings.quality and how it slows the simulation",
     ],
 )
-def test_what_is_named_comes_before_what_is_found(ranker: QueryRanker, query: str) -> None:
+def test_named_ids_come_before_search_hits(ranker: QueryRanker, query: str) -> None:
     ranking = ranker.rank(query)
     whys = [row.why for row in ranking.ranked]
     assert ranking.ranked[0].score >= SURE
@@ -63,7 +63,7 @@ def test_no_id_is_ranked_twice_and_scores_are_shares(ranker: QueryRanker) -> Non
         assert all(0 < row.score <= 1 for row in rows)
 
 
-def test_notes_are_said_once_each(ranker: QueryRanker) -> None:
+def test_notes_are_not_repeated(ranker: QueryRanker) -> None:
     notes = ranker.rank("action.fcurves action.fcurves action.fcurves").notes
     assert len(notes) == len(set(notes)) == 1
     assert "`bpy.types.Action.fcurves` does not exist in Blender" in notes[0]

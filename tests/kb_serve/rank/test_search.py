@@ -43,7 +43,7 @@ def test_a_description_finds_its_own_symbol(reader: BaseReader, searcher: Search
     assert found >= 0.85 * asked
 
 
-def test_what_something_is_asked_for_by_finds_it_in_any_order(reader: BaseReader, searcher: Searcher) -> None:
+def test_phrases_find_their_symbol_in_any_word_order(reader: BaseReader, searcher: Searcher) -> None:
     chance, found, asked = random.Random(SEED), 0, 0
     rows = [
         (path, row)
@@ -113,7 +113,7 @@ def test_order_case_and_small_words_do_not_matter(searcher: Searcher) -> None:
 
 
 @pytest.mark.parametrize("query", ["", " ", "the of and", "qqqqxxxx", "!!!", "🎨", "\x00", ", . ; :"])
-def test_what_says_nothing_finds_nothing(searcher: Searcher, query: str) -> None:
+def test_queries_without_words_find_nothing(searcher: Searcher, query: str) -> None:
     assert searcher.search(query) == []
 
 
@@ -128,7 +128,7 @@ def test_an_unknown_word_is_read_as_one_of_the_corpus(searcher: Searcher, writte
 
 
 @pytest.mark.parametrize("word", ["", "abc", "x1y2z3", "zzzzzzzz", "a b", "é" * 9])
-def test_a_word_near_to_none_is_left(searcher: Searcher, word: str) -> None:
+def test_a_word_without_a_similar_one_is_not_corrected(searcher: Searcher, word: str) -> None:
     assert searcher.correction(word) == ""
 
 

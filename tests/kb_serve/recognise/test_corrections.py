@@ -83,7 +83,7 @@ def test_a_misspelt_class_is_found_and_a_right_one_left_alone(
     "written",
     ["quality", "abc_def", "qwertzuiop_asdfghjkl", "", "_", "a" * 5_000, "x_" * 2_000, "🎨_🎨_🎨🎨🎨🎨"],
 )
-def test_a_name_near_to_nothing_is_not_corrected(corrector: Corrector, written: str) -> None:
+def test_a_name_without_a_similar_one_is_not_corrected(corrector: Corrector, written: str) -> None:
     assert corrector.member(written) is None
 
 

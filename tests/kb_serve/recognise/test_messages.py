@@ -65,12 +65,12 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ),
         ("RuntimeError: Operator bpy.ops.uv.unwrap.poll() failed, context is incorrect", "temp_override"),
         ("AttributeError: 'NoneType' object has no attribute 'mass'", "`.mass` is None"),
-        ("ReferenceError: StructRNA of type Object has been removed", "outlived its data"),
-        ('AttributeError: bpy_struct: attribute "type" from "Object" is read-only', "not assigned"),
+        ("ReferenceError: StructRNA of type Object has been removed", "data was removed, freed"),
+        ('AttributeError: bpy_struct: attribute "type" from "Object" is read-only', "cannot be assigned"),
         ("KeyError: 'bpy_prop_collection[key]: key \"Cub\" not found'", "no element `Cub`"),
     ],
 )
-def test_it_is_said_what_a_message_means_there(kb: KnowledgeBase, message: str, said: str) -> None:
+def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str) -> None:
     assert said in "\n".join(kb.query(message).notes)
 
 
@@ -86,9 +86,7 @@ def test_it_is_said_what_a_message_means_there(kb: KnowledgeBase, message: str, 
         ('Calling operator "bpy.ops.export_mesh.stl" error, could not be found', "bpy.ops.export_mesh.stl"),
     ],
 )
-def test_what_another_version_had_is_told_from_a_message(
-    kb: KnowledgeBase, message: str, former: str
-) -> None:
+def test_messages_reveal_removed_symbols(kb: KnowledgeBase, message: str, former: str) -> None:
     note = next(note for note in kb.query(message).notes if "does not exist" in note)
     assert former in note
     assert "Closest" in note
@@ -104,7 +102,7 @@ def test_names_of_the_callers_data_are_not_searched_for() -> None:
 @pytest.mark.parametrize(
     "call", ["{'object': o}", "override", "dict(area=a), action='SELECT'", "context.copy()"]
 )
-def test_a_context_given_to_an_operator_is_told_its_place(kb: KnowledgeBase, call: str) -> None:
+def test_a_context_argument_leads_to_temp_override(kb: KnowledgeBase, call: str) -> None:
     answer = kb.query(f"bpy.ops.object.select_all({call})")
     assert answer.hits[0].id == "bpy.ops.object.select_all"
     assert "bpy.types.Context.temp_override" in [hit.id for hit in answer.hits]
@@ -118,7 +116,7 @@ def test_a_right_call_is_left_alone(kb: KnowledgeBase, call: str) -> None:
     assert kb.query(f"bpy.ops.object.select_all({call})").notes == ()
 
 
-def test_an_argument_that_an_operator_does_not_take_is_told(kb: KnowledgeBase) -> None:
+def test_unknown_arguments_are_noted(kb: KnowledgeBase) -> None:
     (note,) = kb.query("bpy.ops.mesh.primitive_cube_add(radius=1, location=(0, f(a=1), 0))").notes
     assert note == "`bpy.ops.mesh.primitive_cube_add` takes no `radius`."
 
@@ -131,9 +129,7 @@ def test_an_argument_that_an_operator_does_not_take_is_told(kb: KnowledgeBase) -
         ("print(obj.select)", "select_get"),
     ],
 )
-def test_who_assigns_to_a_missing_name_is_shown_the_setter(
-    kb: KnowledgeBase, written: str, first: str
-) -> None:
+def test_assigning_to_a_missing_name_leads_to_the_setter(kb: KnowledgeBase, written: str, first: str) -> None:
     assert kb.query(written).hits[0].id == f"bpy.types.Object.{first}"
 
 
@@ -151,7 +147,7 @@ def test_a_variable_called_like_a_collection_is_that_collection(
     assert kb.query(written).hits[0].id == first
 
 
-def test_a_value_that_a_property_had_is_told(kb: KnowledgeBase) -> None:
+def test_removed_enum_values_are_noted(kb: KnowledgeBase) -> None:
     answer = kb.query("sky.sky_type = 'NISHITA'")
     assert answer.hits[0].id == "bpy.types.ShaderNodeTexSky.sky_type"
     assert any("NISHITA" in note and "MULTIPLE_SCATTERING" in note for note in answer.notes)

@@ -35,7 +35,7 @@ def test_a_full_path_is_that_symbol_and_its_whole_answer(
 
 
 @pytest.mark.parametrize("around", ["`{}`", "'{}'", '"{}"', " {} ", "{}?", "{}.", "{}:", "{},", "\n{}\n"])
-def test_what_stands_around_a_name_does_not_matter(
+def test_punctuation_around_a_name_does_not_matter(
     kb: KnowledgeBase, reader: BaseReader, around: str
 ) -> None:
     sample = of_data(reader, "property", 60) + paths(reader, "operator", 60)
@@ -180,9 +180,7 @@ def test_context_and_data_are_abbreviated_as_in_blenders_console(
     assert wrong(kb, cases) == []
 
 
-def test_what_a_class_inherits_is_found_at_the_class_that_has_it(
-    kb: KnowledgeBase, reader: BaseReader
-) -> None:
+def test_inherited_members_resolve_to_their_own_class(kb: KnowledgeBase, reader: BaseReader) -> None:
     chance = random.Random(SEED)
     cases: list[tuple[str, str]] = []
     for path in classes(reader, count=400):
@@ -202,7 +200,7 @@ def test_what_a_class_inherits_is_found_at_the_class_that_has_it(
     assert wrong(kb, cases) == []
 
 
-def test_names_that_share_a_key_are_told_apart_by_how_they_are_written(kb: KnowledgeBase) -> None:
+def test_names_with_one_key_are_told_apart_by_spelling(kb: KnowledgeBase) -> None:
     for name, path in (
         ("BlendDataMovieClips", "bpy.types.BlendDataMovieClips"),
         ("BlendData.movieclips", "bpy.types.BlendData.movieclips"),
@@ -254,7 +252,7 @@ def test_a_label_that_only_one_symbol_has_leads_there(kb: KnowledgeBase, reader:
 
 
 @pytest.mark.parametrize("prefix", [TYPES, ""])
-def test_a_misspelt_member_is_corrected_and_said_to_be(
+def test_a_misspelt_member_is_corrected_with_a_note(
     kb: KnowledgeBase, reader: BaseReader, prefix: str
 ) -> None:
     chance = random.Random(SEED)
@@ -336,7 +334,7 @@ def _of_ui(reader: BaseReader, owner: str) -> bool:
 
 
 @pytest.mark.parametrize("form", ["{}", "'{}'", '"{}"', "{}?"])
-def test_an_enum_item_leads_to_what_takes_it(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
+def test_an_enum_item_leads_to_its_property(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
     assert wrong(kb, [(form.format(item), owner) for item, owner in enum_items(reader)]) == []
 
 
@@ -399,7 +397,7 @@ def former(reader: BaseReader, where: str, count: int = 250) -> list[str]:
 
 
 @pytest.mark.parametrize("prefix", [True, False])
-def test_what_another_version_had_is_said_to_be_gone_since_when(
+def test_removed_symbols_are_noted_with_their_versions(
     kb: KnowledgeBase, reader: BaseReader, prefix: bool
 ) -> None:
     for path in former(reader, "path LIKE 'bpy.types.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%(%'"):
@@ -410,7 +408,7 @@ def test_what_another_version_had_is_said_to_be_gone_since_when(
         assert span[1] in note, note
 
 
-def test_what_this_version_has_instead_comes_first(kb: KnowledgeBase, reader: BaseReader) -> None:
+def test_replacements_of_removed_symbols_come_first(kb: KnowledgeBase, reader: BaseReader) -> None:
     checked = 0
     for path in former(reader, "path NOT LIKE '%:%' AND path NOT LIKE '%(%'", 400):
         instead = {target for target, _ in reader.replacements(path)}

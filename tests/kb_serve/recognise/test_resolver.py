@@ -214,7 +214,7 @@ def test_values_and_results_of_calls_have_types_too(kb: KnowledgeBase, expressio
     )
 
 
-def test_what_breaks_off_tells_where_and_what_there_is(kb: KnowledgeBase) -> None:
+def test_an_unresolved_name_is_reported_with_its_owner(kb: KnowledgeBase) -> None:
     answer = kb.query("bpy.context.object.rigid_body.wobbliness")
     assert any("`bpy.types.RigidBodyObject` has no `wobbliness`" in note for note in answer.notes)
 

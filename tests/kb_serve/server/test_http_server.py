@@ -171,7 +171,7 @@ def test_with_a_token_any_address_will_do() -> None:
         check(Address("0.0.0.0"))
 
 
-def test_what_is_loopback_is_told_by_address_not_by_looks() -> None:
+def test_loopback_is_decided_by_address_not_by_name() -> None:
     assert [host for host in ("127.0.0.1", "127.8.9.1", "::1", "localhost") if not is_loopback(host)] == []
     assert [
         host

@@ -72,7 +72,7 @@ def test_a_blender_of_a_newer_minor_version_gets_a_base_of_its_own(serve_from: S
     assert "98.1.2" in service.upkeep.reason
 
 
-def test_an_older_blender_changes_nothing(service: Service, make_base: MakeBase) -> None:
+def test_an_older_blender_starts_no_rebuild(service: Service, make_base: MakeBase) -> None:
     path = make_base(f"{MINOR}.99")
     before = path.stat().st_ino
     service.upkeep.run()
@@ -161,7 +161,7 @@ def test_two_servers_do_not_build_at_once(home: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (3, b"", b"")
 
 
-def test_what_went_wrong_is_one_line(home: Path) -> None:
+def test_the_reason_of_a_failure_is_one_line(home: Path) -> None:
     command = [sys.executable, "-m", "kb_serve.rebuild", "nonsense", "--home", str(home)]
     done = subprocess.run(
         command, env=environment(home), cwd=REPO, capture_output=True, text=True, check=False

@@ -103,7 +103,7 @@ async def test_the_bases_are_listed(service: Service) -> None:
         "blender://5.1/page/" + "a/" * 5_000,
     ],
 )
-async def test_what_does_not_exist_is_a_clear_error(service: Service, uri: str) -> None:
+async def test_unknown_resources_are_a_clear_error(service: Service, uri: str) -> None:
     async with Client(make_server(service)) as client:
         with pytest.raises(MCPError) as caught:
             await client.read_resource(uri)
@@ -114,5 +114,5 @@ async def test_what_does_not_exist_is_a_clear_error(service: Service, uri: str) 
 @pytest.mark.parametrize("version", ["9.9", "latest", "..", "%2e%2e%2f"])
 async def test_a_version_that_was_not_built_is_a_clear_error(service: Service, version: str) -> None:
     async with Client(make_server(service)) as client:
-        with pytest.raises(MCPError, match=r"built are: 5\.1"):
+        with pytest.raises(MCPError, match=r"Built are: 5\.1"):
             await client.read_resource(f"blender://{version}/symbol/bpy.types.Object")

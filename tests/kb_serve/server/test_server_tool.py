@@ -133,15 +133,13 @@ async def test_a_version_may_be_given_as_a_number_since_models_do(service: Servi
         ({"query": QUALITY, "part": 10**30}, "part="),
         ({"query": QUALITY, "blender": "9.9"}, "simworlds kb build 9.9"),
         ({"query": QUALITY, "blender": "latest"}, "5.1"),
-        ({"query": QUALITY, "blender": "../../etc/passwd"}, "no Blender version"),
+        ({"query": QUALITY, "blender": "../../etc/passwd"}, "not a Blender version"),
         ({"query": QUALITY, "blender": ["5.1"]}, "blender:"),
         ({"query": QUALITY, "version": "4.5"}, "version:"),
         ({"query": "x" * 20_001}, "20,000"),
     ],
 )
-async def test_what_cannot_be_answered_is_an_error_that_says_why(
-    service: Service, arguments: dict[str, Any], hint: str
-) -> None:
+async def test_errors_say_why_a_call_failed(service: Service, arguments: dict[str, Any], hint: str) -> None:
     result = await ask(service, **arguments)
     assert result.is_error
     assert hint in said(result)
@@ -199,7 +197,7 @@ async def test_huge_limits_are_no_trouble(service: Service) -> None:
 
 async def test_another_tool_is_refused_by_name(service: Service) -> None:
     async with Client(make_server(service)) as client:
-        with pytest.raises(MCPError, match="there is blender_docs"):
+        with pytest.raises(MCPError, match="The only tool is blender_docs"):
             await client.call_tool("blender_execute", {})
 
 
@@ -210,7 +208,7 @@ async def test_without_a_base_the_answer_says_how_to_build_one(tmp_path: Path, s
 
 
 @pytest.mark.parametrize("content", [b"", b"not a base", b"SQLite format 3\0" + b"\0" * 5000])
-async def test_a_file_that_is_no_base_is_an_error_that_says_what_to_do(
+async def test_error_for_a_file_of_another_kind_says_what_to_do(
     tmp_path: Path, serve_from: ServeFrom, content: bytes
 ) -> None:
     (tmp_path / "kb").mkdir()
@@ -220,7 +218,7 @@ async def test_a_file_that_is_no_base_is_an_error_that_says_what_to_do(
     assert "simworlds kb build" in said(result)
 
 
-async def test_a_base_that_was_cut_off_is_an_error_that_says_what_to_do(
+async def test_error_for_a_truncated_base_says_what_to_do(
     home: Path, base: Path, serve_from: ServeFrom
 ) -> None:
     target = home / "kb" / base.name

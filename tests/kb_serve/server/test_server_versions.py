@@ -69,7 +69,7 @@ def test_the_newest_answers_when_the_blender_in_use_has_no_base(
         assert answers_for(bases.pick()) == "4.10.0"
 
 
-def test_a_default_that_was_given_comes_before_the_blender_in_use(
+def test_a_default_version_comes_before_the_blender_in_use(
     home: Path, make_base: Callable[..., Path]
 ) -> None:
     make_base("4.5.3")
@@ -90,7 +90,9 @@ def test_an_executable_that_was_named_is_the_blender_in_use(
         assert answers_for(bases.pick()) == "4.5.3"
 
 
-def test_an_executable_that_is_none_leaves_the_newest(home: Path, make_base: Callable[..., Path]) -> None:
+def test_an_invalid_executable_falls_back_to_the_newest_base(
+    home: Path, make_base: Callable[..., Path]
+) -> None:
     make_base("99.1.0")
     with closing(Bases(home, blender_exe=home / "nothing")) as bases:
         assert answers_for(bases.pick()) == "99.1.0"
@@ -100,7 +102,7 @@ def test_a_version_that_was_not_built_is_named_with_those_that_were(
     bases: Bases, make_base: Callable[..., Path]
 ) -> None:
     make_base("4.5.3")
-    with pytest.raises(BaseMissing, match=rf"built are: 4\.5, {minor(IN_USE)}.*simworlds kb build 4\.4"):
+    with pytest.raises(BaseMissing, match=rf"Built are: 4\.5, {minor(IN_USE)}.*simworlds kb build 4\.4"):
         bases.pick("4.4")
 
 

@@ -80,7 +80,7 @@ def test_thinking_is_shown_and_goes_back_as_it_came(api, claude):
 
 
 @pytest.mark.parametrize("model", ["claude-sonnet-4-6", "claude-haiku-4-5-20251001", "some-other-model"])
-def test_models_that_do_not_think_by_themselves_are_not_told_how(api, claude, model):
+def test_older_models_get_no_thinking_parameter(api, claude, model):
     claude.answer(ask(model=model))
     assert "thinking" not in api.requests[-1].body
 
@@ -94,7 +94,7 @@ def test_pictures_reach_the_model_alone_and_in_results(api, claude):
     assert alone["source"]["media_type"] == "image/png"
 
 
-def test_what_the_api_would_not_take_is_sent_so_that_it_does(api, claude):
+def test_invalid_content_is_adapted_to_the_api(api, claude):
     used = Message(
         "assistant", (Text(" \n"), ToolUse("t1", LOOK.name, {}), ToolUse("t2", "blender_execute", {}))
     )
@@ -139,7 +139,7 @@ def test_marks_stand_behind_tools_system_prompt_and_the_last_two_messages_of_the
     assert ["cache_control" in part for part in body["system"]] == [False, True]
 
 
-def test_tokens_and_cost_are_told_by_kind(api, claude):
+def test_tokens_and_cost_are_reported_by_kind(api, claude):
     api.answer = lambda params: Reply(
         input_tokens=1000, output_tokens=500, cache_read_tokens=20_000, cache_write_tokens=4000
     )
@@ -155,7 +155,7 @@ def test_a_model_without_a_known_price_has_no_cost_but_tokens(make_claude):
     assert priced.cost == pytest.approx(140e-6)
 
 
-def test_a_refusal_is_an_error_that_holds_what_was_said_and_why(api, claude):
+def test_a_refusal_keeps_the_text_and_the_reason(api, claude):
     why = {"type": "refusal", "category": "cyber", "explanation": "It asks for malware."}
     api.answer = lambda params: Reply("I would rather", stop_reason="refusal", stop_details=why)
     with pytest.raises(Refused, match=r"declined.*cyber: It asks for malware") as refused:
@@ -165,7 +165,7 @@ def test_a_refusal_is_an_error_that_holds_what_was_said_and_why(api, claude):
 
 
 @pytest.mark.parametrize("reason", ["max_tokens", "model_context_window_exceeded"])
-def test_an_answer_that_is_cut_off_keeps_what_is_whole(api, claude, reason):
+def test_a_cut_off_answer_keeps_its_complete_blocks(api, claude, reason):
     half = {**CALL, "id": "toolu_2", "input": '{"code": "import bp'}
     content = ({"type": "text", "text": "I begin."}, CALL, half)
     api.answer = lambda params: Reply(content=content, stop_reason=reason)
@@ -186,7 +186,7 @@ def test_unknown_blocks_are_kept(api, claude):
     assert claude.answer(ask()).content == (Kept(new), Text("Look."))
 
 
-def test_without_a_key_nothing_is_asked(monkeypatch):
+def test_a_missing_key_is_an_error(monkeypatch):
     with pytest.raises(Rejected, match="ANTHROPIC_API_KEY"):
         Claude()
     monkeypatch.setenv("ANTHROPIC_API_KEY", "sk\n-x")
@@ -195,7 +195,7 @@ def test_without_a_key_nothing_is_asked(monkeypatch):
 
 
 @pytest.mark.parametrize("url", ["ftp://somewhere", "http://", "http://[::1", "somewhere"])
-def test_an_address_that_is_none_is_told(url):
+def test_an_invalid_address_is_an_error(url):
     with pytest.raises(Rejected, match="address"):
         Claude(Settings(api_key="key", base_url=url))
 
@@ -210,14 +210,14 @@ def test_key_and_address_come_from_the_environment(api, monkeypatch):
     assert one.address.startswith(api.base_url)
 
 
-def test_a_request_that_is_none_is_told_once(api, claude):
+def test_an_invalid_request_is_not_retried(api, claude):
     with pytest.raises(Rejected, match=r"tools\.0") as rejected:
         claude.answer(ask(tools=(Tool("a tool", "", {}),)))
     assert rejected.value.status == 400
     assert len(api.requests) == 1
 
 
-def test_a_conversation_that_is_too_long_is_told_as_such(api, claude):
+def test_too_long_a_conversation_has_its_own_error(api, claude):
     body = '{"type": "error", "error": {"type": "invalid_request_error", "message": "prompt is too long: 2 > 1"}}'
     api.fail(MESSAGES, Status(400, body=body), Status(413))
     for _ in range(2):

@@ -9,12 +9,12 @@ from asks import LOOK, RUN, ask, png
 from fake_messages_api import Reply
 
 from simworlds.llm import tokens
-from simworlds.llm.context import GONE, Limits, fit
+from simworlds.llm.context import GONE, ContextLimits, fit
 from simworlds.llm.errors import TooLong
 from simworlds.llm.messages import Kept, Message, Picture, Text, ToolResult, ToolUse, user
 
 PLAN = "The plan: a table with twelve dominoes."
-SMALL = Limits(budget=8000, pictures=6, down_to=0.6, newest=2, long=400)
+SMALL = ContextLimits(budget=8000, pictures=6, down_to=0.6, newest=2, long=400)
 
 
 def exchange(number: int, *, words: int = 300, pictures: int = 0, thought: bool = False) -> list[Message]:
@@ -117,14 +117,14 @@ def test_the_newest_stay_whole_as_long_as_they_fit():
     assert SMALL.budget * SMALL.down_to < size(kept) <= SMALL.budget
 
 
-def test_what_cannot_be_made_to_fit_is_told():
+def test_a_conversation_that_cannot_fit_is_an_error():
     with pytest.raises(TooLong, match="does not fit into 8000 tokens"):
         fit([user("word " * 20_000)], SMALL)
     with pytest.raises(TooLong):
         fit(conversation(2), SMALL, frame=7999)
 
 
-def test_what_is_pinned_is_always_there_and_said_once():
+def test_pinned_texts_stay_and_are_not_repeated():
     findings = "Open: R12, Domino 7 floats."
     messages = [user("Build it."), *exchange(0), *(one for n in range(1, 80) for one in exchange(n, words=2))]
     messages[2] = user(*messages[2].content, findings)
@@ -155,7 +155,7 @@ def test_the_same_conversation_is_always_cut_the_same():
 def test_conversations_of_every_shape_stay_sound():
     chance = random.Random(3)
     for _ in range(40):
-        limits = Limits(
+        limits = ContextLimits(
             budget=chance.choice([6000, 9000, 20_000]),
             pictures=chance.choice([2, 8]),
             newest=chance.choice([0, 1, 4]),
@@ -194,7 +194,7 @@ def test_a_long_run_with_a_thinking_model_is_one_that_the_api_takes(api, claude)
         )
 
     api.answer = answer
-    limits = Limits(budget=3000, pictures=4, newest=2, long=300)
+    limits = ContextLimits(budget=3000, pictures=4, newest=2, long=300)
     frame = tokens.of_frame(ask().system, ask().tools)
     messages = (user("Build it."),)
     thoughts = []

@@ -43,7 +43,7 @@ def test_the_events_come_in_the_apis_order(api, client):
     ]
 
 
-def test_faults_of_a_stream_are_what_the_package_takes_them_for(api, client):
+def test_stream_faults_raise_the_packages_errors(api, client):
     api.fail(MESSAGES, StreamError(3), Truncate(300))
     with pytest.raises(anthropic.APIStatusError, match="Overloaded"):
         list(client.messages.create(**ASK, stream=True))
@@ -83,7 +83,7 @@ def test_conversations_that_the_api_would_not_take_are_not_taken(client, message
         client.messages.create(**{**ASK, "messages": sent})
 
 
-def test_thinking_is_bound_to_what_was_said_before_it(api, client):
+def test_thinking_is_bound_to_the_conversation_before_it(api, client):
     api.answer = lambda params: Reply(content=({"type": "thinking", "thinking": "Hm."},))
     said = client.messages.create(**ASK).content[0].to_dict()
     again = [*ASK["messages"], {"role": "assistant", "content": [said]}, {"role": "user", "content": "And?"}]

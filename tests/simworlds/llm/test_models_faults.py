@@ -30,7 +30,7 @@ from fake_messages_api import (
 from simworlds.llm.claude import Claude, Settings
 from simworlds.llm.errors import ModelError, OverBudget, Rejected, Unreachable
 from simworlds.llm.messages import Kept, Text, ToolUse, Usage
-from simworlds.llm.retries import Patience
+from simworlds.llm.retries import RetryPolicy
 from simworlds.llm.spending import Metered, Spending
 
 CONTENT = (
@@ -120,7 +120,7 @@ def stream_of(api) -> bytes:
     ],
     ids=str,
 )
-def test_what_passes_is_told_and_asked_again(api, claude, told, fault, told_of):
+def test_passing_faults_are_reported_and_retried(api, claude, told, fault, told_of):
     api.fail(MESSAGES, fault)
     heard: list[str] = []
     turn = claude.answer(ask(), heard.append)
@@ -146,14 +146,14 @@ def test_a_stream_may_break_at_any_byte(api, claude, told):
     assert len(told.retries) == len(cuts) > 100
 
 
-def test_a_stream_whose_last_byte_is_missing_is_whole_all_the_same(api, claude, told):
+def test_a_stream_without_its_last_byte_is_whole(api, claude, told):
     api.fail(MESSAGES, Truncate(len(stream_of(api)), clean=False))
     assert claude.answer(ask()).content == WHOLE
     assert told.retries == []
 
 
-def test_garbled_streams_give_a_turn_or_an_error_of_ours(api, make_claude):
-    claude = make_claude(patience=Patience(tries=1))
+def test_garbled_streams_give_a_turn_or_a_model_error(api, make_claude):
+    claude = make_claude(patience=RetryPolicy(tries=1))
     chance = random.Random(5)
     data = stream_of(api)
     turns = errors = 0
@@ -248,13 +248,13 @@ def test_unknown_events_and_what_follows_the_message_are_ignored(api, claude, to
         [START, {**BLOCK, "content_block": {"type": "tool_use"}}, STOP, END, LAST],
     ],
 )
-def test_events_that_make_no_message_are_no_answer(api, make_claude, events):
+def test_invalid_event_sequences_are_retried(api, make_claude, events):
     script(api, events, times=2)
     with pytest.raises(Unreachable, match=r"\(2 times in a row\)"):
-        make_claude(patience=Patience(tries=2)).answer(ask())
+        make_claude(patience=RetryPolicy(tries=2)).answer(ask())
 
 
-def test_a_server_that_is_never_well_is_given_up_after_ever_longer_pauses(api, make_claude, told):
+def test_a_failing_server_is_given_up_after_growing_pauses(api, make_claude, told):
     api.fail(MESSAGES, *[Status(529)] * 8)
     with pytest.raises(Unreachable, match=r"529 scripted 529 \(8 times in a row\)"):
         make_claude().answer(ask())
@@ -264,7 +264,7 @@ def test_a_server_that_is_never_well_is_given_up_after_ever_longer_pauses(api, m
         assert longest / 2 <= pause <= longest
 
 
-def test_nobody_at_the_address_is_given_up_soon(make_claude, told):
+def test_an_unreachable_address_is_given_up_soon(make_claude, told):
     claude = make_claude(base_url="http://127.0.0.1:9")
     with pytest.raises(Unreachable, match=r"127\.0\.0\.1:9.*refused.*3 times"):
         claude.answer(ask())
@@ -281,7 +281,7 @@ def test_nobody_at_the_address_is_given_up_soon(make_claude, told):
         ({"retry-after": "nan"}, 0.5, 1),
     ],
 )
-def test_a_server_is_left_alone_for_as_long_as_it_asks(api, claude, told, headers, least, most):
+def test_retry_after_seconds_are_respected(api, claude, told, headers, least, most):
     api.fail(MESSAGES, Status(429, headers))
     claude.answer(ask())
     assert least <= told.pauses[0] <= most
@@ -290,15 +290,15 @@ def test_a_server_is_left_alone_for_as_long_as_it_asks(api, claude, told, header
 @pytest.mark.parametrize(
     ("wait", "least", "most"), [(timedelta(seconds=90), 60, 92), (timedelta(days=-1), 0.5, 1)]
 )
-def test_a_server_is_left_alone_until_the_time_that_it_names(api, claude, told, wait, least, most):
+def test_retry_after_dates_are_respected(api, claude, told, wait, least, most):
     api.fail(MESSAGES, Status(429, {"retry-after": format_datetime(datetime.now(UTC) + wait)}))
     claude.answer(ask())
     assert least <= told.pauses[0] <= most
 
 
-def test_a_server_that_asks_for_too_long_is_given_up(api, claude, told):
+def test_too_long_a_retry_after_is_given_up(api, claude, told):
     api.fail(MESSAGES, Status(429, {"retry-after": "7200"}))
-    with pytest.raises(Unreachable, match="left alone for 7200 s"):
+    with pytest.raises(Unreachable, match="asks to wait 7200 s"):
         claude.answer(ask())
     assert told.pauses == []
 
@@ -317,7 +317,7 @@ def test_a_server_that_asks_for_too_long_is_given_up(api, claude, told):
         (StreamError(0, "permission_error", "Not you"), "Not you"),
     ],
 )
-def test_what_would_not_pass_is_an_error_at_once(api, claude, told, fault, says):
+def test_lasting_faults_are_errors_at_once(api, claude, told, fault, says):
     api.fail(MESSAGES, fault)
     with pytest.raises(Rejected, match=says):
         claude.answer(ask())
@@ -327,7 +327,7 @@ def test_what_would_not_pass_is_an_error_at_once(api, claude, told, fault, says)
 
 def test_silence_and_endless_answers_have_an_end(api, make_claude):
     api.fail(MESSAGES, Hang(20), Stall(700, 20))
-    quick = make_claude(silence=0.1, patience=Patience(tries=2))
+    quick = make_claude(silence=0.1, patience=RetryPolicy(tries=2))
     with pytest.raises(Unreachable, match="Timeout"):
         quick.answer(ask())
     clock = iter(range(0, 10**6, 1000))
@@ -335,15 +335,15 @@ def test_silence_and_endless_answers_have_an_end(api, make_claude):
     go.set()
     api.fail(MESSAGES, Stall(700, go=go))
     slow = Claude(
-        Settings("key", api.base_url, patience=Patience(tries=1)), clock=lambda: float(next(clock)) * 2
+        Settings("key", api.base_url, patience=RetryPolicy(tries=1)), clock=lambda: float(next(clock)) * 2
     )
     with pytest.raises(Unreachable, match="takes more than 1800 s"):
         slow.answer(ask())
     slow.close()
 
 
-def test_what_broken_attempts_used_is_counted(api, make_claude, told):
-    claude = make_claude(patience=Patience(tries=3))
+def test_usage_of_broken_attempts_is_counted(api, make_claude, told):
+    claude = make_claude(patience=RetryPolicy(tries=3))
     data = stream_of(api)
     api.fail(MESSAGES, Truncate(len(data) - 100), Status(529), Truncate(20))
     with pytest.raises(Unreachable) as unreachable:
@@ -359,7 +359,7 @@ def test_what_broken_attempts_used_is_counted(api, make_claude, told):
     assert turn.usage == Usage(100, 20)
 
 
-def test_a_limit_holds_for_what_is_asked_again_too(api, make_claude):
+def test_the_limit_includes_retries(api, make_claude):
     spending = Spending(max_cost=0.031)
     claude = Claude(Settings("key", api.base_url), spending.before_retry, pause=lambda seconds: None)
     api.answer = lambda params: Reply("x" * 20_000)
@@ -371,7 +371,7 @@ def test_a_limit_holds_for_what_is_asked_again_too(api, make_claude):
     assert spending.total().usage.output > 0
 
 
-def test_an_error_of_the_listener_is_his_own(api, claude, told):
+def test_errors_of_the_listener_are_not_retried(api, claude, told):
     def listen(text: str) -> None:
         raise OSError("the terminal is gone")
 
@@ -411,7 +411,7 @@ def test_ctrl_c_in_a_pause_is_not_taken_for_a_fault(api):
     assert len(api.requests) == 1
 
 
-def test_several_may_ask_at_once(api, claude):
+def test_several_threads_can_ask_at_once(api, claude):
     api.answer = lambda params: Reply(f"To {params['messages'][0]['content'][0]['text']}")
     said: dict[int, str] = {}
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asks import ask
 
-from simworlds.llm.errors import BadRecord, CutShort, Drifted, Refused, raise_for_stop
+from simworlds.llm.errors import CutShort, Drifted, Refused, UnreadableRecord, raise_for_stop
 from simworlds.llm.messages import Message, Text, ToolResult, ToolUse, user
 from simworlds.llm.recorded import Recorded
 from simworlds.llm.transcript import read_turn
@@ -104,10 +104,10 @@ def test_a_session_plays_turn_by_turn(session: Path):
         ("R12: Domino 7 floats, the Table stands.", "it should not contain: Table stands"),
     ],
 )
-def test_a_question_that_the_writer_did_not_expect_is_a_drift(session: Path, said, misfit):
+def test_an_unexpected_request_is_a_drift(session: Path, said, misfit):
     played = Recorded(session)
     played.answer(ask("Begin."))
-    with pytest.raises(Drifted, match=r"coder \(modeling\) asks something else than 03-fix\.md") as error:
+    with pytest.raises(Drifted, match=r"coder \(modeling\) is not the one that 03-fix\.md answers") as error:
         played.answer(ask("Begin.", Message("assistant", (Text("x"),)), said))
     assert misfit in str(error.value)
     assert said in str(error.value)
@@ -145,26 +145,26 @@ def test_an_answer_may_hold_lines_of_dashes_and_nothing_at_all():
     [
         ("role: coder\nHello", "no line of dashes"),
         ("stage: uv\n---\n", "whose turn"),
-        ("role: coder\nrole: planner\n---\n", "given twice"),
+        ("role: coder\nrole: planner\n---\n", "occurs twice"),
         ("role: coder\nexpects:\n---\n", "expects is empty"),
-        ("role: coder\nwants: x\n---\n", "'wants: x' is no line of a head"),
-        (BUILD + "---\n", "'dominoes' is no line of a head"),
+        ("role: coder\nwants: x\n---\n", "'wants: x' is not a line of a head"),
+        (BUILD + "---\n", "'dominoes' is not a line of a head"),
         ("role: coder\n---\n```python call run code\nx", "not closed"),
         ("role: coder\n---\n```python call run code more\nx\n```", "only one argument of run"),
         ("role: coder\n---\n```python call run 'code\nx\n```", "cannot be read"),
-        ("role: coder\n---\n```json call run\n{x}\n```", "no JSON"),
-        ("role: coder\n---\n```json call run\n[1]\n```", "no JSON object"),
+        ("role: coder\n---\n```json call run\n{x}\n```", "not valid JSON"),
+        ("role: coder\n---\n```json call run\n[1]\n```", "not a JSON object"),
     ],
 )
-def test_a_slip_of_the_pen_is_told_with_its_file(text, says):
-    with pytest.raises(BadRecord, match=says) as error:
+def test_mistakes_are_reported_with_their_file(text, says):
+    with pytest.raises(UnreadableRecord, match=says) as error:
         read_turn("07-x.md", text)
     assert str(error.value).startswith("07-x.md: ")
 
 
-def test_folders_without_turns_and_files_without_text_are_told(tmp_path: Path):
-    with pytest.raises(BadRecord, match="has no turns"):
+def test_empty_folders_and_unreadable_files_are_errors(tmp_path: Path):
+    with pytest.raises(UnreadableRecord, match="has no turns"):
         Recorded(tmp_path)
     (tmp_path / "01-x.md").write_bytes(b"\xff\xfe")
-    with pytest.raises(BadRecord, match="cannot be read"):
+    with pytest.raises(UnreadableRecord, match="cannot be read"):
         Recorded(tmp_path)

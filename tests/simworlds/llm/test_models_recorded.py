@@ -13,7 +13,7 @@ from asks import Scripted, ask, png
 from fake_messages_api import Reply
 
 from simworlds.llm.canonical import alike, form_of, normal
-from simworlds.llm.errors import BadRecord, CutShort, Drifted, Refused, Stopped
+from simworlds.llm.errors import CutShort, Drifted, Refused, Stopped, UnreadableRecord
 from simworlds.llm.messages import Kept, Message, Picture, Text, ToolResult, ToolUse, Turn, Usage, user
 from simworlds.llm.recorded import Recorded, Recording
 
@@ -42,7 +42,7 @@ FIRST = ask("Build a table.")
 SECOND = ask("Build a table.", USED, user(ToolResult("toolu_1", (Text("Done in 0.31 s."), Picture(png())))))
 
 
-def test_what_a_server_answered_plays_back_word_for_word(api, claude, tmp_path: Path):
+def test_recorded_answers_play_back_exactly(api, claude, tmp_path: Path):
     thought = {"type": "thinking", "thinking": "Hm.", "signature": "signed"}
     call = {"type": "tool_use", "id": "t1", "name": "blender_execute", "input": {"code": "print('ä')"}}
     api.answer = lambda params: Reply(content=(thought, call), stop_reason="tool_use")
@@ -58,7 +58,7 @@ def test_what_a_server_answered_plays_back_word_for_word(api, claude, tmp_path: 
     assert len(api.requests) == 1
 
 
-def test_the_question_is_written_down_before_it_is_asked_and_the_answer_before_it_is_used():
+def test_requests_and_answers_are_recorded_before_use():
     rows: list[str] = []
 
     class Watched:
@@ -143,7 +143,7 @@ def test_beyond_the_record_a_live_model_may_go_on():
     assert live.asked == [SECOND]
 
 
-def test_a_drifted_conversation_is_not_asked_of_the_live_model():
+def test_a_drifted_conversation_is_not_sent_to_the_live_model():
     live = Scripted(says("live"))
     with pytest.raises(Drifted):
         Recorded(record((FIRST, says("recorded"))), then=live).answer(ask("Build a chair."))
@@ -161,11 +161,11 @@ def test_a_drifted_conversation_is_not_asked_of_the_live_model():
         ),
     ],
 )
-def test_what_differs_from_run_to_run_does_not_count(other):
+def test_differences_between_runs_are_ignored(other):
     assert Recorded(record((SECOND, says("b")))).answer(other).text == "b"
 
 
-def test_a_drift_says_whose_turn_which_message_and_what_differs():
+def test_drift_errors_name_role_message_and_difference():
     played = Recorded(record((SECOND, says("b"))))
     code = "a = 1\nb = 3"
     other = ask("Build a table.", replace(USED, content=(ToolUse("t", "blender_execute", {"code": code}),)))
@@ -198,7 +198,7 @@ def test_every_part_of_a_request_counts(other, message):
     assert error.value.message == message
 
 
-def test_a_long_difference_is_told_short():
+def test_long_differences_are_shortened():
     long = "\n".join(f"line {number} " + "x" * 500 for number in range(200))
     with pytest.raises(Drifted) as error:
         Recorded(record((ask(long), says("b")))).answer(ask(long.replace("line", "row")))
@@ -224,7 +224,7 @@ def test_several_may_play_at_once():
     assert [turn.text for turn in turns] == [f"to s{number}" for number in range(20)]
 
 
-def test_a_torn_last_line_is_what_a_killed_writer_leaves(tmp_path: Path):
+def test_a_torn_last_line_is_ignored(tmp_path: Path):
     rows = record((FIRST, says("a")), (SECOND, says("b")))
     path = tmp_path / "journal.jsonl"
     lines = [json.dumps({"type": "stage.closed", "stage": "uv"}), *map(json.dumps, rows)]
@@ -243,12 +243,12 @@ def test_a_torn_last_line_is_what_a_killed_writer_leaves(tmp_path: Path):
         (['{"type": "model.answered", "n": 3, "turn": {"content": [{"type": "song"}]}}'], "row 1"),
     ],
 )
-def test_a_file_that_is_no_record_is_told(tmp_path: Path, lines, says_what):
+def test_an_invalid_record_is_an_error(tmp_path: Path, lines, says_what):
     path = tmp_path / "journal.jsonl"
     path.write_text("\n".join(lines))
-    with pytest.raises(BadRecord, match=f"(?s){says_what}"):
+    with pytest.raises(UnreadableRecord, match=f"(?s){says_what}"):
         Recorded(path)
-    with pytest.raises(BadRecord, match="cannot be read"):
+    with pytest.raises(UnreadableRecord, match="cannot be read"):
         Recorded(tmp_path / "nothing.jsonl")
 
 
@@ -271,7 +271,7 @@ def test_a_file_that_is_no_record_is_told(tmp_path: Path, lines, says_what):
         ("a  \r\nb\t", "a\nb"),
     ],
 )
-def test_what_is_volatile_is_named_not_shown(text, expected):
+def test_volatile_text_is_replaced_by_placeholders(text, expected):
     assert normal(text) == expected
 
 

@@ -31,7 +31,7 @@ def test_calls_are_counted_by_role_and_stage():
     assert (total.calls, total.cost, total.usage.prompt) == (4, pytest.approx(0.4), 40)
 
 
-def test_what_ended_badly_is_counted_too():
+def test_stopped_turns_are_counted():
     spending = Spending()
     lost = Unreachable("gone")
     lost.lost = Usage(1_000_000, 0)
@@ -81,13 +81,13 @@ def test_no_call_is_made_that_could_cost_more_than_is_left():
     metered.answer(ask())
 
 
-def test_a_limit_of_nothing_allows_nothing():
+def test_a_limit_of_zero_allows_no_call():
     with pytest.raises(OverBudget):
         Metered(Scripted(), Spending(max_cost=0)).answer(ask())
 
 
 @pytest.mark.parametrize("limit", [-1.0, float("nan")])
-def test_a_limit_that_is_none_is_told(limit):
+def test_an_invalid_limit_is_an_error(limit):
     with pytest.raises(ValueError, match="limit"):
         Spending(max_cost=limit)
 
@@ -100,7 +100,7 @@ def test_a_limit_cannot_be_kept_without_a_price():
     Metered(Scripted(turn()), priced).answer(ask(model="mine"))
 
 
-def test_calls_under_way_hold_what_they_might_cost():
+def test_running_calls_reserve_their_worst_case():
     worst = Spending().worst(ask()) or 0.0
     spending = Spending(max_cost=worst * 2.5)
     go, asked = threading.Event(), threading.Barrier(3)
@@ -160,7 +160,7 @@ def test_the_worst_case_is_never_less_than_the_cost():
 def test_prices_can_be_given_in_words():
     assert read_price("4/20") == Price(4, 20)
     for wrong in ("4", "4/20/3", "a/b", "-1/3", "nan/1", "inf/1", ""):
-        with pytest.raises(ValueError, match="no price"):
+        with pytest.raises(ValueError, match="not a price"):
             read_price(wrong)
 
 

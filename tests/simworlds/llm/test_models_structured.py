@@ -65,14 +65,14 @@ def test_of_several_that_fit_the_last_counts():
     [
         ("", "There is no JSON"),
         ("I would rather {not}.", "There is no JSON"),
-        ('{"decision": "advance",}', "It is no JSON: .* at line 1, near"),
-        ("{'decision': 'advance'}", "It is no JSON|There is no JSON"),
-        ('{"decision": "advance" // yes\n}', "It is no JSON"),
-        ('{"decision": "advance", "attempts": NaN}', "NaN is no number of JSON"),
-        ('{"decision": "advance", "decision": "retry"}', "'decision' is given twice"),
-        ('{"decision": "retry", "parts": [{"name": "a", ', "It is no JSON"),
-        ("[" * 100_000, "It is no JSON"),
-        ('{"decision": "abort"}', r"decision: Input should be 'advance' or 'retry' \(given: \"abort\"\)"),
+        ('{"decision": "advance",}', "It is not valid JSON: .* at line 1, near"),
+        ("{'decision': 'advance'}", "It is not valid JSON|There is no JSON"),
+        ('{"decision": "advance" // yes\n}', "It is not valid JSON"),
+        ('{"decision": "advance", "attempts": NaN}', "NaN is not a JSON number"),
+        ('{"decision": "advance", "decision": "retry"}', "'decision' occurs twice"),
+        ('{"decision": "retry", "parts": [{"name": "a", ', "It is not valid JSON"),
+        ("[" * 100_000, "It is not valid JSON"),
+        ('{"decision": "abort"}', r"decision: Input should be 'advance' or 'retry' \(it is \"abort\"\)"),
         ('{"decision": "retry", "attempts": "3"}', "attempts: Input should be a valid integer"),
         ('{"decision": "retry", "attempts": true}', "attempts: Input should be a valid integer"),
         ('{"decision": "retry", "attempts": 1.5}', "attempts"),
@@ -85,25 +85,25 @@ def test_of_several_that_fit_the_last_counts():
         ('{"decision": "\\ud800"}', "Invalid JSON"),
     ],
 )
-def test_what_does_not_fit_is_told_by_its_place(text, problem):
+def test_problems_name_their_place(text, problem):
     with pytest.raises(Misfit, match=problem) as misfit:
         read(text, fits(Decision))
     assert misfit.value.text == text
 
 
 def test_a_part_of_broken_json_is_not_taken_for_the_whole():
-    with pytest.raises(Misfit, match="It is no JSON"):
+    with pytest.raises(Misfit, match="It is not valid JSON"):
         read('{"plan": [oops], "inner": {"decision": "advance"}}', fits(Decision))
 
 
-def test_many_problems_are_told_in_part():
+def test_long_lists_of_problems_are_cut():
     text = json.dumps({"decision": "retry", "parts": [{"size": 1}] * 40})
     with pytest.raises(Misfit, match="… and 60 more") as misfit:
         read(text, fits(Decision))
     assert len(misfit.value.problems) == 21
 
 
-def test_the_model_is_told_what_is_wrong_until_it_fits():
+def test_the_model_gets_the_problems_until_its_answer_fits():
     model = Scripted(says("Sure!"), says('{"decision": "abort"}'), says(GOOD))
     found = ask_for(model, ask("Decide."), fits(Decision))
     assert (found.value.decision, found.tries, found.turn.text) == ("retry", 3, GOOD)
@@ -114,14 +114,14 @@ def test_the_model_is_told_what_is_wrong_until_it_fits():
     assert model.asked[0].messages == ask("Decide.").messages
 
 
-def test_a_model_that_does_not_learn_is_given_up():
+def test_a_model_that_never_fits_is_given_up():
     model = Scripted(*[says("No.")] * 5)
     with pytest.raises(Misfit, match="There is no JSON"):
         ask_for(model, ask("Decide."), fits(Decision), tries=2)
     assert len(model.asked) == 2
 
 
-def test_an_answer_that_was_cut_off_is_asked_for_shorter():
+def test_a_cut_off_answer_is_requested_shorter():
     cut = CutShort("cut", says('{"decision": "re'))
     model = Scripted(cut, says(GOOD))
     assert ask_for(model, ask("Decide."), fits(Decision)).tries == 2
