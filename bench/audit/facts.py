@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
-Where: TypeAlias = Literal["blend", "disk", "external"]
+CacheLocation: TypeAlias = Literal["blend", "disk", "external"]
 Topology: TypeAlias = Literal["open", "closed"]
-Way: TypeAlias = Literal["action", "nla", "driver"]
+AnimationSource: TypeAlias = Literal["action", "nla", "driver"]
 
 # What a modifier is called that simulates what it stands on.
 SOLVERS = ("CLOTH", "SOFT_BODY", "FLUID", "PARTICLE_SYSTEM", "DYNAMIC_PAINT")
@@ -34,7 +34,7 @@ class PointCache:
     outdated: bool
     frames: int
     expected: int
-    where: Where
+    where: CacheLocation
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +237,7 @@ class Channel:
     """
 
     path: str
-    way: Way
+    way: AnimationSource
     keys: int
     span: float
     generated: bool
@@ -253,7 +253,7 @@ class Constraint:
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class ObjectAtFrame:
     """An object at a frame, evaluated: the corners of its bounds in world space, its place and rotation (quaternion).
 
     Bounds are None for what has no extent.
@@ -290,7 +290,7 @@ class Object:
     faces: int
     islands: int
     topology: Topology | None
-    moments: tuple[Moment, ...]
+    moments: tuple[ObjectAtFrame, ...]
     modifiers: tuple[Modifier, ...]
     rigid_body: RigidBody | None
     rigid_constraint: RigidConstraint | None

@@ -11,7 +11,7 @@ from bench.blenderbench.published import OVERALL, PUBLISHED
 from bench.blenderbench.results import Score, read, read_run, records
 from bench.blenderbench.score import METRICS
 from bench.blenderbench.task_set import LEVELS
-from bench.markdown_tables import Table, table
+from bench.markdown_tables import Table, format_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -101,7 +101,7 @@ def as_markdown(found: Sequence[Results], *, published: bool = False) -> str:
         if any(row in one.rows for one in found)
     )
     notes = "\n".join(f"- {note}" for one in found for note in _notes(one))
-    return f"{table(Table('BlenderBench', head, body))}\n\n{notes}"
+    return f"{format_table(Table('BlenderBench', head, body))}\n\n{notes}"
 
 
 def as_data(found: Sequence[Results]) -> list[dict[str, Any]]:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bench.commands.system_options import of_systems, system_of, together
+from bench.commands.shared_options import blender_options, combine, judge_cache, with_audit_options
+from bench.commands.system_options import system_of, with_system_options
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 _PATH = click.Path(path_type=Path)
 
-_scoring = together(
+_scoring = combine(
     click.option(
         "--jobs",
         type=click.IntRange(1, 256),
@@ -64,26 +65,12 @@ _scoring = together(
         "--judge-max-cost", type=click.FloatRange(0), metavar="USD", help="For all scenes together."
     ),
     click.option("--judge-cache", type=_PATH, help="Folder of answers.  [default: in SimWorlds' own]"),
-    click.option(
-        "--seconds", default=120.0, show_default=True, help="How long the audit of a scene may take."
-    ),
-    click.option(
-        "--memory", default=4.0, show_default=True, help="How much memory a Blender may take (GiB)."
-    ),
-    click.option("--read", type=_PATH, multiple=True, help="A further folder that Blender may read."),
-    click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's."),
-    click.option(
-        "--blender-exe",
-        type=_PATH,
-        envvar="BLENDER_EXE",
-        show_envvar=True,
-        help="The Blender to use, if not bpy.",
-    ),
+    with_audit_options,
 )
 
 
 @click.command()
-@of_systems
+@with_system_options
 @click.option(
     "--scenes",
     multiple=True,
@@ -170,26 +157,18 @@ def _specs(names: Sequence[str], system: System) -> Any:
     from bench.scenes.spec import specs  # noqa: PLC0415 - not for --help
     from bench.sweep.scene_selection import chosen  # noqa: PLC0415
 
-    found = chosen(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
-    if not found:
+    specs_chosen = chosen(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
+    if not specs_chosen:
         raise click.UsageError("--scenes names no scene.")
-    return found
+    return specs_chosen
 
 
 def _how(given: dict[str, Any]) -> How:
-    from bench.audit.untrusted_blend import GIB, Means  # noqa: PLC0415
-    from bench.frames.clip_frames import Look  # noqa: PLC0415 - not for --help
+    from bench.frames.clip_frames import RenderQuality  # noqa: PLC0415 - not for --help
     from bench.sweep.sweep import How  # noqa: PLC0415
 
-    means = Means(
-        given["blender"],
-        given["blender_exe"],
-        given["seconds"],
-        int(given["memory"] * GIB),
-        tuple(folder.expanduser().resolve() for folder in given["read"]),
-    )
-    look = Look(_pixels(given["frame_size"]), given["frame_samples"])
-    return How(means, look, given["frames"] != "none", given["frames"] == "video")
+    look = RenderQuality(_pixels(given["frame_size"]), given["frame_samples"])
+    return How(blender_options(given), look, given["frames"] != "none", given["frames"] == "video")
 
 
 def _pixels(size: str) -> int:
@@ -201,9 +180,8 @@ def _pixels(size: str) -> int:
 
 def _judge(given: dict[str, Any]) -> Judge:
     from bench.sweep.judging import Judging, judge_of  # noqa: PLC0415 - not for --help
-    from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415
 
-    cache = given["judge_cache"] or cache_folder(home_folder()) / "judge"
+    cache = judge_cache(given["judge_cache"])
     who = (given["judge"], given["judge_model"], given["judge_url"], given["judge_max_cost"], cache)
     return judge_of(Judging(*who))
 
@@ -224,13 +202,13 @@ def _crew(given: dict[str, Any]) -> Crew:
 def _conclude(summaries: Sequence[Summary], out: Path) -> None:
     from bench.sweep.sweep_view import plain  # noqa: PLC0415 - not for --help
 
-    for one in summaries:
-        click.echo(f"{_counted(one.asked, 'scene')}: {one.scored} scored, {one.judged} judged")
-        for why, count in sorted(one.why_not_scored.items(), key=lambda item: -item[1]):
+    for summary in summaries:
+        click.echo(f"{_counted(summary.asked, 'scene')}: {summary.scored} scored, {summary.judged} judged")
+        for why, count in sorted(summary.why_not_scored.items(), key=lambda item: -item[1]):
             click.echo(f"  {count} not scored: {plain(why)}")
-        for why, count in sorted(one.why_not_judged.items(), key=lambda item: -item[1]):
+        for why, count in sorted(summary.why_not_judged.items(), key=lambda item: -item[1]):
             click.echo(f"  {count} not judged: {plain(why)}")
-    faults = [fault for one in summaries for fault in one.faults]
+    faults = [fault for summary in summaries for fault in summary.faults]
     for scene, why in faults:
         click.echo(f"  {scene} could not be done: {plain(why)}", err=True)
     click.echo(f"Tables and page: simworlds bench report {out}")

@@ -50,17 +50,17 @@ def validate(scenes: str, properties: str, jobs: int, output: Path | None, again
 
     asked, chosen = _properties(properties), _scenes(scenes)
     tasks = [Task(spec, asked, again) for spec in chosen]
-    found: dict[str, Done] = {}
+    done_by_scene: dict[str, Done] = {}
     started = time.monotonic()
     click.echo(f"{len(tasks)} scenes, {', '.join(asked)}", err=True)
     try:
         for done in prove_all(tasks, jobs):
-            found[done.scene] = done
-            click.echo(_line(done, len(found), len(tasks), time.monotonic() - started), err=True)
+            done_by_scene[done.scene] = done
+            click.echo(_line(done, len(done_by_scene), len(tasks), time.monotonic() - started), err=True)
     except KeyboardInterrupt:
         click.echo("Interrupted. What was proven is kept; the same command goes on from there.", err=True)
         sys.exit(130)
-    proofs = [proof for spec in chosen for proof in found[spec.id].proofs]
+    proofs = [proof for spec in chosen for proof in done_by_scene[spec.id].proofs]
     try:
         path = write_report(proofs, output)
     except OSError as error:
@@ -75,12 +75,12 @@ def validate(scenes: str, properties: str, jobs: int, output: Path | None, again
 
 
 def _properties(names: str) -> tuple[Property, ...]:
-    given = [name.strip() for name in names.split(",") if name.strip()]
-    if unknown := [name for name in given if name not in PROPERTIES]:
+    requested = [name.strip() for name in names.split(",") if name.strip()]
+    if unknown := [name for name in requested if name not in PROPERTIES]:
         raise click.BadParameter(
             f"{', '.join(unknown)}: there are {', '.join(PROPERTIES)}", param_hint="--properties"
         )
-    return tuple(name for name in PROPERTIES if name in given)
+    return tuple(name for name in PROPERTIES if name in requested)
 
 
 def _scenes(names: str) -> tuple[Spec, ...]:
@@ -98,14 +98,12 @@ def _scenes(names: str) -> tuple[Spec, ...]:
 
 
 def _line(done: Done, number: int, count: int, seconds: float) -> str:
-    told = "  ".join(
+    results = "  ".join(
         f"{proof.about} {'unable' if proof.unable else _MARKS[proof.holds]}" for proof in done.proofs
     )
     built = f", built in {done.built:.0f} s" if done.built >= 1 else ""
     spent = "kept" if done.kept == len(done.proofs) else f"{done.proven:.0f} s"
-    return (
-        f"[{seconds:4.0f} s] {number:>{len(str(count))}}/{count} {done.scene:<15} {told}   ({spent}{built})"
-    )
+    return f"[{seconds:4.0f} s] {number:>{len(str(count))}}/{count} {done.scene:<15} {results}   ({spent}{built})"
 
 
 def _faults(proofs: Sequence[Proof]) -> list[str]:

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from bench.judge.errors import NotJudged, Reason
-from bench.judge.usage import Spent, Usage
+from bench.judge.usage import AnswerCost, TokenUsage
 from simworlds.llm.errors import CutShort, Misfit, ModelError, OverBudget, Refused, Rejected, Unreachable
 from simworlds.llm.spending import Metered, Spending
 from simworlds.llm.structured import ask_for
 
 if TYPE_CHECKING:
-    from bench.judge.providers import Provider
+    from bench.judge.providers import JudgeProvider
     from simworlds.llm.messages import Ask
     from simworlds.llm.structured import Reader
 
@@ -30,22 +30,22 @@ _REASONS: tuple[tuple[type[ModelError], Reason], ...] = (
 
 
 @dataclass(frozen=True, slots=True)
-class Answered(Generic[T]):
+class JudgeAnswer(Generic[T]):
     """The answer, the model that gave it (as the provider names it), and the cost of all attempts."""
 
     value: T
     by: str
-    spent: Spent
+    spent: AnswerCost
 
 
-def asked(provider: Provider, ask: Ask, reader: Reader[T]) -> Answered[T]:
+def ask_judge(provider: JudgeProvider, ask: Ask, reader: Reader[T]) -> JudgeAnswer[T]:
     """Asks a question; an invalid answer goes back with its faults, up to TRIES times in all. Raises NotJudged."""
     spending = Spending(prices=provider.prices)
     try:
-        found = ask_for(Metered(provider, spending), ask, reader, tries=TRIES)
+        reply = ask_for(Metered(provider, spending), ask, reader, tries=TRIES)
     except ModelError as error:
-        raise NotJudged(_reason(error), _words(error), _spent(spending)) from error
-    return Answered(found.value, found.turn.model, _spent(spending))
+        raise NotJudged(_reason(error), _describe(error), _spent(spending)) from error
+    return JudgeAnswer(reply.value, reply.turn.model, _spent(spending))
 
 
 def _reason(error: ModelError) -> Reason:
@@ -55,13 +55,13 @@ def _reason(error: ModelError) -> Reason:
     return "unreachable"
 
 
-def _words(error: ModelError) -> str:
+def _describe(error: ModelError) -> str:
     if isinstance(error, Misfit):
         return f"All {TRIES} answers were invalid. The last: {' '.join(str(error).split())}"[:600]
     return str(error)
 
 
-def _spent(spending: Spending) -> Spent:
+def _spent(spending: Spending) -> AnswerCost:
     row = spending.total()
-    usage = Usage(input=row.usage.prompt, output=row.usage.output, cached=row.usage.cache_read)
-    return Spent(usage=usage, cost=None if row.unpriced else row.cost)
+    usage = TokenUsage(input=row.usage.prompt, output=row.usage.output, cached=row.usage.cache_read)
+    return AnswerCost(usage=usage, cost=None if row.unpriced else row.cost)

@@ -11,7 +11,7 @@ class _Part(BaseModel):
     model_config = ConfigDict(frozen=True)
 
 
-class Check(_Part):
+class CheckRow(_Part):
     """See ``bench.audit.audit.Checked``."""
 
     predicate: str
@@ -21,7 +21,7 @@ class Check(_Part):
     seen: dict[str, Any] = {}
 
 
-class Actor(_Part):
+class ActorRow(_Part):
     """See ``bench.audit.audit.ActorAudit``."""
 
     name: str
@@ -29,11 +29,11 @@ class Actor(_Part):
     outcome: str
     by: str = ""
     evidence: dict[str, Any] = {}
-    checks: tuple[Check, ...] = ()
+    checks: tuple[CheckRow, ...] = ()
     score: float | None = None
 
 
-class Moment(_Part):
+class RelationMomentRow(_Part):
     """See ``bench.audit.spr.At``."""
 
     when: str
@@ -42,7 +42,7 @@ class Moment(_Part):
     seen: dict[str, Any] = {}
 
 
-class Relation(_Part):
+class RelationRow(_Part):
     """See ``bench.audit.spr.Related``."""
 
     type: str
@@ -50,13 +50,13 @@ class Relation(_Part):
     b: str
     outcome: Literal["holds", "does not hold", "not scored"]
     why: str = ""
-    moments: tuple[Moment, ...] = ()
+    moments: tuple[RelationMomentRow, ...] = ()
 
 
 class AuditFile(_Part):
     """See ``bench.audit.audit.Audit``."""
 
-    actors: tuple[Actor, ...] = ()
-    relations: tuple[Relation, ...] = ()
-    assertions: tuple[Check, ...] = ()
+    actors: tuple[ActorRow, ...] = ()
+    relations: tuple[RelationRow, ...] = ()
+    assertions: tuple[CheckRow, ...] = ()
     blend: dict[str, Any] = {}

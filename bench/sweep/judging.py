@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.judge.errors import NotJudged
 from bench.judge.judge import judge
-from bench.judge.providers import Provider, provider_of
+from bench.judge.providers import JudgeProvider, provider_of
 from bench.judge.questions import prompt_version
 from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file
 from bench.sweep.provenance import code_of
@@ -50,7 +50,7 @@ class Judge:
     """Who judges a sweep, or several of them under one limit; or ``why`` nobody does."""
 
     judging: Judging
-    provider: Provider | None
+    provider: JudgeProvider | None
     why: str = ""
 
 
@@ -125,7 +125,7 @@ def _no_frames(record: Record) -> str:
     return f"no frames: {(record.framed.why if record.framed is not None else None) or 'none were taken'}"
 
 
-def _key(task: Task, judging: Judging, provider: Provider, frames: str) -> str:
+def _key(task: Task, judging: Judging, provider: JudgeProvider, frames: str) -> str:
     return digest_of(
         {
             "prompt": task.spec.prompt,
@@ -137,7 +137,9 @@ def _key(task: Task, judging: Judging, provider: Provider, frames: str) -> str:
     )
 
 
-def _judged(task: Task, provider: Provider, frames: Sequence[Path], cache: Path | None, key: str) -> Judged:
+def _judged(
+    task: Task, provider: JudgeProvider, frames: Sequence[Path], cache: Path | None, key: str
+) -> Judged:
     began = time.monotonic()
     try:
         found = judge(

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from bench.audit.untrusted_blend import Means
-from bench.frames.clip_frames import Look
+from bench.audit.untrusted_blend import BlenderOptions
+from bench.frames.clip_frames import RenderQuality
 from bench.sweep.provenance import provenance
 from bench.sweep.records import Record, read_record, write_record
 from bench.sweep.steps import STEPS
@@ -42,8 +42,8 @@ class Task:
     spec: Spec
     system: System
     folder: Path
-    means: Means = field(default_factory=Means)
-    look: Look = field(default_factory=Look)
+    means: BlenderOptions = field(default_factory=BlenderOptions)
+    look: RenderQuality = field(default_factory=RenderQuality)
     steps: tuple[str, ...] = tuple(STEPS)
     from_video: bool = True
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from bench.frames.clip_frames import Taken
+    from bench.frames.clip_frames import FrameSet
     from bench.sweep.records import Record
     from bench.sweep.records import Step as Part
     from bench.sweep.scene_task import Task, Tell
@@ -180,7 +180,7 @@ def _video(task: Task, record: Record) -> Path | None:
     return path if path.is_file() and (task.is_static or kind_of(path) == "video") else None
 
 
-def _taken(task: Task, blend: Path, video: Path | None) -> Taken:
+def _taken(task: Task, blend: Path, video: Path | None) -> FrameSet:
     """Of the video; where that cannot be had, of the .blend. Raises NotScored."""
     folder = task.folder / FRAMES
     means = replace(task.means, seconds=max(task.means.seconds, SECONDS))

@@ -22,8 +22,8 @@ from bench.sweep.systems.system import NotReady
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from bench.audit.untrusted_blend import Means
-    from bench.frames.clip_frames import Look
+    from bench.audit.untrusted_blend import BlenderOptions
+    from bench.frames.clip_frames import RenderQuality
     from bench.scenes.spec import Spec
     from bench.sweep.sweep_view import View
     from bench.sweep.systems.system import System
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 class How:
     """How scenes are scored, whatever the system: see Task."""
 
-    means: Means
-    look: Look
+    means: BlenderOptions
+    look: RenderQuality
     frames: bool = True
     from_video: bool = True
 

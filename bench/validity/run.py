@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from multiprocessing import active_children, get_context
 from typing import TYPE_CHECKING
 
-from bench.audit.untrusted_blend import Means, NotScored
+from bench.audit.untrusted_blend import BlenderOptions, NotScored
 from bench.references.reference_scenes import CannotBuild, build, has_reference
 from bench.scenes.spec import specs
 from bench.validity.proof import Proof
@@ -141,7 +141,7 @@ def _tell(doing: str) -> None:
 def _proofs(spec: Spec, blend: Path, properties: Sequence[Property], key: str) -> Iterator[Proof]:
     if not properties:
         return
-    with Desk(spec, blend, Means(seconds=_SECONDS)) as desk:
+    with Desk(spec, blend, BlenderOptions(seconds=_SECONDS)) as desk:
         for each in properties:
             _tell(f"{spec.id}: {each}")
             proof = prove_on(desk, each)

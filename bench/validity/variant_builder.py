@@ -16,15 +16,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.audit.actors import find_actors
-from bench.audit.audit import audit, audit_of, audited, read_scene
-from bench.audit.untrusted_blend import AUDITOR, Crashed, Means, Untrusted
+from bench.audit.audit import audit, audit_of, audit_scene, read_scene
+from bench.audit.untrusted_blend import AUDITOR, BlenderOptions, Crashed, UntrustedBlend
 from simworlds.sandbox.program import Program
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
-    from bench.audit.actors import Found
+    from bench.audit.actors import ActorResolution
     from bench.audit.audit import Audit
     from bench.audit.facts import Scene
     from bench.scenes.spec import Spec
@@ -48,16 +48,16 @@ class Reading:
     """A file without its relations: facts, actors, and the audit of their predicates."""
 
     scene: Scene
-    found: dict[str, Found]
+    found: dict[str, ActorResolution]
     audit: Audit
 
 
 class Desk:
     """To be used in a ``with``. What it makes is gone afterwards."""
 
-    def __init__(self, spec: Spec, blend: Path, means: Means | None = None) -> None:
+    def __init__(self, spec: Spec, blend: Path, means: BlenderOptions | None = None) -> None:
         self.spec, self.blend = spec, blend.resolve()
-        means = means or Means()
+        means = means or BlenderOptions()
         self._means = replace(means, read=(*means.read, self.blend.parent))
 
     def __enter__(self) -> Desk:
@@ -69,8 +69,8 @@ class Desk:
         for beside in self.blend.parent.iterdir():
             if beside.is_dir():
                 (self.folder / beside.name).symlink_to(beside)
-        self._auditor = _Session(lambda path: Untrusted(path, self._means))
-        self._workshop = _Session(lambda path: Untrusted(path, self._means, _PROGRAM, self.folder))
+        self._auditor = _Session(lambda path: UntrustedBlend(path, self._means))
+        self._workshop = _Session(lambda path: UntrustedBlend(path, self._means, _PROGRAM, self.folder))
         self._stack.callback(self._auditor.close)
         self._stack.callback(self._workshop.close)
         return self
@@ -122,7 +122,7 @@ class Desk:
         """What a variant is, without its relations. Raises NotScored, CannotStart."""
         scene = read_scene(self._auditor.opened(path), play=True)
         found = find_actors(self.spec, scene)
-        return Reading(scene, found, audited(self.spec, scene, found))
+        return Reading(scene, found, audit_scene(self.spec, scene, found))
 
     def audit(self, path: Path) -> Audit:
         """The whole audit of a variant, by the Blender that has read the others. Raises NotScored, CannotStart."""
@@ -137,11 +137,11 @@ class Desk:
 class _Session:
     """A Blender that opens one file after the other."""
 
-    def __init__(self, start: Callable[[Path], Untrusted]) -> None:
+    def __init__(self, start: Callable[[Path], UntrustedBlend]) -> None:
         self._start, self._stack = start, ExitStack()
-        self._file: Untrusted | None = None
+        self._file: UntrustedBlend | None = None
 
-    def opened(self, path: Path) -> Untrusted:
+    def opened(self, path: Path) -> UntrustedBlend:
         """The Blender with that file open: the one that there is, unless it has crashed. Raises NotScored."""
         if self._file is not None:
             try:

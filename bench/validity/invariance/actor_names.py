@@ -10,14 +10,14 @@ from bench.audit.roles import UNMARKED
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from bench.audit.actors import Found
+    from bench.audit.actors import ActorResolution
     from bench.audit.facts import Scene
     from bench.scenes.spec import Spec
 
 _STANDING = (*UNMARKED, "collider", "rigid_passive")
 
 
-def cast_of(spec: Spec, scene: Scene, found: Mapping[str, Found]) -> list[dict[str, Any]]:
+def cast_of(spec: Spec, scene: Scene, found: Mapping[str, ActorResolution]) -> list[dict[str, Any]]:
     """Each actor that was found: its name, its last synonym, whether nothing simulates it, its objects by unit.
 
     ``parts``: what else belongs to what stands still by contact, as legs to a table top.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench.audit.untrusted_blend import NotScored, Refused
+from bench.audit.untrusted_blend import JobRefused, NotScored
 from bench.validity.invariance.actor_names import cast_of
 from bench.validity.proof import Row
 
@@ -34,7 +34,7 @@ def prove(desk: Desk) -> Iterator[Row]:
         try:
             path, _ = desk.make(guise, "guise", guise=guise, cast=cast)
             after = desk.audit(path)
-        except Refused as error:
+        except JobRefused as error:
             yield Row(name=guise, holds=None, why=str(error))
         except NotScored as error:
             yield Row(name=guise, holds=False, why=str(error))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING, Any
 
-from bench.audit.untrusted_blend import NotScored, Refused
+from bench.audit.untrusted_blend import JobRefused, NotScored
 from bench.validity.mutations.planning import Result, aims, checks_of, judge
 from bench.validity.proof import Row
 
@@ -37,7 +37,7 @@ def prove(desk: Desk) -> Iterator[Row]:
             )
             result = judge(aim, desk.reading, desk.read(path).audit, changed)
         except NotScored as error:
-            spared = aim.sabotage.optional and isinstance(error, Refused)
+            spared = aim.sabotage.optional and isinstance(error, JobRefused)
             yield _row(aim, None if spared else False, str(error))
             continue
         broken.add(aim.place)

@@ -10,8 +10,8 @@ from bench.validity.mutations.catalogue import SABOTAGES
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from bench.audit.actors import Found
-    from bench.audit.audit import Audit, Checked
+    from bench.audit.actors import ActorResolution
+    from bench.audit.audit import Audit, CheckResult
     from bench.audit.facts import Object, Scene
     from bench.validity.mutations.catalogue import Follows, Sabotage, Who
     from bench.validity.variant_builder import Reading
@@ -46,7 +46,7 @@ class Aim:
         return f"{self.place.told} by {self.sabotage.told}"
 
 
-def checks_of(audit: Audit) -> dict[Place, Checked]:
+def checks_of(audit: Audit) -> dict[Place, CheckResult]:
     """All checks of an audit, by place."""
     found = {
         Place(actor.name, number, check.predicate): check
@@ -57,7 +57,7 @@ def checks_of(audit: Audit) -> dict[Place, Checked]:
     return found
 
 
-def aims(audit: Audit, found: Mapping[str, Found]) -> Iterator[Aim]:
+def aims(audit: Audit, found: Mapping[str, ActorResolution]) -> Iterator[Aim]:
     """The sabotages of every check that passes in a scene."""
     for place, check in checks_of(audit).items():
         if check.outcome != "passed":
@@ -75,7 +75,7 @@ def aims(audit: Audit, found: Mapping[str, Found]) -> Iterator[Aim]:
 
 
 def _objects(
-    sabotage: Sabotage, check: Checked, own: Found | None, found: Mapping[str, Found]
+    sabotage: Sabotage, check: CheckResult, own: ActorResolution | None, found: Mapping[str, ActorResolution]
 ) -> Iterator[tuple[str, ...]]:
     """The objects to change: several choices where there are several partners, each of which counts."""
     if own is None or sabotage.on == "scene":
@@ -91,11 +91,11 @@ def _objects(
         yield tuple(one.name for unit in own.units[: _enough(check)] for one in unit.objects)
 
 
-def _of_actor(one: Found) -> tuple[str, ...]:
+def _of_actor(one: ActorResolution) -> tuple[str, ...]:
     return tuple(name for unit in one.units for name in sorted(unit.names))
 
 
-def _enough(check: Checked) -> int:
+def _enough(check: CheckResult) -> int:
     """How many units must be broken for the check to fail, whichever they are: no more, so that each of them counts."""
     if check.wanted == "must_not_have" or "needed" not in check.seen:
         return 1
@@ -147,7 +147,7 @@ class _Touched:
     def _of(self, objects: set[str]) -> set[str]:
         return {name for name, one in self._found.items() if any(unit.names & objects for unit in one.units)}
 
-    def reaches(self, follows: Follows, place: Place, check: Checked) -> bool:
+    def reaches(self, follows: Follows, place: Place, check: CheckResult) -> bool:
         """Whether a check may flip for that reason."""
         if place.predicate not in follows.predicates:
             return False

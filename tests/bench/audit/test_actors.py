@@ -8,8 +8,8 @@ import pytest
 from in_blender import facts_of
 
 from bench.audit.actors import find_actors
-from bench.audit.audit import Audit, audited, check_predicates
-from bench.audit.names import match, words_of
+from bench.audit.audit import Audit, audit_scene, check_predicates
+from bench.audit.names import match_name, words_of
 from bench.scenes.spec import BadSpec, Spec
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def spec(**changed: Any) -> Spec:
 
 def result(scene: Scene, asked: Spec | None = None) -> Audit:
     asked = asked or spec()
-    return audited(asked, scene, find_actors(asked, scene))
+    return audit_scene(asked, scene, find_actors(asked, scene))
 
 
 def failed(found: Audit) -> dict[str, list[str]]:
@@ -206,14 +206,14 @@ def test_a_name_is_cut_into_words(name: str, words: tuple[str, ...]) -> None:
     ],
 )
 def test_a_name_speaks_of_what_its_last_noun_says(name: str, better: str, worse: str) -> None:
-    first, second = match(name, [better]), match(name, [worse])
+    first, second = match_name(name, [better]), match_name(name, [worse])
     assert first is not None
     assert second is None or first > second
 
 
 def test_part_of_a_word_is_no_match() -> None:
-    assert match("stablecloth", ["table", "cloth"]) is None
-    assert match("carpet", ["car", "pet"]) is None
+    assert match_name("stablecloth", ["table", "cloth"]) is None
+    assert match_name("carpet", ["car", "pet"]) is None
 
 
 @pytest.mark.parametrize(

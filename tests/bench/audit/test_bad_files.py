@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from in_blender import HERE, run
 
 from bench.audit import untrusted_blend
-from bench.audit.audit import Audit, audit, opened
-from bench.audit.untrusted_blend import GIB, Means, NotScored, Untrusted
+from bench.audit.audit import Audit, audit, open_scene
+from bench.audit.untrusted_blend import GIB, BlenderOptions, NotScored, UntrustedBlend
 from bench.scenes.spec import read_spec
 from simworlds.cli import main
 from simworlds.sandbox.program import Program
@@ -63,7 +63,7 @@ def state(folder: Path) -> dict[str, tuple[int, int]]:
     return {str(path): (path.stat().st_mtime_ns, path.stat().st_size) for path in found}
 
 
-def audited(name: str, files: Path, spec: Spec, means: Means | None = None) -> Audit:
+def audited(name: str, files: Path, spec: Spec, means: BlenderOptions | None = None) -> Audit:
     """The audit of a file; nothing beside it is written, and nothing in it executed."""
     before = state(files)
     found = audit(files / f"{name}.blend", spec, means)
@@ -80,7 +80,7 @@ def outcomes(found: Audit) -> dict[str, str]:
 
 
 def scene_of(path: Path) -> Scene:
-    with opened(path, None, lambda _: None) as (_, scene):
+    with open_scene(path, None, lambda _: None) as (_, scene):
         return scene
 
 
@@ -188,12 +188,15 @@ def test_a_file_of_a_newer_blender_is_not_scored_and_names_it(
 
 
 def test_more_objects_than_can_be_looked_at_are_not_scored(files: Path) -> None:
-    with Untrusted(files / "good.blend") as file, pytest.raises(NotScored, match="has 2 objects; at most 1"):
+    with (
+        UntrustedBlend(files / "good.blend") as file,
+        pytest.raises(NotScored, match="has 2 objects; at most 1"),
+    ):
         file.ask("facts", play=True, most=1, doing="reading")
 
 
 def test_a_file_that_needs_too_much_memory_is_not_scored(files: Path, spec: Spec) -> None:
-    found = audited("heavy", files, spec, Means(memory=GIB // 2))
+    found = audited("heavy", files, spec, BlenderOptions(memory=GIB // 2))
     said = "Blender ended while reading it: it ran out of memory, of which it may have 0.5 GB"
     assert (found.not_scored or "").startswith(said)
 
@@ -217,7 +220,7 @@ def test_a_blender_that_misbehaves_over_a_file_ends_the_matter(
     shutil.copy(files / "good.blend", tmp_path / f"{name}.blend")
     packages = {**untrusted_blend.AUDITOR.packages, "bad": HERE}
     monkeypatch.setattr(untrusted_blend, "AUDITOR", Program("bad.bad_entry", packages))
-    assert said in (audit(tmp_path / f"{name}.blend", spec, Means(seconds=3)).not_scored or "")
+    assert said in (audit(tmp_path / f"{name}.blend", spec, BlenderOptions(seconds=3)).not_scored or "")
 
 
 # The command

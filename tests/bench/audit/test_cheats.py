@@ -8,7 +8,7 @@ import pytest
 from in_blender import facts_of
 
 from bench.audit.predicates.catalogue import PREDICATES
-from bench.audit.predicates.predicate import Stage, Unit
+from bench.audit.predicates.predicate import AuditContext, Unit
 
 if TYPE_CHECKING:
     from bench.audit.facts import Scene
@@ -52,7 +52,7 @@ def holds(predicate: str, scene: Scene) -> bool:
     unit = Unit(tuple(one for one in scene.objects if one.name == "Thing"), "rigid_active")
     assert unit.objects
     row = PREDICATES[predicate]
-    return row.judge(unit, Stage(scene), row.read({})).outcome == "passed"
+    return row.judge(unit, AuditContext(scene), row.read({})).outcome == "passed"
 
 
 @pytest.mark.parametrize("name", RECORDED)

@@ -12,9 +12,9 @@ from places import REPO
 
 from bench.audit.actors import find_actors
 from bench.audit.audit import audit, read_scene
-from bench.audit.relations import KINDS
+from bench.audit.relations import RELATIONS
 from bench.audit.spr import judge_relations
-from bench.audit.untrusted_blend import Untrusted
+from bench.audit.untrusted_blend import UntrustedBlend
 from bench.scenes.spec import RelationType, Spec
 
 if TYPE_CHECKING:
@@ -172,17 +172,17 @@ def outcomes(told: dict[str, Any], scene: str, number: int = 0) -> list[str]:
 
 
 def test_the_reference_of_relations_is_up_to_date() -> None:
-    from docs.generate.benchmark_pages import RELATIONS
+    from docs.generate.benchmark_pages import RELATIONS_FILE
     from docs.generate.benchmark_pages import relations as reference
 
-    assert (REPO / "docs" / RELATIONS).read_text(encoding="utf-8") == reference()
+    assert (REPO / "docs" / RELATIONS_FILE).read_text(encoding="utf-8") == reference()
 
 
 def test_every_type_is_defined_and_tried_both_ways() -> None:
     tried = {(case[0].partition(":")[0], case[3]) for case in (*SPECIMENS, *BEHIND, *NOBODY)}
-    assert set(KINDS) == set(RelationType.__args__)
-    assert tried == {(kind, holds) for kind in KINDS for holds in (True, False)}
-    assert all(len(kind.definition) > 40 for kind in KINDS.values())
+    assert set(RELATIONS) == set(RelationType.__args__)
+    assert tried == {(kind, holds) for kind in RELATIONS for holds in (True, False)}
+    assert all(len(kind.definition) > 40 for kind in RELATIONS.values())
 
 
 @pytest.mark.parametrize("number", range(len(SPECIMENS)), ids=[" ".join(case[:3]) for case in SPECIMENS])
@@ -295,7 +295,7 @@ def _tuples(told: list[dict[str, Any]]) -> list[dict[str, Any]]:
 @pytest.mark.usefixtures("told")
 def test_a_blender_that_ends_while_it_measures_leaves_relations_unscored(place: Path) -> None:
     asked = Spec.model_validate(ASKED["baked"][0])
-    with Untrusted(place / "baked.blend") as file:
+    with UntrustedBlend(place / "baked.blend") as file:
         scene = read_scene(file, play=True)
     found = judge_relations(asked, scene, find_actors(asked, scene), file)
     assert [one.outcome for one in found] == ["not scored"]

@@ -14,15 +14,15 @@ from PIL import Image
 
 from bench.audit.untrusted_blend import NotScored
 from bench.frames import video
-from bench.frames.clip_frames import Look, frames_of, take_frames
+from bench.frames.clip_frames import RenderQuality, frames_of, take_frames
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from bench.frames.clip_frames import Taken
+    from bench.frames.clip_frames import FrameSet
 
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
-SMALL = Look(pixels=64 * 36, samples=1)
+SMALL = RenderQuality(pixels=64 * 36, samples=1)
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-def taken(name: str, files: Path, folder: Path, *, static: bool = False) -> Taken:
+def taken(name: str, files: Path, folder: Path, *, static: bool = False) -> FrameSet:
     """The frames of a file; nothing is written beside it."""
     before = sorted(files.iterdir())
     found = take_frames(files / f"{name}.blend", static, folder, SMALL)

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from written_results import Written
 
     from bench.markdown_tables import Table
-    from bench.results.figures import Figure
+    from bench.results.figures import MacroAverage
     from bench.results.scores import Metric
 
 
-def figure(results: Written, metric: Metric, category: str = OVERALL) -> Figure:
+def figure(results: Written, metric: Metric, category: str = OVERALL) -> MacroAverage:
     return figures_of(results.read().systems[0])[metric][category]
 
 

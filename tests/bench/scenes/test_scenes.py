@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import yaml
 
-from bench.audit.names import match
+from bench.audit.names import match_name
 from bench.audit.predicates.catalogue import PREDICATES
 from bench.scenes.levels import level_of
 from bench.scenes.spec import FOLDER, BadSpec, Spec, read_spec, spec_of, specs
@@ -58,7 +58,7 @@ def test_every_phrase_for_an_actor_leads_to_that_actor(name: str):
     spec = spec_of(name)
     for one in spec.actors:
         for phrase in (one.name, *one.synonyms):
-            found = {other.name: match(phrase, (other.name, *other.synonyms)) for other in spec.actors}
+            found = {other.name: match_name(phrase, (other.name, *other.synonyms)) for other in spec.actors}
             best = max((hit, who) for who, hit in found.items() if hit is not None)
             assert best[1] == one.name, phrase
 

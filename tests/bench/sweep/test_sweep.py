@@ -14,8 +14,8 @@ from processes_below import all_end, below
 from sweeping import CHEAP, SCENES, content, record, scores, written
 
 from agents.blender.run_folder import locked
-from bench.audit.untrusted_blend import Means
-from bench.frames.clip_frames import Look
+from bench.audit.untrusted_blend import BlenderOptions
+from bench.frames.clip_frames import RenderQuality
 from bench.sweep.executor import LocalCrew
 from bench.sweep.records import SystemInfo, read_record, write_record
 from bench.sweep.scene_selection import chosen
@@ -178,7 +178,7 @@ def test_a_sweep_that_is_ended_leaves_whole_records_and_no_process_and_goes_on(
 
 
 def test_what_befalls_one_scene_costs_only_that_one(made: Path, tmp_path: Path) -> None:
-    how = How(Means(), Look(), frames=False)
+    how = How(BlenderOptions(), RenderQuality(), frames=False)
     system = Folder(SystemInfo(name="theirs", kind="folder"), made)
     tasks = tasks_of(system, chosen(["cloth_D1_01", "cloth_D1_03"]), tmp_path, how)
 

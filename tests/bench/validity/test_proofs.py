@@ -12,7 +12,7 @@ import pytest
 from small_specs import DRAPE, POUR, ROOM, STILL, spec_like
 
 from bench.audit.predicates.catalogue import PREDICATES
-from bench.audit.predicates.predicate import Verdict
+from bench.audit.predicates.predicate import PredicateVerdict
 from bench.audit.untrusted_blend import Crashed
 from bench.validity import variant_builder as desks
 from bench.validity.invariance.actor_names import cast_of
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.audit.predicates.predicate import Params, Stage, Unit
+    from bench.audit.predicates.predicate import AuditContext, PredicateParams, Unit
     from bench.validity.proof import Proof
 
 pytestmark = pytest.mark.blender
@@ -134,16 +134,16 @@ def test_every_sabotage_is_seen_and_nothing_else_is(drape: Desk, pour: Desk, roo
         assert {*asked, *(check.predicate for check in desk.spec.assertions)} <= broken
 
 
-def always(unit: Unit, stage: Stage, params: Params) -> Verdict:
+def always(unit: Unit, stage: AuditContext, params: PredicateParams) -> PredicateVerdict:
     del unit, stage, params
-    return Verdict("passed", {})
+    return PredicateVerdict("passed", {})
 
 
-def if_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
+def if_baked(unit: Unit, stage: AuditContext, params: PredicateParams) -> PredicateVerdict:
     """Lets a thing be seen only where all cloth of the scene is baked, which has nothing to do with it."""
     del unit, params
     cloths = [one.cloth for each in stage.scene.objects for one in each.modifiers if one.cloth]
-    return Verdict("passed" if all(cloth.cache.is_baked for cloth in cloths) else "failed", {})
+    return PredicateVerdict("passed" if all(cloth.cache.is_baked for cloth in cloths) else "failed", {})
 
 
 def test_a_predicate_that_always_passes_is_found_out(drape: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
