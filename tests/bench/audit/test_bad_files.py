@@ -101,30 +101,30 @@ def test_a_file_without_a_camera_is_scored_and_the_same_on_every_run(files: Path
 @pytest.mark.parametrize(
     ("name", "told"), [("script_on_load", "text start.py"), ("python_driver", "driver of Table")]
 )
-def test_what_would_run_is_told_and_not_run(name: str, told: str, files: Path, spec: Spec) -> None:
+def test_scripts_are_reported_and_not_run(name: str, told: str, files: Path, spec: Spec) -> None:
     found = audited(name, files, spec)
     assert (found.mpr, found.blend["scripts_not_run"]) == (1.0, [told])
 
 
-def test_a_bake_elsewhere_than_the_clip_does_not_count(files: Path, spec: Spec) -> None:
+def test_a_bake_outside_the_clip_does_not_count(files: Path, spec: Spec) -> None:
     found = outcomes(audited("other_frames", files, spec))
     assert found["tablecloth: cloth_cache_baked"] == "failed"
     assert found["tablecloth: cloth_modifier"] == "passed"
 
 
-def test_unbaked_physics_is_told_and_looked_at_where_it_starts(files: Path, spec: Spec) -> None:
+def test_unbaked_physics_is_reported_and_read_at_the_start(files: Path, spec: Spec) -> None:
     assert audited("unbaked", files, spec).blend["unplayed"] == "unbaked: cloth of Tablecloth"
     scene = scene_of(files / "unbaked.blend")
     assert [len(named(scene, name).moments) for name in ("Tablecloth", "Table")] == [1, 3]
 
 
-def test_a_missing_library_is_told_and_the_rest_is_scored(files: Path, spec: Spec) -> None:
+def test_a_missing_library_is_reported_and_the_rest_is_scored(files: Path, spec: Spec) -> None:
     found = audited("missing_library", files, spec)
     assert found.blend["missing_libraries"] == ["//library.blend"]
     assert outcomes(found)["tablecloth: cloth_cache_baked"] == "passed"
 
 
-def test_a_million_instances_are_looked_at_in_part(files: Path, spec: Spec) -> None:
+def test_of_a_million_instances_only_some_are_read(files: Path, spec: Spec) -> None:
     assert audited("many_instances", files, spec).mpr == 1.0
 
 
@@ -134,7 +134,7 @@ def test_a_cache_on_disk_counts_while_its_files_are_there(files: Path, spec: Spe
     assert outcomes(audited("on_disk", tmp_path, spec))["tablecloth: cloth_cache_baked"] == "failed"
 
 
-def test_a_fluid_plays_from_a_cache_that_lies_beside_the_file_and_not_where_it_says(files: Path) -> None:
+def test_a_fluid_plays_from_a_cache_that_moved_with_the_file(files: Path) -> None:
     before = state(files)
     here, moved = scene_of(files / "fluid.blend"), scene_of(files / "moved" / "fluid.blend")
     assert state(files) == before
@@ -170,7 +170,9 @@ def test_half_of_a_file_is_not_scored(files: Path, spec: Spec, tmp_path: Path) -
 @pytest.mark.parametrize(
     ("content", "said"), [(None, "no such file"), (b"", "it is empty"), (b"PK\x03\x04 a zip", "not a .blend")]
 )
-def test_what_is_no_blend_is_not_scored(content: bytes | None, said: str, spec: Spec, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_blend_is_not_scored(
+    content: bytes | None, said: str, spec: Spec, tmp_path: Path
+) -> None:
     path = tmp_path / "scene.blend"
     if content is not None:
         path.write_bytes(content)
@@ -187,7 +189,7 @@ def test_a_file_of_a_newer_blender_is_not_scored_and_names_it(
     assert "Blender 9.5" in (found.not_scored or "")
 
 
-def test_more_objects_than_can_be_looked_at_are_not_scored(files: Path) -> None:
+def test_a_scene_with_too_many_objects_is_not_scored(files: Path) -> None:
     with (
         UntrustedBlend(files / "good.blend") as file,
         pytest.raises(NotScored, match="has 2 objects; at most 1"),
@@ -214,7 +216,7 @@ def test_a_file_that_needs_too_much_memory_is_not_scored(files: Path, spec: Spec
         ("ends", "ended while opening it: it was ended from inside, with exit code 3"),
     ],
 )
-def test_a_blender_that_misbehaves_over_a_file_ends_the_matter(
+def test_a_file_over_which_blender_misbehaves_is_not_scored(
     name: str, said: str, files: Path, spec: Spec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shutil.copy(files / "good.blend", tmp_path / f"{name}.blend")
@@ -226,21 +228,21 @@ def test_a_blender_that_misbehaves_over_a_file_ends_the_matter(
 # The command
 
 
-def test_the_command_prints_what_was_seen(files: Path, spec_file: Path) -> None:
+def test_the_command_prints_checks_and_scores(files: Path, spec_file: Path) -> None:
     done = CliRunner().invoke(main, ["bench", "audit", str(files / "good.blend"), "--scene", str(spec_file)])
     assert done.exit_code == 0
     assert "✓ cloth_cache_baked" in done.output
     assert "MPR 1.000" in done.output
 
 
-def test_the_command_tells_why_a_file_is_not_scored(spec_file: Path, tmp_path: Path) -> None:
+def test_the_command_says_why_a_file_is_not_scored(spec_file: Path, tmp_path: Path) -> None:
     words = ["bench", "audit", str(tmp_path / "none.blend"), "--scene", str(spec_file), "--json"]
     done = CliRunner().invoke(main, words)
     assert done.exit_code == 2
     assert json.loads(done.stdout)["not_scored"] == "there is no such file"
 
 
-def test_a_wrong_scene_is_an_error_that_names_the_near_ones(files: Path) -> None:
+def test_an_unknown_scene_is_an_error_with_suggestions(files: Path) -> None:
     done = CliRunner().invoke(main, ["bench", "audit", str(files / "good.blend"), "--scene", "cloth_D1_1"])
     assert done.exit_code == 2
     assert "Did you mean cloth_D1_01" in done.stderr

@@ -134,14 +134,14 @@ def judge(name: str, scene: Scene) -> PredicateVerdict:
 
 @pytest.mark.blender
 @pytest.mark.parametrize("name", PREDICATES)
-def test_it_holds_until_what_it_looks_at_is_taken_away(name: str, scenes: dict[str, Scene]) -> None:
+def test_a_predicate_holds_until_its_cause_is_removed(name: str, scenes: dict[str, Scene]) -> None:
     whole, broken = judge(name, scenes[name]), judge(name, scenes[f"{name}/broken"])
     assert (whole.outcome, broken.outcome) == ("passed", "failed"), (whole.seen, broken.seen)
 
 
 @pytest.mark.blender
 @pytest.mark.parametrize("name", PREDICATES)
-def test_a_change_ends_only_what_it_must(name: str, scenes: dict[str, Scene]) -> None:
+def test_a_change_ends_only_the_predicates_that_follow(name: str, scenes: dict[str, Scene]) -> None:
     same = [other for other in ASKED if ASKED[other][0] == ASKED[name][0] and other != name]
     held = {other for other in same if judge(other, scenes[name]).outcome == "passed"}
     ended = {other for other in held if judge(other, scenes[f"{name}/broken"]).outcome == "failed"}
@@ -149,7 +149,7 @@ def test_a_change_ends_only_what_it_must(name: str, scenes: dict[str, Scene]) ->
 
 
 @pytest.mark.blender
-def test_what_is_seen_is_json_with_the_values_that_decided(scenes: dict[str, Scene]) -> None:
+def test_seen_values_are_json_and_include_the_deciding_ones(scenes: dict[str, Scene]) -> None:
     seen = judge("fluid_cache_baked", scenes["fluid_cache_baked/broken"]).seen["domains"][0]
     assert seen["baked"] == ["data", "noise", "mesh", "particles", "guide"]
     assert seen["on_disk"]["mesh"][2] < 5
@@ -168,7 +168,7 @@ def test_a_cache_that_ends_before_the_clip_is_not_baked_over_it(scenes: dict[str
 
 
 @pytest.mark.blender
-def test_what_should_flow_and_does_not_is_in_no_domain(scenes: dict[str, Scene]) -> None:
+def test_an_actor_of_a_flow_role_without_a_flow_is_in_no_domain(scenes: dict[str, Scene]) -> None:
     scene = scenes["fluid"]
     paddle = next(one for one in scene.objects if one.name == "Paddle")
     still = replace(paddle, modifiers=())
@@ -184,13 +184,13 @@ def test_what_should_flow_and_does_not_is_in_no_domain(scenes: dict[str, Scene])
 
 
 @pytest.mark.blender
-def test_particles_that_are_born_late_need_no_cache_before(scenes: dict[str, Scene]) -> None:
+def test_particles_need_no_cache_before_their_birth(scenes: dict[str, Scene]) -> None:
     late = judge("particle_cache_baked", scenes["particles"])
     assert (late.outcome, late.seen["caches"][0]["cache_range"]) == ("passed", [4, 12])
 
 
 @pytest.mark.blender
-def test_a_gust_blows_that_begins_with_no_strength(scenes: dict[str, Scene]) -> None:
+def test_a_force_field_with_animated_strength_counts(scenes: dict[str, Scene]) -> None:
     gust = next(one for one in scenes["particles"].objects if one.name == "Gust")
     assert gust.force is not None
     assert gust.force.strength == 0
