@@ -40,7 +40,7 @@ _DIGITS = 6
 
 
 class BlenderQuery(Protocol):
-    """A file in its Blender, as ``bench.audit.untrusted_blend.Untrusted`` is."""
+    """A file in its Blender, as ``bench.audit.untrusted_blend.UntrustedBlend`` is."""
 
     def ask(self, job: str, *, doing: str, **arguments: Any) -> Any:
         """What Blender answers. Raises NotScored."""

@@ -12,7 +12,7 @@ class _Part(BaseModel):
 
 
 class CheckRow(_Part):
-    """See ``bench.audit.audit.Checked``."""
+    """See ``bench.audit.audit.CheckResult``."""
 
     predicate: str
     wanted: Literal["must_have", "must_not_have"]
@@ -34,7 +34,7 @@ class ActorRow(_Part):
 
 
 class RelationMomentRow(_Part):
-    """See ``bench.audit.spr.At``."""
+    """See ``bench.audit.spr.RelationMoment``."""
 
     when: str
     unit: str
@@ -43,7 +43,7 @@ class RelationMomentRow(_Part):
 
 
 class RelationRow(_Part):
-    """See ``bench.audit.spr.Related``."""
+    """See ``bench.audit.spr.RelationResult``."""
 
     type: str
     a: str
