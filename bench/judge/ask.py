@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from pydantic import BaseModel
 
 from bench.judge.errors import NotJudged, Reason
 from bench.judge.usage import AnswerCost, TokenUsage
 from simworlds.llm.errors import CutShort, Misfit, ModelError, OverBudget, Refused, Rejected, Unreachable
 from simworlds.llm.spending import Metered, Spending
-from simworlds.llm.structured import ask_for
+from simworlds.llm.structured import ask_for, fits
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
     from bench.judge.providers import JudgeProvider
     from simworlds.llm.messages import Ask
     from simworlds.llm.structured import Reader
 
 T = TypeVar("T")
+M = TypeVar("M", bound=BaseModel)
 TRIES = 3
 """Attempts at a valid answer."""
 _REASONS: tuple[tuple[type[ModelError], Reason], ...] = (
@@ -46,6 +51,20 @@ def ask_judge(provider: JudgeProvider, ask: Ask, reader: Reader[T]) -> JudgeAnsw
     except ModelError as error:
         raise NotJudged(_reason(error), _describe(error), _spent(spending)) from error
     return JudgeAnswer(reply.value, reply.turn.model, _spent(spending))
+
+
+def checked_reader(shape: type[M], find_faults: Callable[[M], Iterable[str]]) -> Reader[M]:
+    """Accepts data of that shape in which ``find_faults`` finds none."""
+    read = fits(shape)
+
+    def reader(data: Any) -> tuple[M | None, Sequence[object]]:
+        value, misfits = read(data)
+        if value is None:
+            return None, misfits
+        faults = list(find_faults(value))
+        return (None, faults) if faults else (value, [])
+
+    return reader
 
 
 def _reason(error: ModelError) -> Reason:

@@ -13,18 +13,17 @@ from pydantic import BaseModel, ConfigDict
 
 from bench.judge.anchor_words import content_stems
 from bench.judge.answer_cache import key_of
-from bench.judge.ask import ask_judge
+from bench.judge.ask import ask_judge, checked_reader
 from bench.judge.dimensions import CHECKLISTS, Dimension, dimensions
 from bench.judge.questions import Enumeration, Named, enumeration, prompt_version
 from bench.judge.usage import AnswerCost
-from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from typing import Any
 
     from bench.judge.answer_cache import AnswerCache
     from bench.judge.providers import JudgeProvider
+    from simworlds.llm.structured import Reader
 
 MOST = 40
 """Items of one list; the longest prompt names half as many."""
@@ -90,18 +89,9 @@ def one_line(text: str) -> str:
     return " ".join("".join(char if char.isprintable() else " " for char in text).split())
 
 
-def items_reader(prompt: str, *, static: bool) -> Any:
+def items_reader(prompt: str, *, static: bool) -> Reader[Enumeration]:
     """Accepts an Enumeration whose items the prompt supports."""
-    read = fits(Enumeration)
-
-    def reader(data: Any) -> tuple[Enumeration | None, Sequence[object]]:
-        enumeration, misfits = read(data)
-        if enumeration is None:
-            return None, misfits
-        faults = list(_faults(enumeration, prompt, static=static))
-        return (None, faults) if faults else (enumeration, [])
-
-    return reader
+    return checked_reader(Enumeration, lambda enumeration: _faults(enumeration, prompt, static=static))
 
 
 def _numbered(enumeration: Enumeration, *, static: bool) -> tuple[PromptItem, ...]:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from statistics import fmean
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict, NonNegativeFloat, computed_field
 
+from bench.judge.ask import checked_reader
 from bench.judge.questions import Verdict, Verdicts
 from bench.judge.usage import AnswerCost, TokenUsage
-from simworlds.llm.structured import Reader, fits
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
+
+    from simworlds.llm.structured import Reader
 
 _DIGITS = 6
 _LONGEST_EVIDENCE = 1000
@@ -80,16 +82,7 @@ class CachedVerdicts(BaseModel):
 
 def verdicts_reader(ids: Collection[str], frames: int) -> Reader[Verdicts]:
     """Accepts exactly one verdict for each item, with evidence in existing frames."""
-    read = fits(Verdicts)
-
-    def reader(data: Any) -> tuple[Verdicts | None, Sequence[object]]:
-        verdicts, misfits = read(data)
-        if verdicts is None:
-            return None, misfits
-        faults = list(_faults(verdicts, ids, frames))
-        return (None, faults) if faults else (verdicts, [])
-
-    return reader
+    return checked_reader(Verdicts, lambda verdicts: _faults(verdicts, ids, frames))
 
 
 def _faults(verdicts: Verdicts, ids: Collection[str], frames: int) -> Iterator[str]:

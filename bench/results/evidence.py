@@ -13,10 +13,10 @@ import math
 import warnings
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from PIL import Image
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from bench.judge.verdicts import Judgement
 from bench.results.audit_file import AuditFile
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from bench.results.scores import SceneResult
     from bench.sweep.records import File
 
+M = TypeVar("M", bound=BaseModel)
 _WIDTH = 480  # pixels of a frame on the page
 _QUALITY = 74
 _MOST_PIXELS = 20_000_000
@@ -105,8 +106,8 @@ class Evidence:
 def evidence_of(scene: SceneResult) -> Evidence:
     """Reads the evidence of a scene."""
     record = scene.record
-    audit = _audit(scene.folder, record.audited.file if record.audited is not None else None)
-    judgement = _judgement(scene.folder, record.judged.file if record.judged is not None else None)
+    audit = _load(scene.folder, record.audited.file if record.audited is not None else None, AuditFile)
+    judgement = _load(scene.folder, record.judged.file if record.judged is not None else None, Judgement)
     judged = record.judged is not None and record.judged.why is None
     return Evidence(
         frames=tuple(_frames(scene)),
@@ -241,18 +242,11 @@ def _judged_parts(judgement: Judgement) -> Iterator[EvidencePart]:
 # Files
 
 
-def _audit(folder: Path, file: File | None) -> AuditFile | None:
+def _load(folder: Path, file: File | None, shape: type[M]) -> M | None:
+    """A JSON file of the results; None if it is missing or invalid."""
     content = _read_file(folder, file)
     try:
-        return AuditFile.model_validate_json(content) if content is not None else None
-    except ValidationError:
-        return None
-
-
-def _judgement(folder: Path, file: File | None) -> Judgement | None:
-    content = _read_file(folder, file)
-    try:
-        return Judgement.model_validate_json(content) if content is not None else None
+        return shape.model_validate_json(content) if content is not None else None
     except ValidationError:
         return None
 
