@@ -20,20 +20,23 @@ class Table:
     note: str = ""
 
 
-def table(one: Table) -> str:
+def format_table(table: Table) -> str:
     """The Markdown of a table, aligned in its source too."""
-    columns = list(zip(one.header, *one.rows, strict=True))
+    columns = list(zip(table.header, *table.rows, strict=True))
     widths = [max(3, *(_width(cell) for cell in column)) for column in columns]
     right = [all(_is_number(cell) for cell in column[1:]) and len(column) > 1 for column in columns]
-    lines = [_line(one.header, widths, right)]
+    lines = [_line(table.header, widths, right)]
     lines.append(
         "|"
-        + "|".join(f"{'-' * (w + 1)}{':' if r else '-'}" for w, r in zip(widths, right, strict=True))
+        + "|".join(
+            f"{'-' * (width + 1)}{':' if to_right else '-'}"
+            for width, to_right in zip(widths, right, strict=True)
+        )
         + "|"
     )
-    lines += [_line(row, widths, right) for row in one.rows]
-    text = f"## {one.title}\n\n" + "\n".join(lines)
-    return f"{text}\n\n{one.note}" if one.note else text
+    lines += [_line(row, widths, right) for row in table.rows]
+    text = f"## {table.title}\n\n" + "\n".join(lines)
+    return f"{text}\n\n{table.note}" if table.note else text
 
 
 def _line(cells: Sequence[str], widths: Sequence[int], right: Sequence[bool]) -> str:

@@ -13,7 +13,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.markdown_tables import Table, table
+from bench.markdown_tables import Table, format_table
 from measurements.setting import REPO, brief
 from measurements.targets import TARGETS, format_value
 
@@ -71,11 +71,11 @@ def markdown(parts: Sequence[ReportPart], facts: Mapping[str, str]) -> str:
     blocks = ["# SimWorlds, measured", _facts(facts)]
     figures = [figure for part in parts for figure in part.figures]
     if figures:
-        blocks.append(table(targets_table(figures)))
+        blocks.append(format_table(targets_table(figures)))
         if _BUSY in facts.get("machine", ""):
             blocks.append("**The machine was busy at the start: times are longer than on an idle one.**")
     for part in parts:
-        blocks += [table(each) for each in part.tables]
+        blocks += [format_table(each) for each in part.tables]
     skipped = [f"- {part.name}: {reason}" for part in parts for reason in part.skipped]
     if skipped:
         blocks.append("## Not measured\n\n" + "\n".join(skipped))

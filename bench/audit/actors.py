@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from bench.audit.facts import GEOMETRY
-from bench.audit.names import Match, match
+from bench.audit.names import NameMatch, match_name
 from bench.audit.predicates.predicate import Unit
 from bench.audit.roles import UNMARKED, plays
 
@@ -21,166 +21,179 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from bench.audit.facts import Collection, Object, Scene
-    from bench.scenes.spec import Actor, Spec
+    from bench.scenes.spec import Spec, SpecActor
 
 Outcome = Literal["resolved", "ambiguous", "missing"]
-By = Literal["name", "collection", "hints", ""]
-_BODIES = (*GEOMETRY, "EMPTY", "ARMATURE", "LATTICE")
-_SHOWN = 12
+ResolvedBy = Literal["name", "collection", "hints", ""]
+_ACTOR_TYPES = (*GEOMETRY, "EMPTY", "ARMATURE", "LATTICE")
+_MOST_NAMED = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class ActorResolution:
     """How an actor was found. If it is ambiguous, the units are all candidates."""
 
-    actor: Actor
+    actor: SpecActor
     outcome: Outcome
     units: tuple[Unit, ...] = ()
-    by: By = ""
+    by: ResolvedBy = ""
     evidence: dict[str, Any] = field(default_factory=dict[str, Any])
 
     @property
-    def told_apart(self) -> bool:
+    def can_be_judged(self) -> bool:
         """Whether it can be judged: it is resolved, or ambiguous with a role that marks its candidates."""
         return self.outcome == "resolved" or (self.outcome == "ambiguous" and self.actor.role not in UNMARKED)
 
 
-def find_actors(spec: Spec, scene: Scene) -> dict[str, Found]:
+def find_actors(spec: Spec, scene: Scene) -> dict[str, ActorResolution]:
     """Every actor of a spec, in its order."""
-    cast = _Cast(spec, scene)
-    found = {actor.name: one for actor in spec.actors if (one := cast.by_name(actor)) is not None}
-    found = {name: _with_domain(one, scene, cast, found) for name, one in found.items()}
-    found |= _by_hints([actor for actor in spec.actors if actor.name not in found], scene, cast, found)
-    return {actor.name: found[actor.name] for actor in spec.actors}
+    ownership = _Ownership(spec, scene)
+    resolutions = {
+        actor.name: resolution
+        for actor in spec.actors
+        if (resolution := ownership.by_name(actor)) is not None
+    }
+    resolutions = {
+        name: _add_domain(resolution, scene, ownership, resolutions)
+        for name, resolution in resolutions.items()
+    }
+    resolutions |= _by_hints(
+        [actor for actor in spec.actors if actor.name not in resolutions], scene, ownership, resolutions
+    )
+    return {actor.name: resolutions[actor.name] for actor in spec.actors}
 
 
-class _Cast:
+class _Ownership:
     """Which actor owns each object, as far as names say."""
 
     def __init__(self, spec: Spec, scene: Scene) -> None:
         self._spec = spec
-        self.objects = {one.name: one for one in scene.objects}
-        self.collections = {one.name: one for one in scene.collections}
+        self.objects = {obj.name: obj for obj in scene.objects}
+        self.collections = {collection.name: collection for collection in scene.collections}
         self.children: dict[str, list[str]] = {}
-        for one in scene.objects:
-            if one.parent is not None:
-                self.children.setdefault(one.parent, []).append(one.name)
+        for obj in scene.objects:
+            if obj.parent is not None:
+                self.children.setdefault(obj.parent, []).append(obj.name)
         self.emitters: dict[str, list[str]] = {}
-        for one in scene.objects:
-            for shown in self._shown_by_particles(one):
-                self.children.setdefault(one.name, []).append(shown)
-                self.emitters.setdefault(shown, []).append(one.name)
-        self.below: dict[str, list[str]] = {}
-        for each in scene.collections:
-            if each.parent is not None:
-                self.below.setdefault(each.parent, []).append(each.name)
-        self._objects_said = {
-            one.name: said for one in scene.objects if (said := self._said_of(one)) is not None
+        for obj in scene.objects:
+            for name in self._particle_objects(obj):
+                self.children.setdefault(obj.name, []).append(name)
+                self.emitters.setdefault(name, []).append(obj.name)
+        self.subcollections: dict[str, list[str]] = {}
+        for collection in scene.collections:
+            if collection.parent is not None:
+                self.subcollections.setdefault(collection.parent, []).append(collection.name)
+        self._object_matches = {
+            obj.name: match for obj in scene.objects if (match := self._match_of(obj)) is not None
         }
-        self._collections_said = {
-            each.name: said for each in scene.collections if (said := self._best(each.name)) is not None
+        self._collection_matches = {
+            collection.name: match
+            for collection in scene.collections
+            if (match := self._best(collection.name)) is not None
         }
-        self.owners = {one.name: owner for one in scene.objects if (owner := self._owner(one)) is not None}
+        self.owners = {obj.name: owner for obj in scene.objects if (owner := self._owner(obj)) is not None}
 
-    def _best(self, name: str) -> tuple[Match, str] | None:
+    def _best(self, name: str) -> tuple[NameMatch, str] | None:
         """The actor that a name fits best, with how well it fits."""
-        best: tuple[Match, str] | None = None
+        best: tuple[NameMatch, str] | None = None
         for actor in self._spec.actors:
-            found = match(name, (actor.name, *actor.synonyms))
-            if found is not None and (best is None or found > best[0]):
-                best = found, actor.name
+            match = match_name(name, (actor.name, *actor.synonyms))
+            if match is not None and (best is None or match > best[0]):
+                best = match, actor.name
         return best
 
-    def _said_of(self, one: Object) -> tuple[Match, str] | None:
+    def _match_of(self, obj: Object) -> tuple[NameMatch, str] | None:
         """The actor by an object's name; else by the name of what it or its particles instance, or of its data."""
-        if not one.in_scene or one.type not in _BODIES:
+        if not obj.in_scene or obj.type not in _ACTOR_TYPES:
             return None
-        names = (one.name, one.instances, *self._named_by_particles(one), one.data)
-        return next((said for name in names if name and (said := self._best(name)) is not None), None)
+        names = (obj.name, obj.instances, *self._particle_instances(obj), obj.data)
+        return next((match for name in names if name and (match := self._best(name)) is not None), None)
 
-    def _named_by_particles(self, one: Object) -> Iterator[str]:
+    def _particle_instances(self, obj: Object) -> Iterator[str]:
         """Names of the objects or collections that its particles are shown as."""
-        for modifier in one.of_type("PARTICLE_SYSTEM"):
+        for modifier in obj.of_type("PARTICLE_SYSTEM"):
             if modifier.particles is not None and modifier.particles.instance is not None:
                 yield modifier.particles.instance
 
-    def _shown_by_particles(self, one: Object) -> Iterator[str]:
+    def _particle_objects(self, obj: Object) -> Iterator[str]:
         """Names of the objects that its particles are shown as."""
-        for name in self._named_by_particles(one):
-            each = self.collections.get(name)
-            yield from (each.objects if each is not None and name not in self.objects else (name,))
+        for name in self._particle_instances(obj):
+            collection = self.collections.get(name)
+            yield from (
+                collection.objects if collection is not None and name not in self.objects else (name,)
+            )
 
-    def _owner(self, one: Object) -> str | None:
+    def _owner(self, obj: Object) -> str | None:
         seen = set[str]()
-        here: Object | None = one
+        here: Object | None = obj
         while here is not None and here.name not in seen:
             seen.add(here.name)
-            said = self._objects_said.get(here.name)
-            if said is not None and said[0].quality > 1:
-                return said[1]
+            match = self._object_matches.get(here.name)
+            if match is not None and match[0].quality > 1:
+                return match[1]
             owner = self._owner_by_collection(here)
             if owner is not None:
                 return owner
-            if said is not None:
-                return said[1]
+            if match is not None:
+                return match[1]
             here = self.objects.get(here.parent) if here.parent is not None else None
         return None
 
-    def _owner_by_collection(self, one: Object) -> str | None:
-        for name in one.collections:
+    def _owner_by_collection(self, obj: Object) -> str | None:
+        for name in obj.collections:
             seen = set[str]()
             here: str | None = name
             while here is not None and here not in seen:
                 seen.add(here)
-                if here in self._collections_said:
-                    return self._collections_said[here][1]
-                each = self.collections.get(here)
-                here = each.parent if each is not None else None
+                if here in self._collection_matches:
+                    return self._collection_matches[here][1]
+                collection = self.collections.get(here)
+                here = collection.parent if collection is not None else None
         return None
 
     # Units
 
-    def by_name(self, actor: Actor) -> Found | None:
+    def by_name(self, actor: SpecActor) -> ActorResolution | None:
         """The resolution of an actor by names; None if no name fits it."""
         units, by = self._units(actor)
         if not units:
             return None
         while len(units) < actor.count and (finer := self._split(units, actor.name)) != units:
             units = finer
-        told = tuple(
-            Unit(tuple(self._first(names, actor)), actor.role)
-            for names in sorted(units, key=lambda one: one[0])
+        sorted_units = tuple(
+            Unit(tuple(self._main_first(names, actor)), actor.role)
+            for names in sorted(units, key=lambda names: names[0])
         )
         evidence = {
-            "objects": [unit.name for unit in told][:_SHOWN],
-            "found": len(told),
+            "objects": [unit.name for unit in sorted_units][:_MOST_NAMED],
+            "found": len(sorted_units),
             "wanted": actor.count,
         }
-        return Found(actor, "resolved", told, by, evidence)
+        return ActorResolution(actor, "resolved", sorted_units, by, evidence)
 
-    def _units(self, actor: Actor) -> tuple[list[tuple[str, ...]], By]:
+    def _units(self, actor: SpecActor) -> tuple[list[tuple[str, ...]], ResolvedBy]:
         """Names of the objects of each unit, coarsest first."""
         own = [
             name for name, owner in self.owners.items() if owner == actor.name and self.objects[name].in_scene
         ]
-        groups = [name for name, said in self._collections_said.items() if said[1] == actor.name]
+        groups = [name for name, match in self._collection_matches.items() if match[1] == actor.name]
         units = [
             members for name in groups if (members := self._members(self._topmost(groups, name), actor.name))
         ]
         units = list(dict.fromkeys(units))
         taken = {name for members in units for name in members}
-        rest = [name for name in own if name not in taken and name in self._objects_said]
+        rest = [name for name in own if name not in taken and name in self._object_matches]
         tops = [name for name in rest if not any(above in rest for above in self._above(name))]
-        best = max((self._objects_said[name][0].quality for name in tops), default=0)
+        best = max((self._object_matches[name][0].quality for name in tops), default=0)
         if units:
             # Beside a collection of that name, only an object of exactly that name is a unit of its own.
-            tops = [name for name in tops if self._objects_said[name][0].quality == 3]
+            tops = [name for name in tops if self._object_matches[name][0].quality == 3]
             return units + [self._tree(name, actor.name) for name in tops], "collection"
-        leading = [name for name in tops if self._objects_said[name][0].quality == best]
+        leading = [name for name in tops if self._object_matches[name][0].quality == best]
         trees = [self._tree(name, actor.name) for name in leading]
-        parts = [each for name in tops if name not in leading for each in self._tree(name, actor.name)]
+        parts = [part for name in tops if name not in leading for part in self._tree(name, actor.name)]
         if best < 3 and actor.count == 1 and trees:
-            trees = [tuple(dict.fromkeys(each for tree in trees for each in tree))]
+            trees = [tuple(dict.fromkeys(part for tree in trees for part in tree))]
         if len(trees) == 1 and parts:
             trees = [tuple(dict.fromkeys((*trees[0], *parts)))]
         return trees, "name"
@@ -198,7 +211,7 @@ class _Cast:
 
     def _members(self, collection: str, owner: str) -> tuple[str, ...]:
         """The scene's objects in a collection and below it that are the owner's, each followed by its descendants."""
-        found: dict[str, None] = {}
+        members: dict[str, None] = {}
         waiting, seen = [collection], set[str]()
         while waiting:
             name = waiting.pop(0)
@@ -207,47 +220,47 @@ class _Cast:
             seen.add(name)
             for member in self.collections[name].objects:
                 if self.owners.get(member) == owner and self.objects[member].in_scene:
-                    found.update(dict.fromkeys(self._tree(member, owner)))
-            waiting += self.below.get(name, [])
-        return tuple(found)
+                    members.update(dict.fromkeys(self._tree(member, owner)))
+            waiting += self.subcollections.get(name, [])
+        return tuple(members)
 
     def _tree(self, name: str, owner: str | None) -> tuple[str, ...]:
         """An object, its descendants and what it instances, unless another actor owns them."""
-        found: dict[str, None] = {}
+        members: dict[str, None] = {}
         waiting = [name]
         while waiting:
             here = waiting.pop(0)
             if (
-                here in found
+                here in members
                 or here not in self.objects
                 or (self.owners.get(here, owner) != owner and here != name)
             ):
                 continue
-            found[here] = None
-            shown = self.collections.get(self.objects[here].instances or "")
-            waiting += [*self.children.get(here, []), *(shown.objects if shown is not None else ())]
-        return tuple(found)
+            members[here] = None
+            instanced = self.collections.get(self.objects[here].instances or "")
+            waiting += [*self.children.get(here, []), *(instanced.objects if instanced is not None else ())]
+        return tuple(members)
 
     def _split(self, units: list[tuple[str, ...]], owner: str) -> list[tuple[str, ...]]:
         """Units split by one level: a collection into its members, a parent into its children."""
-        found: list[tuple[str, ...]] = []
+        parts: list[tuple[str, ...]] = []
         for unit in units:
             tops = [
                 name for name in unit if self.objects[name].parent not in unit and self.objects[name].in_scene
             ]
             if len(tops) == 1 and self.objects[tops[0]].type not in GEOMETRY:
                 tops = [name for name in self.children.get(tops[0], []) if name in unit] or tops
-            found += [self._tree(name, owner) for name in tops] if len(tops) > 1 else [unit]
-        return found
+            parts += [self._tree(name, owner) for name in tops] if len(tops) > 1 else [unit]
+        return parts
 
-    def _first(self, names: Iterable[str], actor: Actor) -> list[Object]:
+    def _main_first(self, names: Iterable[str], actor: SpecActor) -> list[Object]:
         """A unit's objects: first those with the role, then by how well their name fits, else in their order."""
         objects = [self.objects[name] for name in names]
-        nothing = Match(0, 0, 0)
+        nothing = NameMatch(0, 0, 0)
 
-        def rank(one: Object) -> tuple[bool, int, bool]:
-            said = self._objects_said.get(one.name, (nothing, ""))
-            return not plays(one, actor.role), -said[0].quality, one.type not in GEOMETRY
+        def rank(obj: Object) -> tuple[bool, int, bool]:
+            match = self._object_matches.get(obj.name, (nothing, ""))
+            return not plays(obj, actor.role), -match[0].quality, obj.type not in GEOMETRY
 
         return sorted(objects, key=rank)
 
@@ -265,66 +278,79 @@ class _Cast:
 
     def tree(self, name: str) -> tuple[Object, ...]:
         """An object without an owner, with its descendants."""
-        return tuple(self.objects[each] for each in self._tree(name, None))
+        return tuple(self.objects[member] for member in self._tree(name, None))
 
 
 # Hints
 
 
-def _with_domain(one: Found, scene: Scene, cast: _Cast, found: Mapping[str, Found]) -> Found:
+def _add_domain(
+    resolution: ActorResolution,
+    scene: Scene,
+    ownership: _Ownership,
+    resolutions: Mapping[str, ActorResolution],
+) -> ActorResolution:
     """Adds the domain to a fluid: domains are often named after their box, while other objects have the fluid's name.
 
     If no object of the actor is a domain, and the scene has exactly one domain without an owner, it is the actor's.
     """
-    role = one.actor.role
-    if role != "fluid_domain" or any(plays(each, role) for unit in one.units for each in unit.objects):
-        return one
-    taken = {name for other in found.values() for unit in other.units for name in unit.names}
-    free = [each for each in scene.objects if plays(each, role) and each.name not in taken]
+    role = resolution.actor.role
+    if role != "fluid_domain" or any(plays(obj, role) for unit in resolution.units for obj in unit.objects):
+        return resolution
+    taken = {name for other in resolutions.values() for unit in other.units for name in unit.names}
+    free = [obj for obj in scene.objects if plays(obj, role) and obj.name not in taken]
     if len(free) != 1:
-        return one
-    first, *rest = one.units
-    joined = Unit((*cast.tree(free[0].name), *first.objects), role)
-    return replace(one, units=(joined, *rest), evidence={**one.evidence, "domain": free[0].name})
+        return resolution
+    first, *rest = resolution.units
+    joined = Unit((*ownership.tree(free[0].name), *first.objects), role)
+    return replace(
+        resolution, units=(joined, *rest), evidence={**resolution.evidence, "domain": free[0].name}
+    )
 
 
-def _by_hints(actors: list[Actor], scene: Scene, cast: _Cast, found: Mapping[str, Found]) -> dict[str, Found]:
+def _by_hints(
+    actors: list[SpecActor], scene: Scene, ownership: _Ownership, resolutions: Mapping[str, ActorResolution]
+) -> dict[str, ActorResolution]:
     """Resolves actors that no name fits: first those with one possibility, then the others with what is left."""
-    taken = {name for one in found.values() for unit in one.units for name in unit.names}
-    result: dict[str, Found] = {}
+    taken = {name for resolution in resolutions.values() for unit in resolution.units for name in unit.names}
+    result: dict[str, ActorResolution] = {}
     waiting = list(actors)
     while waiting:
         options = {actor.name: _candidates(actor, scene, taken) for actor in waiting}
-        chosen = next((actor for actor in waiting if 0 < len(options[actor.name]) <= actor.count), None)
-        if chosen is None:
+        unique = next((actor for actor in waiting if 0 < len(options[actor.name]) <= actor.count), None)
+        if unique is None:
             break
-        waiting.remove(chosen)
-        result[chosen.name] = _hinted(chosen, options[chosen.name], cast, "resolved")
-        taken |= {name for unit in result[chosen.name].units for name in unit.names}
+        waiting.remove(unique)
+        result[unique.name] = _by_hint(unique, options[unique.name], ownership, "resolved")
+        taken |= {name for unit in result[unique.name].units for name in unit.names}
     for actor in waiting:
         options = {actor.name: _candidates(actor, scene, taken)}
-        several = options[actor.name]
-        enough = actor.count > 1 and actor.role not in UNMARKED
-        if several:
-            result[actor.name] = _hinted(actor, several, cast, "resolved" if enough else "ambiguous")
+        candidates = options[actor.name]
+        is_group = actor.count > 1 and actor.role not in UNMARKED
+        if candidates:
+            result[actor.name] = _by_hint(
+                actor, candidates, ownership, "resolved" if is_group else "ambiguous"
+            )
         else:
-            result[actor.name] = Found(actor, "missing", evidence={"hints": _wanted(actor)})
+            result[actor.name] = ActorResolution(actor, "missing", evidence={"hints": _hints_json(actor)})
     return result
 
 
-def _hinted(actor: Actor, objects: list[Object], cast: _Cast, outcome: Outcome) -> Found:
-    units = tuple(Unit(cast.tree(one.name), actor.role) for one in objects)
+def _by_hint(
+    actor: SpecActor, objects: list[Object], ownership: _Ownership, outcome: Outcome
+) -> ActorResolution:
+    units = tuple(Unit(ownership.tree(obj.name), actor.role) for obj in objects)
     evidence: dict[str, Any] = {
-        "objects": [one.name for one in objects][:_SHOWN],
+        "objects": [obj.name for obj in objects][:_MOST_NAMED],
         "found": len(objects),
         "wanted": actor.count,
-        "hints": _wanted(actor),
-        "diagonals": [round(one.diagonal, 3) for one in objects][:_SHOWN],
+        "hints": _hints_json(actor),
+        "diagonals": [round(obj.diagonal, 3) for obj in objects][:_MOST_NAMED],
     }
-    return Found(actor, outcome, units, "hints", evidence)
+    return ActorResolution(actor, outcome, units, "hints", evidence)
 
 
-def _wanted(actor: Actor) -> dict[str, Any]:
+def _hints_json(actor: SpecActor) -> dict[str, Any]:
     hints = actor.hints
     return {
         "role": actor.role,
@@ -333,40 +359,42 @@ def _wanted(actor: Actor) -> dict[str, Any]:
     }
 
 
-def _candidates(actor: Actor, scene: Scene, taken: set[str]) -> list[Object]:
+def _candidates(actor: SpecActor, scene: Scene, taken: set[str]) -> list[Object]:
     """The objects without an owner that fit the hints best; for an unmarked role, only those of its size."""
-    free = [one for one in scene.objects if one.in_scene and one.name not in taken and one.type in _BODIES]
+    free = [
+        obj for obj in scene.objects if obj.in_scene and obj.name not in taken and obj.type in _ACTOR_TYPES
+    ]
     if actor.role in UNMARKED:
         if actor.hints.size is None:
             return []
-        fit = [one for one in free if _size_fits(one, actor) and _topology_fits(one, actor) and one.renders]
-        return [one for one in fit if one.parent is None or one.parent not in {other.name for other in fit}]
-    players = [one for one in free if plays(one, actor.role)]
+        fit = [obj for obj in free if _size_fits(obj, actor) and _topology_fits(obj, actor) and obj.renders]
+        return [obj for obj in fit if obj.parent is None or obj.parent not in {other.name for other in fit}]
+    players = [obj for obj in free if plays(obj, actor.role)]
     if actor.count > 1:
-        return [one for one in players if _size_fits(one, actor)] or players
-    objects = _of_object_collections(scene)
+        return [obj for obj in players if _size_fits(obj, actor)] or players
+    objects = _in_object_collections(scene)
     ranks = [
-        (_size_fits(one, actor), _topology_fits(one, actor), not objects or one.name in objects)
-        for one in players
+        (_size_fits(obj, actor), _topology_fits(obj, actor), not objects or obj.name in objects)
+        for obj in players
     ]
     best = max((sum(rank) for rank in ranks), default=0)
-    return [one for one, rank in zip(players, ranks, strict=True) if sum(rank) == best]
+    return [obj for obj, rank in zip(players, ranks, strict=True) if sum(rank) == best]
 
 
-def _size_fits(one: Object, actor: Actor) -> bool:
+def _size_fits(obj: Object, actor: SpecActor) -> bool:
     size = actor.hints.size
-    return size is None or size[0] <= one.diagonal <= size[1]
+    return size is None or size[0] <= obj.diagonal <= size[1]
 
 
-def _topology_fits(one: Object, actor: Actor) -> bool:
-    return actor.hints.topology in ("any", one.topology)
+def _topology_fits(obj: Object, actor: SpecActor) -> bool:
+    return actor.hints.topology in ("any", obj.topology)
 
 
-def _of_object_collections(scene: Scene) -> frozenset[str]:
+def _in_object_collections(scene: Scene) -> frozenset[str]:
     """Names of the objects in collections that a custom property marks as one object's."""
     marked: list[Collection] = [
-        each
-        for each in scene.collections
-        if any(value.casefold() == "object" for value in each.properties.values())
+        collection
+        for collection in scene.collections
+        if any(value.casefold() == "object" for value in collection.properties.values())
     ]
-    return frozenset(name for each in marked for name in each.objects)
+    return frozenset(name for collection in marked for name in collection.objects)

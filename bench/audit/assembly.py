@@ -36,7 +36,7 @@ _BLENDERS_OWN = ("RigidBodyWorld", "RigidBodyConstraints")
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class ObjectBounds:
     """Bounds of an object at the start, in metres."""
 
     low: Vector
@@ -52,18 +52,18 @@ class Box:
         """From corner to corner in plan."""
         return sum((b - a) ** 2 for a, b in zip(self.low[:2], self.high[:2], strict=True)) ** 0.5
 
-    def touches(self, other: Box) -> bool:
+    def touches(self, other: ObjectBounds) -> bool:
         """Whether they overlap, or are at most a centimetre apart along each axis."""
         sides = zip(self.low, self.high, other.low, other.high, strict=True)
         return all(a <= d + TOUCHING and c <= b + TOUCHING for a, b, c, d in sides)
 
-    def union(self, other: Box) -> Box:
+    def union(self, other: ObjectBounds) -> ObjectBounds:
         """The bounds of both."""
         (a, b, c), (d, e, f) = self.low, other.low
         (g, h, i), (j, k, m) = self.high, other.high
-        return Box((min(a, d), min(b, e), min(c, f)), (max(g, j), max(h, k), max(i, m)))
+        return ObjectBounds((min(a, d), min(b, e), min(c, f)), (max(g, j), max(h, k), max(i, m)))
 
-    def carries(self, other: Box) -> bool:
+    def carries(self, other: ObjectBounds) -> bool:
         """Whether the other stands on it: it is beneath the other, and broader than the other is long."""
         height = other.high[2] - other.low[2]
         beneath = self.high[2] <= other.low[2] + _LOWEST * height + TOUCHING
@@ -74,7 +74,7 @@ class Assemblies:
     """The assemblies of a scene. ``actor_objects``: names of all objects that belong to an actor."""
 
     def __init__(self, scene: Scene, actor_objects: Iterable[str]) -> None:
-        self.boxes = {one.name: box for one in _geometry(scene) if (box := _box(one)) is not None}
+        self.boxes = {obj.name: box for obj in _geometry(scene) if (box := _bounds_of(obj)) is not None}
         groups = list(_groups(scene, self.boxes))
         in_groups = {name for group in groups for name in group}
         self.is_grouped = len(in_groups) >= _GROUPED * len(self.boxes)
@@ -88,22 +88,22 @@ class Assemblies:
         seeds = [self.boxes[name] for name in own if name in self.boxes]
         if self.is_grouped or not seeds or any(name in self._in_groups for name in own):
             return own
-        found, boxes, whole = list(own), list(seeds), seeds[0]
+        assembly, boxes, whole = list(own), list(seeds), seeds[0]
         for box in seeds:
             whole = whole.union(box)
         waiting = [name for name in self._free if name not in own]
-        while len(found) < MOST:
+        while len(assembly) < MOST:
             joining = next((name for name in waiting if _joins(self.boxes[name], boxes, whole)), None)
             if joining is None:
                 break
             waiting.remove(joining)
-            found.append(joining)
+            assembly.append(joining)
             boxes.append(self.boxes[joining])
             whole = whole.union(self.boxes[joining])
-        return tuple(found)
+        return tuple(assembly)
 
 
-def _joins(box: Box, parts: list[Box], whole: Box) -> bool:
+def _joins(box: ObjectBounds, parts: list[ObjectBounds], whole: ObjectBounds) -> bool:
     if box.diagonal > _LARGER * whole.diagonal or not box.touches(whole):
         return False
     if box.carries(whole) or whole.carries(box):
@@ -112,25 +112,25 @@ def _joins(box: Box, parts: list[Box], whole: Box) -> bool:
 
 
 def _geometry(scene: Scene) -> Iterator[Object]:
-    return (one for one in scene.objects if one.in_scene and one.renders and one.type in GEOMETRY)
+    return (obj for obj in scene.objects if obj.in_scene and obj.renders and obj.type in GEOMETRY)
 
 
-def _box(one: Object) -> Box | None:
-    moment = one.moments[0] if one.moments else None
+def _bounds_of(obj: Object) -> ObjectBounds | None:
+    moment = obj.moments[0] if obj.moments else None
     if moment is None or moment.low is None or moment.high is None:
         return None
-    return Box(moment.low, moment.high)
+    return ObjectBounds(moment.low, moment.high)
 
 
-def _groups(scene: Scene, boxes: dict[str, Box]) -> Iterator[frozenset[str]]:
+def _groups(scene: Scene, boxes: dict[str, ObjectBounds]) -> Iterator[frozenset[str]]:
     """The groups of a scene, as names of geometry; a group that holds more than half of it does not count."""
     for group, several in (*_hierarchies(scene, boxes), *_collections(scene, boxes)):
         if several and group and (len(boxes) < 4 or len(group) <= _GROUPED * len(boxes)):
             yield group
 
 
-def _hierarchies(scene: Scene, boxes: dict[str, Box]) -> list[tuple[frozenset[str], bool]]:
-    parents = {one.name: one.parent for one in scene.objects if one.in_scene}
+def _hierarchies(scene: Scene, boxes: dict[str, ObjectBounds]) -> list[tuple[frozenset[str], bool]]:
+    parents = {obj.name: obj.parent for obj in scene.objects if obj.in_scene}
     trees: dict[str, list[str]] = {}
     for name in parents:
         top, seen = name, set[str]()
@@ -141,22 +141,22 @@ def _hierarchies(scene: Scene, boxes: dict[str, Box]) -> list[tuple[frozenset[st
     return [(frozenset(tree) & boxes.keys(), len(tree) > 1) for tree in trees.values()]
 
 
-def _collections(scene: Scene, boxes: dict[str, Box]) -> list[tuple[frozenset[str], bool]]:
+def _collections(scene: Scene, boxes: dict[str, ObjectBounds]) -> list[tuple[frozenset[str], bool]]:
     """Collections that a property marks as one object's, or whose geometry is connected."""
-    found: list[tuple[frozenset[str], bool]] = []
-    for each in scene.collections:
-        members = frozenset(each.objects) & boxes.keys()
-        marked = any(value.casefold() == "object" for value in each.properties.values())
-        if each.name.startswith(_BLENDERS_OWN) or len(members) > MOST:
+    groups: list[tuple[frozenset[str], bool]] = []
+    for collection in scene.collections:
+        members = frozenset(collection.objects) & boxes.keys()
+        marked = any(value.casefold() == "object" for value in collection.properties.values())
+        if collection.name.startswith(_BLENDERS_OWN) or len(members) > MOST:
             continue
-        found.append((members, marked or _hangs_together([boxes[name] for name in sorted(members)])))
-    return found
+        groups.append((members, marked or _is_connected([boxes[name] for name in sorted(members)])))
+    return groups
 
 
-def _hangs_together(boxes: list[Box]) -> bool:
-    reached, waiting = boxes[:1], boxes[1:]
-    for here in reached:
+def _is_connected(boxes: list[ObjectBounds]) -> bool:
+    connected, waiting = boxes[:1], boxes[1:]
+    for here in connected:
         joining = [box for box in waiting if box.touches(here)]
         waiting = [box for box in waiting if not box.touches(here)]
-        reached += joining
+        connected += joining
     return bool(boxes) and not waiting

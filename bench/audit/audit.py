@@ -15,30 +15,30 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import TypeAdapter, ValidationError
 
-from bench.audit.actors import Found, find_actors
+from bench.audit.actors import ActorResolution, find_actors
 from bench.audit.facts import Scene
 from bench.audit.predicates.catalogue import PREDICATES
-from bench.audit.predicates.predicate import Outcome, Stage, Unit, Verdict
+from bench.audit.predicates.predicate import AuditContext, Outcome, PredicateVerdict, Unit
 from bench.audit.roles import UNMARKED
-from bench.audit.spr import Related, judge_relations, share
-from bench.audit.untrusted_blend import Crashed, Means, NotScored, Untrusted
+from bench.audit.spr import RelationResult, judge_relations, spr_of
+from bench.audit.untrusted_blend import BlenderOptions, Crashed, NotScored, UntrustedBlend
 from bench.scenes.spec import BadSpec
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping, Sequence
     from pathlib import Path
 
-    from bench.audit.spr import Measurer
-    from bench.scenes.spec import Check, Spec
+    from bench.audit.spr import BlenderQuery
+    from bench.scenes.spec import Spec, SpecCheck
 
 Wanted = Literal["must_have", "must_not_have"]
 _SCENE: TypeAdapter[Scene] = TypeAdapter(Scene)
 _DIGITS = 6
-_FAILING_SHOWN = 4
+_MOST_FAILING = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class CheckResult:
     """A check of an actor, or of the scene. ``outcome``: of the check; of a ``must_not_have``, it passes if absent."""
 
     predicate: str
@@ -60,7 +60,7 @@ class ActorAudit:
     outcome: str
     by: str
     evidence: dict[str, Any]
-    checks: tuple[Checked, ...]
+    checks: tuple[CheckResult, ...]
     score: float | None
 
 
@@ -72,9 +72,9 @@ class Audit:
     not_scored: str | None
     actors: tuple[ActorAudit, ...] = ()
     mpr: float | None = None
-    relations: tuple[Related, ...] = ()
+    relations: tuple[RelationResult, ...] = ()
     spr: float | None = None
-    assertions: tuple[Checked, ...] = ()
+    assertions: tuple[CheckResult, ...] = ()
     blend: dict[str, Any] = field(default_factory=dict[str, Any])
 
     def as_json(self) -> str:
@@ -83,7 +83,10 @@ class Audit:
 
 
 def audit(
-    blend: Path, spec: Spec, means: Means | None = None, progress: Callable[[str], None] | None = None
+    blend: Path,
+    spec: Spec,
+    means: BlenderOptions | None = None,
+    progress: Callable[[str], None] | None = None,
 ) -> Audit:
     """Audits a file by a spec. ``progress`` is called with each step, in words.
 
@@ -91,48 +94,48 @@ def audit(
     """
     check_predicates(spec)
     try:
-        tell = progress or _silent
-        with opened(blend, means, tell) as (file, scene):
-            tell("measuring")
+        report = progress or _ignore_progress
+        with open_scene(blend, means, report) as (file, scene):
+            report("measuring")
             return audit_of(file, scene, spec)
     except NotScored as error:
         return Audit(spec.id, str(error))
 
 
-def audit_of(file: Measurer, scene: Scene, spec: Spec) -> Audit:
+def audit_of(file: BlenderQuery, scene: Scene, spec: Spec) -> Audit:
     """The audit of an open file whose facts have been read."""
-    found = find_actors(spec, scene)
-    related = judge_relations(spec, scene, found, file)
-    return replace(audited(spec, scene, found), relations=related, spr=share(related))
+    resolutions = find_actors(spec, scene)
+    relations = judge_relations(spec, scene, resolutions, file)
+    return replace(audit_scene(spec, scene, resolutions), relations=relations, spr=spr_of(relations))
 
 
 @contextmanager
-def opened(
-    blend: Path, means: Means | None, progress: Callable[[str], None]
-) -> Generator[tuple[Untrusted, Scene]]:
+def open_scene(
+    blend: Path, means: BlenderOptions | None, progress: Callable[[str], None]
+) -> Generator[tuple[UntrustedBlend, Scene]]:
     """A file in its Blender, and its facts. If Blender crashes while playing the clip, only its start is read.
 
     Raises NotScored, CannotStart.
     """
     with ExitStack() as stack:
         progress("opening")
-        file = stack.enter_context(Untrusted(blend, means))
+        file = stack.enter_context(UntrustedBlend(blend, means))
         try:
             progress("reading and playing")
             scene = read_scene(file, play=True)
         except Crashed:
             stack.close()
             progress("reading, without playing")
-            file = stack.enter_context(Untrusted(blend, means))
+            file = stack.enter_context(UntrustedBlend(blend, means))
             scene = read_scene(file, play=False)
         yield file, scene
 
 
-def _silent(_: str) -> None:
+def _ignore_progress(_: str) -> None:
     """Ignores progress."""
 
 
-def read_scene(file: Untrusted, *, play: bool) -> Scene:
+def read_scene(file: UntrustedBlend, *, play: bool) -> Scene:
     """The facts of an open file. Raises NotScored."""
     try:
         return _SCENE.validate_python(file.ask("facts", play=play, doing="reading it"))
@@ -146,12 +149,12 @@ def check_predicates(spec: Spec) -> None:
     """Raises BadSpec for a check with an unknown predicate or wrong parameters."""
     for actor in spec.actors:
         for check in (*actor.must_have, *actor.must_not_have):
-            _checked(spec, check, actor.name)
+            _check_known(spec, check, actor.name)
     for check in spec.assertions:
-        _checked(spec, check, "assertions")
+        _check_known(spec, check, "assertions")
 
 
-def _checked(spec: Spec, check: Check, where: str) -> None:
+def _check_known(spec: Spec, check: SpecCheck, where: str) -> None:
     if check.predicate not in PREDICATES:
         raise BadSpec(f"{spec.id}: {where}: there is no predicate {check.predicate!r}")
     try:
@@ -162,15 +165,15 @@ def _checked(spec: Spec, check: Check, where: str) -> None:
         raise BadSpec(f"{spec.id}: {where}: {check.predicate}: no actor is called {', '.join(unknown)}")
 
 
-def audited(spec: Spec, scene: Scene, found: Mapping[str, Found]) -> Audit:
+def audit_scene(spec: Spec, scene: Scene, resolutions: Mapping[str, ActorResolution]) -> Audit:
     """The audit of a scene that has been read, its actors found."""
-    cast = {name: one.units for name, one in found.items() if one.told_apart}
-    stage = Stage(scene, cast, spec.frames.min if spec.frames else 1)
-    actors = tuple(_actor(one, stage) for one in found.values())
-    scores = [one.score for one in actors if one.score is not None]
+    units = {name: resolution.units for name, resolution in resolutions.items() if resolution.can_be_judged}
+    context = AuditContext(scene, units, spec.frames.min if spec.frames else 1)
+    actors = tuple(_audit_actor(resolution, context) for resolution in resolutions.values())
+    scores = [resolution.score for resolution in actors if resolution.score is not None]
     everything = Unit(scene.objects)
     assertions = tuple(
-        _asked(check, "must_not_have", _judge(check, everything, stage)) for check in spec.assertions
+        _result_of(check, "must_not_have", _judge(check, everything, context)) for check in spec.assertions
     )
     return Audit(
         spec.id,
@@ -178,11 +181,11 @@ def audited(spec: Spec, scene: Scene, found: Mapping[str, Found]) -> Audit:
         actors,
         round(sum(scores) / len(scores), _DIGITS) if scores else None,
         assertions=assertions,
-        blend=_seen_of(scene),
+        blend=_blend_facts(scene),
     )
 
 
-def _seen_of(scene: Scene) -> dict[str, Any]:
+def _blend_facts(scene: Scene) -> dict[str, Any]:
     return {
         "blender": scene.blender,
         "saved_by": list(scene.saved_by),
@@ -191,71 +194,77 @@ def _seen_of(scene: Scene) -> dict[str, Any]:
         "objects": len(scene.objects),
         "camera": scene.camera,
         "unplayed": scene.unplayed,
-        "missing_libraries": [each.path for each in scene.libraries if each.missing],
+        "missing_libraries": [library.path for library in scene.libraries if library.missing],
         "scripts_not_run": list(scene.scripts),
     }
 
 
-def _actor(found: Found, stage: Stage) -> ActorAudit:
-    actor = found.actor
+def _audit_actor(resolution: ActorResolution, context: AuditContext) -> ActorAudit:
+    actor = resolution.actor
     checks = (
-        *(_check(check, "must_have", found, stage) for check in actor.must_have),
-        *(_check(check, "must_not_have", found, stage) for check in actor.must_not_have),
+        *(_check_actor(check, "must_have", resolution, context) for check in actor.must_have),
+        *(_check_actor(check, "must_not_have", resolution, context) for check in actor.must_not_have),
     )
     counted = [check.outcome == "passed" for check in checks if check.outcome != "not_applicable"]
     score = round(sum(counted) / len(counted), _DIGITS) if counted else None
-    return ActorAudit(actor.name, actor.role, found.outcome, found.by, found.evidence, checks, score)
+    return ActorAudit(
+        actor.name, actor.role, resolution.outcome, resolution.by, resolution.evidence, checks, score
+    )
 
 
-def _check(check: Check, wanted: Wanted, found: Found, stage: Stage) -> Checked:
-    if not found.told_apart:
-        return Checked(check.predicate, wanted, "failed", check.params, {"actor": found.outcome})
+def _check_actor(
+    check: SpecCheck, wanted: Wanted, resolution: ActorResolution, context: AuditContext
+) -> CheckResult:
+    if not resolution.can_be_judged:
+        return CheckResult(check.predicate, wanted, "failed", check.params, {"actor": resolution.outcome})
     if PREDICATES[check.predicate].scope == "scene":
-        objects = tuple(one for unit in found.units for one in unit.objects)
-        return _asked(check, wanted, _judge(check, Unit(objects, found.actor.role), stage))
-    verdicts = [(unit, _judge(check, unit, stage)) for unit in found.units]
-    needed = len(verdicts) if found.outcome == "ambiguous" or wanted == "must_not_have" else 0
-    return _of_units(check, wanted, verdicts, max(needed, _count(found)))
+        objects = tuple(obj for unit in resolution.units for obj in unit.objects)
+        return _result_of(check, wanted, _judge(check, Unit(objects, resolution.actor.role), context))
+    verdicts = [(unit, _judge(check, unit, context)) for unit in resolution.units]
+    needed = len(verdicts) if resolution.outcome == "ambiguous" or wanted == "must_not_have" else 0
+    return _combine_units(check, wanted, verdicts, max(needed, _count(resolution)))
 
 
-def _count(found: Found) -> int:
+def _count(resolution: ActorResolution) -> int:
     """How many units must pass. Of an actor without a solver, one mesh of several loose pieces counts as several."""
-    wanted, units = found.actor.count, found.units
-    if len(units) >= wanted or found.actor.role not in UNMARKED:
+    wanted, units = resolution.actor.count, resolution.units
+    if len(units) >= wanted or resolution.actor.role not in UNMARKED:
         return wanted
-    pieces = sum(max(1, *(one.islands for one in unit.objects)) for unit in units)
+    pieces = sum(max(1, *(obj.islands for obj in unit.objects)) for unit in units)
     return len(units) if pieces >= wanted else wanted
 
 
-def _of_units(check: Check, wanted: Wanted, verdicts: Sequence[tuple[Unit, Verdict]], needed: int) -> Checked:
+def _combine_units(
+    check: SpecCheck, wanted: Wanted, verdicts: Sequence[tuple[Unit, PredicateVerdict]], needed: int
+) -> CheckResult:
     """The outcome over several units: at least ``needed`` pass; for a ``must_not_have``, none may have it."""
-    asked = [(unit, _asked(check, wanted, verdict)) for unit, verdict in verdicts]
-    if len(asked) == 1 and needed == 1:
-        unit, only = asked[0]
-        return replace(only, seen={"object": unit.name, **only.seen})
-    if all(one.outcome == "not_applicable" for _, one in asked):
-        return asked[0][1]
-    good = [unit for unit, one in asked if one.outcome != "failed"]
-    bad = [(unit, one) for unit, one in asked if one.outcome == "failed"]
-    enough = not bad if wanted == "must_not_have" else len(good) >= needed
-    shown = bad or asked[:1]
+    results = [(unit, _result_of(check, wanted, verdict)) for unit, verdict in verdicts]
+    if len(results) == 1 and needed == 1:
+        unit, result = results[0]
+        return replace(result, seen={"object": unit.name, **result.seen})
+    if all(result.outcome == "not_applicable" for _, result in results):
+        return results[0][1]
+    passing = [unit for unit, result in results if result.outcome != "failed"]
+    failing = [(unit, result) for unit, result in results if result.outcome == "failed"]
+    enough = not failing if wanted == "must_not_have" else len(passing) >= needed
+    listed = failing or results[:1]
     seen: dict[str, Any] = {
-        "units": len(asked),
-        "good": len(good),
+        "units": len(results),
+        "good": len(passing),
         "needed": needed,
-        "some": {unit.name: one.seen for unit, one in shown[:_FAILING_SHOWN]},
+        "some": {unit.name: result.seen for unit, result in listed[:_MOST_FAILING]},
     }
-    return Checked(check.predicate, wanted, "passed" if enough else "failed", check.params, seen)
+    return CheckResult(check.predicate, wanted, "passed" if enough else "failed", check.params, seen)
 
 
-def _judge(check: Check, unit: Unit, stage: Stage) -> Verdict:
+def _judge(check: SpecCheck, unit: Unit, context: AuditContext) -> PredicateVerdict:
     predicate = PREDICATES[check.predicate]
-    return predicate.judge(unit, stage, predicate.read(check.params))
+    return predicate.judge(unit, context, predicate.read(check.params))
 
 
-def _asked(check: Check, wanted: Wanted, verdict: Verdict) -> Checked:
+def _result_of(check: SpecCheck, wanted: Wanted, verdict: PredicateVerdict) -> CheckResult:
     """The outcome of a check by the verdict of its predicate."""
     outcome = verdict.outcome
     if wanted == "must_not_have" and outcome != "not_applicable":
         outcome = "failed" if outcome == "passed" else "passed"
-    return Checked(check.predicate, wanted, outcome, check.params, verdict.seen)
+    return CheckResult(check.predicate, wanted, outcome, check.params, verdict.seen)

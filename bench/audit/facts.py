@@ -1,7 +1,7 @@
-"""What the audit knows of a .blend: read once, with the file open at its first frame (``inside/facts.py``).
+"""The facts that the audit reads of a .blend, once, with the file open at its first frame (``inside/facts.py``).
 
-Lengths are metres (the scene's unit scale is applied), times are frames, masses kilograms. Names are Blender's own:
-enum items in capitals as Python sees them. Everything is in a fixed order: the same file gives the same facts.
+Lengths are metres (the scene's unit scale is applied), times are frames, masses kilograms. Names and enum items are
+Blender's own. Everything is in a fixed order: the same file gives the same facts.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
-Where: TypeAlias = Literal["blend", "disk", "external"]
+CacheLocation: TypeAlias = Literal["blend", "disk", "external"]
 Topology: TypeAlias = Literal["open", "closed"]
-Way: TypeAlias = Literal["action", "nla", "driver"]
+AnimationSource: TypeAlias = Literal["action", "nla", "driver"]
 
-# What a modifier is called that simulates what it stands on.
+# Types of modifiers that simulate their object.
 SOLVERS = ("CLOTH", "SOFT_BODY", "FLUID", "PARTICLE_SYSTEM", "DYNAMIC_PAINT")
-# Objects that a render shows as they are.
+# Types of objects that a render shows.
 GEOMETRY = ("MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL")
 
 
@@ -24,8 +24,8 @@ GEOMETRY = ("MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", 
 class PointCache:
     """The cache of a cloth, soft body, particle system or rigid-body world. ``range`` is its own.
 
-    ``frames``: how many it holds; ``expected``: how many a bake over its whole range holds (an emitter has none before
-    and after its particles). ``outdated`` is Blender's word for it, which a rigid-body world always gets on opening.
+    ``frames``: how many it holds; ``expected``: how many a bake over its whole range holds (for an emitter, only while
+    there are particles). ``outdated``: Blender's mark, which every rigid-body world gets when a file is opened.
     """
 
     range: tuple[int, int]
@@ -34,7 +34,7 @@ class PointCache:
     outdated: bool
     frames: int
     expected: int
-    where: Where
+    where: CacheLocation
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,9 +49,9 @@ class FluidPart:
 
 @dataclass(frozen=True, slots=True)
 class FluidCache:
-    """``kind``: REPLAY, MODULAR, ALL. ``baked``: the parts that Blender calls baked. ``parts``: what lies on disk.
+    """``kind``: REPLAY, MODULAR, ALL. ``baked``: the parts that Blender marks as baked. ``parts``: those on disk.
 
-    ``directory`` as the file has it; ``moved``: it is not there, but one of the same name beside the file was taken.
+    ``directory``: as the file has it; ``moved``: it is missing, and one of the same name beside the file is used.
     """
 
     kind: str
@@ -68,9 +68,9 @@ class FluidCache:
 
 @dataclass(frozen=True, slots=True)
 class Effectors:
-    """What of force fields and collisions reaches a simulation: collections (None: all), and weights of fields.
+    """Which collisions and force fields act on a simulation: collections (None: all), and weights of fields.
 
-    ``weights``: by field type in capitals, with ALL; 1 where left out.
+    ``weights``: by field type, and ALL; 1 if left out.
     """
 
     collisions: str | None = None
@@ -101,10 +101,10 @@ class SoftBody:
 
 @dataclass(frozen=True, slots=True)
 class Domain:
-    """Settings of a fluid domain. ``kind``: LIQUID, GAS. Collections that limit what takes part: None for all.
+    """Settings of a fluid domain. ``kind``: LIQUID, GAS. ``flows``, ``effectors``: limiting collections; None: all.
 
-    ``guide_source``: EFFECTOR, DOMAIN; ``guide_domain``: an object, where it is a domain. ``low`` and ``high``: the
-    corners of the domain's box in world space, whose evaluated surface may be the liquid's.
+    ``guide_source``: EFFECTOR, DOMAIN; ``guide_domain``: the guiding domain's object. ``low`` and ``high``: the corners
+    of the domain's own box in world space, since its evaluated mesh may be the liquid.
     """
 
     kind: str
@@ -140,8 +140,8 @@ class Fluid:
 class Particles:
     """A particle system. ``type``: EMITTER, HAIR (others show a fluid's). ``source``: VERT, FACE, VOLUME.
 
-    ``emission``: first and last frame of birth. ``cache``: None for hair without dynamics. ``instance``: what it shows
-    in a particle's place (an object's or a collection's name).
+    ``emission``: first and last frame of birth. ``cache``: None for hair without dynamics. ``instance``: the object or
+    collection (by name) that is shown for each particle.
     """
 
     name: str
@@ -160,7 +160,7 @@ class Particles:
 
 @dataclass(frozen=True, slots=True)
 class Modifier:
-    """A modifier, where it stands in the stack, with the settings of whatever it simulates."""
+    """A modifier, with the settings of its simulation."""
 
     name: str
     type: str
@@ -174,13 +174,13 @@ class Modifier:
 
     @property
     def on(self) -> bool:
-        """Whether it acts, in the viewport and in the render."""
+        """Whether it is on in the viewport and in renders."""
         return self.show_viewport and self.show_render
 
 
 @dataclass(frozen=True, slots=True)
 class RigidBody:
-    """``type``: ACTIVE, PASSIVE. ``in_world``: is of the rigid-body world's collection. ``kinematic``: animated."""
+    """``type``: ACTIVE, PASSIVE. ``in_world``: it is in the rigid-body world's collection. ``kinematic``: animated."""
 
     type: str
     shape: str
@@ -222,7 +222,7 @@ class ForceField:
 
 @dataclass(frozen=True, slots=True)
 class VertexGroup:
-    """``weighted``: how many vertices have a weight above zero in it."""
+    """``weighted``: the number of vertices with a weight above zero in it."""
 
     name: str
     weighted: int
@@ -230,14 +230,14 @@ class VertexGroup:
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """An animated property. ``path`` as in f-curves, without the axis; of all its curves the densest.
+    """An animated property. ``path`` as in f-curves, without the axis; its numbers are those of its densest curve.
 
-    ``keys``: how many it has (a baked curve's samples too); ``span``: frames from the first to the last of them.
-    ``generated``: by a driver or an f-curve modifier, which give a value at every frame. ``varies``: not all the same.
+    ``keys``: number of keys (or samples); ``span``: frames from the first to the last of them. ``generated``: a driver
+    or an f-curve modifier sets it at every frame. ``varies``: its values differ.
     """
 
     path: str
-    way: Way
+    way: AnimationSource
     keys: int
     span: float
     generated: bool
@@ -246,17 +246,17 @@ class Channel:
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """An object constraint that is on, and what it takes motion from (objects, or a cache file)."""
+    """An active object constraint, and its sources of motion (objects, or a cache file)."""
 
     type: str
     targets: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
-    """An object at a frame, evaluated: the corners of its bounds in world space, its place and rotation (quaternion).
+class ObjectAtFrame:
+    """An evaluated object at a frame: the corners of its bounds in world space, its location, rotation (quaternion).
 
-    Bounds are None for what has no extent.
+    Bounds are None if it has no extent.
     """
 
     frame: int
@@ -270,10 +270,9 @@ class Moment:
 class Object:
     """An object of the scene, or one that only a collection instance shows (``in_scene`` false).
 
-    ``collections``: those that it is linked into, by name. ``instances``: the collection that it shows. ``moments``: at
-    start, middle and end; where the motion was not played, at the start alone. ``islands``: parts of its mesh that do
-    not hang together.
-    ``follows``: objects that its motion may come from (parent, constraints, deforming modifiers).
+    ``collections``: those that it is linked into, by name. ``instances``: the collection that it instances.
+    ``moments``: at start, middle and end; if its motion was not played, at the start only. ``islands``: number of loose
+    pieces of its mesh. ``follows``: objects that its motion may come from (parent, constraints, deforming modifiers).
     """
 
     name: str
@@ -290,7 +289,7 @@ class Object:
     faces: int
     islands: int
     topology: Topology | None
-    moments: tuple[Moment, ...]
+    moments: tuple[ObjectAtFrame, ...]
     modifiers: tuple[Modifier, ...]
     rigid_body: RigidBody | None
     rigid_constraint: RigidConstraint | None
@@ -323,7 +322,7 @@ class Object:
 
 @dataclass(frozen=True, slots=True)
 class Collection:
-    """``objects``: linked into it itself. ``properties``: custom ones that are text, numbers or switches, as text."""
+    """``objects``: those linked directly. ``properties``: custom ones that are text, numbers or booleans, as text."""
 
     name: str
     parent: str | None
@@ -333,7 +332,7 @@ class Collection:
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """A .blend that is linked."""
+    """A linked .blend."""
 
     path: str
     missing: bool
@@ -343,8 +342,8 @@ class Library:
 class Scene:
     """The file's active scene. ``range``: its first and last frame.
 
-    ``unplayed``: why its motion was not looked at; "" if it was.
-    ``blender``: what read it; ``saved_by``: what wrote it (major, minor).
+    ``unplayed``: why its motion was not played; "" if it was. ``blender``: the version that read it; ``saved_by``: the
+    version that wrote it (major, minor).
     """
 
     name: str
@@ -359,7 +358,7 @@ class Scene:
     collections: tuple[Collection, ...]
     rigid_world: RigidWorld | None
     libraries: tuple[Library, ...]
-    scripts: tuple[str, ...]  # what in the file would have run code, had it been let
+    scripts: tuple[str, ...]  # what in the file would have run code on opening
 
     @property
     def length(self) -> int:
@@ -367,6 +366,6 @@ class Scene:
         return self.range[1] - self.range[0] + 1
 
     def moments(self) -> tuple[int, int, int]:
-        """The frames that are looked at: start, middle, end."""
+        """The sample frames: start, middle, end."""
         first, last = self.range
         return first, (first + last) // 2, last

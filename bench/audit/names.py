@@ -32,8 +32,8 @@ _BEFORE = frozenset({
 def words_of(name: str) -> tuple[str, ...]:
     """The words of a name, lower case, singular, without numbers and noise: ``"RedCushions.001"`` → red, cushion."""
     spaced = _CAMEL.sub(" ", _LIBRARY.sub("", name))
-    found = [_singular(word.casefold()) for word in _WORD.findall(spaced)]
-    return tuple(word for word in found if word not in _NOISE) or tuple(found)
+    words = [_singular(word.casefold()) for word in _WORD.findall(spaced)]
+    return tuple(word for word in words if word not in _NOISE) or tuple(words)
 
 
 def _singular(word: str) -> str:
@@ -46,7 +46,7 @@ def _singular(word: str) -> str:
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Match:
+class NameMatch:
     """How well a name fits a phrase; greater is better.
 
     ``quality``: 3 the name is the phrase, 2 it contains the phrase, 1 it contains it as a place (``rug under table``).
@@ -58,16 +58,18 @@ class Match:
     length: int
 
 
-def match(name: str, phrases: Iterable[str]) -> Match | None:
+def match_name(name: str, phrases: Iterable[str]) -> NameMatch | None:
     """The best match of a name with any of the phrases; None without a match."""
-    words = words_of(name)
-    head = next((place for place, word in enumerate(words) if place and word in _BEFORE), len(words))
-    found = [_match(words, head, "".join(words_of(phrase))) for phrase in phrases]
-    return max((one for one in found if one is not None), default=None)
+    name_words = words_of(name)
+    head = next(
+        (place for place, word in enumerate(name_words) if place and word in _BEFORE), len(name_words)
+    )
+    matches = [_match(name_words, head, "".join(words_of(phrase))) for phrase in phrases]
+    return max((match for match in matches if match is not None), default=None)
 
 
-def _match(words: tuple[str, ...], head: int, phrase: str) -> Match | None:
-    best: Match | None = None
+def _match(words: tuple[str, ...], head: int, phrase: str) -> NameMatch | None:
+    best: NameMatch | None = None
     for first in range(len(words)):
         joined, last = "", first - 1
         while last + 1 < len(words) and len(joined) < len(phrase):
@@ -76,6 +78,6 @@ def _match(words: tuple[str, ...], head: int, phrase: str) -> Match | None:
         if joined != phrase or not phrase:
             continue
         whole = first == 0 and last == len(words) - 1
-        one = Match(3 if whole else 2 if last < head else 1, last + 1, len(phrase))
-        best = one if best is None else max(best, one)
+        match = NameMatch(3 if whole else 2 if last < head else 1, last + 1, len(phrase))
+        best = match if best is None else max(best, match)
     return best

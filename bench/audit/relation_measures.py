@@ -6,14 +6,14 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 Corner: TypeAlias = tuple[float, float, float]
-Reaches: TypeAlias = tuple[float, float, float, float]
+Extents: TypeAlias = tuple[float, float, float, float]
 # What to measure beyond bounds and distance. depth: how deep, and by what share, either is in the other. columns: that,
 # and which is over which. inside: containment. view: extents as the camera sees them.
-Want: TypeAlias = Literal["depth", "columns", "inside", "view"]
+Quantity: TypeAlias = Literal["depth", "columns", "inside", "view"]
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class PairMeasurement:
     """Two groups of objects, ``a`` and ``b``, at a frame. Quantities that were not requested or do not exist are None.
 
     ``empty``: which of them has no geometry; then the rest is not set. ``a_low`` … ``b_high``: corners of bounds.
@@ -44,16 +44,16 @@ class Measured:
     contact: float | None = None
     over: float | None = None
     lines: int = 0
-    right: Reaches | None = None
-    near: Reaches | None = None
+    right: Extents | None = None
+    near: Extents | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class PairRequest:
     """What to measure: two groups of objects (by name), at turns (0 start, 1 middle, 2 end) of the clip."""
 
     a: tuple[str, ...]
     b: tuple[str, ...]
     turns: tuple[int, ...]
     tolerance: float
-    wants: tuple[Want, ...] = field(default=())
+    wants: tuple[Quantity, ...] = field(default=())

@@ -15,33 +15,37 @@ _BODIES = {"rigid_active": "ACTIVE", "rigid_passive": "PASSIVE"}
 UNMARKED = ("static", "keyframed")
 
 
-def modifiers_of_role(one: Object, role: str) -> tuple[Modifier, ...]:
+def modifiers_of_role(obj: Object, role: str) -> tuple[Modifier, ...]:
     """The modifiers that give an object the role, on or off."""
     if role in _MODIFIERS:
-        return one.of_type(_MODIFIERS[role])
+        return obj.of_type(_MODIFIERS[role])
     if role in _FLUIDS:
         wanted = _FLUIDS[role]
-        return tuple(each for each in one.of_type("FLUID") if each.fluid and each.fluid.type == wanted)
+        return tuple(
+            modifier for modifier in obj.of_type("FLUID") if modifier.fluid and modifier.fluid.type == wanted
+        )
     if role in _PARTICLES:
         wanted = _PARTICLES[role]
-        found = one.of_type("PARTICLE_SYSTEM")
-        return tuple(each for each in found if each.particles and each.particles.type == wanted)
+        systems = obj.of_type("PARTICLE_SYSTEM")
+        return tuple(
+            modifier for modifier in systems if modifier.particles and modifier.particles.type == wanted
+        )
     return ()
 
 
-def plays(one: Object, role: str) -> bool:
+def plays(obj: Object, role: str) -> bool:
     """Whether an object has what marks the role; never for unmarked roles."""
     if role in _BODIES:
-        return one.rigid_body is not None and one.rigid_body.type == _BODIES[role]
+        return obj.rigid_body is not None and obj.rigid_body.type == _BODIES[role]
     if role == "force":
-        return one.force is not None
-    return bool(modifiers_of_role(one, role))
+        return obj.force is not None
+    return bool(modifiers_of_role(obj, role))
 
 
-def simulates(one: Object, scene: Scene) -> bool:
+def simulates(obj: Object, scene: Scene) -> bool:
     """Whether a solver that is on moves it or its surface: cloth, soft body, fluid domain, active rigid body."""
-    world, body = scene.rigid_world, one.rigid_body
+    world, body = scene.rigid_world, obj.rigid_body
     if world is not None and world.enabled and body is not None and body.in_world:
         return body.type == "ACTIVE" and body.enabled and not body.kinematic
-    domains = modifiers_of_role(one, "fluid_domain")
-    return any(each.on for each in (*one.of_type("CLOTH", "SOFT_BODY"), *domains))
+    domains = modifiers_of_role(obj, "fluid_domain")
+    return any(modifier.on for modifier in (*obj.of_type("CLOTH", "SOFT_BODY"), *domains))

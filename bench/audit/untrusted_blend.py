@@ -46,12 +46,12 @@ class Crashed(NotScored):
     """Blender ended while it worked on the file."""
 
 
-class Refused(NotScored):
+class JobRefused(NotScored):
     """Blender refused a job on this file; the message says why."""
 
 
 @dataclass(frozen=True)
-class Means:
+class BlenderOptions:
     """Which Blender to use (by default this environment's), and its limits for one file: seconds, and memory in bytes.
 
     ``read``: further folders that it may read, such as those of linked files.
@@ -68,7 +68,7 @@ class Means:
         return find_blender(self.version, self.blender_exe)
 
 
-class Untrusted:
+class UntrustedBlend:
     """An open .blend, to be used in a ``with``. Raises NotScored for a bad file, CannotStart if no Blender works.
 
     ``program`` answers the jobs; ``workspace`` is where Blender may write, by default a folder removed at the end.
@@ -77,16 +77,16 @@ class Untrusted:
     def __init__(
         self,
         blend: Path,
-        means: Means | None = None,
+        means: BlenderOptions | None = None,
         program: Program | None = None,
         workspace: Path | None = None,
     ) -> None:
-        self._means = means or Means()
-        self._path = checked(blend)
+        self._means = means or BlenderOptions()
+        self._path = resolve_blend(blend)
         self._program, self._workspace = program or AUDITOR, workspace
         self._deadline = time.monotonic() + self._means.seconds
 
-    def __enter__(self) -> Untrusted:
+    def __enter__(self) -> UntrustedBlend:
         self._place = tempfile.TemporaryDirectory(prefix="simworlds-audit-", ignore_cleanup_errors=True)
         try:
             self._process = BlenderProcess(self._launch(Path(self._place.name).resolve()))
@@ -103,7 +103,7 @@ class Untrusted:
 
     def reopen(self, blend: Path) -> None:
         """Opens another file of the same folder instead, with a fresh time limit. Raises NotScored, CannotStart."""
-        path = checked(blend)
+        path = resolve_blend(blend)
         self._deadline = time.monotonic() + self._means.seconds
         self.ask("open", path=str(path), doing="opening it")
 
@@ -118,7 +118,7 @@ class Untrusted:
         except MissingModule as error:
             raise CannotStart(str(error)) from error
         except Refusal as error:
-            raise Refused(str(error)[:_LONGEST_REASON]) from error
+            raise JobRefused(str(error)[:_LONGEST_REASON]) from error
         except ToolBroke as error:
             raise NotScored(str(error)[:_LONGEST_REASON]) from error
         except TookTooLong:
@@ -139,7 +139,7 @@ class Untrusted:
             place / "private",
             best_sandbox(limits=ResourceLimits(memory=self._means.memory, file_size=GIB)),
             self._program,
-            (*readable(self._path), *self._means.read),
+            (*readable_paths(self._path), *self._means.read),
         )
 
     def _end(self) -> None:
@@ -150,7 +150,7 @@ class Untrusted:
         self._place.cleanup()
 
 
-def checked(blend: Path) -> Path:
+def resolve_blend(blend: Path) -> Path:
     """The resolved path of a .blend. Raises NotScored if its first bytes are not those of a .blend."""
     path = blend.expanduser().resolve()
     try:
@@ -167,7 +167,7 @@ def checked(blend: Path) -> Path:
     return path
 
 
-def readable(blend: Path) -> tuple[Path, ...]:
+def readable_paths(blend: Path) -> tuple[Path, ...]:
     """What Blender may read: the file's folder; if that holds the user's home, only the file and its point caches."""
     folder, home = blend.parent, Path.home().resolve()
     if not home.is_relative_to(folder):

@@ -11,7 +11,7 @@ from bench.blenderbench.published import OVERALL, PUBLISHED
 from bench.blenderbench.results import Score, read, read_run, records
 from bench.blenderbench.score import METRICS
 from bench.blenderbench.task_set import LEVELS
-from bench.markdown_tables import Table, table
+from bench.markdown_tables import Table, format_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -103,7 +103,7 @@ def as_markdown(results: Sequence[SetResults], *, published: bool = False) -> st
         if any(row in result.rows for result in results)
     )
     notes = "\n".join(f"- {note}" for result in results for note in _notes(result))
-    return f"{table(Table('BlenderBench', head, body))}\n\n{notes}"
+    return f"{format_table(Table('BlenderBench', head, body))}\n\n{notes}"
 
 
 def as_data(results: Sequence[SetResults]) -> list[dict[str, Any]]:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from bench.blenderbench.results import TaskFolder, TaskRecord
     from bench.blenderbench.vlm import EditJudgement
     from bench.blenderbench.weights import Clip
-    from bench.judge.providers import Provider
+    from bench.judge.providers import JudgeProvider
 
 METRICS = ("pl", "n_clip", "vlm")
 
@@ -40,7 +40,7 @@ class ScoringRule:
     convention: Convention = "paper"
     clip: Clip | None = None
     best_round: bool = False
-    provider: Provider | None = None
+    provider: JudgeProvider | None = None
     cache: Path | None = None
 
     @property

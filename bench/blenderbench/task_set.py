@@ -16,7 +16,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from bench.audit.untrusted_blend import NotScored, checked
+from bench.audit.untrusted_blend import NotScored, resolve_blend
 from bench.blenderbench.errors import BadPicture, NoTasks
 from bench.blenderbench.pictures import size_of
 
@@ -117,7 +117,7 @@ def _task(root: Path, folder: Path) -> BenchTask:
     goal = _within(root, folder / "renders" / "goal" / "render1.png")
     blend = _within(root, folder / "blender_file.blend")
     try:
-        checked(blend)
+        resolve_blend(blend)
         size = size_of(goal)
     except NotScored as error:
         raise _Fault(f"{blend}: {error}") from error

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field
 
-from bench.judge.answer_cache import Store, key_of
-from bench.judge.ask import asked
-from bench.judge.usage import Spent
+from bench.judge.answer_cache import AnswerCache, key_of
+from bench.judge.ask import ask_judge
+from bench.judge.usage import AnswerCost
 from simworlds.llm.canonical import form_of
 from simworlds.llm.messages import Ask, Picture, Text, Tool, user
 from simworlds.llm.structured import fits
@@ -28,7 +28,7 @@ from simworlds.schemas.json_schema import schema_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from bench.judge.providers import Provider
+    from bench.judge.providers import JudgeProvider
 
 CRITERIA = ("task_completion", "visual_quality", "spatial_accuracy", "detail_accuracy")
 BEST = 5
@@ -72,11 +72,11 @@ class EditJudgement(_Part):
     answered_by: str
     prompt_version: str
     marks: Marks
-    spent: Spent
+    spent: AnswerCost
 
 
 def judge_edit(
-    instruction: str, goal: Image.Image, result: Image.Image, provider: Provider, cache_folder: Path | None
+    instruction: str, goal: Image.Image, result: Image.Image, provider: JudgeProvider, cache_folder: Path | None
 ) -> EditJudgement:
     """Judges an edit. Raises NotJudged with the reason where that fails, rather than a low mark."""
     plain = [_plain(picture) for picture in (goal, result)]
@@ -89,7 +89,7 @@ def judge_edit(
     }
 
     def ask() -> EditJudgement:
-        answer = asked(provider, _ask(instruction, [_encoded(picture) for picture in plain]), _reader)
+        answer = ask_judge(provider, _ask(instruction, [_encoded(picture) for picture in plain]), _reader)
         return EditJudgement(
             provider=provider.name,
             model=provider.model,
@@ -99,7 +99,7 @@ def judge_edit(
             spent=answer.spent,
         )
 
-    return Store(cache_folder).once("edits", key_of(ingredients), EditJudgement, ask)
+    return AnswerCache(cache_folder).load_or_make("edits", key_of(ingredients), EditJudgement, ask)
 
 
 @cache

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bench.commands.scenes import chosen_spec
+from bench.commands.shared_options import blender_options, tell_on_terminal, with_audit_options
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from bench.audit.audit import ActorAudit, Audit, Checked
-    from bench.audit.spr import Related
+    from bench.audit.audit import ActorAudit, Audit, CheckResult
+    from bench.audit.spr import RelationResult
 
 _PATH = click.Path(path_type=Path)
 _MARKS = {"passed": "✓", "failed": "✗", "not_applicable": "–"}
@@ -29,19 +30,7 @@ _SEEN_WIDTH = 140
     "--scene", required=True, metavar="ID", help="The scene's id (see list), or a YAML file of your own."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON: the same for the same file, on every run.")
-@click.option(
-    "--read", type=_PATH, multiple=True, help="A further folder that Blender may read, e.g. of linked files."
-)
-@click.option("--seconds", default=120.0, show_default=True, help="Time limit for Blender.")
-@click.option("--memory", default=4.0, show_default=True, help="Memory limit for Blender (GiB).")
-@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
-@click.option(
-    "--blender-exe",
-    type=_PATH,
-    envvar="BLENDER_EXE",
-    show_envvar=True,
-    help="The Blender to use, if not bpy.",
-)
+@with_audit_options
 def audit(blend: Path, scene: str, as_json: bool, **given: Any) -> None:
     """Audit a .blend by a scene's spec: which of its actors are there, and which checks they pass.
 
@@ -49,66 +38,54 @@ def audit(blend: Path, scene: str, as_json: bool, **given: Any) -> None:
     was scored, whatever the score. 2: it was not scored; the reason is printed.
     """
     from bench.audit.audit import audit as run  # noqa: PLC0415
-    from bench.audit.untrusted_blend import GIB, Means  # noqa: PLC0415
     from bench.scenes.spec import BadSpec  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
     spec = chosen_spec(scene)
-    means = Means(
-        given["blender"],
-        given["blender_exe"],
-        given["seconds"],
-        int(given["memory"] * GIB),
-        tuple(folder.expanduser().resolve() for folder in given["read"]),
-    )
     try:
-        found = run(blend, spec, means, _tell)
+        result = run(blend, spec, blender_options(given), tell_on_terminal)
     except (BadSpec, BlenderError) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(2)
     except KeyboardInterrupt:
         click.echo("Interrupted.", err=True)
         sys.exit(130)
-    click.echo(found.as_json() if as_json else "\n".join(_lines(found)))
-    sys.exit(0 if found.not_scored is None else 2)
+    click.echo(result.as_json() if as_json else "\n".join(_lines(result)))
+    sys.exit(0 if result.not_scored is None else 2)
 
 
-def _tell(doing: str) -> None:
-    """Prints progress on a terminal; elsewhere nothing, since it takes seconds only."""
-    if sys.stderr.isatty():
-        click.echo(f"{doing} …", err=True)
-
-
-def _lines(found: Audit) -> Iterator[str]:
-    if found.not_scored is not None:
-        yield f"{found.scene}: not scored: {found.not_scored}"
+def _lines(audit: Audit) -> Iterator[str]:
+    if audit.not_scored is not None:
+        yield f"{audit.scene}: not scored: {audit.not_scored}"
         return
-    frames, fps = found.blend["frames"], found.blend["fps"]
-    yield f"{found.scene}: frames {frames[0]} to {frames[1]} at {fps:g} fps, {found.blend['objects']} objects"
-    if found.blend["unplayed"]:
-        yield f"motion not played: {found.blend['unplayed']}"
-    for path in found.blend["missing_libraries"]:
+    frames, fps = audit.blend["frames"], audit.blend["fps"]
+    yield f"{audit.scene}: frames {frames[0]} to {frames[1]} at {fps:g} fps, {audit.blend['objects']} objects"
+    if audit.blend["unplayed"]:
+        yield f"motion not played: {audit.blend['unplayed']}"
+    for path in audit.blend["missing_libraries"]:
         yield f"linked file missing: {path}"
-    for actor in found.actors:
+    for actor in audit.actors:
         yield ""
         yield _headline(actor)
         yield from (_line(check) for check in actor.checks)
-    if found.assertions:
+    if audit.assertions:
         yield ""
         yield "the scene as a whole"
-        yield from (_line(check) for check in found.assertions)
-    if found.relations:
+        yield from (_line(check) for check in audit.assertions)
+    if audit.relations:
         yield ""
         yield "relations"
-        yield from (_relation(one) for one in found.relations)
+        yield from (_relation(one) for one in audit.relations)
     yield ""
-    yield f"MPR {_share(found.mpr)}   SPR {_share(found.spr)}"
+    yield f"MPR {_share(audit.mpr)}   SPR {_share(audit.spr)}"
 
 
-def _relation(one: Related) -> str:
-    values = one.why or "; ".join(f"{at.when}: {at.unit} {json.dumps(at.seen)}" for at in one.moments)
+def _relation(relation: RelationResult) -> str:
+    values = relation.why or "; ".join(
+        f"{moment.when}: {moment.unit} {json.dumps(moment.seen)}" for moment in relation.moments
+    )
     values = values if len(values) <= _SEEN_WIDTH else f"{values[: _SEEN_WIDTH - 1]}…"
-    return f"  {_HOLDS[one.outcome]} {one.a} {one.type} {one.b}   {values}"
+    return f"  {_HOLDS[relation.outcome]} {relation.a} {relation.type} {relation.b}   {values}"
 
 
 def _headline(actor: ActorAudit) -> str:
@@ -117,7 +94,7 @@ def _headline(actor: ActorAudit) -> str:
     return f"{actor.name} ({actor.role}) {_share(actor.score)}   {how}"
 
 
-def _line(check: Checked) -> str:
+def _line(check: CheckResult) -> str:
     kind = "" if check.wanted == "must_have" else "not "
     seen = json.dumps(check.seen, ensure_ascii=False)
     seen = seen if len(seen) <= _SEEN_WIDTH else f"{seen[: _SEEN_WIDTH - 1]}…"

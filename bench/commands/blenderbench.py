@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from bench.commands.shared_options import judge_cache, price_of, with_blender_version
+
 if TYPE_CHECKING:
     from collections.abc import Generator
     from types import FrameType
 
     from bench.blenderbench.results import Score
     from bench.blenderbench.score import ScoringRule
-    from bench.judge.providers import Provider
+    from bench.judge.providers import JudgeProvider
 
 _PATH = click.Path(path_type=Path)
 _FOLDER = click.Path(file_okay=False, resolve_path=True, path_type=Path)
@@ -42,14 +44,14 @@ def tasks(folder: Path) -> None:
     """
     from bench.blenderbench.task_set import read_set  # noqa: PLC0415 - not for --help
 
-    with _errors():
-        found = read_set(folder)
-    for task in found.tasks:
+    with _errors_as_text():
+        task_set = read_set(folder)
+    for task in task_set.tasks:
         extra = ", with a visual prompt" if task.visprompt else ""
         click.echo(f"{task.id}  {task.size[0]} × {task.size[1]}{extra}  {' '.join(task.instruction.split())}")
-    for fault in found.faults:
+    for fault in task_set.faults:
         click.echo(f"Cannot be used: {fault}", err=True)
-    sys.exit(1 if found.faults else 0)
+    sys.exit(1 if task_set.faults else 0)
 
 
 @blenderbench.command()
@@ -79,14 +81,7 @@ def tasks(folder: Path) -> None:
     help="How long a step in Blender may take.",
 )
 @click.option("--memory", type=click.FloatRange(0.25), help="How much memory Blender may take (GiB).")
-@click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
-@click.option(
-    "--blender-exe",
-    type=_PATH,
-    envvar="BLENDER_EXE",
-    show_envvar=True,
-    help="The Blender to use, if not bpy.",
-)
+@with_blender_version
 def run(folder: Path, **given: Any) -> None:
     """Have a system edit the tasks of SET, and render what came of it.
 
@@ -108,7 +103,7 @@ def run(folder: Path, **given: Any) -> None:
     )
     options = _words(given, "model", "blender", "blender_exe")
     limits = _words(given, "max_cost", "max_minutes")
-    with _errors(BlenderError):
+    with _errors_as_text(BlenderError):
         system = system_of(given["system"], rendering, given["reference"], options, limits)
         found = read_set(folder)
         for fault in found.faults:
@@ -151,13 +146,13 @@ def score(out: Path, **given: Any) -> None:
     """
     from bench.blenderbench.score import score as start  # noqa: PLC0415 - not for --help
 
-    with _errors():
+    with _errors_as_text():
         scores = start(out, _rule(given), _tell)
-    for one in scores:
-        click.echo(_line(one))
-        for metric, why in one.missing.items():
-            click.echo(f"{one.task}: {metric} is not scored: {why}", err=True)
-    sys.exit(1 if any(one.missing for one in scores) else 0)
+    for task_score in scores:
+        click.echo(_line(task_score))
+        for metric, why in task_score.missing.items():
+            click.echo(f"{task_score.task}: {metric} is not scored: {why}", err=True)
+    sys.exit(1 if any(task_score.missing for task_score in scores) else 0)
 
 
 @blenderbench.command()
@@ -168,7 +163,7 @@ def report(outs: tuple[Path, ...], *, paper: bool, as_json: bool) -> None:
     """Print the table of one or several systems' RESULTS: means a level, and over all tasks."""
     from bench.blenderbench.report import as_data, as_markdown, read_results  # noqa: PLC0415 - not for --help
 
-    with _errors():
+    with _errors_as_text():
         found = [read_results(out) for out in outs]
         text = as_markdown(found, published=paper)
     click.echo(json.dumps(as_data(found), indent=1, ensure_ascii=False) if as_json else text)
@@ -184,37 +179,30 @@ def _rule(given: dict[str, Any]) -> ScoringRule:
     from bench.blenderbench.errors import BadResults  # noqa: PLC0415 - not for --help
     from bench.blenderbench.score import ScoringRule  # noqa: PLC0415
     from bench.blenderbench.weights import load_clip  # noqa: PLC0415
-    from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415
 
     if given["best_round"] and not given["clip"]:
         raise BadResults("--best-round chooses by N-CLIP, which needs weights: name them by --clip.")
     clip = load_clip(given["clip"], _tell) if given["clip"] else None
-    cache = given["cache"] or cache_folder(home_folder()) / "judge"
     convention = "peer" if given["peer"] else "paper"
     return ScoringRule(convention, clip, given["best_round"], _provider(given), cache)
 
 
-def _provider(given: dict[str, Any]) -> Provider | None:
-    from bench.judge.providers import provider_of  # noqa: PLC0415
-    from simworlds.llm.prices import read_price  # noqa: PLC0415 - not for --help
+def _provider(given: dict[str, Any]) -> JudgeProvider | None:
+    from bench.judge.providers import provider_of  # noqa: PLC0415 - not for --help
 
     if given["judge"] is None:
         return None
-    try:
-        price = None if given["price"] is None else read_price(given["price"])
-    except ValueError as error:
-        raise click.UsageError(str(error)) from error
-    asked = {name: given[name] for name in ("model", "base_url", "max_cost")}
-    provider = provider_of(given["judge"], price=price, tell=_tell, **asked)
+    settings = {name: given[name] for name in ("model", "base_url", "max_cost")}
+    provider = provider_of(given["judge"], price=price_of(given["price"]), tell=_tell, **settings)
     provider.ready()
     return provider
 
 
-def _line(one: Score) -> str:
-    values = {"PL": one.pl, "N-CLIP": one.n_clip, "VLM": one.vlm}
-    told = "  ".join(f"{name} {value:.4f}" for name, value in values.items() if value is not None)
-    of = f"  ({one.chosen} of {len(one.rounds)})" if len(one.rounds) > 1 else ""
-    return f"{one.task}  {told or 'not scored'}{of}"
+def _line(task_score: Score) -> str:
+    values = {"PL": task_score.pl, "N-CLIP": task_score.n_clip, "VLM": task_score.vlm}
+    text = "  ".join(f"{name} {value:.4f}" for name, value in values.items() if value is not None)
+    round_text = f"  ({task_score.chosen} of {len(task_score.rounds)})" if len(task_score.rounds) > 1 else ""
+    return f"{task_score.task}  {text or 'not scored'}{round_text}"
 
 
 def _tell(doing: object) -> None:
@@ -223,7 +211,7 @@ def _tell(doing: object) -> None:
 
 
 @contextmanager
-def _errors(*kinds: type[Exception]) -> Generator[None]:
+def _errors_as_text(*kinds: type[Exception]) -> Generator[None]:
     """Errors as words and an exit code; being ended by somebody is being interrupted."""
     from bench.blenderbench.errors import BlenderBenchError  # noqa: PLC0415 - not for --help
     from bench.judge.errors import NotJudged  # noqa: PLC0415

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bench.commands.scenes import chosen_spec
+from bench.commands.shared_options import judge_cache, price_of, tell_on_terminal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from bench.judge.agreement import Agreement
     from bench.judge.errors import NotJudged
-    from bench.judge.estimate import Asked
-    from bench.judge.providers import Provider
+    from bench.judge.estimate import JudgeRequest
+    from bench.judge.providers import JudgeProvider
     from bench.judge.verdicts import Judgement
-    from simworlds.llm.prices import Price
 
 _PATH = click.Path(path_type=Path)
 _PROVIDERS = ("anthropic", "openai")
@@ -54,10 +54,10 @@ def judge(frames: tuple[Path, ...], **given: Any) -> None:
     from bench.judge.errors import NotJudged  # noqa: PLC0415 - not for --help
     from bench.judge.providers import DEFAULTS  # noqa: PLC0415
 
-    given["price"] = _price(given["price"])
+    given["price"] = price_of(given["price"])
     given["model"] = given["model"] or DEFAULTS[given["provider"]]
-    given["cache"] = given["cache"] or _own_cache()
-    wanted = _wanted(frames, given)
+    given["cache"] = judge_cache(given["cache"])
+    wanted = _request(frames, given)
     if (frames and wanted is None) or not (frames or given["dry_run"]):
         raise click.UsageError("Give the frames, and --scene or --prompt.")
     try:
@@ -73,48 +73,27 @@ def judge(frames: tuple[Path, ...], **given: Any) -> None:
         sys.exit(130)
 
 
-def _wanted(frames: Sequence[Path], given: dict[str, Any]) -> Asked | None:
+def _request(frames: Sequence[Path], given: dict[str, Any]) -> JudgeRequest | None:
     """The judgement that is requested; None without a scene or prompt."""
-    from bench.judge.estimate import Asked  # noqa: PLC0415 - not for --help
+    from bench.judge.estimate import JudgeRequest  # noqa: PLC0415 - not for --help
 
     if given["scene"] is not None and given["prompt"] is not None:
         raise click.UsageError("Give --scene or --prompt, not both.")
     if given["prompt"] is not None:
-        return Asked(given["prompt"], given["static"], frames)
+        return JudgeRequest(given["prompt"], given["static"], frames)
     if given["scene"] is None:
         return None
     spec = chosen_spec(given["scene"])
     static = spec.category == "static"
     if given["static"] and not static:
         raise click.UsageError(f"{spec.id} is not a static scene; leave out --static.")
-    return Asked(spec.prompt, static, frames, spec.id)
-
-
-def _price(text: str | None) -> Price | None:
-    from simworlds.llm.prices import read_price  # noqa: PLC0415 - not for --help
-
-    try:
-        return None if text is None else read_price(text)
-    except ValueError as error:
-        raise click.UsageError(str(error)) from error
-
-
-def _own_cache() -> Path:
-    from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415 - not for --help
-
-    return cache_folder(home_folder()) / "judge"
-
-
-def _tell(doing: object) -> None:
-    """Prints progress on a terminal; elsewhere nothing, since it takes seconds only."""
-    if sys.stderr.isatty():
-        click.echo(f"{doing} …", err=True)
+    return JudgeRequest(spec.prompt, static, frames, spec.id)
 
 
 # Judging
 
 
-def _judge(wanted: Asked, given: dict[str, Any]) -> None:
+def _judge(request: JudgeRequest, given: dict[str, Any]) -> None:
     from bench.judge.agreement import agreement  # noqa: PLC0415 - not for --help
     from bench.judge.errors import NotJudged  # noqa: PLC0415
     from bench.judge.judge import judge as run  # noqa: PLC0415
@@ -122,32 +101,34 @@ def _judge(wanted: Asked, given: dict[str, Any]) -> None:
     from bench.judge.providers import provider_of  # noqa: PLC0415
 
     names = ("model", "base_url", "max_cost", "price")
-    provider = provider_of(given["provider"], tell=_tell, **{name: given[name] for name in names})
-    judged: list[Judgement] = []
+    provider = provider_of(given["provider"], tell=tell_on_terminal, **{name: given[name] for name in names})
+    judgements: list[Judgement] = []
     failed: list[tuple[int, NotJudged]] = []
     for number in range(given["repeat"]):
         try:
-            judged.append(
+            judgements.append(
                 run(
-                    wanted.prompt,
-                    wanted.frames,
-                    static=wanted.static,
+                    request.prompt,
+                    request.frames,
+                    static=request.static,
                     provider=provider,
                     cache=given["cache"],
-                    scene=wanted.scene,
+                    scene=request.scene,
                     repetition=number,
-                    tell=_tell,
+                    tell=tell_on_terminal,
                 )
             )
         except NotJudged as error:
             failed.append((number, error))
             if error.reason not in _PASSING:
                 break
-    agreed = agreement(judged) if len(judged) > 1 else None
+    agreements = agreement(judgements) if len(judgements) > 1 else None
     if given["as_json"]:
-        click.echo(json.dumps(_as_json(judged, failed, agreed, provider), indent=1, ensure_ascii=False))
-    elif judged:
-        click.echo("\n".join(judgement_lines(judged, agreed, provider.spending.total())))
+        click.echo(
+            json.dumps(_as_json(judgements, failed, agreements, provider), indent=1, ensure_ascii=False)
+        )
+    elif judgements:
+        click.echo("\n".join(judgement_lines(judgements, agreements, provider.spending.total())))
     for number, error in failed:
         which = f" (repetition {number})" if given["repeat"] > 1 else ""
         click.echo(f"Not judged{which}: {error.reason}: {error}", err=True)
@@ -155,18 +136,18 @@ def _judge(wanted: Asked, given: dict[str, Any]) -> None:
 
 
 def _as_json(
-    judged: Sequence[Judgement],
+    judgements: Sequence[Judgement],
     failed: Sequence[tuple[int, NotJudged]],
-    agreed: Agreement | None,
-    provider: Provider,
+    agreements: Agreement | None,
+    provider: JudgeProvider,
 ) -> dict[str, Any]:
     spent = provider.spending.total()
     return {
-        "judgements": [one.model_dump(mode="json") for one in judged],
+        "judgements": [judgement.model_dump(mode="json") for judgement in judgements],
         "not_judged": [
             {"repetition": number, "reason": error.reason, "message": str(error)} for number, error in failed
         ],
-        "agreement": agreed.model_dump(mode="json") if agreed else None,
+        "agreement": agreements.model_dump(mode="json") if agreements else None,
         "asked_now": {"requests": spent.calls, "cost": None if spent.unpriced else spent.cost},
     }
 
@@ -174,19 +155,21 @@ def _as_json(
 # Dry run
 
 
-def _dry_run(wanted: Asked | None, given: dict[str, Any]) -> None:
-    from bench.judge.estimate import Asked, estimate  # noqa: PLC0415
+def _dry_run(request: JudgeRequest | None, given: dict[str, Any]) -> None:
+    from bench.judge.estimate import JudgeRequest, estimate  # noqa: PLC0415
     from bench.judge.judgement_text import question_lines, sum_lines  # noqa: PLC0415
     from bench.scenes.spec import specs  # noqa: PLC0415
     from simworlds.llm.prices import Prices  # noqa: PLC0415 - not for --help
 
     prices = Prices({given["model"]: given["price"]} if given["price"] else None)
-    named = [wanted] if wanted else [Asked(spec.prompt, spec.category == "static") for spec in specs()]
+    requests = (
+        [request] if request else [JudgeRequest(spec.prompt, spec.category == "static") for spec in specs()]
+    )
     questions = [
         question
-        for one in named
+        for question in requests
         for question in estimate(
-            one,
+            question,
             given["provider"],
             given["model"],
             prices=prices,
@@ -196,9 +179,11 @@ def _dry_run(wanted: Asked | None, given: dict[str, Any]) -> None:
     ]
     if given["as_json"]:
         click.echo(
-            json.dumps([one.model_dump(mode="json") for one in questions], indent=1, ensure_ascii=False)
+            json.dumps(
+                [question.model_dump(mode="json") for question in questions], indent=1, ensure_ascii=False
+            )
         )
         return
-    if wanted:
-        click.echo("\n".join(line for one in questions for line in question_lines(one)))
+    if request:
+        click.echo("\n".join(line for question in questions for line in question_lines(question)))
     click.echo("\n".join(sum_lines(questions, f"{given['provider']}/{given['model']}")))

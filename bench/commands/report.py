@@ -13,8 +13,8 @@ import click
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from bench.results.estimate import Estimate
-    from bench.results.scores import Results
+    from bench.results.estimate import SweepEstimate
+    from bench.results.scores import ResultSet
 
 _PATH = click.Path(path_type=Path)
 
@@ -40,23 +40,33 @@ def report(results: tuple[Path, ...], **given: Any) -> None:
     The tables: the paper's Table 1 with 95 % intervals, coverage, paired comparisons of systems, ablations, cost. The
     page also has frames, scores, failed checks with the values seen, and the judge's verdicts.
     """
-    from bench.markdown_tables import table  # noqa: PLC0415 - not for --help
+    from bench.markdown_tables import format_table  # noqa: PLC0415 - not for --help
     from bench.results.notes import notes  # noqa: PLC0415
     from bench.results.tables import tables  # noqa: PLC0415
 
-    found = _read(results)
-    if given["baseline"] is not None and found.system(given["baseline"]) is None:
-        names = ", ".join(system.name for system in found.systems)
+    result_set = _read(results)
+    if given["baseline"] is not None and result_set.system(given["baseline"]) is None:
+        names = ", ".join(system.name for system in result_set.systems)
         raise click.UsageError(
             f"There is no system {given['baseline'][:80]!r} in these results. Choose one of: {names}."
         )
-    told = tables(found, baseline=given["baseline"], with_paper=given["paper"])
-    said = notes(found)
-    text = _plain("\n\n".join((*(f"> {note}" for note in said), *(table(one) for one in told))) + "\n")
+    result_tables = tables(result_set, baseline=given["baseline"], with_paper=given["paper"])
+    warnings = notes(result_set)
+    text = _plain(
+        "\n\n".join(
+            (
+                *(f"> {note}" for note in warnings),
+                *(format_table(result_table) for result_table in result_tables),
+            )
+        )
+        + "\n"
+    )
     place = given["html"] or results[0] / "report.html"
-    numbers = json.dumps(_numbers(found, given["baseline"], said), indent=1, ensure_ascii=False) + "\n"
+    numbers = (
+        json.dumps(_numbers(result_set, given["baseline"], warnings), indent=1, ensure_ascii=False) + "\n"
+    )
     try:
-        _write_page(place, found, told, said)
+        _write_page(place, result_set, result_tables, warnings)
         if given["markdown"] is not None:
             _write(given["markdown"], text)
         if given["as_json"] is not None and str(given["as_json"]) != "-":
@@ -100,30 +110,34 @@ def estimate(results: tuple[Path, ...], **given: Any) -> None:
 
     making = given["making"] * 60 if given["making"] is not None else None
     sizes = {"systems": given["systems"], "machines": given["machines"], "at_a_time": given["jobs"]}
-    found = run(_read(results), **sizes, making=making)
-    if found is None:
+    sweep_estimate = run(_read(results), **sizes, making=making)
+    if sweep_estimate is None:
         click.echo("Error: no scene in these results was scored, so there are no measured times.", err=True)
         sys.exit(2)
-    click.echo(json.dumps(asdict(found), indent=1) if given["as_json"] else "\n".join(_estimated(found)))
+    click.echo(
+        json.dumps(asdict(sweep_estimate), indent=1)
+        if given["as_json"]
+        else "\n".join(_estimate_lines(sweep_estimate))
+    )
 
 
-def _read(folders: Sequence[Path]) -> Results:
+def _read(folders: Sequence[Path]) -> ResultSet:
     """The results; ends the command with exit code 2 if there are none."""
     from bench.results.scores import read_results  # noqa: PLC0415 - not for --help
     from bench.scenes.spec import BadSpec  # noqa: PLC0415
 
     try:
-        found = read_results([folder.expanduser().resolve() for folder in folders])
+        result_set = read_results([folder.expanduser().resolve() for folder in folders])
     except (BadSpec, OSError) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(2)
-    if not found.systems:
-        for fault in found.faults:
+    if not result_set.systems:
+        for fault in result_set.faults:
             click.echo(fault, err=True)
         where = ", ".join(map(str, folders))
         click.echo(f"Error: there are no results in {where}. Make some with 'simworlds bench run'.", err=True)
         sys.exit(2)
-    return found
+    return result_set
 
 
 def _plain(text: str) -> str:
@@ -131,12 +145,12 @@ def _plain(text: str) -> str:
     return "".join(char if char.isprintable() or char == "\n" else " " for char in text)
 
 
-def _write_page(place: Path, found: Results, told: Any, said: Sequence[str]) -> None:
+def _write_page(place: Path, result_set: ResultSet, result_tables: Any, warnings: Sequence[str]) -> None:
     from bench.results.page import page  # noqa: PLC0415 - not for --help
     from bench.sweep.provenance import code_of, provenance  # noqa: PLC0415
 
     seal = provenance(code_of("bench.results.page"))
-    _write(place, page(found, told, said, seal))
+    _write(place, page(result_set, result_tables, warnings, seal))
 
 
 def _write(path: Path, text: str) -> None:
@@ -145,14 +159,14 @@ def _write(path: Path, text: str) -> None:
     write_whole(path.expanduser(), text.encode("utf-8", "replace"))
 
 
-def _numbers(results: Results, baseline: str | None, said: Sequence[str]) -> dict[str, Any]:
+def _numbers(results: ResultSet, baseline: str | None, warnings: Sequence[str]) -> dict[str, Any]:
     """All figures as data, with the settings of their statistics."""
     from bench.results import statistics  # noqa: PLC0415 - not for --help
     from bench.results.figures import ablations, comparisons, figures_of  # noqa: PLC0415
     from bench.results.scores import METRICS  # noqa: PLC0415
 
     return {
-        "notes": list(said),
+        "notes": list(warnings),
         "bootstrap": {"seed": statistics.SEED, "draws": statistics.DRAWS, "level": statistics.LEVEL},
         "systems": {
             system.name: {
@@ -171,25 +185,27 @@ def _numbers(results: Results, baseline: str | None, said: Sequence[str]) -> dic
             }
             for system in results.systems
         },
-        "comparisons": [asdict(one) for one in comparisons(results, baseline)],
-        "ablations": [asdict(one) for one in ablations(results)],
+        "comparisons": [asdict(row) for row in comparisons(results, baseline)],
+        "ablations": [asdict(row) for row in ablations(results)],
     }
 
 
-def _estimated(found: Estimate) -> Iterator[str]:
-    yield f"times measured for {found.measured} of {found.scenes} scenes; the others get their category's mean"
+def _estimate_lines(estimated: SweepEstimate) -> Iterator[str]:
+    yield f"times measured for {estimated.measured} of {estimated.scenes} scenes; the others get their category's mean"
     steps = {"produced": "making", "audited": "audit", "framed": "frames", "judged": "judge"}
-    parts = ", ".join(f"{steps[step]} {_told(seconds)}" for step, seconds in found.work.items() if seconds)
-    yield f"{found.scenes} scenes by one system, one after the other: {_told(found.one)} ({parts})"
-    workers = found.machines * found.at_a_time
-    yield (
-        f"{found.systems} systems on {found.machines} machines, {found.at_a_time} scenes in parallel on each: "
-        f"{_told(found.together)}; the longest scene takes {_told(found.longest)}"
+    parts = ", ".join(
+        f"{steps[step]} {_format_time(seconds)}" for step, seconds in estimated.work.items() if seconds
     )
-    yield f"that is {found.systems * found.one / 3600:.1f} hours of work for {workers} workers"
+    yield f"{estimated.scenes} scenes by one system, one after the other: {_format_time(estimated.one)} ({parts})"
+    workers = estimated.machines * estimated.at_a_time
+    yield (
+        f"{estimated.systems} systems on {estimated.machines} machines, {estimated.at_a_time} scenes in parallel on "
+        f"each: {_format_time(estimated.together)}; the longest scene takes {_format_time(estimated.longest)}"
+    )
+    yield f"that is {estimated.systems * estimated.one / 3600:.1f} hours of work for {workers} workers"
 
 
-def _told(seconds: float) -> str:
+def _format_time(seconds: float) -> str:
     if seconds < 90:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -13,7 +13,7 @@ from bench.scenes.spec import CATEGORIES, BadSpec, read_spec, spec_of, specs
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from bench.scenes.spec import Actor, Check, Spec
+    from bench.scenes.spec import Spec, SpecActor, SpecCheck
 
 _WIDTH = 100
 
@@ -44,23 +44,23 @@ def _near(name: str) -> str:
 def list_scenes(category: str | None, as_json: bool) -> None:
     """List the benchmark's scenes: id, how many actors, checks and relations, and the prompt."""
     try:
-        found = [spec for spec in specs() if category in (None, spec.category)]
+        chosen = [spec for spec in specs() if category in (None, spec.category)]
     except BadSpec as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(2)
     if as_json:
         import json  # noqa: PLC0415 - only where it is asked for
 
-        rows = [{"id": spec.id, "prompt": spec.prompt, **_counts(spec)} for spec in found]
+        rows = [{"id": spec.id, "prompt": spec.prompt, **_counts(spec)} for spec in chosen]
         click.echo(json.dumps(rows, indent=1, ensure_ascii=False))
         return
-    for spec in found:
+    for spec in chosen:
         counts = _counts(spec)
         click.echo(
             f"{spec.id:<16}{counts['actors']:>3} actors {counts['checks']:>3} checks "
-            f"{counts['relations']:>3} relations  {_cut(spec.prompt, 90)}"
+            f"{counts['relations']:>3} relations  {_shorten(spec.prompt, 90)}"
         )
-    click.echo(f"{len(found)} scenes")
+    click.echo(f"{len(chosen)} scenes")
 
 
 def _counts(spec: Spec) -> dict[str, int]:
@@ -72,7 +72,7 @@ def _counts(spec: Spec) -> dict[str, int]:
     }
 
 
-def _cut(text: str, length: int) -> str:
+def _shorten(text: str, length: int) -> str:
     line = " ".join(text.split())
     return line if len(line) <= length else f"{line[: length - 1]}…"
 
@@ -102,8 +102,9 @@ def _lines(spec: Spec) -> Iterator[str]:
     if spec.relations:
         yield ""
         yield "Relations"
-    for one in spec.relations:
-        yield f"  {one.a} {one.type} {one.b}, at {', '.join(one.when)} (within {one.tolerance:g} m)"
+    for relation in spec.relations:
+        ends = f"{relation.a} {relation.type} {relation.b}"
+        yield f"  {ends}, at {', '.join(relation.when)} (within {relation.tolerance:g} m)"
     if spec.phases:
         yield ""
         yield "Motion"
@@ -115,13 +116,13 @@ def _lines(spec: Spec) -> Iterator[str]:
         yield from _checks("must not have", spec.assertions)
 
 
-def _headline(actor: Actor) -> str:
+def _headline(actor: SpecActor) -> str:
     count = f", at least {actor.count}" if actor.count > 1 else ""
     other = f" (also {', '.join(actor.synonyms)})" if actor.synonyms else ""
     return f"{actor.name}{other}: {actor.role}{count}"
 
 
-def _checks(kind: str, checks: Iterable[Check]) -> Iterator[str]:
+def _checks(kind: str, checks: Iterable[SpecCheck]) -> Iterator[str]:
     for check in checks:
         params = ", ".join(f"{name} {value}" for name, value in check.params.items())
         yield f"  {kind} {check.predicate}{f' ({params})' if params else ''}"

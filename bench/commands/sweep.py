@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bench.commands.system_options import of_systems, system_of, together
+from bench.commands.shared_options import blender_options, combine, judge_cache, with_audit_options
+from bench.commands.system_options import system_of, with_system_options
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 _PATH = click.Path(path_type=Path)
 
-_scoring = together(
+_scoring = combine(
     click.option(
         "--jobs",
         type=click.IntRange(1, 256),
@@ -64,26 +65,12 @@ _scoring = together(
         "--judge-max-cost", type=click.FloatRange(0), metavar="USD", help="For all scenes together."
     ),
     click.option("--judge-cache", type=_PATH, help="Folder of answers.  [default: in SimWorlds' own]"),
-    click.option(
-        "--seconds", default=120.0, show_default=True, help="How long the audit of a scene may take."
-    ),
-    click.option(
-        "--memory", default=4.0, show_default=True, help="How much memory a Blender may take (GiB)."
-    ),
-    click.option("--read", type=_PATH, multiple=True, help="A further folder that Blender may read."),
-    click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's."),
-    click.option(
-        "--blender-exe",
-        type=_PATH,
-        envvar="BLENDER_EXE",
-        show_envvar=True,
-        help="The Blender to use, if not bpy.",
-    ),
+    with_audit_options,
 )
 
 
 @click.command()
-@of_systems
+@with_system_options
 @click.option(
     "--scenes",
     multiple=True,
@@ -173,22 +160,22 @@ def _specs(names: Sequence[str], system: SceneSystem) -> Any:
     found = select_scenes(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
     if not found:
         raise click.UsageError("--scenes names no scene.")
-    return found
+    return specs_chosen
 
 
 def _scoring_options(given: dict[str, Any]) -> ScoringOptions:
-    from bench.audit.untrusted_blend import GIB, Means  # noqa: PLC0415
-    from bench.frames.clip_frames import Look  # noqa: PLC0415 - not for --help
+    from bench.audit.untrusted_blend import GIB, BlenderOptions  # noqa: PLC0415
+    from bench.frames.clip_frames import RenderQuality  # noqa: PLC0415 - not for --help
     from bench.sweep.sweep import ScoringOptions  # noqa: PLC0415
 
-    means = Means(
+    means = BlenderOptions(
         given["blender"],
         given["blender_exe"],
         given["seconds"],
         int(given["memory"] * GIB),
         tuple(folder.expanduser().resolve() for folder in given["read"]),
     )
-    look = Look(_pixels(given["frame_size"]), given["frame_samples"])
+    look = RenderQuality(_pixels(given["frame_size"]), given["frame_samples"])
     return ScoringOptions(means, look, given["frames"] != "none", given["frames"] == "video")
 
 
@@ -203,7 +190,7 @@ def _judge(given: dict[str, Any]) -> SweepJudge:
     from bench.sweep.judging import JudgeOptions, judge_of  # noqa: PLC0415 - not for --help
     from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415
 
-    cache = given["judge_cache"] or cache_folder(home_folder()) / "judge"
+    cache = judge_cache(given["judge_cache"])
     who = (given["judge"], given["judge_model"], given["judge_url"], given["judge_max_cost"], cache)
     return judge_of(JudgeOptions(*who))
 

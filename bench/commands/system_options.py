@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from bench.commands.shared_options import combine
 
+if TYPE_CHECKING:
     from bench.sweep.records import Ablation, SystemInfo
     from bench.sweep.systems.system import SceneSystem
-
-    Command = TypeVar("Command", bound=Callable[..., Any])
 
 _ROLES = "planner, coder, reviewer, final_reviewer"
 _BOTH = "simworlds, replay:"
@@ -22,18 +20,7 @@ _SETTINGS = ("model", "samples", "render_minutes", "blender", "blender_exe")
 _LIMITS = ("max_cost", "max_minutes")
 
 
-def together(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
-    """Several options as one."""
-
-    def add(command: Command) -> Command:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return add
-
-
-of_systems = together(
+with_system_options = combine(
     click.option(
         "--system",
         required=True,
@@ -46,10 +33,10 @@ of_systems = together(
         "--role-model", multiple=True, metavar="ROLE=NAME", help=f"simworlds: another one for {_ROLES}."
     ),
     click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="simworlds: for each scene."),
-    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help=f"{_BOTH} for each scene."),
-    click.option("--samples", type=click.IntRange(1), help=f"{_BOTH} samples of the rendering."),
+    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help=f"{_RUNS} for each scene."),
+    click.option("--samples", type=click.IntRange(1), help=f"{_RUNS} samples of the rendering."),
     click.option(
-        "--render-minutes", type=click.FloatRange(0, min_open=True), help=f"{_BOTH} for the rendering."
+        "--render-minutes", type=click.FloatRange(0, min_open=True), help=f"{_RUNS} for the rendering."
     ),
     click.option("--no-verifier", is_flag=True, help="simworlds: leave the verifier out (ablation)."),
     click.option("--no-stages", is_flag=True, help="simworlds: build everything in one pass (ablation)."),
@@ -113,26 +100,26 @@ def _info(kind: Any, name: str, ablations: tuple[Ablation, ...], settings: dict[
         raise click.UsageError(f"{name!r} is no name: give letters, digits, '.', '_', '+' and '-'.") from None
 
 
-def _plain(name: str) -> str:
+def _as_name(name: str) -> str:
     kept = "".join(char if char.isascii() and (char.isalnum() or char in "._+-") else "-" for char in name)
     return kept.lstrip("._+-")[:80] or "folder"
 
 
 def _settings(given: dict[str, Any]) -> dict[str, Any]:
     """What the system's results depend on."""
-    found = {name: given[name] for name in _SETTINGS if given[name] is not None}
+    settings = {name: given[name] for name in _SETTINGS if given[name] is not None}
     if given["role_model"]:
-        found["role_model"] = sorted(given["role_model"])
-    return {name: str(value) if isinstance(value, Path) else value for name, value in found.items()}
+        settings["role_model"] = sorted(given["role_model"])
+    return {name: str(value) if isinstance(value, Path) else value for name, value in settings.items()}
 
 
 def _options(given: dict[str, Any]) -> tuple[str, ...]:
     """The same as words of a command, with what Blender may read."""
-    found = [(name, given[name]) for name in _SETTINGS if given[name] is not None]
-    found += [("role_model", one) for one in given["role_model"]]
-    found += [("read", folder.expanduser().resolve()) for folder in given["read"]]
+    options = [(name, given[name]) for name in _SETTINGS if given[name] is not None]
+    options += [("role_model", role_model) for role_model in given["role_model"]]
+    options += [("read", folder.expanduser().resolve()) for folder in given["read"]]
     flags = [f"--{name.replace('_', '-')}" for name in ("no_verifier", "no_stages") if given[name]]
-    return (*_words(found), *flags)
+    return (*_words(options), *flags)
 
 
 def _limits(given: dict[str, Any]) -> tuple[str, ...]:

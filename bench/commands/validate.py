@@ -57,12 +57,12 @@ def validate(scenes: str, properties: str, jobs: int, output: Path | None, again
     click.echo(f"{len(tasks)} scenes, {', '.join(asked)}", err=True)
     try:
         for done in prove_all(tasks, jobs):
-            found[done.scene] = done
-            click.echo(_line(done, len(found), len(tasks), time.monotonic() - started), err=True)
+            done_by_scene[done.scene] = done
+            click.echo(_line(done, len(done_by_scene), len(tasks), time.monotonic() - started), err=True)
     except KeyboardInterrupt:
         click.echo("Interrupted. Proofs are kept; the same command goes on from here.", err=True)
         sys.exit(130)
-    proofs = [proof for spec in chosen for proof in found[spec.id].proofs]
+    proofs = [proof for spec in chosen for proof in done_by_scene[spec.id].proofs]
     try:
         path = write_report(proofs, output)
     except OSError as error:
@@ -82,7 +82,7 @@ def _properties(names: str) -> tuple[Property, ...]:
         raise click.BadParameter(
             f"{', '.join(unknown)}: the properties are {', '.join(PROPERTIES)}", param_hint="--properties"
         )
-    return tuple(name for name in PROPERTIES if name in given)
+    return tuple(name for name in PROPERTIES if name in requested)
 
 
 def _scenes(names: str) -> tuple[Spec, ...]:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from bench.audit.untrusted_blend import Means, NotScored, Untrusted
+from bench.audit.untrusted_blend import BlenderOptions, NotScored, UntrustedBlend
 from bench.frames import video
 from simworlds.files import write_whole
 
@@ -34,7 +34,7 @@ Source = Literal["blend", "video", "picture"]
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class RenderQuality:
     """How a .blend is rendered: about ``pixels`` pixels, in the scene's own proportions, with ``samples`` per pixel."""
 
     pixels: int = 480 * 270
@@ -42,7 +42,7 @@ class Look:
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class FrameSet:
     """Frames as PNG files, and notes on them in words (an added camera, unbaked physics)."""
 
     source: Source
@@ -73,16 +73,22 @@ def frames_of(source: Path, static: bool, folder: Path) -> tuple[Path, ...]:
 
 
 def take_frames(
-    source: Path, static: bool, folder: Path, look: Look | None = None, means: Means | None = None
-) -> Taken:
+    source: Path,
+    static: bool,
+    folder: Path,
+    quality: RenderQuality | None = None,
+    options: BlenderOptions | None = None,
+) -> FrameSet:
     """As ``frames_of``, with notes. Raises NotScored, or CannotStart if no Blender works."""
     shares = SHARES[:1] if static else SHARES
     kind = kind_of(source)
     if kind == "blend":
-        return _of_blend(source, shares, folder, look or Look(), means or Means(seconds=SECONDS))
+        return _frames_of_blend(
+            source, shares, folder, quality or RenderQuality(), options or BlenderOptions(seconds=SECONDS)
+        )
     if kind == "picture" and not static:
         raise NotScored("a picture has one frame only; a clip needs a video or a .blend")
-    return Taken(kind, tuple(_kept(folder, shares, video.pictures(source, shares))))
+    return FrameSet(kind, tuple(_write_pictures(folder, shares, video.pictures(source, shares))))
 
 
 def kind_of(source: Path) -> Source:
@@ -93,15 +99,17 @@ def kind_of(source: Path) -> Source:
     return "picture" if suffix in video.PICTURES else "video"
 
 
-def _of_blend(blend: Path, shares: Sequence[float], folder: Path, look: Look, means: Means) -> Taken:
+def _frames_of_blend(
+    blend: Path, shares: Sequence[float], folder: Path, quality: RenderQuality, options: BlenderOptions
+) -> FrameSet:
     """Renders with unbaked physics simulated; if that takes too long or Blender ends, again without that physics."""
     notes: list[str] = []
     try:
-        rendered = _rendered(blend, shares, look, means, jump=False)
+        rendered = _rendered(blend, shares, quality, options, jump=False)
     except NotScored as error:
         first, why = error, str(error)
         try:
-            rendered = _rendered(blend, shares, look, means, jump=True)
+            rendered = _rendered(blend, shares, quality, options, jump=True)
         except NotScored:
             raise first from None
         notes.append(f"rendered without unbaked physics, after a first try failed ({why})")
@@ -109,18 +117,20 @@ def _of_blend(blend: Path, shares: Sequence[float], folder: Path, look: Look, me
         notes += [f"not baked, simulated while rendering: {each}" for each in rendered.unbaked]
     if rendered.camera is None:
         notes.append("the scene has no camera; one that sees all of it was added")
-    return Taken("blend", tuple(_kept(folder, shares, _contents(rendered))), tuple(notes))
+    return FrameSet("blend", tuple(_write_pictures(folder, shares, _decoded(rendered))), tuple(notes))
 
 
-def _rendered(blend: Path, shares: Sequence[float], look: Look, means: Means, *, jump: bool) -> _Rendered:
-    asked: dict[str, Any] = {
+def _rendered(
+    blend: Path, shares: Sequence[float], quality: RenderQuality, options: BlenderOptions, *, jump: bool
+) -> _Rendered:
+    arguments: dict[str, Any] = {
         "shares": list(shares),
-        "pixels": look.pixels,
-        "samples": look.samples,
+        "pixels": quality.pixels,
+        "samples": quality.samples,
         "jump": jump,
     }
-    with Untrusted(blend, means) as file:
-        answer = file.ask("frames", **asked, doing="rendering it")
+    with UntrustedBlend(blend, options) as file:
+        answer = file.ask("frames", **arguments, doing="rendering it")
     try:
         rendered = _Rendered.model_validate(answer)
     except ValidationError:
@@ -130,16 +140,16 @@ def _rendered(blend: Path, shares: Sequence[float], look: Look, means: Means, *,
     return rendered
 
 
-def _contents(rendered: _Rendered) -> list[bytes]:
+def _decoded(rendered: _Rendered) -> list[bytes]:
     try:
         return [base64.b64decode(each.png, validate=True) for each in rendered.frames]
     except (binascii.Error, ValueError):
         raise NotScored("a rendered frame of it is not a picture") from None
 
 
-def _kept(folder: Path, shares: Sequence[float], contents: Sequence[bytes]) -> list[Path]:
+def _write_pictures(folder: Path, shares: Sequence[float], contents: Sequence[bytes]) -> list[Path]:
     """Writes the pictures, named after their per cent of the clip, and deletes older ones. Raises NotScored."""
-    pictures = [_anew(content) for content in contents]
+    pictures = [_reencoded(content) for content in contents]
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{round(100 * share):03}.png" for share in shares]
     for path in {*folder.glob("*.png")} - {*paths}:
@@ -149,7 +159,7 @@ def _kept(folder: Path, shares: Sequence[float], contents: Sequence[bytes]) -> l
     return paths
 
 
-def _anew(content: bytes) -> bytes:
+def _reencoded(content: bytes) -> bytes:
     """A PNG of the same pixels and nothing else, shrunk to the size that is judged. Raises NotScored."""
     try:
         with (
@@ -164,6 +174,6 @@ def _anew(content: bytes) -> bytes:
     except Exception:  # a broken file can raise anything
         raise NotScored("a frame is not a picture") from None
     plain.thumbnail((_LONGEST_SIDE, _LONGEST_SIDE))
-    made = io.BytesIO()
-    plain.save(made, "PNG")
-    return made.getvalue()
+    png = io.BytesIO()
+    plain.save(png, "PNG")
+    return png.getvalue()

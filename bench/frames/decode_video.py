@@ -33,7 +33,7 @@ def main(words: list[str]) -> None:
         if number in wanted:
             picture = frame.to_image()
             picture.thumbnail((_SIDE, _SIDE))
-            for place in (place for place, each in enumerate(wanted) if each == number):
+            for place in (place for place, frame_number in enumerate(wanted) if frame_number == number):
                 picture.save(folder / f"{place}.png")
     return None
 

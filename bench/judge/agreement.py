@@ -17,12 +17,12 @@ from pydantic import BaseModel, ConfigDict
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from bench.judge.verdicts import Item, Judgement
+    from bench.judge.verdicts import JudgedItem, Judgement
 
 _DIGITS = 6
 
 
-class Agreed(BaseModel):
+class AgreementScores(BaseModel):
     """The agreement on one dimension, or on all items.
 
     ``pairwise``: the share of pairs of judgements that agree on an item, over all items. ``mean`` and ``sd`` (of a
@@ -45,8 +45,8 @@ class Agreement(BaseModel):
 
     judgements: int
     shares: dict[str, float]
-    dimensions: dict[str, Agreed]
-    overall: Agreed
+    dimensions: dict[str, AgreementScores]
+    overall: AgreementScores
 
 
 def agreement(judgements: Sequence[Judgement]) -> Agreement:
@@ -54,27 +54,32 @@ def agreement(judgements: Sequence[Judgement]) -> Agreement:
     if len(judgements) < 2:
         raise ValueError("agreement needs at least two judgements")
     first = judgements[0]
-    if any(_asked(one.dimensions) != _asked(first.dimensions) for one in judgements):
+    if any(_items_asked(judgement.dimensions) != _items_asked(first.dimensions) for judgement in judgements):
         raise ValueError("agreement needs judgements of the same items")
     count = len(judgements)
-    held = {
-        name: [sum(one.dimensions[name][place].holds for one in judgements) for place in range(len(items))]
+    held_by_dimension = {
+        name: [
+            sum(judgement.dimensions[name][place].holds for judgement in judgements)
+            for place in range(len(items))
+        ]
         for name, items in first.dimensions.items()
     }
     shares = {
         item.id: round(times / count, _DIGITS)
         for name, items in first.dimensions.items()
-        for item, times in zip(items, held[name], strict=True)
+        for item, times in zip(items, held_by_dimension[name], strict=True)
     }
     return Agreement(
         judgements=count,
         shares=shares,
         dimensions={
-            name: _agreed(times, count, [one.scores[name] for one in judgements])
-            for name, times in held.items()
+            name: _scores_of(times, count, [judgement.scores[name] for judgement in judgements])
+            for name, times in held_by_dimension.items()
         },
-        overall=_agreed(
-            [each for times in held.values() for each in times], count, [one.score for one in judgements]
+        overall=_scores_of(
+            [count_held for times in held_by_dimension.values() for count_held in times],
+            count,
+            [judgement.score for judgement in judgements],
         ),
     )
 
@@ -98,9 +103,9 @@ def fleiss_kappa(held: Sequence[int], count: int) -> float | None:
     return (observed - chance) / (1 - chance)
 
 
-def _agreed(held: Sequence[int], count: int, scores: Sequence[float | None]) -> Agreed:
+def _scores_of(held: Sequence[int], count: int, scores: Sequence[float | None]) -> AgreementScores:
     known = [score for score in scores if score is not None]
-    return Agreed(
+    return AgreementScores(
         items=len(held),
         kappa=_rounded(fleiss_kappa(held, count)),
         pairwise=_rounded(observed_agreement(held, count)),
@@ -109,7 +114,7 @@ def _agreed(held: Sequence[int], count: int, scores: Sequence[float | None]) -> 
     )
 
 
-def _asked(judged: Mapping[str, Sequence[Item]]) -> dict[str, list[tuple[str, str]]]:
+def _items_asked(judged: Mapping[str, Sequence[JudgedItem]]) -> dict[str, list[tuple[str, str]]]:
     return {name: [(item.id, item.text) for item in items] for name, items in judged.items()}
 
 

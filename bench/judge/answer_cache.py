@@ -30,13 +30,13 @@ def key_of(ingredients: Mapping[str, object]) -> str:
     return hashlib.sha256(json.dumps(ingredients, sort_keys=True).encode()).hexdigest()
 
 
-class Store:
+class AnswerCache:
     """A folder of answers. Without a folder, nothing is kept."""
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = None if folder is None else folder.expanduser().absolute()
 
-    def kept(self, kind: str, key: str, shape: type[M]) -> M | None:
+    def load(self, kind: str, key: str, shape: type[M]) -> M | None:
         """The valid answer for a key, or None."""
         if self._folder is None:
             return None
@@ -47,26 +47,26 @@ class Store:
         except (OSError, ValueError, KeyError, TypeError, RecursionError, ValidationError):
             return None
 
-    def once(self, kind: str, key: str, shape: type[M], make: Callable[[], M]) -> M:
+    def load_or_make(self, kind: str, key: str, shape: type[M], make: Callable[[], M]) -> M:
         """The answer for a key; if there is none, calls ``make`` and keeps its result.
 
         Raises NotJudged, before calling ``make``, if the folder cannot be written.
         """
         if self._folder is None:
             return make()
-        with self._alone(key):
-            found = self.kept(kind, key, shape)
-            if found is None:
-                found = make()
-                self._write(self._path(kind, key), found)
-            return found
+        with self._locked(key):
+            answer = self.load(kind, key, shape)
+            if answer is None:
+                answer = make()
+                self._write(self._path(kind, key), answer)
+            return answer
 
     def _path(self, kind: str, key: str) -> Path:
         assert self._folder is not None
         return self._folder / kind / f"{key}.json"
 
     @contextmanager
-    def _alone(self, key: str) -> Generator[None]:
+    def _locked(self, key: str) -> Generator[None]:
         """Locks the keys with the same first two letters for one thread of one process."""
         import fcntl  # noqa: PLC0415 - not on Windows
 

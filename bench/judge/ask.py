@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from pydantic import BaseModel
 
 from bench.judge.errors import NotJudged, Reason
-from bench.judge.usage import Spent, Usage
+from bench.judge.usage import AnswerCost, TokenUsage
 from simworlds.llm.errors import CutShort, Misfit, ModelError, OverBudget, Refused, Rejected, Unreachable
 from simworlds.llm.spending import Metered, Spending
-from simworlds.llm.structured import ask_for
+from simworlds.llm.structured import ask_for, fits
 
 if TYPE_CHECKING:
-    from bench.judge.providers import Provider
+    from collections.abc import Callable, Iterable, Sequence
+
+    from bench.judge.providers import JudgeProvider
     from simworlds.llm.messages import Ask
     from simworlds.llm.structured import AnswerReader
 
 T = TypeVar("T")
+M = TypeVar("M", bound=BaseModel)
 TRIES = 3
 """Attempts at a valid answer."""
 _REASONS: tuple[tuple[type[ModelError], Reason], ...] = (
@@ -30,22 +35,36 @@ _REASONS: tuple[tuple[type[ModelError], Reason], ...] = (
 
 
 @dataclass(frozen=True, slots=True)
-class Answered(Generic[T]):
+class JudgeAnswer(Generic[T]):
     """The answer, the model that gave it (as the provider names it), and the cost of all attempts."""
 
     value: T
     by: str
-    spent: Spent
+    spent: AnswerCost
 
 
-def asked(provider: Provider, ask: Ask, reader: AnswerReader[T]) -> Answered[T]:
+def ask_judge(provider: JudgeProvider, ask: Ask, reader: AnswerReader[T]) -> JudgeAnswer[T]:
     """Asks a question; an invalid answer goes back with its faults, up to TRIES times in all. Raises NotJudged."""
     spending = Spending(prices=provider.prices)
     try:
-        found = ask_for(Metered(provider, spending), ask, reader, tries=TRIES)
+        reply = ask_for(Metered(provider, spending), ask, reader, tries=TRIES)
     except ModelError as error:
-        raise NotJudged(_reason(error), _words(error), _spent(spending)) from error
-    return Answered(found.value, found.turn.model, _spent(spending))
+        raise NotJudged(_reason(error), _describe(error), _spent(spending)) from error
+    return JudgeAnswer(reply.value, reply.turn.model, _spent(spending))
+
+
+def checked_reader(shape: type[M], find_faults: Callable[[M], Iterable[str]]) -> Reader[M]:
+    """Accepts data of that shape in which ``find_faults`` finds none."""
+    read = fits(shape)
+
+    def reader(data: Any) -> tuple[M | None, Sequence[object]]:
+        value, misfits = read(data)
+        if value is None:
+            return None, misfits
+        faults = list(find_faults(value))
+        return (None, faults) if faults else (value, [])
+
+    return reader
 
 
 def _reason(error: ModelError) -> Reason:
@@ -55,13 +74,13 @@ def _reason(error: ModelError) -> Reason:
     return "unreachable"
 
 
-def _words(error: ModelError) -> str:
+def _describe(error: ModelError) -> str:
     if isinstance(error, Misfit):
         return f"All {TRIES} answers were invalid. The last: {' '.join(str(error).split())}"[:600]
     return str(error)
 
 
-def _spent(spending: Spending) -> Spent:
+def _spent(spending: Spending) -> AnswerCost:
     row = spending.total()
-    usage = Usage(input=row.usage.prompt, output=row.usage.output, cached=row.usage.cache_read)
-    return Spent(usage=usage, cost=None if row.unpriced else row.cost)
+    usage = TokenUsage(input=row.usage.prompt, output=row.usage.output, cached=row.usage.cache_read)
+    return AnswerCost(usage=usage, cost=None if row.unpriced else row.cost)

@@ -31,4 +31,4 @@ CHECKLISTS: dict[Dimension, tuple[str, ...]] = {
 
 def dimensions(*, static: bool) -> tuple[Dimension, ...]:
     """The dimensions of a scene; a still has no actions."""
-    return tuple(one for one in DIMENSIONS if not (static and one == "actions_visible"))
+    return tuple(dimension for dimension in DIMENSIONS if not (static and dimension == "actions_visible"))

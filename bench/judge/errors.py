@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from bench.judge.usage import Spent
+from bench.judge.usage import AnswerCost
 
 Reason = Literal[
     "prompt",  # it is empty or too long
@@ -25,7 +25,7 @@ NO_OPENAI_PACKAGE = "The openai package is not installed. Install it with: pip i
 class NotJudged(Exception):  # noqa: N818 - reads as the state it names
     """There is no judgement; the message says why and what to do. ``spent``: what it cost nevertheless."""
 
-    def __init__(self, reason: Reason, message: str, spent: Spent | None = None) -> None:
+    def __init__(self, reason: Reason, message: str, spent: AnswerCost | None = None) -> None:
         self.reason: Reason = reason
-        self.spent = spent or Spent()
+        self.spent = spent or AnswerCost()
         super().__init__(message)

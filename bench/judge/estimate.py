@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 from PIL import Image
 from pydantic import BaseModel, ConfigDict
 
-from bench.judge.answer_cache import Store
+from bench.judge.answer_cache import AnswerCache
 from bench.judge.dimensions import CHECKLISTS
-from bench.judge.items import kept_items
-from bench.judge.judge import checked, verdicts_key
+from bench.judge.items import cached_items
+from bench.judge.judge import checked_prompt, verdicts_key
 from bench.judge.pictures import read_frames
 from bench.judge.questions import enumeration, judging
-from bench.judge.verdicts import Given
+from bench.judge.verdicts import CachedVerdicts
 from simworlds.llm import tokens
 from simworlds.llm.messages import Picture, Text, Usage
 
@@ -37,7 +37,7 @@ ASSUMED_SIZE = (1280, 720)
 _ITEM_TOKENS = 30
 
 
-class Question(BaseModel):
+class QuestionEstimate(BaseModel):
     """A question that would be asked ``times`` times now; 0 if the answer is cached.
 
     ``said``: the texts of the user's message, with pictures in brackets. Costs are US dollars per time, None if no
@@ -58,7 +58,7 @@ class Question(BaseModel):
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class JudgeRequest:
     """A request for a judgement; ``scene`` is its label.
 
     A dry run without ``frames`` assumes five (for a still, one) of ASSUMED_SIZE.
@@ -71,22 +71,22 @@ class Asked:
 
 
 def estimate(  # noqa: PLR0913
-    wanted: Asked, provider: str, model: str, *, prices: Prices, cache: Path | None, repeat: int = 1
-) -> tuple[Question, Question]:
+    request: JudgeRequest, provider: str, model: str, *, prices: Prices, cache: Path | None, repeat: int = 1
+) -> tuple[QuestionEstimate, QuestionEstimate]:
     """The question for the items and the one for the verdicts. Raises NotJudged."""
-    prompt, static = checked(wanted.prompt), wanted.static
-    store = Store(cache)
-    items = kept_items(prompt, static=static, store=store)
-    shown = read_frames(wanted.frames, static=static) if wanted.frames else None
-    pictures = shown.pictures if shown else _assumed(static=static)
-    texts = items.texts() if items else _fixed()
+    prompt, static = checked_prompt(request.prompt), request.static
+    answers = AnswerCache(cache)
+    items = cached_items(prompt, static=static, answers=answers)
+    frames = read_frames(request.frames, static=static) if request.frames else None
+    pictures = frames.pictures if frames else _assumed_pictures(static=static)
+    texts = items.texts() if items else _fixed_items()
     missing = repeat
-    if items and shown:
+    if items and frames:
         keys = [
-            verdicts_key(prompt, items, shown, provider, model, static=static, repetition=number)
+            verdicts_key(prompt, items, frames, provider, model, static=static, repetition=number)
             for number in range(repeat)
         ]
-        missing = sum(store.kept("verdicts", key, Given) is None for key in keys)
+        missing = sum(answers.load("verdicts", key, CachedVerdicts) is None for key in keys)
     unknown = 0 if items else ASSUMED_ITEMS * _ITEM_TOKENS
     return (
         _question(enumeration(prompt, static=static), model, prices, 0 if items else 1),
@@ -94,14 +94,16 @@ def estimate(  # noqa: PLR0913
     )
 
 
-def _question(ask: Ask, model: str, prices: Prices, times: int, more: int = 0) -> Question:
+def _question(ask: Ask, model: str, prices: Prices, times: int, assumed_tokens: int = 0) -> QuestionEstimate:
     price = prices.of(model)
-    size = tokens.of_ask(ask) + more
+    size = tokens.of_ask(ask) + assumed_tokens
     blocks = [block for message in ask.messages for block in message.content]
-    said = [_told(block) for block in blocks if isinstance(block, (Text, Picture))]
-    if more:
-        said.append(f"[the items of the first answer: assumed to be {ASSUMED_ITEMS}, about {more} tokens]")
-    return Question(
+    said = [_describe_block(block) for block in blocks if isinstance(block, (Text, Picture))]
+    if assumed_tokens:
+        said.append(
+            f"[the items of the first answer: assumed to be {ASSUMED_ITEMS}, about {assumed_tokens} tokens]"
+        )
+    return QuestionEstimate(
         stage=ask.stage,
         times=times,
         system="\n\n".join(ask.system),
@@ -114,14 +116,14 @@ def _question(ask: Ask, model: str, prices: Prices, times: int, more: int = 0) -
     )
 
 
-def _told(block: Text | Picture) -> str:
+def _describe_block(block: Text | Picture) -> str:
     if isinstance(block, Text):
         return block.text
     with Image.open(io.BytesIO(block.data)) as image:
         return f"[picture, {image.width} × {image.height}, about {tokens.of_picture(block)} tokens]"
 
 
-def _fixed() -> dict[str, str]:
+def _fixed_items() -> dict[str, str]:
     return {
         f"{name}.{number}": text
         for name, listed in CHECKLISTS.items()
@@ -129,7 +131,7 @@ def _fixed() -> dict[str, str]:
     }
 
 
-def _assumed(*, static: bool) -> tuple[Picture, ...]:
-    written = io.BytesIO()
-    Image.new("RGB", ASSUMED_SIZE).save(written, "PNG")
-    return (Picture(written.getvalue()),) * (1 if static else ASSUMED_FRAMES)
+def _assumed_pictures(*, static: bool) -> tuple[Picture, ...]:
+    png = io.BytesIO()
+    Image.new("RGB", ASSUMED_SIZE).save(png, "PNG")
+    return (Picture(png.getvalue()),) * (1 if static else ASSUMED_FRAMES)

@@ -8,21 +8,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from bench.judge.answer_cache import Store, key_of
-from bench.judge.ask import asked
+from bench.judge.answer_cache import AnswerCache, key_of
+from bench.judge.ask import ask_judge
 from bench.judge.dimensions import dimensions
 from bench.judge.errors import NotJudged
-from bench.judge.items import Items, items_of, one_line
-from bench.judge.pictures import Shown, read_frames
+from bench.judge.items import PromptItems, items_of, one_line
+from bench.judge.pictures import JudgedFrames, read_frames
 from bench.judge.questions import judging, prompt_version
-from bench.judge.verdicts import Given, Item, Judgement, reader_of
+from bench.judge.verdicts import CachedVerdicts, JudgedItem, Judgement, verdicts_reader
 from simworlds.llm.request import clean
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from bench.judge.providers import Provider
+    from bench.judge.providers import JudgeProvider
 
 LONGEST_PROMPT = 4000
 
@@ -32,7 +32,7 @@ def judge(  # noqa: PLR0913
     frames: Sequence[Path],
     *,
     static: bool,
-    provider: Provider,
+    provider: JudgeProvider,
     cache: Path | None,
     scene: str = "",
     repetition: int = 0,
@@ -43,39 +43,41 @@ def judge(  # noqa: PLR0913
     ``cache`` is the folder of cached answers. ``scene`` labels the judgement; no model sees it. ``tell`` is called with
     progress. Raises NotJudged.
     """
-    words = checked(prompt)
-    shown = read_frames(frames, static=static)
-    store = Store(cache)
+    text = checked_prompt(prompt)
+    pictures = read_frames(frames, static=static)
+    answers = AnswerCache(cache)
     tell("Listing the prompt's items")
-    items = items_of(words, static=static, provider=provider, store=store)
+    items = items_of(text, static=static, provider=provider, answers=answers)
     key = verdicts_key(
-        words, items, shown, provider.name, provider.model, static=static, repetition=repetition
+        text, items, pictures, provider.name, provider.model, static=static, repetition=repetition
     )
 
-    def ask() -> Given:
-        question = judging(words, items.texts(), shown.pictures, static=static)
-        found = asked(provider, question, reader_of(items.texts(), len(shown.pictures)))
-        return Given(by=found.by or provider.model, verdicts=found.value.verdicts, spent=found.spent)
+    def ask() -> CachedVerdicts:
+        question = judging(text, items.texts(), pictures.pictures, static=static)
+        answer = ask_judge(provider, question, verdicts_reader(items.texts(), len(pictures.pictures)))
+        return CachedVerdicts(
+            by=answer.by or provider.model, verdicts=answer.value.verdicts, spent=answer.spent
+        )
 
     tell(f"Judging {len(items.items)} items by {len(frames)} frame{'s' if len(frames) > 1 else ''}")
-    given = store.once("verdicts", key, Given, ask)
+    verdicts = answers.load_or_make("verdicts", key, CachedVerdicts, ask)
     return Judgement(
         scene=scene,
         provider=provider.name,
         model=provider.model,
-        answered_by=given.by,
+        answered_by=verdicts.by,
         prompt_version=prompt_version(),
         repetition=repetition,
-        dimensions=_judged(items, given, static=static),
-        usage=given.spent.usage,
-        cost=given.spent.cost,
+        dimensions=_judged(items, verdicts, static=static),
+        usage=verdicts.spent.usage,
+        cost=verdicts.spent.cost,
         items_by=items.by,
         items_usage=items.spent.usage,
         items_cost=items.spent.cost,
     )
 
 
-def checked(prompt: str) -> str:
+def checked_prompt(prompt: str) -> str:
     """A prompt with its whitespace normalized. Raises NotJudged for an empty or too long one."""
     text = clean(" ".join(prompt.split()))
     if not text:
@@ -86,7 +88,14 @@ def checked(prompt: str) -> str:
 
 
 def verdicts_key(  # noqa: PLR0913
-    prompt: str, items: Items, shown: Shown, provider: str, model: str, *, static: bool, repetition: int
+    prompt: str,
+    items: PromptItems,
+    frames: JudgedFrames,
+    provider: str,
+    model: str,
+    *,
+    static: bool,
+    repetition: int,
 ) -> str:
     """The cache key of the verdicts: everything they depend on, and the repetition."""
     ingredients = {
@@ -96,22 +105,24 @@ def verdicts_key(  # noqa: PLR0913
         "prompt": prompt,
         "static": static,
         "items": items.texts(),
-        "frames": shown.digests,
+        "frames": frames.digests,
         "repetition": repetition,
     }
     return key_of(ingredients)
 
 
-def _judged(items: Items, given: Given, *, static: bool) -> dict[str, tuple[Item, ...]]:
-    said = {one.id: one for one in given.verdicts}
+def _judged(
+    items: PromptItems, verdicts: CachedVerdicts, *, static: bool
+) -> dict[str, tuple[JudgedItem, ...]]:
+    verdict_of = {verdict.id: verdict for verdict in verdicts.verdicts}
     return {
         dimension: tuple(
-            Item(
+            JudgedItem(
                 id=item.id,
                 text=item.text,
-                holds=said[item.id].holds,
-                evidence=one_line(said[item.id].evidence),
-                frames=tuple(sorted(set(said[item.id].frames))),
+                holds=verdict_of[item.id].holds,
+                evidence=one_line(verdict_of[item.id].evidence),
+                frames=tuple(sorted(set(verdict_of[item.id].frames))),
             )
             for item in items.items
             if item.dimension == dimension

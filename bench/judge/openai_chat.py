@@ -51,14 +51,14 @@ class _Usage(BaseModel):
     prompt_tokens_details: _Cached | None = None
 
 
-class _Said(BaseModel):
+class _ReplyMessage(BaseModel):
     content: str | None = None
     refusal: str | None = None
 
 
 class _Choice(BaseModel):
     finish_reason: str | None = None
-    message: _Said
+    message: _ReplyMessage
 
 
 class _Completion(BaseModel):
@@ -67,7 +67,7 @@ class _Completion(BaseModel):
     usage: _Usage | None = None
 
 
-class Chat:
+class OpenAIChat:
     """A Model (``simworlds.llm.messages``) for Asks of texts and pictures."""
 
     def __init__(self, base_url: str | None, prices: Prices, *, retries: int = RETRIES) -> None:
@@ -109,7 +109,7 @@ class Chat:
             )
             completion = _Completion.model_validate_json(reply.content)
         except package.APIStatusError as error:
-            raise self._told(error.status_code, error.message) from error
+            raise self._error_of(error.status_code, error.message) from error
         except (package.OpenAIError, httpx2.HTTPError, httpx2.InvalidURL) as error:
             cause = error.__cause__ or error
             words = f"{type(cause).__name__}: {cause}".rstrip(": ")
@@ -122,7 +122,7 @@ class Chat:
             ) from error
         return raise_for_stop(self._turn(ask, completion))
 
-    def _told(self, status: int, message: str) -> Rejected | Unreachable:
+    def _error_of(self, status: int, message: str) -> Rejected | Unreachable:
         words = f"{status} {' '.join(message.split())}"[:300]
         if status in _PASSING or status >= 500:
             return Unreachable(f"No answer from {self._client.base_url}: {words}.")

@@ -26,38 +26,38 @@ MOST = 20
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class JudgedFrames:
     """Pictures in order of time, and the SHA-256 of the pixels of each."""
 
     pictures: tuple[Picture, ...]
     digests: tuple[str, ...]
 
 
-def read_frames(frames: Sequence[Path], *, static: bool) -> Shown:
+def read_frames(frames: Sequence[Path], *, static: bool) -> JudgedFrames:
     """Reads the frames of a film, or the one frame of a still. Raises NotJudged."""
     if static and len(frames) != 1:
         raise NotJudged("frames", f"Give one frame for a still, not {len(frames)}.")
     if not static and not 2 <= len(frames) <= MOST:
         raise NotJudged("frames", f"Give 2 to {MOST} frames for a film, not {len(frames)}.")
-    flat = [_flat(path) for path in frames]
-    return Shown(tuple(map(_encoded, flat)), tuple(map(_digest, flat)))
+    flat = [_flattened(path) for path in frames]
+    return JudgedFrames(tuple(map(_encoded, flat)), tuple(map(_digest, flat)))
 
 
-def _flat(path: Path) -> Image.Image:
+def _flattened(path: Path) -> Image.Image:
     """A frame without transparency, on black as in a video player."""
     try:
         data = read_picture(path).data
     except BadPicture as error:
         raise NotJudged("frames", str(error)) from error
-    with Image.open(io.BytesIO(data)) as opened:
-        seen = opened.convert("RGBA")
-    return Image.alpha_composite(Image.new("RGBA", seen.size, "black"), seen).convert("RGB")
+    with Image.open(io.BytesIO(data)) as image:
+        rgba = image.convert("RGBA")
+    return Image.alpha_composite(Image.new("RGBA", rgba.size, "black"), rgba).convert("RGB")
 
 
 def _encoded(image: Image.Image) -> Picture:
-    written = io.BytesIO()
-    image.save(written, "PNG")
-    return Picture(written.getvalue())
+    png = io.BytesIO()
+    image.save(png, "PNG")
+    return Picture(png.getvalue())
 
 
 def _digest(image: Image.Image) -> str:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 DEFAULTS = {"anthropic": "claude-opus-5-5", "openai": "gpt-5.5"}
 
 
-class Provider:
+class JudgeProvider:
     """A Model for structured answers: the input of its call to the Ask's one tool becomes the text of its turn."""
 
     def __init__(
@@ -70,7 +70,7 @@ def provider_of(  # noqa: PLR0913
     max_cost: float | None = None,
     price: Price | None = None,
     tell: Callable[[Retry], object] | None = None,
-) -> Provider:
+) -> JudgeProvider:
     """A judge of that provider, not yet connected; ``openai`` needs the extra of that name.
 
     ``base_url``: another server with the provider's API. ``max_cost``: US dollars, over all questions. ``price``: of a
@@ -88,19 +88,19 @@ def provider_of(  # noqa: PLR0913
         return Claude(Settings(base_url=base_url, prices=prices), tell)
 
     def openai() -> Model:
-        from bench.judge.openai_chat import Chat  # noqa: PLC0415
+        from bench.judge.openai_chat import OpenAIChat  # noqa: PLC0415
 
-        return Chat(base_url, prices)
+        return OpenAIChat(base_url, prices)
 
     if name == "openai" and find_spec("openai") is None:
         raise NotJudged("not set up", NO_OPENAI_PACKAGE)
     connect = {"anthropic": anthropic, "openai": openai}[name]
-    return Provider(name, chosen, connect, spending=spending, prices=prices)
+    return JudgeProvider(name, chosen, connect, spending=spending, prices=prices)
 
 
 def _as_text(turn: Turn) -> Turn:
     """A turn whose text is the answer: the input of the tool call, or else what the model wrote."""
     if not turn.calls:
         return turn
-    given = "\n".join(json.dumps(call.input, ensure_ascii=False) for call in turn.calls)
-    return replace(turn, content=(Text(given),))
+    text = "\n".join(json.dumps(call.input, ensure_ascii=False) for call in turn.calls)
+    return replace(turn, content=(Text(text),))

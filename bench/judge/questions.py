@@ -75,13 +75,15 @@ def enumeration(prompt: str, *, static: bool) -> Ask:
 def judging(prompt: str, items: Mapping[str, str], pictures: Sequence[Picture], *, static: bool) -> Ask:
     """Asks for a verdict on each item (id → text), by the pictures. The answer is Verdicts."""
     listed = ",\n".join(_json({"id": name, "text": text}) for name, text in items.items())
-    shown: list[Block] = [
-        Text(f"The request, for {_KINDS[static]}, as a JSON string:\n\n{_json(prompt)}\n\n{_told(pictures)}")
+    blocks: list[Block] = [
+        Text(
+            f"The request, for {_KINDS[static]}, as a JSON string:\n\n{_json(prompt)}\n\n{_describe_frames(pictures)}"
+        )
     ]
     for number, picture in enumerate(pictures, 1):
-        shown += [Text(_label(number, len(pictures))), picture]
-    shown.append(Text(f"The {len(items)} items, as JSON:\n\n[{listed}]"))
-    return _ask(VERDICTS, "verdicts.md", shown, Verdicts)
+        blocks += [Text(_label(number, len(pictures))), picture]
+    blocks.append(Text(f"The {len(items)} items, as JSON:\n\n[{listed}]"))
+    return _ask(VERDICTS, "verdicts.md", blocks, Verdicts)
 
 
 @cache
@@ -107,7 +109,7 @@ def _ask(stage: str, file: str, said: Sequence[Block], shape: type[BaseModel]) -
     return Ask("judge", stage, "", (_read(file),), (user(*said),), (tool,), MAX_TOKENS)
 
 
-def _told(pictures: Sequence[Picture]) -> str:
+def _describe_frames(pictures: Sequence[Picture]) -> str:
     count = len(pictures)
     return "The still:" if count == 1 else f"{count} frames of the film, from its first to its last:"
 

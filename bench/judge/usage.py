@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import BaseModel, ConfigDict, NonNegativeInt
 
 
-class Usage(BaseModel):
+class TokenUsage(BaseModel):
     """Numbers of tokens. ``cached``: the part of ``input`` from the provider's cache, which costs less."""
 
     model_config = ConfigDict(frozen=True)
@@ -15,10 +15,10 @@ class Usage(BaseModel):
     cached: NonNegativeInt = 0
 
 
-class Spent(BaseModel):
+class AnswerCost(BaseModel):
     """Tokens, and their list price in US dollars; None if a price is unknown."""
 
     model_config = ConfigDict(frozen=True)
 
-    usage: Usage = Usage()
+    usage: TokenUsage = TokenUsage()
     cost: float | None = 0.0

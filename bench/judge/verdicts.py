@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from collections import Counter
 from statistics import fmean
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict, NonNegativeFloat, computed_field
 
+from bench.judge.ask import checked_reader
 from bench.judge.questions import Verdict, Verdicts
-from bench.judge.usage import Spent, Usage
+from bench.judge.usage import AnswerCost, TokenUsage
 from simworlds.llm.structured import AnswerReader, fits
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
+    from simworlds.llm.structured import Reader
+
 _DIGITS = 6
 _LONGEST_EVIDENCE = 1000
 
 
-class Item(BaseModel):
+class JudgedItem(BaseModel):
     """An item and its verdict: ``frames`` (counted from 1) show what ``evidence`` says."""
 
     model_config = ConfigDict(frozen=True)
@@ -47,11 +50,11 @@ class Judgement(BaseModel):
     answered_by: str
     prompt_version: str
     repetition: int
-    dimensions: dict[str, tuple[Item, ...]]
-    usage: Usage
+    dimensions: dict[str, tuple[JudgedItem, ...]]
+    usage: TokenUsage
     cost: NonNegativeFloat | None
     items_by: str
-    items_usage: Usage
+    items_usage: TokenUsage
     items_cost: NonNegativeFloat | None
 
     @computed_field
@@ -68,52 +71,45 @@ class Judgement(BaseModel):
         return round(fmean(known), _DIGITS) if known else None
 
 
-class Given(BaseModel):
+class CachedVerdicts(BaseModel):
     """Verdicts as they are cached: with the model that gave them, and their cost."""
 
     model_config = ConfigDict(frozen=True)
 
     by: str
     verdicts: tuple[Verdict, ...]
-    spent: Spent
+    spent: AnswerCost
 
 
-def reader_of(ids: Collection[str], frames: int) -> AnswerReader[Verdicts]:
+def verdicts_reader(ids: Collection[str], frames: int) -> AnswerReader[Verdicts]:
     """Accepts exactly one verdict for each item, with evidence in existing frames."""
-    shaped = fits(Verdicts)
-
-    def reader(data: Any) -> tuple[Verdicts | None, Sequence[object]]:
-        found, wrong = shaped(data)
-        if found is None:
-            return None, wrong
-        faults = list(_faults(found, ids, frames))
-        return (None, faults) if faults else (found, [])
-
-    return reader
+    return checked_reader(Verdicts, lambda verdicts: _faults(verdicts, ids, frames))
 
 
-def _faults(found: Verdicts, ids: Collection[str], frames: int) -> Iterator[str]:
-    given = Counter(one.id for one in found.verdicts)
-    yield from (f"{name!r}: the verdict for this item is missing." for name in ids if name not in given)
-    yield from (f"{name[:80]!r}: there is no such item." for name in given if name not in ids)
-    yield from (f"{name!r}: there are {times} verdicts for it." for name, times in given.items() if times > 1)
-    for one in found.verdicts:
-        if one.id in ids:
-            yield from (f"{one.id!r}: {fault}" for fault in _faults_of(one, frames))
+def _faults(verdicts: Verdicts, ids: Collection[str], frames: int) -> Iterator[str]:
+    counts = Counter(verdict.id for verdict in verdicts.verdicts)
+    yield from (f"{name!r}: the verdict for this item is missing." for name in ids if name not in counts)
+    yield from (f"{name[:80]!r}: there is no such item." for name in counts if name not in ids)
+    yield from (
+        f"{name!r}: there are {times} verdicts for it." for name, times in counts.items() if times > 1
+    )
+    for verdict in verdicts.verdicts:
+        if verdict.id in ids:
+            yield from (f"{verdict.id!r}: {fault}" for fault in _faults_of(verdict, frames))
 
 
-def _faults_of(one: Verdict, frames: int) -> Iterator[str]:
-    if not one.evidence.strip():
+def _faults_of(verdict: Verdict, frames: int) -> Iterator[str]:
+    if not verdict.evidence.strip():
         yield "the evidence is missing."
-    if len(one.evidence) > _LONGEST_EVIDENCE:
-        yield f"the evidence is too long ({len(one.evidence)} characters; one or two sentences)."
-    if none := sorted({number for number in one.frames if not 1 <= number <= frames}):
-        yield f"there is no frame {', '.join(map(str, none))}; they are numbered from 1 to {frames}."
-    elif one.holds and not one.frames:
+    if len(verdict.evidence) > _LONGEST_EVIDENCE:
+        yield f"the evidence is too long ({len(verdict.evidence)} characters; one or two sentences)."
+    if missing := sorted({number for number in verdict.frames if not 1 <= number <= frames}):
+        yield f"there is no frame {', '.join(map(str, missing))}; they are numbered from 1 to {frames}."
+    elif verdict.holds and not verdict.frames:
         yield "it holds, but no frame that shows it is named."
-    elif one.holds and one.id.startswith("actions_visible.") and len(set(one.frames)) < 2:
+    elif verdict.holds and verdict.id.startswith("actions_visible.") and len(set(verdict.frames)) < 2:
         yield "one frame shows no motion; name at least two that differ."
 
 
-def _share(items: Sequence[Item]) -> float | None:
+def _share(items: Sequence[JudgedItem]) -> float | None:
     return round(fmean(item.holds for item in items), _DIGITS) if items else None

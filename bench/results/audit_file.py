@@ -11,8 +11,8 @@ class _Part(BaseModel):
     model_config = ConfigDict(frozen=True)
 
 
-class Check(_Part):
-    """See ``bench.audit.audit.Checked``."""
+class CheckRow(_Part):
+    """See ``bench.audit.audit.CheckResult``."""
 
     predicate: str
     wanted: Literal["must_have", "must_not_have"]
@@ -21,7 +21,7 @@ class Check(_Part):
     seen: dict[str, Any] = {}
 
 
-class Actor(_Part):
+class ActorRow(_Part):
     """See ``bench.audit.audit.ActorAudit``."""
 
     name: str
@@ -29,12 +29,12 @@ class Actor(_Part):
     outcome: str
     by: str = ""
     evidence: dict[str, Any] = {}
-    checks: tuple[Check, ...] = ()
+    checks: tuple[CheckRow, ...] = ()
     score: float | None = None
 
 
-class Moment(_Part):
-    """See ``bench.audit.spr.At``."""
+class RelationMomentRow(_Part):
+    """See ``bench.audit.spr.RelationMoment``."""
 
     when: str
     unit: str
@@ -42,21 +42,21 @@ class Moment(_Part):
     seen: dict[str, Any] = {}
 
 
-class Relation(_Part):
-    """See ``bench.audit.spr.Related``."""
+class RelationRow(_Part):
+    """See ``bench.audit.spr.RelationResult``."""
 
     type: str
     a: str
     b: str
     outcome: Literal["holds", "does not hold", "not scored"]
     why: str = ""
-    moments: tuple[Moment, ...] = ()
+    moments: tuple[RelationMomentRow, ...] = ()
 
 
 class AuditFile(_Part):
     """See ``bench.audit.audit.Audit``."""
 
-    actors: tuple[Actor, ...] = ()
-    relations: tuple[Relation, ...] = ()
-    assertions: tuple[Check, ...] = ()
+    actors: tuple[ActorRow, ...] = ()
+    relations: tuple[RelationRow, ...] = ()
+    assertions: tuple[CheckRow, ...] = ()
     blend: dict[str, Any] = {}

@@ -12,14 +12,14 @@ from bench.scenes.spec import specs
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from bench.results.scores import Results, Scored
+    from bench.results.scores import ResultSet, SceneResult
     from bench.scenes.spec import Spec
 
 STEPS = ("produced", "audited", "framed", "judged")
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class SweepEstimate:
     """Times in seconds. ``work``: by step, over all scenes of one system; ``one``: their sum, one after the other.
 
     ``measured``: how many scenes have measured times; the others get the mean of their category, or else of all.
@@ -38,8 +38,8 @@ class Estimate:
 
 
 def estimate(
-    results: Results, *, systems: int, machines: int, at_a_time: int, making: float | None = None
-) -> Estimate | None:
+    results: ResultSet, *, systems: int, machines: int, at_a_time: int, making: float | None = None
+) -> SweepEstimate | None:
     """The estimate for all scenes by ``systems`` systems, ``at_a_time`` on each machine; None without measured times.
 
     ``making``: seconds that a system takes for a scene, instead of the measured ones.
@@ -53,7 +53,7 @@ def estimate(
         by_scene = {name: each | {"produced": making} for name, each in by_scene.items()}
     work = {step: sum(each[step] for each in by_scene.values()) for step in STEPS}
     tasks = [sum(each.values()) for each in by_scene.values()]
-    return Estimate(
+    return SweepEstimate(
         measured=len(times),
         scenes=len(every),
         systems=systems,
@@ -74,19 +74,22 @@ def makespan(tasks: Sequence[float], workers: int) -> float:
     return max(free)
 
 
-def _measured(results: Results) -> dict[str, dict[str, float]]:
+def _measured(results: ResultSet) -> dict[str, dict[str, float]]:
     """Scene → step → seconds, the mean over systems; steps that were not done are left out."""
-    found: dict[str, dict[str, list[float]]] = {}
+    times: dict[str, dict[str, list[float]]] = {}
     for system in results.systems:
         for name, scene in system.scenes.items():
             if scene.record.audited is None or scene.record.audited.file is None:
                 continue
             for step, seconds in _seconds(scene):
-                found.setdefault(name, {}).setdefault(step, []).append(seconds)
-    return {name: {step: fmean(several) for step, several in steps.items()} for name, steps in found.items()}
+                times.setdefault(name, {}).setdefault(step, []).append(seconds)
+    return {
+        name: {step: fmean(seconds_list) for step, seconds_list in steps.items()}
+        for name, steps in times.items()
+    }
 
 
-def _seconds(scene: Scored) -> Iterator[tuple[str, float]]:
+def _seconds(scene: SceneResult) -> Iterator[tuple[str, float]]:
     """Step → seconds. A system's own time is in its minutes, since it may have worked in several sessions."""
     record = scene.record
     if record.produced is not None:
@@ -99,10 +102,10 @@ def _seconds(scene: Scored) -> Iterator[tuple[str, float]]:
 
 def _of(spec: Spec, times: dict[str, dict[str, float]]) -> dict[str, float]:
     """Step → seconds: as measured for the scene, or else the mean of its category, or of all scenes, or 0."""
-    kin = [each for name, each in times.items() if name.partition("_")[0] == spec.category]
-    found: dict[str, float] = {}
+    category_times = [each for name, each in times.items() if name.partition("_")[0] == spec.category]
+    seconds_of: dict[str, float] = {}
     for step in STEPS:
-        nearest = ([times.get(spec.id, {})], kin, times.values())
+        nearest = ([times.get(spec.id, {})], category_times, times.values())
         known = ([each[step] for each in several if step in each] for several in nearest)
-        found[step] = fmean(next((seconds for seconds in known if seconds), [0.0]))
-    return found
+        seconds_of[step] = fmean(next((seconds for seconds in known if seconds), [0.0]))
+    return seconds_of

@@ -13,10 +13,10 @@ import math
 import warnings
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from PIL import Image
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from bench.judge.verdicts import Judgement
 from bench.results.audit_file import AuditFile
@@ -26,19 +26,20 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.results.audit_file import Actor, Check, Relation
-    from bench.results.scores import Scored
+    from bench.results.audit_file import ActorRow, CheckRow, RelationRow
+    from bench.results.scores import SceneResult
     from bench.sweep.records import File
 
+M = TypeVar("M", bound=BaseModel)
 _WIDTH = 480  # pixels of a frame on the page
 _QUALITY = 74
 _MOST_PIXELS = 20_000_000
 _LARGEST = 64 << 20  # bytes of a file of the results
-_SEEN = 260  # letters
+_LONGEST_SEEN = 260  # letters
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class PageFrame:
     """A picture as data of the page."""
 
     src: str
@@ -48,7 +49,7 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class EvidenceLine:
     """A check: whether it ``holds`` (None: undecided), and the values seen.
 
     ``name``: of its predicate or relation. ``negated``: the predicate must not hold.
@@ -62,7 +63,7 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class EvidencePart:
     """A group of checks: of an actor, of the relations, or of one dimension. ``how``: a subtitle.
 
     ``missing``: the actor was not found, so no check passes.
@@ -71,16 +72,16 @@ class Part:
     title: str
     how: str
     score: float | None
-    lines: tuple[Line, ...]
+    lines: tuple[EvidenceLine, ...]
     missing: bool = False
 
     @property
-    def failed(self) -> tuple[Line, ...]:
+    def failed(self) -> tuple[EvidenceLine, ...]:
         """The checks that do not hold."""
         return tuple(line for line in self.lines if line.holds is False)
 
     @property
-    def others(self) -> tuple[Line, ...]:
+    def others(self) -> tuple[EvidenceLine, ...]:
         """The checks that hold, or are undecided."""
         return tuple(line for line in self.lines if line.holds is not False)
 
@@ -89,58 +90,63 @@ class Part:
 class Evidence:
     """All evidence of one scene by one system. ``notices``: what is missing, or special. ``made``: by whom, when."""
 
-    frames: tuple[Frame, ...]
+    frames: tuple[PageFrame, ...]
     notices: tuple[str, ...]
-    mechanism: tuple[Part, ...]
-    relations: tuple[Part, ...]
-    judged: tuple[Part, ...]
+    mechanism: tuple[EvidencePart, ...]
+    relations: tuple[EvidencePart, ...]
+    judged: tuple[EvidencePart, ...]
     made: str
 
     @property
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[EvidencePart, ...]:
         """All groups of checks."""
         return (*self.mechanism, *self.relations, *self.judged)
 
 
-def evidence_of(scene: Scored) -> Evidence:
+def evidence_of(scene: SceneResult) -> Evidence:
     """Reads the evidence of a scene."""
     record = scene.record
-    audit = _audit(scene.folder, record.audited.file if record.audited is not None else None)
-    judgement = _judgement(scene.folder, record.judged.file if record.judged is not None else None)
+    audit = _load(scene.folder, record.audited.file if record.audited is not None else None, AuditFile)
+    judgement = _load(scene.folder, record.judged.file if record.judged is not None else None, Judgement)
     judged = record.judged is not None and record.judged.why is None
     return Evidence(
         frames=tuple(_frames(scene)),
         notices=tuple(_notices(scene, audit)),
         mechanism=tuple(_mechanism(audit)) if audit is not None else (),
         relations=tuple(_relations(audit, scene.score("spr"))) if audit is not None else (),
-        judged=tuple(_judged(judgement)) if judgement is not None and judged else (),
-        made=_made(scene),
+        judged=tuple(_judged_parts(judgement)) if judgement is not None and judged else (),
+        made=_provenance_line(scene),
     )
 
 
-def _made(scene: Scored) -> str:
+def _provenance_line(scene: SceneResult) -> str:
     produced, audited = scene.record.produced, scene.record.audited
-    told: list[str] = []
+    texts: list[str] = []
     if produced is not None:
-        told += sorted({*produced.models.values()})
-        told += [f"{produced.minutes:.1f} min"] if produced.minutes is not None else []
-        told += [f"${produced.cost:.2f}"] if produced.cost is not None else []
-        told += [f"{produced.blend.path} {produced.blend.sha256[:12]}"] if produced.blend is not None else []
+        texts += sorted({*produced.models.values()})
+        texts += [f"{produced.minutes:.1f} min"] if produced.minutes is not None else []
+        texts += [f"${produced.cost:.2f}"] if produced.cost is not None else []
+        texts += [f"{produced.blend.path} {produced.blend.sha256[:12]}"] if produced.blend is not None else []
     if audited is not None and audited.why is None:
-        by = audited.provenance
-        commit = f", commit {by.commit[:12]}{' with changes' if by.dirty else ''}" if by.commit else ""
-        told.append(
-            f"audited {audited.at[:16].replace('T', ' ')} by SimWorlds {by.simworlds}{commit}, Blender {by.blender}"
+        provenance = audited.provenance
+        commit = (
+            f", commit {provenance.commit[:12]}{' with changes' if provenance.dirty else ''}"
+            if provenance.commit
+            else ""
         )
-    return " · ".join(told)
+        texts.append(
+            f"audited {audited.at[:16].replace('T', ' ')} by SimWorlds {provenance.simworlds}{commit}, "
+            f"Blender {provenance.blender}"
+        )
+    return " · ".join(texts)
 
 
-def _notices(scene: Scored, audit: AuditFile | None) -> Iterator[str]:
+def _notices(scene: SceneResult, audit: AuditFile | None) -> Iterator[str]:
     record = scene.record
     yield from dict.fromkeys(
         f"{TITLES[metric]}: not {'judged' if metric == 'vlm' else 'scored'}: {why}"
         for metric in METRICS
-        if (why := scene.why_not(metric)) and (metric != "vlm" or _was_asked(scene))
+        if (why := scene.why_not(metric)) and (metric != "vlm" or _has_judge(scene))
     )
     if record.produced is not None:
         if record.produced.outcome not in ("taken", "done", "missing"):
@@ -156,7 +162,7 @@ def _notices(scene: Scored, audit: AuditFile | None) -> Iterator[str]:
             yield f"No frames: {record.framed.why}"
 
 
-def _was_asked(scene: Scored) -> bool:
+def _has_judge(scene: SceneResult) -> bool:
     """Whether a judge was asked; if none was, a table says so once for all scenes."""
     return scene.record.judged is not None and scene.record.judged.key != ""
 
@@ -164,86 +170,91 @@ def _was_asked(scene: Scored) -> bool:
 # The audit
 
 
-def _mechanism(audit: AuditFile) -> Iterator[Part]:
+def _mechanism(audit: AuditFile) -> Iterator[EvidencePart]:
     for actor in audit.actors:
         lines = tuple(_check(check) for check in actor.checks)
-        yield Part(
-            actor.name, _found(actor), actor.score, lines, actor.outcome != "resolved" and not actor.score
+        yield EvidencePart(
+            actor.name,
+            _actor_subtitle(actor),
+            actor.score,
+            lines,
+            actor.outcome != "resolved" and not actor.score,
         )
     if audit.assertions:
-        yield Part("the scene as a whole", "", None, tuple(_check(check) for check in audit.assertions))
+        yield EvidencePart(
+            "the scene as a whole", "", None, tuple(_check(check) for check in audit.assertions)
+        )
 
 
-def _found(actor: Actor) -> str:
+def _actor_subtitle(actor: ActorRow) -> str:
     objects = ", ".join(map(str, actor.evidence.get("objects", ())[:6]))
     how = f"{actor.outcome} by {actor.by}: {objects}" if objects else actor.outcome
     return f"{actor.role.replace('_', ' ')}, {how}"
 
 
-def _check(check: Check) -> Line:
+def _check(check: CheckRow) -> EvidenceLine:
     holds = {"passed": True, "failed": False}.get(check.outcome)
-    params = _told(check.params)
+    params = _format_values(check.params)
     what = f"{check.predicate} ({params})" if params else check.predicate
-    return Line(what, holds, _cut(_told(check.seen)), check.predicate, check.wanted == "must_not_have")
+    return EvidenceLine(
+        what, holds, _shorten(_format_values(check.seen)), check.predicate, check.wanted == "must_not_have"
+    )
 
 
-def _relations(audit: AuditFile, score: float | None) -> Iterator[Part]:
+def _relations(audit: AuditFile, score: float | None) -> Iterator[EvidencePart]:
     if audit.relations:
-        yield Part("Relations", "", score, tuple(_relation(one) for one in audit.relations))
+        yield EvidencePart("Relations", "", score, tuple(_relation(relation) for relation in audit.relations))
 
 
-def _relation(one: Relation) -> Line:
-    seen = one.why or "; ".join(f"{at.when}: {at.unit} {_told(at.seen)}" for at in one.moments)
-    holds = {"holds": True, "does not hold": False}.get(one.outcome)
-    return Line(f"{one.a} {one.type} {one.b}", holds, _cut(seen), one.type)
+def _relation(relation: RelationRow) -> EvidenceLine:
+    seen = relation.why or "; ".join(
+        f"{moment.when}: {moment.unit} {_format_values(moment.seen)}" for moment in relation.moments
+    )
+    holds = {"holds": True, "does not hold": False}.get(relation.outcome)
+    return EvidenceLine(f"{relation.a} {relation.type} {relation.b}", holds, _shorten(seen), relation.type)
 
 
-def _told(values: Any) -> str:
+def _format_values(values: Any) -> str:
     """Formats values as text."""
     if isinstance(values, dict):
-        return ", ".join(f"{str(name).replace('_', ' ')} {_told(value)}" for name, value in values.items())
+        return ", ".join(
+            f"{str(name).replace('_', ' ')} {_format_values(value)}" for name, value in values.items()
+        )
     if isinstance(values, list):
-        nested = any(isinstance(each, (dict, list)) for each in values)
-        return ("; " if nested else " ").join(map(_told, values)) or "none"
+        nested = any(isinstance(value, (dict, list)) for value in values)
+        return ("; " if nested else " ").join(map(_format_values, values)) or "none"
     return values if isinstance(values, str) else json.dumps(values)
 
 
-def _cut(text: str) -> str:
-    return text if len(text) <= _SEEN else f"{text[: _SEEN - 1]}…"
+def _shorten(text: str) -> str:
+    return text if len(text) <= _LONGEST_SEEN else f"{text[: _LONGEST_SEEN - 1]}…"
 
 
 # The judge
 
 
-def _judged(judgement: Judgement) -> Iterator[Part]:
+def _judged_parts(judgement: Judgement) -> Iterator[EvidencePart]:
     for dimension, items in judgement.dimensions.items():
-        lines = tuple(Line(item.text, item.holds, _cut(item.evidence)) for item in items)
-        yield Part(dimension.replace("_", " ").capitalize(), "", judgement.scores[dimension], lines)
+        lines = tuple(EvidenceLine(item.text, item.holds, _shorten(item.evidence)) for item in items)
+        yield EvidencePart(dimension.replace("_", " ").capitalize(), "", judgement.scores[dimension], lines)
 
 
 # Files
 
 
-def _audit(folder: Path, file: File | None) -> AuditFile | None:
-    content = _read(folder, file)
+def _load(folder: Path, file: File | None, shape: type[M]) -> M | None:
+    """A JSON file of the results; None if it is missing or invalid."""
+    content = _read_file(folder, file)
     try:
-        return AuditFile.model_validate_json(content) if content is not None else None
+        return shape.model_validate_json(content) if content is not None else None
     except ValidationError:
         return None
 
 
-def _judgement(folder: Path, file: File | None) -> Judgement | None:
-    content = _read(folder, file)
-    try:
-        return Judgement.model_validate_json(content) if content is not None else None
-    except ValidationError:
-        return None
-
-
-def _frames(scene: Scored) -> Iterator[Frame]:
+def _frames(scene: SceneResult) -> Iterator[PageFrame]:
     framed = scene.record.framed
     for file in framed.frames if framed is not None else ():
-        content = _read(scene.folder, file)
+        content = _read_file(scene.folder, file)
         frame = _picture(
             content, f"{int(stem)} %" if (stem := PurePosixPath(file.path).stem).isdecimal() else ""
         )
@@ -251,7 +262,7 @@ def _frames(scene: Scored) -> Iterator[Frame]:
             yield frame
 
 
-def _read(folder: Path, file: File | None) -> bytes | None:
+def _read_file(folder: Path, file: File | None) -> bytes | None:
     """The content of a file in the scene's folder; None if it is elsewhere (also by a link), or too large."""
     if file is None or file.source:
         return None
@@ -263,7 +274,7 @@ def _read(folder: Path, file: File | None) -> bytes | None:
         return None
 
 
-def _picture(content: bytes | None, label: str) -> Frame | None:
+def _picture(content: bytes | None, label: str) -> PageFrame | None:
     if content is None:
         return None
     try:
@@ -275,9 +286,9 @@ def _picture(content: bytes | None, label: str) -> Frame | None:
                 return None
             small = image.convert("RGB")
             small.thumbnail((_WIDTH, _WIDTH))
-            made = io.BytesIO()
-            small.save(made, "WEBP", quality=_QUALITY, method=4)
+            webp = io.BytesIO()
+            small.save(webp, "WEBP", quality=_QUALITY, method=4)
     except Exception:  # a broken file can raise anything
         return None
-    src = f"data:image/webp;base64,{base64.b64encode(made.getvalue()).decode()}"
-    return Frame(src, label, small.width, small.height)
+    src = f"data:image/webp;base64,{base64.b64encode(webp.getvalue()).decode()}"
+    return PageFrame(src, label, small.width, small.height)

@@ -12,13 +12,13 @@ from bench.scenes.spec import CATEGORIES
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from bench.results.scores import Metric, Results, Scored, SystemResults
+    from bench.results.scores import Metric, ResultSet, SceneResult, SystemResults
 
 OVERALL = "overall"
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class MacroAverage:
     """A macro average over cells. ``low`` to ``high``: its 95 % interval, None if unknown.
 
     ``scenes`` of the ``asked`` ones were scored, in ``cells`` cells. ``bound``: the average with unscored scenes as 0;
@@ -35,7 +35,7 @@ class Figure:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class SystemComparison:
     """``first`` minus ``second`` over the scenes that both have a score for; ``p`` of the paired permutation test."""
 
     first: str
@@ -50,7 +50,7 @@ class Comparison:
 
 
 @dataclass(frozen=True, slots=True)
-class Configuration:
+class AblationRow:
     """A row of the ablations: a system with or without some of its parts, over scenes that all its variants have."""
 
     system: str
@@ -59,47 +59,49 @@ class Configuration:
     scenes: dict[Metric, int]
 
 
-def figures_of(system: SystemResults) -> dict[Metric, dict[str, Figure]]:
+def figures_of(system: SystemResults) -> dict[Metric, dict[str, MacroAverage]]:
     """By metric, the figures of each category that has scenes, and OVERALL."""
     return {metric: _by_category(system, metric) for metric in METRICS}
 
 
-def _by_category(system: SystemResults, metric: Metric) -> dict[str, Figure]:
+def _by_category(system: SystemResults, metric: Metric) -> dict[str, MacroAverage]:
     asked = [scene for scene in system.scenes.values() if scene.asks(metric)]
-    found: dict[str, Figure] = {}
+    figures: dict[str, MacroAverage] = {}
     for category in CATEGORIES:
         own = [scene for scene in asked if scene.spec.category == category]
         if own:
-            found[category] = figure(own, metric)
-    found[OVERALL] = figure(asked, metric)
-    return found
+            figures[category] = macro_average(own, metric)
+    figures[OVERALL] = macro_average(asked, metric)
+    return figures
 
 
-def figure(asked: Sequence[Scored], metric: Metric) -> Figure:
+def macro_average(asked: Sequence[SceneResult], metric: Metric) -> MacroAverage:
     """The figure of some scenes."""
     scored = [scene for scene in asked if scene.score(metric) is not None]
     cells = _cells(scored, lambda scene: scene.score(metric) or 0.0)
     low, high = statistics.interval(cells) or (None, None)
     bound = statistics.macro(_cells(asked, lambda scene: scene.score(metric) or 0.0)) if scored else None
-    return Figure(statistics.macro(cells), low, high, bound, len(scored), len(asked), len(cells))
+    return MacroAverage(statistics.macro(cells), low, high, bound, len(scored), len(asked), len(cells))
 
 
-def _cells(scenes: Iterable[Scored], value: Callable[[Scored], float]) -> dict[str, list[float]]:
-    found: dict[str, list[float]] = {}
+def _cells(scenes: Iterable[SceneResult], value: Callable[[SceneResult], float]) -> dict[str, list[float]]:
+    cells: dict[str, list[float]] = {}
     for scene in sorted(scenes, key=lambda scene: scene.spec.id):
-        found.setdefault(scene.spec.cell, []).append(value(scene))
-    return found
+        cells.setdefault(scene.spec.cell, []).append(value(scene))
+    return cells
 
 
-def compare(first: SystemResults, second: SystemResults, metric: Metric) -> Comparison:
+def compare(first: SystemResults, second: SystemResults, metric: Metric) -> SystemComparison:
     """The paired comparison of two systems."""
-    one, other = (_scores(system, metric) for system in (first, second))
+    first_scores, second_scores = (_scores(system, metric) for system in (first, second))
     cells = {name: scene.spec.cell for name, scene in first.scenes.items()}
-    pairs = statistics.differences(one, other, cells)
+    pairs = statistics.differences(first_scores, second_scores, cells)
     low, high = statistics.interval(pairs) or (None, None)
     p, exact = statistics.permutation(pairs) or (None, True)
     count = sum(len(values) for values in pairs.values())
-    return Comparison(first.name, second.name, metric, count, statistics.macro(pairs), low, high, p, exact)
+    return SystemComparison(
+        first.name, second.name, metric, count, statistics.macro(pairs), low, high, p, exact
+    )
 
 
 def _scores(system: SystemResults, metric: Metric) -> dict[str, float]:
@@ -110,7 +112,7 @@ def _scores(system: SystemResults, metric: Metric) -> dict[str, float]:
     }
 
 
-def comparisons(results: Results, baseline: str | None = None) -> list[Comparison]:
+def comparisons(results: ResultSet, baseline: str | None = None) -> list[SystemComparison]:
     """Every other system against the ``baseline`` (the first), by each metric that both have a score of."""
     against = results.system(baseline) if baseline is not None else next(iter(results.systems), None)
     if against is None:
@@ -121,34 +123,38 @@ def comparisons(results: Results, baseline: str | None = None) -> list[Compariso
         if system is not against
         for metric in METRICS
     )
-    return [one for one in every if one.scenes]
+    return [comparison for comparison in every if comparison.scenes]
 
 
-def ablations(results: Results) -> list[Configuration]:
+def ablations(results: ResultSet) -> list[AblationRow]:
     """The variants of each ablated system, the full one first; [] if no system was ablated.
 
     Variants of one system have the same settings; their scores are over the scenes that all of them have.
     """
-    kin: dict[str, list[SystemResults]] = {}
+    groups: dict[str, list[SystemResults]] = {}
     for system in results.systems:
-        kin.setdefault(f"{system.info.kind} {sorted(system.info.settings.items())}", []).append(system)
-    families = [each for each in kin.values() if len(each) > 1 and any(one.info.ablations for one in each)]
+        groups.setdefault(f"{system.info.kind} {sorted(system.info.settings.items())}", []).append(system)
+    families = [
+        group
+        for group in groups.values()
+        if len(group) > 1 and any(system.info.ablations for system in group)
+    ]
     return [row for family in families for row in _configurations(family)]
 
 
-def _configurations(family: list[SystemResults]) -> list[Configuration]:
+def _configurations(family: list[SystemResults]) -> list[AblationRow]:
     common = {
         metric: set[str].intersection(*({*_scores(system, metric)} for system in family))
         for metric in METRICS
     }
-    rows: list[Configuration] = []
-    for system in sorted(family, key=lambda one: (len(one.info.ablations), one.info.ablations)):
+    rows: list[AblationRow] = []
+    for system in sorted(family, key=lambda system: (len(system.info.ablations), system.info.ablations)):
         shared = {metric: [system.scenes[name] for name in sorted(common[metric])] for metric in METRICS}
         rows.append(
-            Configuration(
+            AblationRow(
                 system.name,
                 system.info.ablations,
-                {metric: figure(shared[metric], metric).value for metric in METRICS},
+                {metric: macro_average(shared[metric], metric).value for metric in METRICS},
                 {metric: len(shared[metric]) for metric in METRICS},
             )
         )

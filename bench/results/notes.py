@@ -10,15 +10,15 @@ from bench.sweep.provenance import code_of_audit
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from bench.results.scores import Results, Scored
+    from bench.results.scores import ResultSet, SceneResult
 
 
-def notes(results: Results) -> list[str]:
+def notes(results: ResultSet) -> list[str]:
     """The warnings, as sentences."""
     return [*results.faults, *_of_audits(results), *_of_judges(results)]
 
 
-def _of_audits(results: Results) -> Iterator[str]:
+def _of_audits(results: ResultSet) -> Iterator[str]:
     """Warns of audits by other code, older specs or several Blenders."""
     code = code_of_audit()
     audits = [(scene, scene.record.audited) for scene in _all(results) if scene.record.audited is not None]
@@ -31,11 +31,12 @@ def _of_audits(results: Results) -> Iterator[str]:
         yield f"Audits were made with several Blenders: {', '.join(sorted(map(str, versions)))}."
 
 
-def _of_judges(results: Results) -> Iterator[str]:
+def _of_judges(results: ResultSet) -> Iterator[str]:
     judgements = [judged for scene in _all(results) if (judged := scene.record.judged) and judged.why is None]
-    if len(judges := {f"{one.provider}/{one.model}, prompts {one.prompt_version}" for one in judgements}) > 1:
+    judges = {f"{judged.provider}/{judged.model}, prompts {judged.prompt_version}" for judged in judgements}
+    if len(judges) > 1:
         yield f"VLM scores come from several judges and cannot be compared: {'; '.join(sorted(judges))}."
 
 
-def _all(results: Results) -> Iterator[Scored]:
+def _all(results: ResultSet) -> Iterator[SceneResult]:
     return (scene for system in results.systems for scene in system.scenes.values())

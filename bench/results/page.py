@@ -18,7 +18,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from bench.audit.predicates.catalogue import PREDICATES
-from bench.audit.relations import KINDS
+from bench.audit.relations import RELATIONS
 from bench.results.evidence import Evidence, evidence_of
 from bench.results.scores import METRICS, TITLES
 from bench.results.tables import NAMES, models, number
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from bench.markdown_tables import Table
-    from bench.results.scores import Metric, Results, Scored, SystemResults
+    from bench.results.scores import Metric, ResultSet, SceneResult, SystemResults
     from bench.scenes.spec import Spec
     from bench.sweep.records import Provenance
 
@@ -39,11 +39,11 @@ _UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\u202a-\u202e\u206
 
 
 @dataclass(frozen=True, slots=True)
-class Card:
+class SceneCard:
     """One scene by one system. ``scores``: title → value; ``best``: titles of scores that no other system exceeds."""
 
     system: str
-    scene: Scored | None
+    scene: SceneResult | None
     scores: dict[str, float | None]
     best: frozenset[str]
     evidence: Evidence | None
@@ -58,11 +58,11 @@ class Card:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class SceneSection:
     """A scene, with a card for each system."""
 
     spec: Spec
-    cards: tuple[Card, ...]
+    cards: tuple[SceneCard, ...]
 
     @property
     def has_failed(self) -> bool:
@@ -70,10 +70,10 @@ class Shown:
         return any(card.has_failed for card in self.cards)
 
 
-def page(results: Results, tables: Sequence[Table], notes: Sequence[str], seal: Provenance) -> str:
+def page(results: ResultSet, tables: Sequence[Table], notes: Sequence[str], seal: Provenance) -> str:
     """The page as HTML. ``seal``: the provenance of the code that makes it."""
     script = (_FOLDER / "script.js").read_text("utf-8")
-    shown = _shown(results)
+    sections = _sections(results)
     text = (
         _environment()
         .get_template("page.html.jinja")
@@ -83,12 +83,14 @@ def page(results: Results, tables: Sequence[Table], notes: Sequence[str], seal: 
             tables=tables,
             notes=notes,
             seal=seal,
-            scenes=shown,
-            categories=[name for name in CATEGORIES if any(one.spec.category == name for one in shown)],
+            scenes=sections,
+            categories=[
+                name for name in CATEGORIES if any(section.spec.category == name for section in sections)
+            ],
             names=NAMES,
             levels=_LEVELS,
             total=len(specs()),
-            glossary=_glossary(shown),
+            glossary=_glossary(sections),
             style=Markup((_FOLDER / "style.css").read_text("utf-8")),  # noqa: S704 - our own file
             script=Markup(script),  # noqa: S704 - our own file
             script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
@@ -99,30 +101,30 @@ def page(results: Results, tables: Sequence[Table], notes: Sequence[str], seal: 
 
 @cache
 def _environment() -> Environment:
-    made = Environment(
+    environment = Environment(
         loader=FileSystemLoader(_FOLDER),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters["score"] = number
-    return made
+    environment.filters["score"] = number
+    return environment
 
 
-def _shown(results: Results) -> list[Shown]:
+def _sections(results: ResultSet) -> list[SceneSection]:
     return [
-        Shown(spec, _cards(spec, results.systems))
+        SceneSection(spec, _cards(spec, results.systems))
         for spec in specs()
         if any(spec.id in system.scenes for system in results.systems)
     ]
 
 
-def _cards(spec: Spec, systems: Sequence[SystemResults]) -> tuple[Card, ...]:
+def _cards(spec: Spec, systems: Sequence[SystemResults]) -> tuple[SceneCard, ...]:
     scenes = [system.scenes.get(spec.id) for system in systems]
     best = {metric: _best(scenes, metric) for metric in METRICS}
     return tuple(
-        Card(
+        SceneCard(
             system.name,
             scene,
             {TITLES[metric]: scene.score(metric) for metric in METRICS if scene.asks(metric)}
@@ -135,13 +137,13 @@ def _cards(spec: Spec, systems: Sequence[SystemResults]) -> tuple[Card, ...]:
     )
 
 
-def _best(scenes: Sequence[Scored | None], metric: Metric) -> float | None:
+def _best(scenes: Sequence[SceneResult | None], metric: Metric) -> float | None:
     """The highest of several different scores; -1 if there are none."""
     known = {score for scene in scenes if scene is not None and (score := scene.score(metric)) is not None}
     return max(known) if len(known) > 1 else -1.0
 
 
-def _glossary(scenes: Sequence[Shown]) -> dict[str, str]:
+def _glossary(scenes: Sequence[SceneSection]) -> dict[str, str]:
     """The definitions of the predicates and relations on the page, by name."""
     named = {
         line.name
@@ -151,5 +153,7 @@ def _glossary(scenes: Sequence[Shown]) -> dict[str, str]:
         for part in card.evidence.parts
         for line in part.lines
     }
-    known = {name: one.definition for name, one in (*PREDICATES.items(), *KINDS.items())}
+    known = {
+        name: definition_of.definition for name, definition_of in (*PREDICATES.items(), *RELATIONS.items())
+    }
     return {name: inspect.cleandoc(known[name]).replace("``", "") for name in sorted(named & known.keys())}

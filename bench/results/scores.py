@@ -20,7 +20,7 @@ TITLES: dict[Metric, str] = {"mpr": "MPR", "spr": "SPR", "vlm": "VLM"}
 
 
 @dataclass(frozen=True, slots=True)
-class Scored:
+class SceneResult:
     """One scene by one system."""
 
     spec: Spec
@@ -60,7 +60,7 @@ class SystemResults:
     """All scenes that a system was given, in the benchmark's order."""
 
     info: SystemInfo
-    scenes: dict[str, Scored] = field(default_factory=dict[str, Scored])
+    scenes: dict[str, SceneResult] = field(default_factory=dict[str, SceneResult])
 
     @property
     def name(self) -> str:
@@ -69,7 +69,7 @@ class SystemResults:
 
 
 @dataclass(frozen=True, slots=True)
-class Results:
+class ResultSet:
     """Systems, in the order of their folders; ``faults``: results that could not be read, in words."""
 
     systems: tuple[SystemResults, ...]
@@ -77,18 +77,18 @@ class Results:
 
     def system(self, name: str) -> SystemResults | None:
         """The system of that name."""
-        return next((one for one in self.systems if one.name == name), None)
+        return next((system for system in self.systems if system.name == name), None)
 
 
-def read_results(folders: Iterable[Path]) -> Results:
+def read_results(folders: Iterable[Path]) -> ResultSet:
     """Reads the results below these folders. If a system has two results for a scene, the second is a fault."""
     systems: dict[str, SystemResults] = {}
     faults: list[str] = []
-    for folder in (found for each in folders for found in scene_folders(each)):
+    for folder in (scene_folder for parent in folders for scene_folder in scene_folders(parent)):
         try:
             record = read_record(folder)
             assert record is not None
-            scored = Scored(spec_of(record.scene), record, folder)
+            scored = SceneResult(spec_of(record.scene), record, folder)
         except (BadSceneRecord, BadSpec) as error:
             faults.append(f"{folder}: {error}")
             continue
@@ -99,4 +99,4 @@ def read_results(folders: Iterable[Path]) -> Results:
             )
         else:
             system.scenes[record.scene] = scored
-    return Results(tuple(systems.values()), tuple(faults))
+    return ResultSet(tuple(systems.values()), tuple(faults))

@@ -52,11 +52,11 @@ def differences(
     first: Mapping[str, float], second: Mapping[str, float], cells: Mapping[str, str]
 ) -> dict[str, list[float]]:
     """By cell, first minus second of each scene that both have. ``cells``: scene → its cell."""
-    found: dict[str, list[float]] = {}
+    cells_of: dict[str, list[float]] = {}
     for scene, value in first.items():
         if scene in second:
-            found.setdefault(cells[scene], []).append(value - second[scene])
-    return found
+            cells_of.setdefault(cells[scene], []).append(value - second[scene])
+    return cells_of
 
 
 def permutation(cells: Cells, *, seed: int = SEED, draws: int = 2 * DRAWS) -> tuple[float, bool] | None:

@@ -15,8 +15,8 @@ from bench.scenes.spec import specs
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from bench.results.figures import Comparison, Configuration
-    from bench.results.scores import Metric, Results, SystemResults
+    from bench.results.figures import AblationRow, SystemComparison
+    from bench.results.scores import Metric, ResultSet, SystemResults
 
 NONE = "–"
 _CELLS, _INTERVAL, _BOUND = "cells", "interval", "bound"
@@ -41,22 +41,22 @@ _NOTE = (
 _SIDE_BY_SIDE = 2  # systems, with all metrics in one table as the paper has it
 
 
-def tables(results: Results, *, baseline: str | None = None, with_paper: bool = False) -> list[Table]:
+def tables(results: ResultSet, *, baseline: str | None = None, with_paper: bool = False) -> list[Table]:
     """All tables that have content."""
-    found = [*table_1(results, with_paper=with_paper), coverage(results)]
+    result = [*table_1(results, with_paper=with_paper), coverage(results)]
     if (missing := not_scored(results)) is not None:
-        found.append(missing)
+        result.append(missing)
     if rows := comparisons(results, baseline):
-        found.append(_comparisons(rows))
+        result.append(_comparisons(rows))
     if configurations := ablations(results):
-        found.append(_ablations(configurations, with_paper=with_paper))
-    return [*found, cost(results)]
+        result.append(_ablations(configurations, with_paper=with_paper))
+    return [*result, cost(results)]
 
 
 # Table 1
 
 
-def table_1(results: Results, *, with_paper: bool = False) -> Iterator[Table]:
+def table_1(results: ResultSet, *, with_paper: bool = False) -> Iterator[Table]:
     """Scores per category and overall: one table for few systems, else one for each metric."""
     columns = {system.name: _columns(system) for system in results.systems}
     if with_paper:
@@ -84,14 +84,14 @@ def _table_1(
 
 
 def _columns(system: SystemResults) -> dict[Metric, dict[str, str]]:
-    found: dict[Metric, dict[str, str]] = {}
+    columns: dict[Metric, dict[str, str]] = {}
     for metric, figures in figures_of(system).items():
         overall = figures[OVERALL]
-        found[metric] = {category: number(figure.value) for category, figure in figures.items()}
-        found[metric][_CELLS] = f"{overall.cells} of {cells_of(metric)}"
-        found[metric][_INTERVAL] = span(overall.low, overall.high)
-        found[metric][_BOUND] = number(overall.bound)
-    return found
+        columns[metric] = {category: number(figure.value) for category, figure in figures.items()}
+        columns[metric][_CELLS] = f"{overall.cells} of {cells_of(metric)}"
+        columns[metric][_INTERVAL] = span(overall.low, overall.high)
+        columns[metric][_BOUND] = number(overall.bound)
+    return columns
 
 
 def _published(name: str) -> dict[Metric, dict[str, str]]:
@@ -112,7 +112,7 @@ def cells_of(metric: Metric) -> int:
 # Coverage
 
 
-def coverage(results: Results) -> Table:
+def coverage(results: ResultSet) -> Table:
     """How many scenes each score is based on."""
     rows = [
         (
@@ -129,7 +129,7 @@ def coverage(results: Results) -> Table:
     return Table("Coverage", header, tuple(rows), "Scenes that a system was not given do not count.")
 
 
-def not_scored(results: Results) -> Table | None:
+def not_scored(results: ResultSet) -> Table | None:
     """How many scenes were not scored or judged, by reason, most frequent first; None if all were."""
     whys = Counter(
         (system.name, "not judged" if metric == "vlm" else "not scored", why)
@@ -145,34 +145,34 @@ def not_scored(results: Results) -> Table | None:
 # Comparisons and ablations
 
 
-def _comparisons(rows: Iterable[Comparison]) -> Table:
-    told = tuple(
+def _comparisons(rows: Iterable[SystemComparison]) -> Table:
+    cells = tuple(
         (
-            f"{one.first} − {one.second}",
-            TITLES[one.metric],
-            str(one.scenes),
-            number(one.difference, signed=True),
-            span(one.low, one.high, signed=True),
-            probability(one),
+            f"{row.first} − {row.second}",
+            TITLES[row.metric],
+            str(row.scenes),
+            number(row.difference, signed=True),
+            span(row.low, row.high, signed=True),
+            probability(row),
         )
-        for one in rows
+        for row in rows
     )
     note = (
         "Differences of the macro averages over the scenes that both systems have; the interval by the paired "
         "bootstrap; p by the paired permutation test, two-sided, not corrected for the number of comparisons."
     )
     return Table(
-        "Systems compared", ("systems", "score", "scenes", "difference", "95 % interval", "p"), told, note
+        "Systems compared", ("systems", "score", "scenes", "difference", "95 % interval", "p"), cells, note
     )
 
 
-def probability(one: Comparison) -> str:
+def probability(comparison: SystemComparison) -> str:
     """p, marked if it is not exact."""
-    return NONE if one.p is None else f"{one.p:.4f}{'' if one.exact else ' (drawn)'}"
+    return NONE if comparison.p is None else f"{comparison.p:.4f}{'' if comparison.exact else ' (drawn)'}"
 
 
-def _ablations(rows: Sequence[Configuration], *, with_paper: bool) -> Table:
-    told = [
+def _ablations(rows: Sequence[AblationRow], *, with_paper: bool) -> Table:
+    cells = [
         (
             row.system,
             " and ".join(part.replace("-", " ") for part in row.without) or "full",
@@ -182,20 +182,20 @@ def _ablations(rows: Sequence[Configuration], *, with_paper: bool) -> Table:
         for row in rows
     ]
     if with_paper:
-        told += [
+        cells += [
             (f"SimWorlds ({paper.SOURCE})", " and ".join(without).replace("-", " ") or "full",
              *(number(scores[metric]) for metric in METRICS), "15")
             for without, scores in paper.ABLATIONS.items()
         ]  # fmt: skip
     note = "Over the scenes that all configurations of a system have a score for."
     header = ("system", "configuration", *(TITLES[metric] for metric in METRICS), "scenes")
-    return Table("Ablations", header, tuple(told), note)
+    return Table("Ablations", header, tuple(cells), note)
 
 
 # Cost
 
 
-def cost(results: Results) -> Table:
+def cost(results: ResultSet) -> Table:
     """The mean cost and time per scene: of the system, of scoring, of judging."""
     header = ("system", "models", "$ per scene", "minutes per scene", "audit s", "frames s", "judge $")
     rows = tuple(
@@ -207,25 +207,23 @@ def cost(results: Results) -> Table:
 
 def models(system: SystemResults) -> list[str]:
     """The models that made a system's scenes."""
-    found = Counter(
+    names = Counter(
         name
         for scene in system.scenes.values()
         if scene.record.produced is not None
         for name in {*scene.record.produced.models.values()}
     )
-    return sorted(found)
+    return sorted(names)
 
 
 def _took(system: SystemResults) -> Iterator[str]:
     records = [scene.record for scene in system.scenes.values()]
     produced = [record.produced for record in records if record.produced is not None]
-    costs = [one.cost for one in produced if one.cost is not None]
-    minutes = [one.minutes for one in produced if one.minutes is not None]
-    audits = [
-        one.seconds for record in records if (one := record.audited) is not None and one.file is not None
-    ]
-    frames = [one.seconds for record in records if (one := record.framed) is not None and one.frames]
-    judged = [one.cost for record in records if (one := record.judged) is not None and one.cost is not None]
+    costs = [step.cost for step in produced if step.cost is not None]
+    minutes = [step.minutes for step in produced if step.minutes is not None]
+    audits = [step.seconds for record in records if (step := record.audited) and step.file is not None]
+    frames = [step.seconds for record in records if (step := record.framed) and step.frames]
+    judged = [step.cost for record in records if (step := record.judged) and step.cost is not None]
     yield f"{fmean(costs):.2f}" if costs else NONE
     yield f"{fmean(minutes):.1f} ({median(minutes):.1f})" if minutes else NONE
     yield f"{fmean(audits):.1f}" if audits else NONE

@@ -34,8 +34,8 @@ _PLACE = 15.0
 
 def solver_groups(spec: Spec) -> frozenset[str]:
     """Groups of the solvers that the spec's actors need."""
-    found = {PREDICATES[check.predicate].group for actor in spec.actors for check in actor.must_have}
-    return frozenset(found & set(SOLVER_GROUPS.values()))
+    groups = {PREDICATES[check.predicate].group for actor in spec.actors for check in actor.must_have}
+    return frozenset(groups & set(SOLVER_GROUPS.values()))
 
 
 def level_of(spec: Spec) -> Level:
@@ -45,10 +45,10 @@ def level_of(spec: Spec) -> Level:
         return "D2" if max(spans, default=0.0) >= _PLACE else "D1"
     if len(solver_groups(spec)) > 1:
         return "D3"
-    return "D2" if _several(spec) or _inner(spec) else "D1"
+    return "D2" if _has_several(spec) or _has_advanced_feature(spec) else "D1"
 
 
-def _several(spec: Spec) -> bool:
+def _has_several(spec: Spec) -> bool:
     """Several solver actors, flows or a long chain of bodies."""
     solved = [actor for actor in spec.actors if actor.role in _SOLVED]
     flows = sum(actor.count for actor in spec.actors if actor.role == "fluid_flow")
@@ -61,7 +61,7 @@ def _several(spec: Spec) -> bool:
     return len(solved) > 1 or max((flows, *counted)) > 1 or any(actor.count >= _CHAIN for actor in solved)
 
 
-def _inner(spec: Spec) -> bool:
+def _has_advanced_feature(spec: Spec) -> bool:
     """Self-collision, pins, goals, constraints, fields, guides, effectors that move."""
-    asked = {check.predicate for actor in spec.actors for check in actor.must_have}
-    return bool(asked & INNER) or any(actor.role == "force" for actor in spec.actors)
+    predicates = {check.predicate for actor in spec.actors for check in actor.must_have}
+    return bool(predicates & INNER) or any(actor.role == "force" for actor in spec.actors)

@@ -47,7 +47,7 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class Check(_Part):
+class SpecCheck(_Part):
     """A predicate, and its parameters."""
 
     predicate: str
@@ -73,7 +73,7 @@ class Hints(_Part):
     collection: Literal["object", "any"] = "any"
 
 
-class Actor(_Part):
+class SpecActor(_Part):
     """Something that the prompt names. ``count``: how many units of it there must be.
 
     ``implied``: the prompt does not name it, but the scene cannot be built without it (a source of fluid, a floor).
@@ -85,11 +85,11 @@ class Actor(_Part):
     implied: bool = False
     count: int = Field(default=1, ge=1)
     hints: Hints = Hints()
-    must_have: tuple[Check, ...] = Field(min_length=1)
-    must_not_have: tuple[Check, ...] = ()
+    must_have: tuple[SpecCheck, ...] = Field(min_length=1)
+    must_not_have: tuple[SpecCheck, ...] = ()
 
 
-class Relation(_Part):
+class SpecRelation(_Part):
     """How ``a`` stands to ``b`` at these times of the clip; ``tolerance``: metres apart, or deep.
 
     It must hold for each unit of ``a``, to all units of ``b`` together.
@@ -102,7 +102,7 @@ class Relation(_Part):
     tolerance: float = Field(default=0.02, gt=0)
 
 
-class Phase(_Part):
+class SpecPhase(_Part):
     """What an actor does, from ``start`` to ``end`` (shares of the clip)."""
 
     actor: Name
@@ -111,7 +111,7 @@ class Phase(_Part):
     end: Share
 
 
-class Frames(_Part):
+class ClipLength(_Part):
     """The minimum length of the clip (frames)."""
 
     min: int = Field(ge=2)
@@ -125,20 +125,20 @@ class Spec(_Part):
     category: Category
     level: Level
     prompt: str = Field(min_length=20, max_length=900)
-    frames: Frames | None = None
-    actors: tuple[Actor, ...] = Field(min_length=1)
-    relations: tuple[Relation, ...] = ()
-    phases: tuple[Phase, ...] = ()
-    assertions: tuple[Check, ...] = ()
+    frames: ClipLength | None = None
+    actors: tuple[SpecActor, ...] = Field(min_length=1)
+    relations: tuple[SpecRelation, ...] = ()
+    phases: tuple[SpecPhase, ...] = ()
+    assertions: tuple[SpecCheck, ...] = ()
 
     @property
     def cell(self) -> str:
         """Its cell in the result tables: category and level."""
         return f"{self.category}_{self.level}"
 
-    def actor(self, name: str) -> Actor | None:
+    def actor(self, name: str) -> SpecActor | None:
         """The actor of that name."""
-        return next((one for one in self.actors if one.name == name), None)
+        return next((actor for actor in self.actors if actor.name == name), None)
 
     @model_validator(mode="after")
     def _consistent(self) -> Spec:
@@ -167,8 +167,8 @@ def read_spec(path: Path) -> Spec:
         raise BadSpec(f"{path.name} cannot be read: {error}") from error
     except ValidationError as error:
         wrong = "; ".join(
-            f"{'.'.join(map(str, one['loc'])) or 'spec'}: {one['msg']}"
-            for one in error.errors(include_url=False, include_context=False)
+            f"{'.'.join(map(str, fault['loc'])) or 'spec'}: {fault['msg']}"
+            for fault in error.errors(include_url=False, include_context=False)
         )
         raise BadSpec(f"{path.name}: {wrong}") from error
 
@@ -176,13 +176,13 @@ def read_spec(path: Path) -> Spec:
 @cache
 def specs() -> tuple[Spec, ...]:
     """All scenes, by category, level and number. Raises BadSpec."""
-    found = [read_spec(path) for path in FOLDER.glob("*.yaml")]
-    return tuple(sorted(found, key=lambda spec: (CATEGORIES.index(spec.category), spec.id)))
+    unsorted = [read_spec(path) for path in FOLDER.glob("*.yaml")]
+    return tuple(sorted(unsorted, key=lambda spec: (CATEGORIES.index(spec.category), spec.id)))
 
 
 def spec_of(name: str) -> Spec:
     """The scene of that id. Raises BadSpec."""
-    found = next((spec for spec in specs() if spec.id == name), None)
-    if found is None:
+    spec = next((spec for spec in specs() if spec.id == name), None)
+    if spec is None:
         raise BadSpec(f"There is no scene {name[:80]!r}. List them with 'simworlds bench list'.")
-    return found
+    return spec

@@ -11,7 +11,7 @@ from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 from bench.audit.audit import check_predicates
-from bench.audit.names import match, words_of
+from bench.audit.names import match_name, words_of
 from bench.audit.predicates.catalogue import PREDICATES
 from bench.audit.predicates.particle import DEFORMERS
 from bench.scenes.levels import SOLVER_GROUPS, level_of, solver_groups
@@ -81,7 +81,7 @@ def faults(spec: Spec) -> tuple[str, ...]:
 
 def faults_together(specs: Sequence[Spec]) -> tuple[str, ...]:
     """The faults of all scenes as a set: how many there are, which predicates they use, whether two are alike."""
-    return tuple(fault for rule in (_composition, _coverage, _files, _twice) for fault in rule(specs))
+    return tuple(fault for rule in (_composition, _coverage, _files, _alike) for fault in rule(specs))
 
 
 # One spec
@@ -101,8 +101,8 @@ def _predicates(spec: Spec) -> Iterator[str]:
             row = PREDICATES[check.predicate]
             if row.group != "anti-cheat" or row.scope == "scene":
                 yield f"{actor.name}: {check.predicate} does not belong in must_not_have"
-        asked = Counter(check.predicate for check in (*actor.must_have, *actor.must_not_have))
-        yield from (f"{actor.name}: {name} is listed twice" for name, times in asked.items() if times > 1)
+        counts = Counter(check.predicate for check in (*actor.must_have, *actor.must_not_have))
+        yield from (f"{actor.name}: {name} is listed twice" for name, times in counts.items() if times > 1)
     for check in spec.assertions:
         if PREDICATES[check.predicate].scope != "scene" or PREDICATES[check.predicate].group != "anti-cheat":
             yield f"assertions: {check.predicate} is not about the whole scene"
@@ -111,20 +111,20 @@ def _predicates(spec: Spec) -> Iterator[str]:
 def _roles(spec: Spec) -> Iterator[str]:
     """Actors have the checks of their role; visible ones are renderable and have a size."""
     for actor in spec.actors:
-        asked = {check.predicate for check in actor.must_have}
+        required = {check.predicate for check in actor.must_have}
         ruled_out = {check.predicate for check in actor.must_not_have}
         wanted, unwanted = _BY_ROLE.get(actor.role, ((), ()))
         yield from (
             f"{actor.name}: its role {actor.role} needs {name} in must_have"
             for name in wanted
-            if name not in asked
+            if name not in required
         )
         yield from (
             f"{actor.name}: its role {actor.role} needs {name} in must_not_have"
             for name in unwanted
             if name not in ruled_out
         )
-        if actor.role not in ("force", "fluid_flow") and "renderable" not in asked:
+        if actor.role not in ("force", "fluid_flow") and "renderable" not in required:
             yield f"{actor.name}: renderable is missing in must_have"
         if actor.role != "force":
             size = actor.hints.size
@@ -152,7 +152,7 @@ def _naming(spec: Spec) -> Iterator[str]:
     owners: dict[tuple[str, ...], str] = {}
     for actor in spec.actors:
         phrases = (actor.name, *actor.synonyms)
-        named = match(spec.prompt, phrases) is not None
+        named = match_name(spec.prompt, phrases) is not None
         if named == actor.implied:
             yield f"{actor.name}: {'implied, but the prompt names it' if named else 'the prompt does not name it'}"
         for phrase in phrases:
@@ -238,7 +238,7 @@ def _still(spec: Spec) -> Iterator[str]:
 
 def _composition(specs: Sequence[Spec]) -> Iterator[str]:
     """There are nine scenes of each solver, three per level, and five static ones."""
-    found = Counter((spec.category, spec.level) for spec in specs)
+    counts = Counter((spec.category, spec.level) for spec in specs)
     wanted = Counter(
         {
             (category, level): number
@@ -246,18 +246,18 @@ def _composition(specs: Sequence[Spec]) -> Iterator[str]:
             for level, number in _CELLS.get(category, _CELL).items()
         }
     )
-    for cell in sorted({*found, *wanted}):
-        if found[cell] != wanted[cell]:
-            yield f"{'_'.join(cell)}: {found[cell]} scenes instead of {wanted[cell]}"
+    for cell in sorted({*counts, *wanted}):
+        if counts[cell] != wanted[cell]:
+            yield f"{'_'.join(cell)}: {counts[cell]} scenes instead of {wanted[cell]}"
 
 
 def _coverage(specs: Sequence[Spec]) -> Iterator[str]:
     """Every predicate is used in some scene."""
-    asked = {check.predicate for spec in specs for check in spec.assertions}
+    used = {check.predicate for spec in specs for check in spec.assertions}
     for spec in specs:
         for actor in spec.actors:
-            asked.update(check.predicate for check in (*actor.must_have, *actor.must_not_have))
-    yield from (f"no scene uses {name}" for name in PREDICATES if name not in asked)
+            used.update(check.predicate for check in (*actor.must_have, *actor.must_not_have))
+    yield from (f"no scene uses {name}" for name in PREDICATES if name not in used)
 
 
 def _files(specs: Sequence[Spec]) -> Iterator[str]:
@@ -274,24 +274,24 @@ def _files(specs: Sequence[Spec]) -> Iterator[str]:
     )
 
 
-def _twice(specs: Sequence[Spec]) -> Iterator[str]:
+def _alike(specs: Sequence[Spec]) -> Iterator[str]:
     """No two scenes share too many words or actors, or, above D1, the same roles and checks."""
-    for one, other in combinations(specs, 2):
-        if _shared(words_of(one.prompt), words_of(other.prompt)) >= _SAME_WORDS:
-            yield f"{one.id} and {other.id}: their prompts share too many words"
-        if _shared(_names(one), _names(other)) >= _SAME_ACTORS:
-            yield f"{one.id} and {other.id}: they share too many actors"
+    for first, second in combinations(specs, 2):
+        if _shared(words_of(first.prompt), words_of(second.prompt)) >= _SAME_WORDS:
+            yield f"{first.id} and {second.id}: their prompts share too many words"
+        if _shared(_names(first), _names(second)) >= _SAME_ACTORS:
+            yield f"{first.id} and {second.id}: they share too many actors"
         if (
-            one.cell == other.cell
-            and one.level != "D1"
-            and _mechanism(one) == _mechanism(other) != frozenset()
+            first.cell == second.cell
+            and first.level != "D1"
+            and _mechanism(first) == _mechanism(second) != frozenset()
         ):
-            yield f"{one.id} and {other.id}: their roles and checks are the same"
+            yield f"{first.id} and {second.id}: their roles and checks are the same"
 
 
-def _shared(one: Iterable[str], other: Iterable[str]) -> float:
-    mine, yours = set(one), set(other)
-    return len(mine & yours) / max(1, len(mine | yours))
+def _shared(first: Iterable[str], second: Iterable[str]) -> float:
+    first_set, second_set = set(first), set(second)
+    return len(first_set & second_set) / max(1, len(first_set | second_set))
 
 
 def _names(spec: Spec) -> tuple[str, ...]:

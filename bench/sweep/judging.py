@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.judge.errors import NotJudged
 from bench.judge.judge import judge
-from bench.judge.providers import Provider, provider_of
+from bench.judge.providers import JudgeProvider, provider_of
 from bench.judge.questions import prompt_version
 from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file
 from bench.sweep.provenance import code_of
@@ -50,7 +50,7 @@ class SweepJudge:
     """The judge of one or several sweeps under one limit; without a provider, ``why`` there is none."""
 
     options: JudgeOptions
-    provider: Provider | None
+    provider: JudgeProvider | None
     why: str = ""
 
 
@@ -129,7 +129,7 @@ def _no_frames(record: SceneRecord) -> str:
     return f"no frames: {(record.framed.why if record.framed is not None else None) or 'none were taken'}"
 
 
-def _key(task: SceneTask, options: JudgeOptions, provider: Provider, frames: str) -> str:
+def _key(task: SceneTask, options: JudgeOptions, provider: JudgeProvider, frames: str) -> str:
     return digest_of(
         {
             "prompt": task.spec.prompt,
@@ -142,7 +142,7 @@ def _key(task: SceneTask, options: JudgeOptions, provider: Provider, frames: str
 
 
 def _judged(
-    task: SceneTask, provider: Provider, frames: Sequence[Path], cache: Path | None, key: str
+    task: SceneTask, provider: JudgeProvider, frames: Sequence[Path], cache: Path | None, key: str
 ) -> Judged:
     began = time.monotonic()
     try:

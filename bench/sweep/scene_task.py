@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
-from bench.audit.untrusted_blend import Means
-from bench.frames.clip_frames import Look
+from bench.audit.untrusted_blend import BlenderOptions
+from bench.frames.clip_frames import RenderQuality
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,8 +31,8 @@ class SceneTask:
     spec: Spec
     system: SceneSystem
     folder: Path
-    means: Means = field(default_factory=Means)
-    look: Look = field(default_factory=Look)
+    means: BlenderOptions = field(default_factory=BlenderOptions)
+    look: RenderQuality = field(default_factory=RenderQuality)
     steps: tuple[str, ...] = STEP_NAMES
     from_video: bool = True
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from bench.frames.clip_frames import Taken
+    from bench.frames.clip_frames import FrameSet
     from bench.sweep.records import SceneRecord, StepResult
     from bench.sweep.scene_task import SceneTask, Tell
 
@@ -164,7 +164,7 @@ def _video(task: SceneTask, record: SceneRecord) -> Path | None:
     return path if path.is_file() and (task.is_static or kind_of(path) == "video") else None
 
 
-def _taken(task: SceneTask, blend: Path, video: Path | None) -> Taken:
+def _taken(task: SceneTask, blend: Path, video: Path | None) -> FrameSet:
     """Takes frames of the video; if that fails, of the .blend. Raises NotScored."""
     folder = task.folder / FRAMES
     means = replace(task.means, seconds=max(task.means.seconds, SECONDS))

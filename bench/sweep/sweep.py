@@ -23,8 +23,8 @@ from simworlds.folder_lock import locked
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from bench.audit.untrusted_blend import Means
-    from bench.frames.clip_frames import Look
+    from bench.audit.untrusted_blend import BlenderOptions
+    from bench.frames.clip_frames import RenderQuality
     from bench.scenes.spec import Spec
     from bench.sweep.sweep_view import SweepView
     from bench.sweep.systems.system import SceneSystem
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 class ScoringOptions:
     """How scenes are scored, for any system: see SceneTask."""
 
-    means: Means
-    look: Look
+    means: BlenderOptions
+    look: RenderQuality
     frames: bool = True
     from_video: bool = True
 

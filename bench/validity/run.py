@@ -8,7 +8,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from bench.audit.untrusted_blend import Means, NotScored
+from bench.audit.untrusted_blend import BlenderOptions, NotScored
 from bench.references.reference_scenes import CannotBuild, build, has_reference
 from bench.scenes.spec import specs
 from bench.validity.proof import Proof
@@ -113,7 +113,7 @@ def _proofs(
 ) -> Iterator[Proof]:
     if not properties:
         return
-    with VariantBuilder(task.spec, blend, Means(seconds=_SECONDS)) as builder:
+    with VariantBuilder(task.spec, blend, BlenderOptions(seconds=_SECONDS)) as builder:
         for each in properties:
             tell(f"{task.spec.id}: {each}")
             proof = prove_property(builder, each)

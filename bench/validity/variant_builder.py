@@ -15,15 +15,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.audit.actors import find_actors
-from bench.audit.audit import audit, audit_of, audited, read_scene
-from bench.audit.untrusted_blend import AUDITOR, Crashed, Means, Untrusted
+from bench.audit.audit import audit, audit_of, audit_scene, read_scene
+from bench.audit.untrusted_blend import AUDITOR, BlenderOptions, Crashed, UntrustedBlend
 from simworlds.sandbox.program import Program
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
-    from bench.audit.actors import Found
+    from bench.audit.actors import ActorResolution
     from bench.audit.audit import Audit
     from bench.audit.facts import Scene
     from bench.scenes.spec import Spec
@@ -47,16 +47,16 @@ class SceneReading:
     """A file without relations: its facts, actors, and the audit of their predicates."""
 
     scene: Scene
-    found: dict[str, Found]
+    found: dict[str, ActorResolution]
     audit: Audit
 
 
 class VariantBuilder:
     """A context manager; the variants are deleted at its end."""
 
-    def __init__(self, spec: Spec, blend: Path, means: Means | None = None) -> None:
+    def __init__(self, spec: Spec, blend: Path, means: BlenderOptions | None = None) -> None:
         self.spec, self.blend = spec, blend.resolve()
-        means = means or Means()
+        means = means or BlenderOptions()
         self._means = replace(means, read=(*means.read, self.blend.parent))
 
     def __enter__(self) -> VariantBuilder:
@@ -68,8 +68,8 @@ class VariantBuilder:
         for path in self.blend.parent.iterdir():
             if path.is_dir():
                 (self.folder / path.name).symlink_to(path)
-        self._auditor = _ReusedBlender(lambda path: Untrusted(path, self._means))
-        self._worker = _ReusedBlender(lambda path: Untrusted(path, self._means, _PROGRAM, self.folder))
+        self._auditor = _ReusedBlender(lambda path: UntrustedBlend(path, self._means))
+        self._worker = _ReusedBlender(lambda path: UntrustedBlend(path, self._means, _PROGRAM, self.folder))
         self._stack.callback(self._auditor.close)
         self._stack.callback(self._worker.close)
         return self
@@ -121,7 +121,7 @@ class VariantBuilder:
         """Reads a variant without relations. Raises NotScored, CannotStart."""
         scene = read_scene(self._auditor.opened(path), play=True)
         found = find_actors(self.spec, scene)
-        return SceneReading(scene, found, audited(self.spec, scene, found))
+        return SceneReading(scene, found, audit_scene(self.spec, scene, found))
 
     def audit(self, path: Path) -> Audit:
         """Audits a variant in the Blender that has read the others. Raises NotScored, CannotStart."""
@@ -136,11 +136,11 @@ class VariantBuilder:
 class _ReusedBlender:
     """A Blender that is reused for one file after another."""
 
-    def __init__(self, start: Callable[[Path], Untrusted]) -> None:
+    def __init__(self, start: Callable[[Path], UntrustedBlend]) -> None:
         self._start, self._stack = start, ExitStack()
-        self._file: Untrusted | None = None
+        self._file: UntrustedBlend | None = None
 
-    def opened(self, path: Path) -> Untrusted:
+    def opened(self, path: Path) -> UntrustedBlend:
         """Opens the file in the running Blender, or in a new one after a crash. Raises NotScored."""
         if self._file is not None:
             try:

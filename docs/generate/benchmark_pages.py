@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from bench.audit import assembly
 from bench.audit.predicates.catalogue import PREDICATES
 from bench.audit.predicates.predicate import GROUPS
-from bench.audit.relations import KINDS
+from bench.audit.relations import RELATIONS
 from docs.generate.markdown import GENERATED, page, table
 
 if TYPE_CHECKING:
@@ -40,8 +40,8 @@ anything."""
 
 def relations_page() -> str:
     """All relation types, and how assemblies are inferred, as Markdown."""
-    parts = [f"# The {len(KINDS)} relations", GENERATED, _ABOUT_RELATIONS]
-    for name, kind in KINDS.items():
+    parts = [f"# The {len(RELATIONS)} relations", GENERATED, _ABOUT_RELATIONS]
+    for name, kind in RELATIONS.items():
         parts += [f"## `{name}`", kind.definition.replace("``", "`")]
     assemblies = inspect.cleandoc(assembly.__doc__ or "").partition("\n")[2].strip()
     return page(*parts, "## Assemblies", assemblies)

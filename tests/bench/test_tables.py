@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from bench.markdown_tables import Table, table
+from bench.markdown_tables import Table, format_table
 
 
-def test_the_lines_of_a_table_are_equally_long_and_numbers_stand_right() -> None:
-    lines = table(
+def test_table_lines_have_equal_width_and_numbers_align_right() -> None:
+    lines = format_table(
         Table("T", ("name", "n"), (("a|b", "1.5"), ("longer name", "12,000"), ("c", "–")))
     ).splitlines()[2:]
     assert len({len(line) for line in lines}) == 1

@@ -10,22 +10,22 @@ _SAME = 1e-4  # metres, radians, factors: smaller changes are not motion
 _GENERATORS = {"GENERATOR", "FNGENERATOR", "CYCLES", "NOISE"}
 _DEFORMING = {"ARMATURE", "LATTICE", "MESH_DEFORM", "SURFACE_DEFORM", "HOOK", "CURVE"}
 
-_looked_at = [0]
+_keys_read = [0]
 
 
 def forget():
     """Forgets the counts of the last file; call it after another one is opened."""
-    _looked_at[0] = 0
+    _keys_read[0] = 0
 
 
-class Watched:
+class DrivenProperty:
     """A driven property, whose values at the sample frames show whether it varies; ``told`` is its channel."""
 
-    def __init__(self, block, curve, told):
-        self.block, self.path, self.index, self.told = block, curve.data_path, curve.array_index, told
+    def __init__(self, block, curve, channel):
+        self.block, self.path, self.index, self.channel = block, curve.data_path, curve.array_index, channel
         self.values = []
 
-    def look(self):
+    def record(self):
         """Records the current value."""
         try:
             value = self.block.path_resolve(self.path)
@@ -34,7 +34,7 @@ class Watched:
         except (ValueError, TypeError, IndexError, KeyError):
             return
         if max(self.values) - min(self.values) > _SAME:
-            self.told["varies"] = True
+            self.channel["varies"] = True
 
 
 def channels_of(block, frames, watched):
@@ -42,46 +42,48 @@ def channels_of(block, frames, watched):
     animated = getattr(block, "animation_data", None)
     if animated is None:
         return []
-    found = {}
+    channels = {}
     if animated.action is not None and animated.action_influence > 0:
-        _gather(found, "action", curves_of(animated.action, getattr(animated, "action_slot", None)), frames)
+        _gather(
+            channels, "action", curves_of(animated.action, getattr(animated, "action_slot", None)), frames
+        )
     if animated.use_nla:
         for track in animated.nla_tracks:
             for strip in track.strips:
                 if not track.mute and not strip.mute and strip.action is not None:
                     curves = curves_of(strip.action, getattr(strip, "action_slot", None))
-                    _gather(found, "nla", curves, None, strip.scale)
+                    _gather(channels, "nla", curves, None, strip.scale)
     for curve in animated.drivers:
         if not curve.mute:
-            _driven(found, block, curve, watched)
-    return [found[key] for key in sorted(found)]
+            _driven(channels, block, curve, watched)
+    return [channels[key] for key in sorted(channels)]
 
 
 def curves_of(action, slot):
     """The f-curves that an action has for a slot: of its layers (Blender 4.4 and later), or its own."""
     if not hasattr(action, "layers"):
         return list(action.fcurves)
-    found = []
+    curves = []
     for layer in action.layers if slot is not None else ():
         for strip in layer.strips:
             bag = strip.channelbag(slot) if strip.type == "KEYFRAME" else None
-            found += bag.fcurves if bag is not None else ()
-    return found
+            curves += bag.fcurves if bag is not None else ()
+    return curves
 
 
-def _gather(found, way, curves, frames, scale=1.0):
-    """Adds curves to ``found``; the curves of one property become one channel, with the keys of the densest."""
+def _gather(channels, way, curves, frames, scale=1.0):
+    """Adds curves to ``channels``; the curves of one property become one channel, with the keys of the densest."""
     for curve in curves:
         if curve.mute:
             continue
         keys, span, varies = _keys(curve, frames)
-        generated = any(each.type in _GENERATORS and not each.mute for each in curve.modifiers)
+        generated = any(modifier.type in _GENERATORS and not modifier.mute for modifier in curve.modifiers)
         key = (curve.data_path, way)
-        told = found.setdefault(key, _channel(curve.data_path, way))
-        if keys > told["keys"]:
-            told["keys"], told["span"] = keys, number(span * abs(scale))
-        told["generated"] = told["generated"] or generated
-        told["varies"] = told["varies"] or varies or generated
+        channel = channels.setdefault(key, _channel(curve.data_path, way))
+        if keys > channel["keys"]:
+            channel["keys"], channel["span"] = keys, number(span * abs(scale))
+        channel["generated"] = channel["generated"] or generated
+        channel["varies"] = channel["varies"] or varies or generated
 
 
 def _channel(path, way):
@@ -93,8 +95,8 @@ def _keys(curve, frames):
     places, values = [], []
     for points in (curve.keyframe_points, curve.sampled_points):
         count = len(points)
-        _looked_at[0] += count
-        if _looked_at[0] > MOST_KEYS:
+        _keys_read[0] += count
+        if _keys_read[0] > MOST_KEYS:
             low, high = curve.range()
             return count, high - low, True
         flat = array("f", bytes(8 * count))
@@ -111,53 +113,55 @@ def _keys(curve, frames):
     return len(places), (max(places) - min(places) if places else 0.0), varies
 
 
-def _driven(found, block, curve, watched):
-    told = found.setdefault((curve.data_path, "driver"), _channel(curve.data_path, "driver"))
-    told["generated"] = True
+def _driven(channels, block, curve, watched):
+    channel = channels.setdefault((curve.data_path, "driver"), _channel(curve.data_path, "driver"))
+    channel["generated"] = True
     driver = curve.driver
     if driver.type == "SCRIPTED" and not driver.is_simple_expression:
         # The expression is not run, so its values are unknown.
-        told["varies"] = True
+        channel["varies"] = True
     else:
-        watched.append(Watched(block, curve, told))
+        watched.append(DrivenProperty(block, curve, channel))
 
 
-def shapes_of(thing, frames, watched):
+def shapes_of(obj, frames, watched):
     """(number of shape keys of its data, the animated properties of them and of the data's own points)."""
-    data = thing.data
+    data = obj.data
     keys = getattr(data, "shape_keys", None)
-    found = []
+    channels = []
     if keys is not None:
-        found += channels_of(keys, frames, watched)
+        channels += channels_of(keys, frames, watched)
     if data is not None and getattr(data, "animation_data", None) is not None:
         own = channels_of(data, frames, watched)
-        found += [each for each in own if each["path"].startswith(("vertices[", "splines[", "points["))]
-    return (len(keys.key_blocks) if keys is not None else 0), found
+        channels += [
+            channel for channel in own if channel["path"].startswith(("vertices[", "splines[", "points["))
+        ]
+    return (len(keys.key_blocks) if keys is not None else 0), channels
 
 
-def constraints_of(thing):
+def constraints_of(obj):
     """Its active constraints, each with the objects or files that it takes motion from."""
-    found = []
-    for constraint in thing.constraints:
+    rows = []
+    for constraint in obj.constraints:
         if constraint.mute or not constraint.enabled or constraint.influence == 0:
             continue
         targets = [constraint.target] if getattr(constraint, "target", None) is not None else []
-        targets += [each.target for each in getattr(constraint, "targets", ()) if each.target is not None]
+        targets += [item.target for item in getattr(constraint, "targets", ()) if item.target is not None]
         names = {called(target) for target in targets}
         file = getattr(constraint, "cache_file", None)
         if file is not None:
             names.add(text(file.filepath))
-        found.append({"type": constraint.type, "targets": sorted(names)})
-    return found
+        rows.append({"type": constraint.type, "targets": sorted(names)})
+    return rows
 
 
-def followed(thing, constraints):
+def followed(obj, constraints):
     """Names of the objects that its motion may come from."""
-    names = {called(thing.parent)} if thing.parent is not None else set()
+    names = {called(obj.parent)} if obj.parent is not None else set()
     for constraint in constraints:
         names.update(constraint["targets"])
-    for modifier in thing.modifiers:
+    for modifier in obj.modifiers:
         target = getattr(modifier, "object", None) or getattr(modifier, "target", None)
         if modifier.type in _DEFORMING and target is not None:
             names.add(called(target))
-    return sorted(names - {called(thing)})
+    return sorted(names - {called(obj)})

@@ -49,39 +49,39 @@ def _stretches(surface, places, known):
         lines[order].tolist(), heights[order].tolist(), turns[order].tolist(), strict=True
     ):
         per_line[line].append((height, turn))
-    found = [_stretched(hits) for hits in per_line]
+    stretches = [_stretched(hits) for hits in per_line]
     for line, height in known.items():
-        if not any(low - _SAME <= height <= high + _SAME for low, high in found[line]):
-            found[line] = sorted([*found[line], (height, height)])
-    return found
+        if not any(low - _SAME <= height <= high + _SAME for low, high in stretches[line]):
+            stretches[line] = sorted([*stretches[line], (height, height)])
+    return stretches
 
 
 def _stretched(hits):
     """Stretches of one line's hits, from below: heights with 1 where a solid begins, -1 where it ends, 0 on a sheet."""
     if sum(turn for _, turn in hits):  # the line runs along an edge: inside and outside are undecided
         return sorted({(height, height) for height, _ in hits})
-    found, depth, begun = [], 0, 0.0
+    stretches, depth, begun = [], 0, 0.0
     for height, turn in hits:
         if turn > 0 and depth == 0:
             begun = height
         depth += turn
         if turn < 0 and depth == 0:
-            found.append((begun, height))
+            stretches.append((begun, height))
         if turn == 0:
-            found.append((height, height))
-    return sorted(found)
+            stretches.append((height, height))
+    return sorted(stretches)
 
 
 def _hits(surface, places):
     """(line, height, turn) of every hit of a vertical line with a triangle."""
-    found = [(numpy.empty(0, dtype=int), numpy.empty(0), numpy.empty(0, dtype=int))]
+    hits = [(numpy.empty(0, dtype=int), numpy.empty(0), numpy.empty(0, dtype=int))]
     if len(places) and len(surface.faces):
         order = numpy.argsort(places[:, 0], kind="stable")
         x, y = places[order, 0], places[order, 1]
         for which, at in _tried(surface, x, y):
             lines, heights, turns = _crossed(surface, which, x[at], y[at])
-            found.append((order[at[lines]], heights, turns))
-    return [numpy.concatenate(each) for each in zip(*found, strict=True)]
+            hits.append((order[at[lines]], heights, turns))
+    return [numpy.concatenate(each) for each in zip(*hits, strict=True)]
 
 
 def _tried(surface, x, y):

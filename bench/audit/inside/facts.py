@@ -26,29 +26,31 @@ def read_facts(play, most=MOST_OBJECTS):
     shapes.forget()
     channels.forget()
     watched = []
-    told = _objects(scene, watched)
+    facts_by_object = _objects(scene, watched)
     scene_facts = _scene(scene)  # as the file has it: playing switches off what is not baked
-    solvers.take_moved_caches(told)
-    unbaked = sample_frames.unbaked_of(scene, told)
-    _play(sample_frames.play(scene, told, unbaked), told, watched, whole=play)
+    solvers.take_moved_caches(facts_by_object)
+    unbaked = sample_frames.unbaked_of(scene, facts_by_object)
+    _play(sample_frames.play(scene, facts_by_object, unbaked), facts_by_object, watched, whole=play)
     if unbaked:
-        labels = sorted(each.label for each in unbaked)
+        labels = sorted(item.label for item in unbaked)
         rest = f" and {len(labels) - 4} more" if len(labels) > 4 else ""
         scene_facts["unplayed"] = f"unbaked: {', '.join(labels[:4])}{rest}"
     elif not play:
         scene_facts["unplayed"] = "Blender ends while it plays the clip"
-    scene_facts["objects"] = [facts for _, facts in sorted(told.items(), key=lambda item: item[1]["name"])]
+    scene_facts["objects"] = [
+        facts for _, facts in sorted(facts_by_object.items(), key=lambda item: item[1]["name"])
+    ]
     return scene_facts
 
 
-def _play(played, told, watched, whole):
+def _play(played, facts_by_object, watched, whole):
     for turn, graph in enumerate(played):
-        for each in watched:
-            each.look()
+        for driven in watched:
+            driven.record()
         if turn == 0:
-            for thing, facts in told.items():
+            for obj, facts in facts_by_object.items():
                 if facts["in_scene"]:
-                    facts["vertices"], facts["faces"] = sample_frames.surface_of(thing, graph)
+                    facts["vertices"], facts["faces"] = sample_frames.surface_of(obj, graph)
             if not whole:
                 return
 
@@ -66,7 +68,8 @@ def _scene(scene):
         "collections": _collections(scene),
         "rigid_world": solvers.rigid_world_of(scene),
         "libraries": sorted(
-            (_library(each) for each in bpy.data.libraries), key=lambda one: (one["path"], one["missing"])
+            (_library(library) for library in bpy.data.libraries),
+            key=lambda library_facts: (library_facts["path"], library_facts["missing"]),
         ),
         "scripts": _scripts(),
     }
@@ -83,12 +86,12 @@ def _is_there(path):
 
 def _scripts():
     """What would have run on opening: registered texts, and drivers with Python expressions."""
-    found = [f"text {text(each.name)}" for each in bpy.data.texts if each.use_module]
-    for thing in bpy.data.objects:
-        drivers = thing.animation_data.drivers if thing.animation_data is not None else ()
-        if any(each.driver.type == "SCRIPTED" and not each.driver.is_simple_expression for each in drivers):
-            found.append(f"driver of {called(thing)}")
-    return sorted(found)[:20]
+    scripts = [f"text {text(item.name)}" for item in bpy.data.texts if item.use_module]
+    for obj in bpy.data.objects:
+        drivers = obj.animation_data.drivers if obj.animation_data is not None else ()
+        if any(item.driver.type == "SCRIPTED" and not item.driver.is_simple_expression for item in drivers):
+            scripts.append(f"driver of {called(obj)}")
+    return sorted(scripts)[:20]
 
 
 # Collections, and their objects that a render shows
@@ -99,14 +102,14 @@ def _collections(scene):
     for parent in (scene.collection, *bpy.data.collections):
         for child in parent.children:
             parents.setdefault(child, parent)
-    found = []
+    rows = []
     for collection in bpy.data.collections:
         parent = parents.get(collection)
-        found.append(
+        rows.append(
             {
                 "name": called(collection),
                 "parent": called(parent) if parent not in (None, scene.collection) else None,
-                "objects": sorted(called(thing) for thing in collection.objects),
+                "objects": sorted(called(obj) for obj in collection.objects),
                 "properties": {
                     text(key): text(value)
                     for key, value in sorted(collection.items())
@@ -114,26 +117,24 @@ def _collections(scene):
                 },
             }
         )
-    return sorted(found, key=lambda one: one["name"])
+    return sorted(rows, key=lambda row: row["name"])
 
 
 def _rendered(scene):
     """The objects that some view layer of the scene renders."""
-    found = set()
+    objects = set()
     for view_layer in scene.view_layers:
         if view_layer.use:
-            _rendered_in(view_layer.layer_collection, found)
-    return {
-        thing for thing in found if not thing.hide_render and thing.visible_camera and not thing.is_holdout
-    }
+            _rendered_in(view_layer.layer_collection, objects)
+    return {obj for obj in objects if not obj.hide_render and obj.visible_camera and not obj.is_holdout}
 
 
-def _rendered_in(layer, found):
+def _rendered_in(layer, objects):
     if layer.exclude or layer.holdout or layer.indirect_only or layer.collection.hide_render:
         return
-    found.update(layer.collection.objects)
-    for below in layer.children:
-        _rendered_in(below, found)
+    objects.update(layer.collection.objects)
+    for child in layer.children:
+        _rendered_in(child, objects)
 
 
 # Objects
@@ -142,62 +143,64 @@ def _rendered_in(layer, found):
 def _objects(scene, watched):
     """{object: its facts}: those of the scene, and those that only a collection instance shows."""
     own = set(scene.objects)
-    shown, waiting = set(), [thing.instance_collection for thing in own if _shows_collection(thing)]
+    instanced, waiting = set(), [obj.instance_collection for obj in own if _instances_collection(obj)]
     while waiting:
-        for thing in waiting.pop().all_objects:
-            if thing not in own and thing not in shown and len(own) + len(shown) < MOST_OBJECTS:
-                shown.add(thing)
-                if _shows_collection(thing):
-                    waiting.append(thing.instance_collection)
+        for obj in waiting.pop().all_objects:
+            if obj not in own and obj not in instanced and len(own) + len(instanced) < MOST_OBJECTS:
+                instanced.add(obj)
+                if _instances_collection(obj):
+                    waiting.append(obj.instance_collection)
     rendered = _rendered(scene)
     world = solvers.rigid_world_of(scene) or {"bodies": [], "constraints": []}
     simulated = set(world["bodies"]), set(world["constraints"])
-    things = sorted(own | shown, key=called)
+    objects = sorted(own | instanced, key=called)
     return {
-        thing: {
-            **_object(thing, (scene.frame_start, scene.frame_end), simulated, watched),
-            "in_scene": thing in own,
-            "renders": thing in rendered and thing.type not in _INVISIBLE,
+        obj: {
+            **_object(obj, (scene.frame_start, scene.frame_end), simulated, watched),
+            "in_scene": obj in own,
+            "renders": obj in rendered and obj.type not in _INVISIBLE,
         }
-        for thing in things
+        for obj in objects
     }
 
 
-def _shows_collection(thing):
-    return thing.instance_type == "COLLECTION" and thing.instance_collection is not None
+def _instances_collection(obj):
+    return obj.instance_type == "COLLECTION" and obj.instance_collection is not None
 
 
-def _object(thing, frames, simulated, watched):
+def _object(obj, frames, simulated, watched):
     """``frames``: first and last of the clip. ``simulated``: names in the world's bodies, and in its constraints."""
     bodies, joints = simulated
-    topology, islands = shapes.shape_of(thing.data)
-    shape_keys, shape_channels = channels.shapes_of(thing, frames, watched)
-    constraints = channels.constraints_of(thing)
-    force = thing.field if thing.field is not None and thing.field.type != "NONE" else None
+    topology, islands = shapes.shape_of(obj.data)
+    shape_keys, shape_channels = channels.shapes_of(obj, frames, watched)
+    constraints = channels.constraints_of(obj)
+    force = obj.field if obj.field is not None and obj.field.type != "NONE" else None
     return {
-        "name": called(thing),
-        "type": thing.type,
-        "data": called(thing.data),
-        "library": text(thing.library.filepath) if thing.library is not None else None,
-        "parent": called(thing.parent),
-        "follows": channels.followed(thing, constraints),
-        "collections": sorted(called(each) for each in thing.users_collection if not each.is_embedded_data),
-        "instances": called(thing.instance_collection) if _shows_collection(thing) else None,
+        "name": called(obj),
+        "type": obj.type,
+        "data": called(obj.data),
+        "library": text(obj.library.filepath) if obj.library is not None else None,
+        "parent": called(obj.parent),
+        "follows": channels.followed(obj, constraints),
+        "collections": sorted(
+            called(collection) for collection in obj.users_collection if not collection.is_embedded_data
+        ),
+        "instances": called(obj.instance_collection) if _instances_collection(obj) else None,
         "vertices": 0,
         "faces": 0,
         "islands": islands,
         "topology": topology,
         "moments": [],
-        "modifiers": solvers.modifiers_of(thing),
-        "rigid_body": solvers.rigid_body_of(thing, bodies),
-        "rigid_constraint": solvers.rigid_constraint_of(thing, joints),
+        "modifiers": solvers.modifiers_of(obj),
+        "rigid_body": solvers.rigid_body_of(obj, bodies),
+        "rigid_constraint": solvers.rigid_constraint_of(obj, joints),
         "force": {"type": force.type, "strength": number(force.strength)} if force is not None else None,
-        "vertex_groups": shapes.vertex_groups_of(thing),
+        "vertex_groups": shapes.vertex_groups_of(obj),
         "shape_keys": shape_keys,
         "shape_channels": shape_channels,
-        "channels": channels.channels_of(thing, frames, watched),
+        "channels": channels.channels_of(obj, frames, watched),
         "constraints": constraints,
         "materials": sorted(
-            {called(slot.material) for slot in thing.material_slots if slot.material is not None}
+            {called(slot.material) for slot in obj.material_slots if slot.material is not None}
         ),
     }

@@ -33,9 +33,9 @@ def render(shares, pixels, samples, jump=False):
     ``unbaked``: physics without a bake, in words. Raises Refused.
     """
     scene = bpy.context.scene
-    told = {thing: {"modifiers": solvers.modifiers_of(thing)} for thing in scene.objects}
-    solvers.take_moved_caches(told)
-    unbaked = sample_frames.unbaked_of(scene, told)
+    facts_by_object = {obj: {"modifiers": solvers.modifiers_of(obj)} for obj in scene.objects}
+    solvers.take_moved_caches(facts_by_object)
+    unbaked = sample_frames.unbaked_of(scene, facts_by_object)
     first, last = scene.frame_start, scene.frame_end
     wanted = [first + round(share * (last - first)) for share in shares]
     if jump:
@@ -64,9 +64,7 @@ def render(shares, pixels, samples, jump=False):
 
 def _switch_off(scene, unbaked):
     """Switches unbaked physics off, in the render too."""
-    modifiers = [
-        modifier for thing in scene.objects for modifier in thing.modifiers if modifier.show_viewport
-    ]
+    modifiers = [modifier for obj in scene.objects for modifier in obj.modifiers if modifier.show_viewport]
     for each in unbaked:
         each.switch_off()
     for modifier in modifiers:
@@ -75,8 +73,8 @@ def _switch_off(scene, unbaked):
 
 def _keep_fluids_here(scene):
     """Makes fluids that are simulated during playback write to a folder of this process."""
-    for thing in scene.objects:
-        for modifier in thing.modifiers:
+    for obj in scene.objects:
+        for modifier in obj.modifiers:
             if modifier.type != "FLUID" or modifier.fluid_type != "DOMAIN" or not modifier.show_viewport:
                 continue
             domain = modifier.domain_settings
@@ -144,15 +142,15 @@ def _camera(scene):
 def _framed(scene, graph):
     """The corners of all rendered objects, except ground and sky."""
     boxes = []
-    for thing in scene.objects:
-        evaluated = thing.evaluated_get(graph)
-        if thing.hide_render or thing.type in _UNSEEN or not any(evaluated.dimensions):
+    for obj in scene.objects:
+        evaluated = obj.evaluated_get(graph)
+        if obj.hide_render or obj.type in _UNSEEN or not any(evaluated.dimensions):
             continue
         boxes.append([evaluated.matrix_world @ Vector(corner) for corner in evaluated.bound_box])
     boxes.sort(key=_extent)
     while len(boxes) > 1:
-        rest = [corner for box in boxes[:-1] for corner in box]
-        if _extent(boxes[-1]) <= _SETTING * _extent(rest):
+        smaller = [corner for box in boxes[:-1] for corner in box]
+        if _extent(boxes[-1]) <= _SETTING * _extent(smaller):
             break
         boxes.pop()
     return [corner for box in boxes for corner in box]

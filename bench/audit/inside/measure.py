@@ -11,10 +11,10 @@ from mathutils import Vector
 from .columns import Columns, order_of
 from .json_values import number
 from .sample_frames import frames_of, metres
-from .surfaces import Looker
+from .surfaces import SurfaceBuilder
 
 MOST_WHOLE = 60_000  # triangles; of more, only those near the other surface are used
-_WALKS, _STEPS = 6, 8
+_STARTS, _STEPS = 6, 8
 _TOUCHING = 1e-6
 _LEVEL = 0.7  # of a normal, upwards
 _INSIDE_SAMPLES = 64  # points of a surface that are tested for being enclosed
@@ -35,25 +35,25 @@ def measure(pairs):
     beyond the distance: ``depth``, ``columns`` (with depth), ``inside``, ``view``.
     """
     scene = bpy.context.scene
-    looker = Looker(metres(scene))
-    known = {}
-    found = [{} for _ in pairs]
+    builder = SurfaceBuilder(metres(scene))
+    measured = {}
+    results = [{} for _ in pairs]
     for turn, frame in enumerate(frames_of(scene)):
         if not any(turn in pair["turns"] for pair in pairs):
             continue
         scene.frame_set(frame)
         graph = bpy.context.evaluated_depsgraph_get()
-        now = [(place, pair) for place, pair in enumerate(pairs) if turn in pair["turns"]]
-        groups = list(dict.fromkeys(tuple(pair[side]) for _, pair in now for side in ("a", "b")))
-        surfaces = dict(zip(groups, looker.surfaces(groups, graph), strict=True))
+        due = [(place, pair) for place, pair in enumerate(pairs) if turn in pair["turns"]]
+        groups = list(dict.fromkeys(tuple(pair[side]) for _, pair in due for side in ("a", "b")))
+        surfaces = dict(zip(groups, builder.surfaces(groups, graph), strict=True))
         view = _view(scene, graph)
-        for place, pair in now:
+        for place, pair in due:
             first, second = surfaces[tuple(pair["a"])], surfaces[tuple(pair["b"])]
-            asked = (id(first), id(second), pair["tolerance"], tuple(pair["wants"]), view)
-            if asked not in known:
-                known[asked] = _measured(first, second, pair["tolerance"], set(pair["wants"]), view)
-            found[place][str(turn)] = {"frame": frame, **known[asked]}
-    return found
+            key = (id(first), id(second), pair["tolerance"], tuple(pair["wants"]), view)
+            if key not in measured:
+                measured[key] = _measured(first, second, pair["tolerance"], set(pair["wants"]), view)
+            results[place][str(turn)] = {"frame": frame, **measured[key]}
+    return results
 
 
 def _view(scene, graph):
@@ -66,58 +66,58 @@ def _view(scene, graph):
 
 
 def _measured(first, second, tolerance, wants, view):
-    told = {"empty": [side for side, one in (("a", first), ("b", second)) if one.empty]}
-    if told["empty"]:
-        return told
-    told["a_low"], told["a_high"], told["b_low"], told["b_high"] = (
-        _plain(each) for each in (first.low, first.high, second.low, second.high)
+    row = {"empty": [side for side, surface in (("a", first), ("b", second)) if surface.empty]}
+    if row["empty"]:
+        return row
+    row["a_low"], row["a_high"], row["b_low"], row["b_high"] = (
+        _rounded(each) for each in (first.low, first.high, second.low, second.high)
     )
     if "view" in wants:
-        told["right"] = _along(first, second, view)
-        told["near"] = _along(first, second, (view[1], -view[0]))
-        return told
-    pair = _near(first, second, tolerance)
+        row["right"] = _along(first, second, view)
+        row["near"] = _along(first, second, (view[1], -view[0]))
+        return row
+    pair = _relevant_parts(first, second, tolerance)
     gap, from_first, from_second = _gap(*pair)
-    told["gap"] = number(gap)
+    row["gap"] = number(gap)
     if "columns" in wants or ("depth" in wants and _overlap(first, second)):
-        told |= _stand(first, second, pair, (from_first, from_second), tolerance)
+        row |= _order_and_depth(first, second, pair, (from_first, from_second), tolerance)
     elif "depth" in wants:
-        told["depth"] = 0.0
+        row["depth"] = 0.0
     if "inside" in wants:
-        told["inside"] = number(_inside(first, second, tolerance))
-    return told
+        row["inside"] = number(_inside(first, second, tolerance))
+    return row
 
 
 def _overlap(first, second):
     return bool((first.low <= second.high).all() and (second.low <= first.high).all())
 
 
-def _plain(values):
+def _rounded(values):
     return [round(float(each), 5) + 0.0 for each in values]
 
 
 def _along(first, second, axis):
     """The extents of both along a horizontal direction: [low, high of the first, low, high of the second]."""
-    found = []
-    for one in (first, second):
-        reached = numpy.concatenate([one.corners, one.points])[:, :2] @ numpy.array(axis)
-        found += [reached.min(), reached.max()]
-    return _plain(found)
+    extents = []
+    for surface in (first, second):
+        reached = numpy.concatenate([surface.corners, surface.points])[:, :2] @ numpy.array(axis)
+        extents += [reached.min(), reached.max()]
+    return _rounded(extents)
 
 
-def _near(first, second, tolerance):
+def _relevant_parts(first, second, tolerance):
     """Both surfaces; of large ones only the part that can be nearest to the other, or in it."""
-    found = []
-    for one, other in ((first, second), (second, first)):
-        if len(one.faces) <= MOST_WHOLE:
-            found.append(one)
+    surfaces = []
+    for surface, other in ((first, second), (second, first)):
+        if len(surface.faces) <= MOST_WHOLE:
+            surfaces.append(surface)
             continue
-        apart = numpy.maximum(numpy.maximum(one.low - other.high, other.low - one.high), 0)
+        apart = numpy.maximum(numpy.maximum(surface.low - other.high, other.low - surface.high), 0)
         reach = float(numpy.linalg.norm(apart)) + max(10 * tolerance, 0.1)
-        while (part := one.part(other.low - reach, other.high + reach)) is None:
+        while (part := surface.part(other.low - reach, other.high + reach)) is None:
             reach *= 2
-        found.append(part)
-    return found
+        surfaces.append(part)
+    return surfaces
 
 
 # Distance
@@ -125,42 +125,42 @@ def _near(first, second, tolerance):
 
 def _gap(first, second):
     """(least distance, 0 if they intersect; points on the second nearest to the first's seeds, and the reverse)."""
-    feet, reversed_feet = _feet(first, second), _feet(second, first)
+    feet, reversed_feet = _nearest_points(first, second), _nearest_points(second, first)
     if first.tree is not None and second.tree is not None and first.tree.overlap(second.tree):
         return 0.0, feet[0], reversed_feet[0]
     best = _least_of_points(first, second, feet[1], reversed_feet[1])
-    for one, other, (points, lengths) in ((first, second, feet), (second, first, reversed_feet)):
-        if one.tree is None or other.tree is None:
+    for surface, other, (points, lengths) in ((first, second, feet), (second, first, reversed_feet)):
+        if surface.tree is None or other.tree is None:
             continue
-        for place in numpy.argsort(lengths, kind="stable")[:_WALKS]:
-            best = min(best, _walked(points[place], one.tree, other.tree))
+        for place in numpy.argsort(lengths, kind="stable")[:_STARTS]:
+            best = min(best, _settled_distance(points[place], surface.tree, other.tree))
     return (0.0 if best < _TOUCHING else best), feet[0], reversed_feet[0]
 
 
-def _feet(one, other):
+def _nearest_points(surface, other):
     """The points of the other nearest to this one's seeds, with their distances."""
-    seeds = one.seeds
+    seeds = surface.seeds
     if other.tree is None:
         spread = numpy.linalg.norm(seeds[:, None] - other.points[None, :2000], axis=2)
         return other.points[spread.argmin(axis=1)], spread.min(axis=1)
-    found = [other.tree.find_nearest(seed) for seed in seeds.tolist()]
-    return numpy.array([tuple(each[0]) for each in found]), numpy.array([each[3] for each in found])
+    nearest = [other.tree.find_nearest(seed) for seed in seeds.tolist()]
+    return numpy.array([tuple(each[0]) for each in nearest]), numpy.array([each[3] for each in nearest])
 
 
 def _least_of_points(first, second, lengths, reversed_lengths):
     best = float(min(lengths.min(), reversed_lengths.min()))
-    for one, other in ((first, second), (second, first)):
-        if len(one.points) > len(one.seeds) and other.tree is not None:
-            best = min(best, *(other.tree.find_nearest(point)[3] for point in one.points.tolist()))
+    for surface, other in ((first, second), (second, first)):
+        if len(surface.points) > len(surface.seeds) and other.tree is not None:
+            best = min(best, *(other.tree.find_nearest(point)[3] for point in surface.points.tolist()))
     return best
 
 
-def _walked(point, one, other):
+def _settled_distance(point, tree, other_tree):
     """The distance after going from a point on one surface to the nearest on the other, and back, until it settles."""
     length = numpy.inf
     for _ in range(_STEPS):
-        there = one.find_nearest(Vector(point))[0]
-        point, _, _, now = other.find_nearest(there)
+        foot = tree.find_nearest(Vector(point))[0]
+        point, _, _, now = other_tree.find_nearest(foot)
         if length - now < _TOUCHING:
             return min(length, now)
         length = now
@@ -170,7 +170,7 @@ def _walked(point, one, other):
 # Over and in each other
 
 
-def _stand(first, second, pair, feet, tolerance):
+def _order_and_depth(first, second, pair, feet, tolerance):
     """What vertical lines show: which is over which, how deep either is in the other, and what share of it."""
     on_second, on_first = feet
     columns = Columns(
@@ -179,13 +179,13 @@ def _stand(first, second, pair, feet, tolerance):
         numpy.concatenate([first.seeds, on_first]),
         numpy.concatenate([second.seeds, on_second]),
     )
-    told = {
+    row = {
         key: None if value is None else number(value) for key, value in order_of(columns, tolerance).items()
     }
-    told["depth"] = number(_depth(columns, *pair))
-    told["a_in_b"] = number(_share_in(first, columns.b, columns.places))
-    told["b_in_a"] = number(_share_in(second, columns.a, columns.places))
-    return told
+    row["depth"] = number(_depth(columns, *pair))
+    row["a_in_b"] = number(_share_in(first, columns.b, columns.places))
+    row["b_in_a"] = number(_share_in(second, columns.a, columns.places))
+    return row
 
 
 def _depth(columns, first, second):
@@ -197,9 +197,12 @@ def _depth(columns, first, second):
     if first.tree is None or second.tree is None:
         return deepest
     for place, above, below in zip(columns.places.tolist(), columns.a, columns.b, strict=True):
-        for one, other, near, far in ((above, below, first, second), (below, above, second, first)):
-            for low, high in one:
-                for bottom, top in other:
+        for stretches, other_stretches, near, far in (
+            (above, below, first, second),
+            (below, above, second, first),
+        ):
+            for low, high in stretches:
+                for bottom, top in other_stretches:
                     inner = [z for z in {bottom, top} if low + _TOUCHING < z < high - _TOUCHING]
                     for z in inner:
                         deepest = max(deepest, near.tree.find_nearest((*place, z))[3])
@@ -214,14 +217,14 @@ def _is_level(tree, point):
     return abs(normal.z) > _LEVEL
 
 
-def _share_in(one, stretches, places):
+def _share_in(surface, stretches, places):
     """The share of a surface's seeds that are in the other's solid."""
-    known = {tuple(place): each for place, each in zip(places.tolist(), stretches, strict=True)}
-    inner = sum(
-        any(low + _TOUCHING < z < high - _TOUCHING for low, high in known.get((x, y), ()))
-        for x, y, z in one.seeds.tolist()
+    stretches_at = {tuple(place): each for place, each in zip(places.tolist(), stretches, strict=True)}
+    inside = sum(
+        any(low + _TOUCHING < z < high - _TOUCHING for low, high in stretches_at.get((x, y), ()))
+        for x, y, z in surface.seeds.tolist()
     )
-    return inner / len(one.seeds) if len(one.seeds) else 0.0
+    return inside / len(surface.seeds) if len(surface.seeds) else 0.0
 
 
 def _inside(first, second, tolerance):
@@ -235,5 +238,5 @@ def _inside(first, second, tolerance):
 
 
 def _enclosed(point, tree):
-    seen = sum(tree.ray_cast(point, direction)[0] is not None for direction in _AROUND)
-    return seen >= _ENCLOSED * len(_AROUND)
+    hits = sum(tree.ray_cast(point, direction)[0] is not None for direction in _AROUND)
+    return hits >= _ENCLOSED * len(_AROUND)

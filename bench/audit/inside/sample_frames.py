@@ -19,11 +19,11 @@ _WITHOUT_EXTENT = {"CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE", "ARMATURE"}
 _HELD = 0.5  # least share of its frames that a cache must hold to count as a bake, whatever it is marked as
 
 
-class Unbaked:
+class UnbakedPhysics:
     """Unbaked physics: a label in words, the objects that it moves, and the setting that turns it off."""
 
-    def __init__(self, label, things, holder, switch):
-        self.label, self.things = label, things
+    def __init__(self, label, objects, holder, switch):
+        self.label, self.objects = label, objects
         self._holder, self._switch = holder, switch
 
     def switch_off(self):
@@ -43,33 +43,33 @@ def frames_of(scene):
     return first, (first + last) // 2, last
 
 
-def play(scene, told, unbaked):
+def play(scene, facts_by_object, unbaked):
     """Adds ``moments`` to each of ``told`` ({object: its facts}). Yields the dependency graph at each sample frame."""
-    still = set()
-    for each in unbaked:
-        each.switch_off()
-        still.update(each.things)
-    _show_all(told)
+    unplayed = set()
+    for physics in unbaked:
+        physics.switch_off()
+        unplayed.update(physics.objects)
+    _show_all(facts_by_object)
     for turn, frame in enumerate(frames_of(scene)):
         scene.frame_set(frame)
         graph = bpy.context.evaluated_depsgraph_get()
-        instances = _instanced(graph, told)
+        instances = _instanced(graph, facts_by_object)
         scale = metres(scene)
-        for thing, facts in told.items():
-            if facts["in_scene"] and (turn == 0 or thing not in still):
-                facts["moments"].append(_moment(thing, frame, graph, instances.get(called(thing)), scale))
+        for obj, facts in facts_by_object.items():
+            if facts["in_scene"] and (turn == 0 or obj not in unplayed):
+                facts["moments"].append(_moment(obj, frame, graph, instances.get(called(obj)), scale))
         yield graph
 
 
-def _show_all(told):
+def _show_all(facts_by_object):
     """Makes the viewport evaluate what a render shows."""
     for layer in _layers(bpy.context.view_layer.layer_collection):
         layer.hide_viewport = layer.collection.hide_viewport = False
-    for thing, facts in told.items():
+    for obj, facts in facts_by_object.items():
         if facts["renders"]:
-            thing.hide_viewport = False
+            obj.hide_viewport = False
             try:
-                thing.hide_set(False)
+                obj.hide_set(False)
             except RuntimeError:
                 continue  # it is not in this view layer
 
@@ -80,33 +80,33 @@ def _layers(layer):
         yield from _layers(below)
 
 
-def unbaked_of(scene, told):
+def unbaked_of(scene, facts_by_object):
     """The physics of a scene that is not baked. ``told``: {object: its facts}."""
-    found = []
+    unbaked = []
     world = scene.rigidbody_world
     if world is not None and world.enabled and world.point_cache is not None:
-        bodies = [thing for thing in told if _falls(thing, world)]
+        bodies = [obj for obj in facts_by_object if _falls(obj, world)]
         if bodies and not world.point_cache.is_baked:
-            found.append(Unbaked("rigid-body world", bodies, world, "enabled"))
-    for thing, facts in told.items():
-        for modifier, seen in zip(thing.modifiers, facts["modifiers"], strict=True):
-            if modifier.show_viewport and (what := _unbaked(modifier, seen)):
-                found.append(Unbaked(f"{what} of {called(thing)}", [thing], modifier, "show_viewport"))
-    return found
+            unbaked.append(UnbakedPhysics("rigid-body world", bodies, world, "enabled"))
+    for obj, facts in facts_by_object.items():
+        for modifier, modifier_facts in zip(obj.modifiers, facts["modifiers"], strict=True):
+            if modifier.show_viewport and (what := _unbaked(modifier, modifier_facts)):
+                unbaked.append(UnbakedPhysics(f"{what} of {called(obj)}", [obj], modifier, "show_viewport"))
+    return unbaked
 
 
-def _falls(thing, world):
-    body = thing.rigid_body
-    return body is not None and body.type == "ACTIVE" and world.collection in thing.users_collection
+def _falls(obj, world):
+    body = obj.rigid_body
+    return body is not None and body.type == "ACTIVE" and world.collection in obj.users_collection
 
 
-def _unbaked(modifier, seen):
+def _unbaked(modifier, modifier_facts):
     """What a modifier would have to simulate, in words; "" for nothing."""
     for key, word in (("cloth", "cloth"), ("soft", "soft body"), ("particles", "particles")):
-        cache = (seen.get(key) or {}).get("cache")
+        cache = (modifier_facts.get(key) or {}).get("cache")
         if cache is not None and (not cache["is_baked"] or cache["frames"] < _HELD * cache["expected"]):
             return word
-    domain = (seen.get("fluid") or {}).get("domain")
+    domain = (modifier_facts.get("fluid") or {}).get("domain")
     if domain is not None:
         cache = domain["cache"]
         first, last = cache["range"]
@@ -115,7 +115,7 @@ def _unbaked(modifier, seen):
             return "fluid"
     if modifier.type == "DYNAMIC_PAINT" and modifier.canvas_settings is not None:
         surfaces = modifier.canvas_settings.canvas_surfaces
-        if any(each.is_cache_user and not each.point_cache.is_baked for each in surfaces):
+        if any(surface.is_cache_user and not surface.point_cache.is_baked for surface in surfaces):
             return "dynamic paint"
     return ""
 
@@ -123,20 +123,20 @@ def _unbaked(modifier, seen):
 # One object at one frame
 
 
-def _moment(thing, frame, graph, instanced, scale):
-    evaluated = thing.evaluated_get(graph)
+def _moment(obj, frame, graph, instanced, scale):
+    evaluated = obj.evaluated_get(graph)
     matrix = evaluated.matrix_world
     corners = instanced if instanced is not None else _corners(evaluated)
-    told = {"frame": frame, "low": None, "high": None}
+    row = {"frame": frame, "low": None, "high": None}
     if corners is not None and len(corners) and numpy.isfinite(corners).all():
-        told["low"] = vector(corners.min(axis=0), scale)
-        told["high"] = vector(corners.max(axis=0), scale)
-    told["location"] = vector(matrix.translation, scale)
+        row["low"] = vector(corners.min(axis=0), scale)
+        row["high"] = vector(corners.max(axis=0), scale)
+    row["location"] = vector(matrix.translation, scale)
     try:
-        told["rotation"] = vector(matrix.to_quaternion())
+        row["rotation"] = vector(matrix.to_quaternion())
     except ValueError:
-        told["rotation"] = [1.0, 0.0, 0.0, 0.0]
-    return told
+        row["rotation"] = [1.0, 0.0, 0.0, 0.0]
+    return row
 
 
 def _corners(evaluated):
@@ -154,31 +154,33 @@ def _corners(evaluated):
     return points.astype(numpy.float64) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _instanced(graph, told):
+def _instanced(graph, facts_by_object):
     """{name of an object that shows a collection: corners of the bounds of what it shows}."""
-    wanted = {called(thing) for thing, facts in told.items() if facts["instances"] is not None}
-    found = {}
+    wanted = {called(obj) for obj, facts in facts_by_object.items() if facts["instances"] is not None}
+    corners_of = {}
     if not wanted:
-        return found
+        return corners_of
     for instance in islice(graph.object_instances, MOST_INSTANCES):
         if not instance.is_instance or instance.parent is None:
             continue
         name = called(instance.parent.original)
         if name in wanted and instance.object.type in {"MESH", "CURVE", "SURFACE", "FONT", "META", "VOLUME"}:
             matrix = instance.matrix_world
-            found.setdefault(name, []).extend(matrix @ Vector(corner) for corner in instance.object.bound_box)
-    return {name: numpy.array([tuple(corner) for corner in corners]) for name, corners in found.items()}
+            corners_of.setdefault(name, []).extend(
+                matrix @ Vector(corner) for corner in instance.object.bound_box
+            )
+    return {name: numpy.array([tuple(corner) for corner in corners]) for name, corners in corners_of.items()}
 
 
-def surface_of(thing, graph):
+def surface_of(obj, graph):
     """(vertices, faces) of an object: those of its evaluated mesh or of its own data, whichever are more."""
-    data = thing.evaluated_get(graph).data
+    data = obj.evaluated_get(graph).data
     counts = [0, 0]
-    for mesh in (data, thing.data):
+    for mesh in (data, obj.data):
         if isinstance(mesh, bpy.types.Mesh):
             counts = [max(counts[0], len(mesh.vertices)), max(counts[1], len(mesh.polygons))]
-    if thing.type in {"CURVE", "SURFACE", "FONT", "META"}:
-        evaluated = thing.evaluated_get(graph)
+    if obj.type in {"CURVE", "SURFACE", "FONT", "META"}:
+        evaluated = obj.evaluated_get(graph)
         mesh = evaluated.to_mesh()
         if mesh is not None:
             counts = [len(mesh.vertices), len(mesh.polygons)]

@@ -57,18 +57,18 @@ def _islands(mesh):
             return len(numpy.unique(labels))
 
 
-def vertex_groups_of(thing):
+def vertex_groups_of(obj):
     """Its groups, each with the number of vertices that have a weight above zero; counted for simulated meshes only."""
-    data = thing.data
-    if not thing.vertex_groups or not isinstance(data, bpy.types.Mesh):
+    data = obj.data
+    if not obj.vertex_groups or not isinstance(data, bpy.types.Mesh):
         return []
-    counts = [0] * len(thing.vertex_groups)
-    if any(modifier.type in {"CLOTH", "SOFT_BODY", "PARTICLE_SYSTEM"} for modifier in thing.modifiers):
+    counts = [0] * len(obj.vertex_groups)
+    if any(modifier.type in {"CLOTH", "SOFT_BODY", "PARTICLE_SYSTEM"} for modifier in obj.modifiers):
         for number, vertex in enumerate(data.vertices):
             if number == MOST_WEIGHTED:
                 break
             for each in vertex.groups:
                 if each.weight > 0 and each.group < len(counts):
                     counts[each.group] += 1
-    groups = zip(thing.vertex_groups, counts, strict=True)
+    groups = zip(obj.vertex_groups, counts, strict=True)
     return [{"name": text(group.name), "weighted": count} for group, count in groups]

@@ -33,13 +33,13 @@ _WEIGHTS = {
 }
 
 
-def modifiers_of(thing):
+def modifiers_of(obj):
     """Its modifiers in the order of the stack, as Modifier in ``bench/audit/facts.py`` has them."""
-    return [_modifier(thing, modifier) for modifier in thing.modifiers]
+    return [_modifier(obj, modifier) for modifier in obj.modifiers]
 
 
-def _modifier(thing, modifier):
-    told = {
+def _modifier(obj, modifier):
+    row = {
         "name": text(modifier.name),
         "type": modifier.type,
         "show_viewport": modifier.show_viewport,
@@ -47,17 +47,17 @@ def _modifier(thing, modifier):
     }
     target = getattr(modifier, "object", None) or getattr(modifier, "target", None)
     if isinstance(target, bpy.types.Object):
-        told["target"] = called(target)
+        row["target"] = called(target)
     read = _READERS.get(modifier.type)
-    if read is not None and (found := read(thing, modifier)) is not None:
-        told[_KEYS[modifier.type]] = found
-    return told
+    if read is not None and (settings := read(obj, modifier)) is not None:
+        row[_KEYS[modifier.type]] = settings
+    return row
 
 
-def _cloth(thing, modifier):
+def _cloth(obj, modifier):
     settings, collisions = modifier.settings, modifier.collision_settings
     return {
-        "cache": point_cache(modifier.point_cache, thing),
+        "cache": point_cache(modifier.point_cache, obj),
         "pin_group": text(settings.vertex_group_mass),
         "use_collision": collisions.use_collision,
         "use_self_collision": collisions.use_self_collision,
@@ -65,17 +65,17 @@ def _cloth(thing, modifier):
     }
 
 
-def _soft_body(thing, modifier):
+def _soft_body(obj, modifier):
     settings = modifier.settings
     return {
-        "cache": point_cache(modifier.point_cache, thing),
+        "cache": point_cache(modifier.point_cache, obj),
         "use_goal": settings.use_goal,
         "goal_group": text(settings.vertex_group_goal),
         "effectors": _effectors(settings.effector_weights, settings.collision_collection),
     }
 
 
-def _particles(thing, modifier):
+def _particles(obj, modifier):
     system = modifier.particle_system
     settings = system.settings if system is not None else None
     if settings is None:
@@ -83,11 +83,9 @@ def _particles(thing, modifier):
     cache = None
     emission = (settings.frame_start, settings.frame_end)
     if settings.type == "EMITTER":
-        cache = point_cache(
-            system.point_cache, thing, lived=(emission[0], emission[1] + settings.lifetime + 1)
-        )
+        cache = point_cache(system.point_cache, obj, lived=(emission[0], emission[1] + settings.lifetime + 1))
     elif settings.type == "HAIR" and system.use_hair_dynamics:
-        cache = point_cache(system.point_cache, thing)
+        cache = point_cache(system.point_cache, obj)
     shown = {"OBJECT": "instance_object", "COLLECTION": "instance_collection"}.get(settings.render_type)
     return {
         "name": text(system.name),
@@ -105,7 +103,7 @@ def _particles(thing, modifier):
     }
 
 
-def _fluid(thing, modifier):
+def _fluid(obj, modifier):
     kind = modifier.fluid_type
     settings = getattr(modifier, f"{kind.lower()}_settings", None) if kind != "NONE" else None
     if settings is None:
@@ -120,12 +118,12 @@ def _fluid(thing, modifier):
         }
     if kind == "EFFECTOR":
         return {"type": kind, "kind": settings.effector_type, "used": bool(settings.use_effector)}
-    return {"type": kind, "kind": settings.domain_type, "domain": _domain(thing, settings)}
+    return {"type": kind, "kind": settings.domain_type, "domain": _domain(obj, settings)}
 
 
-def _domain(thing, settings):
+def _domain(obj, settings):
     scale = metres(bpy.context.scene)
-    low, high = _box_of(thing)
+    low, high = _box_of(obj)
     return {
         "kind": settings.domain_type,
         "resolution": settings.resolution_max,
@@ -142,20 +140,20 @@ def _domain(thing, settings):
     }
 
 
-def _box_of(thing):
+def _box_of(obj):
     """The corners of the bounds, in world space, of an object's own mesh, before modifiers."""
-    corners = [thing.matrix_world @ vertex.co for vertex in getattr(thing.data, "vertices", ())]
-    corners = corners or [thing.matrix_world.translation]
+    corners = [obj.matrix_world @ vertex.co for vertex in getattr(obj.data, "vertices", ())]
+    corners = corners or [obj.matrix_world.translation]
     return [[choose(corner[axis] for corner in corners) for axis in range(3)] for choose in (min, max)]
 
 
 def _effectors(weights, collisions):
-    found = {"collisions": called(collisions)}
+    row = {"collisions": called(collisions)}
     if weights is not None:
-        given = {kind: number(getattr(weights, name, 1.0)) for kind, name in _WEIGHTS.items()}
-        found["fields"] = called(weights.collection)
-        found["weights"] = {kind: value for kind, value in given.items() if value != 1.0}
-    return found
+        field_weights = {kind: number(getattr(weights, name, 1.0)) for kind, name in _WEIGHTS.items()}
+        row["fields"] = called(weights.collection)
+        row["weights"] = {kind: value for kind, value in field_weights.items() if value != 1.0}
+    return row
 
 
 _READERS = {"CLOTH": _cloth, "SOFT_BODY": _soft_body, "PARTICLE_SYSTEM": _particles, "FLUID": _fluid}
@@ -165,9 +163,9 @@ _KEYS = {"CLOTH": "cloth", "SOFT_BODY": "soft", "PARTICLE_SYSTEM": "particles", 
 # Rigid bodies
 
 
-def rigid_body_of(thing, bodies):
+def rigid_body_of(obj, bodies):
     """Its rigid body, or None. ``bodies``: names of those in the world."""
-    body = thing.rigid_body
+    body = obj.rigid_body
     if body is None:
         return None
     return {
@@ -176,13 +174,13 @@ def rigid_body_of(thing, bodies):
         "mass": number(body.mass),
         "enabled": body.enabled,
         "kinematic": body.kinematic,
-        "in_world": called(thing) in bodies,
+        "in_world": called(obj) in bodies,
     }
 
 
-def rigid_constraint_of(thing, constraints):
+def rigid_constraint_of(obj, constraints):
     """The rigid-body constraint on it, or None. ``constraints``: names of those in the world."""
-    joint = thing.rigid_body_constraint
+    joint = obj.rigid_body_constraint
     if joint is None:
         return None
     return {
@@ -191,7 +189,7 @@ def rigid_constraint_of(thing, constraints):
         "first": called(joint.object1),
         "second": called(joint.object2),
         "disable_collisions": joint.disable_collisions,
-        "in_world": called(thing) in constraints,
+        "in_world": called(obj) in constraints,
     }
 
 
@@ -209,7 +207,7 @@ def rigid_world_of(scene):
 
 
 def _names(collection):
-    return sorted(called(thing) for thing in collection.all_objects) if collection is not None else []
+    return sorted(called(obj) for obj in collection.all_objects) if collection is not None else []
 
 
 # Caches
@@ -237,8 +235,8 @@ def point_cache(cache, owner, lived=None):
 def _frames_held(cache, owner):
     """How many frames it holds; for caches on disk, the number of frames with files, whatever Blender remembers."""
     if not cache.use_external and not cache.use_disk_cache:
-        found = _FRAMES.search(cache.info)
-        return int(found[1].replace(",", "")) if found else 0
+        matches = _FRAMES.search(cache.info)
+        return int(matches[1].replace(",", "")) if matches else 0
     if cache.use_external:
         folder = bpy.path.abspath(cache.filepath)
     elif bpy.data.filepath:
@@ -247,8 +245,8 @@ def _frames_held(cache, owner):
     else:
         return 0
     start = cache.name or owner.name.encode("utf-8", "surrogateescape").hex().upper()
-    found = (_POINT_FILE.match(name) for name in files_in(folder))
-    return len({match[2] for match in found if match and match[1] == start})
+    matches = (_POINT_FILE.match(name) for name in files_in(folder))
+    return len({match[2] for match in matches if match and match[1] == start})
 
 
 def _fluid_cache(settings):
@@ -279,10 +277,10 @@ def _fluid_folder(settings):
     return (beside, True) if os.path.isdir(beside) else (folder, False)
 
 
-def take_moved_caches(things):
+def take_moved_caches(objects):
     """Makes fluids whose cache was moved beside the file play from there. Files and flags stay."""
-    for thing in things:
-        for modifier in thing.modifiers:
+    for obj in objects:
+        for modifier in obj.modifiers:
             settings = getattr(modifier, "domain_settings", None) if modifier.type == "FLUID" else None
             if settings is not None and modifier.fluid_type == "DOMAIN":
                 folder, moved = _fluid_folder(settings)
@@ -292,13 +290,13 @@ def take_moved_caches(things):
 
 def files_in(folder):
     """Names of the files in a folder, sorted; at most MOST_FILES of them; [] if there is no such folder."""
-    found = []
+    names = []
     try:
         with os.scandir(folder) as entries:
             for entry in entries:
-                if len(found) == MOST_FILES:
+                if len(names) == MOST_FILES:
                     break
-                found.append(entry.name)
+                names.append(entry.name)
     except OSError:
         return []
-    return sorted(found)
+    return sorted(names)

@@ -32,7 +32,7 @@ _LOOKING_OUT = numpy.ones(len(_BOX), dtype=numpy.int8)
 _STEPS = numpy.array([0.7548776662466927, 0.5698402909980532])
 
 
-class Surface:
+class ActorSurface:
     """Triangles: ``corners`` (c, 3) and ``faces`` (n, 3), their indices; ``points`` (m, 3): loose points.
 
     ``sides`` (n): 1 where a triangle's normal points out of a solid, -1 into one, 0 on a sheet. ``low`` and ``high``
@@ -68,7 +68,7 @@ class Surface:
     @cached_property
     def seeds(self):
         """Points spread over it by area, its lowest and highest corners, and an even selection of loose points."""
-        return numpy.concatenate([self._spread(), self._ends(), _chosen(self.points)])
+        return numpy.concatenate([self._spread(), self._ends(), _even_selection(self.points)])
 
     def part(self, low, high):
         """Its triangles that reach into a box, with all of its points; None if there are none."""
@@ -77,7 +77,7 @@ class Surface:
         if not kept.any():
             return None
         used, faces = numpy.unique(self.faces[kept], return_inverse=True)
-        return Surface(self.corners[used], faces.reshape(-1, 3), self.sides[kept], self.points)
+        return ActorSurface(self.corners[used], faces.reshape(-1, 3), self.sides[kept], self.points)
 
     def _spread(self):
         if not len(self.faces):
@@ -105,20 +105,20 @@ class Surface:
         return ends
 
 
-def _chosen(points):
+def _even_selection(points):
     if len(points) <= SEEDS:
         return points
     return points[numpy.linspace(0, len(points) - 1, SEEDS).astype(int)]
 
 
-class Looker:
+class SurfaceBuilder:
     """Builds surfaces, and reuses those that are the same at another frame."""
 
     def __init__(self, scale):
         self._scale = scale
-        self._things = {}
-        for thing in bpy.data.objects:
-            self._things.setdefault(called(thing), thing)
+        self._objects = {}
+        for obj in bpy.data.objects:
+            self._objects.setdefault(called(obj), obj)
         self._pieces, self._surfaces, self._locals = {}, {}, {}
 
     def surfaces(self, groups, graph):
@@ -128,9 +128,9 @@ class Looker:
         parts = {name: [] for name in wanted}
         points = {name: [] for name in wanted}
         counts = dict.fromkeys(wanted, 0)
-        for name in sorted(wanted & self._things.keys()):
-            self._own(self._things[name], graph, parts[name], points[name], counts)
-        self._shown(wanted, graph, parts, counts)
+        for name in sorted(wanted & self._objects.keys()):
+            self._add_own(self._objects[name], graph, parts[name], points[name], counts)
+        self._add_instances(wanted, graph, parts, counts)
         return [self._surface(group, parts, points) for group in groups]
 
     def _surface(self, group, parts, points):
@@ -142,36 +142,36 @@ class Looker:
         sides = numpy.concatenate([numpy.empty(0, dtype=numpy.int8), *(piece[2] for piece in pieces)])
         loose = numpy.concatenate([numpy.empty((0, 3)), *(each for name in group for each in points[name])])
         loose = loose[(numpy.abs(loose) < _FARTHEST).all(axis=1)] * self._scale
-        there = (numpy.abs(corners) < _FARTHEST).all(axis=1)
-        if not there.all():
-            kept = there[faces].all(axis=1)
+        finite = (numpy.abs(corners) < _FARTHEST).all(axis=1)
+        if not finite.all():
+            kept = finite[faces].all(axis=1)
             used, faces = numpy.unique(faces[kept], return_inverse=True)
             corners, faces, sides = corners[used], faces.reshape(-1, 3), sides[kept]
         key = _digest(corners, faces, loose)
         if key not in self._surfaces:
-            self._surfaces[key] = Surface(corners, faces, sides, loose)
+            self._surfaces[key] = ActorSurface(corners, faces, sides, loose)
         return self._surfaces[key]
 
-    def _own(self, thing, graph, parts, points, counts):
+    def _add_own(self, obj, graph, parts, points, counts):
         """Adds an object's own geometry, and its particles."""
-        evaluated = thing.evaluated_get(graph)
+        evaluated = obj.evaluated_get(graph)
         matrix = numpy.array(evaluated.matrix_world, dtype=numpy.float64)
-        if not _is_bare_domain(thing, evaluated):
-            self._add(called(thing), evaluated, matrix, parts, counts)
+        if not _is_bare_domain(obj, evaluated):
+            self._add(called(obj), evaluated, matrix, parts, counts)
         for system in evaluated.particle_systems:
-            found = _alive(system)
-            if len(found):
-                points.append(found)
+            particles = _live_particles(system)
+            if len(particles):
+                points.append(particles)
 
-    def _shown(self, wanted, graph, parts, counts):
+    def _add_instances(self, wanted, graph, parts, counts):
         """Adds the instances that the wanted objects show."""
-        if not any(_shows(self._things[name]) for name in wanted & self._things.keys()):
+        if not any(_is_instancer(self._objects[name]) for name in wanted & self._objects.keys()):
             return
         for instance in islice(graph.object_instances, MOST_INSTANCES):
             if not instance.is_instance or instance.parent is None:
                 continue
             name = called(instance.parent.original)
-            if name in wanted and not _only_particle(instance):
+            if name in wanted and not _is_particle(instance):
                 matrix = numpy.array(instance.matrix_world, dtype=numpy.float64)
                 self._add(name, instance.object, matrix, parts[name], counts)
 
@@ -197,9 +197,9 @@ class Looker:
             return self._of_mesh(data)
         if evaluated.type in _CONVERTED:
             mesh = evaluated.to_mesh()
-            found = self._of_mesh(mesh) if mesh is not None else None
+            local = self._of_mesh(mesh) if mesh is not None else None
             evaluated.to_mesh_clear()
-            return found
+            return local
         return _box(evaluated) if evaluated.type in _BOXED else None
 
     def _of_mesh(self, mesh):
@@ -251,11 +251,11 @@ def pieces_of(count, faces):
 
 
 def _digest(*arrays):
-    found = hashlib.blake2b(digest_size=16)
+    digest = hashlib.blake2b(digest_size=16)
     for array in arrays:
-        found.update(numpy.ascontiguousarray(array).data)
-        found.update(repr(array.shape).encode())
-    return found.digest()
+        digest.update(numpy.ascontiguousarray(array).data)
+        digest.update(repr(array.shape).encode())
+    return digest.digest()
 
 
 def _box(evaluated):
@@ -265,29 +265,29 @@ def _box(evaluated):
     return corners, _BOX, _LOOKING_OUT
 
 
-def _is_bare_domain(thing, evaluated):
+def _is_bare_domain(obj, evaluated):
     """Whether it is a liquid's domain that shows its box instead of the liquid."""
-    found = [each for each in thing.modifiers if each.type == "FLUID" and each.fluid_type == "DOMAIN"]
-    liquid = any(each.domain_settings and each.domain_settings.domain_type == "LIQUID" for each in found)
-    return liquid and len(evaluated.data.vertices) == len(thing.data.vertices)
+    domains = [each for each in obj.modifiers if each.type == "FLUID" and each.fluid_type == "DOMAIN"]
+    liquid = any(each.domain_settings and each.domain_settings.domain_type == "LIQUID" for each in domains)
+    return liquid and len(evaluated.data.vertices) == len(obj.data.vertices)
 
 
-def _shows(thing):
-    nodes = any(modifier.type == "NODES" for modifier in thing.modifiers)
-    return thing.is_instancer or thing.instance_type != "NONE" or nodes
+def _is_instancer(obj):
+    nodes = any(modifier.type == "NODES" for modifier in obj.modifiers)
+    return obj.is_instancer or obj.instance_type != "NONE" or nodes
 
 
-def _only_particle(instance):
+def _is_particle(instance):
     """Whether an instance shows a particle: particles count as points."""
     return instance.particle_system is not None
 
 
-def _alive(system):
+def _live_particles(system):
     """The positions of live particles; none for hair."""
     settings = system.settings
     if settings is None or settings.type == "HAIR" or not len(system.particles):
         return numpy.empty((0, 3))
     step = max(1, len(system.particles) // MOST_POINTS)
     chosen = islice(system.particles, 0, None, step)
-    found = [tuple(each.location) for each in chosen if each.alive_state == "ALIVE"]
-    return numpy.array(found, dtype=numpy.float64).reshape(-1, 3)
+    locations = [tuple(each.location) for each in chosen if each.alive_state == "ALIVE"]
+    return numpy.array(locations, dtype=numpy.float64).reshape(-1, 3)

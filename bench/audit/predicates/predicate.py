@@ -26,16 +26,16 @@ GROUPS: tuple[Group, ...] = (
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class PredicateVerdict:
     """Whether a predicate holds, and the values that decided it (JSON data)."""
 
     outcome: Outcome
     seen: dict[str, Any] = field(default_factory=dict[str, Any])
 
 
-def judged(holds: object, **seen: Any) -> Verdict:
+def verdict_of(holds: object, **seen: Any) -> PredicateVerdict:
     """A verdict: passed if ``holds``, else failed; the other arguments are the values seen."""
-    return Verdict("passed" if holds else "failed", seen)
+    return PredicateVerdict("passed" if holds else "failed", seen)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,29 +53,29 @@ class Unit:
     @property
     def names(self) -> frozenset[str]:
         """The names of all its objects."""
-        return frozenset(one.name for one in self.objects)
+        return frozenset(obj.name for obj in self.objects)
 
     def modifiers(self, *types: str) -> Iterator[tuple[Object, Modifier]]:
         """Its modifiers of these types, each with its object."""
-        for one in self.objects:
-            for modifier in one.of_type(*types):
-                yield one, modifier
+        for obj in self.objects:
+            for modifier in obj.of_type(*types):
+                yield obj, modifier
 
 
 @dataclass(frozen=True)
-class Stage:
+class AuditContext:
     """The surroundings of a unit: the scene, the units of all actors, and the clip's minimum length (frames)."""
 
     scene: Scene
-    cast: Mapping[str, tuple[Unit, ...]] = field(default_factory=dict[str, tuple["Unit", ...]])
+    units: Mapping[str, tuple[Unit, ...]] = field(default_factory=dict[str, tuple["Unit", ...]])
     least_frames: int = 1
 
     def named(self, actor: str) -> tuple[Object, ...]:
         """All objects of an actor's units; () if it was not found."""
-        return tuple(one for unit in self.cast.get(actor, ()) for one in unit.objects)
+        return tuple(obj for unit in self.units.get(actor, ()) for obj in unit.objects)
 
 
-class Params(BaseModel):
+class PredicateParams(BaseModel):
     """Base of the parameters of predicates; by itself, of those without any."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -87,8 +87,8 @@ class Predicate:
 
     name: str
     group: Group
-    judge: Callable[[Unit, Stage, Any], Verdict]
-    params: type[Params] = Params
+    judge: Callable[[Unit, AuditContext, Any], PredicateVerdict]
+    params: type[PredicateParams] = PredicateParams
     scope: Scope = "unit"
 
     @property
@@ -96,12 +96,13 @@ class Predicate:
         """What it checks, its threshold and why: one paragraph."""
         return " ".join((inspect.getdoc(self.judge) or "").split())
 
-    def read(self, given: Mapping[str, Any]) -> Params:
+    def read(self, given: Mapping[str, Any]) -> PredicateParams:
         """Its parameters, read from a spec's. Raises ValueError that names the wrong one."""
         try:
             return self.params.model_validate(dict(given))
-        except ValidationError as error:
+        except ValidationError as invalid:
             wrong = "; ".join(
-                f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors(include_url=False)
+                f"{'.'.join(map(str, error['loc']))}: {error['msg']}"
+                for error in invalid.errors(include_url=False)
             )
-            raise ValueError(f"{self.name}: {wrong}") from error
+            raise ValueError(f"{self.name}: {wrong}") from invalid

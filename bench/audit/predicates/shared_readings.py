@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
-from bench.audit.predicates.predicate import Params
+from bench.audit.predicates.predicate import PredicateParams
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from bench.audit.facts import Domain, Object, PointCache, Scene, Vector
-    from bench.audit.predicates.predicate import Stage, Unit
+    from bench.audit.facts import Domain, Effectors, Object, PointCache, Scene, Vector
+    from bench.audit.predicates.predicate import AuditContext, Unit
 
 # Share of the clip's frames, and of a bake's. A frame missing at either end is not seen; a cache that was freed, or
 # baked for another clip, holds far less.
@@ -22,13 +22,13 @@ COVERED = 0.95
 MOVED_METRES, MOVED_DEGREES = 0.01, 1.0
 
 
-class Partners(Params):
+class Partners(PredicateParams):
     """``partners``: names of actors; an empty list: any other object of the scene."""
 
     partners: tuple[str, ...] = ()
 
 
-class Least(Params):
+class MinCount(PredicateParams):
     """``min``: how many at least."""
 
     min: int = Field(default=1, ge=1)
@@ -49,29 +49,29 @@ def common(first: tuple[int, int], second: tuple[int, int]) -> int:
     return max(0, min(first[1], second[1]) - max(first[0], second[0]) + 1)
 
 
-def spans(frames: tuple[int, int], stage: Stage, since: float | None = None) -> bool:
+def spans(frames: tuple[int, int], context: AuditContext, since: float | None = None) -> bool:
     """Whether a range covers the scene's frames, and the minimum length that the spec asks for.
 
     ``since``: the first frame at which there is anything; earlier frames need not be covered.
     """
-    shared = common(frames, stage.scene.range)
-    before = max(0.0, since - stage.scene.range[0]) if since is not None else 0.0
-    return shared >= COVERED * (max(stage.scene.length, stage.least_frames) - before)
+    shared = common(frames, context.scene.range)
+    before = max(0.0, since - context.scene.range[0]) if since is not None else 0.0
+    return shared >= COVERED * (max(context.scene.length, context.least_frames) - before)
 
 
-def is_filled(cache: PointCache, stage: Stage, since: float | None = None) -> bool:
+def is_filled(cache: PointCache, context: AuditContext, since: float | None = None) -> bool:
     """Whether a cache is baked, over the clip (from ``since`` on, as for spans), and holds the frames."""
     held = cache.frames >= max(1.0, COVERED * cache.expected)
-    return cache.is_baked and held and spans(cache.range, stage, since)
+    return cache.is_baked and held and spans(cache.range, context, since)
 
 
-def cache_seen(cache: PointCache, stage: Stage) -> dict[str, Any]:
+def cache_seen(cache: PointCache, context: AuditContext) -> dict[str, Any]:
     """A point cache, as it is reported."""
     return {
         "baked": cache.is_baked,
         "cache_range": list(cache.range),
-        "clip": list(stage.scene.range),
-        "least_frames": stage.least_frames,
+        "clip": list(context.scene.range),
+        "least_frames": context.least_frames,
         "frames": cache.frames,
         "frames_expected": cache.expected,
         "outdated": cache.outdated,
@@ -86,63 +86,78 @@ def parts_of(domain: Domain) -> tuple[str, ...]:
     return ("data", "noise") if domain.use_noise else ("data",)
 
 
-def has_files(domain: Domain, stage: Stage) -> bool:
+def has_files(domain: Domain, context: AuditContext) -> bool:
     """Whether all that a domain needs lies on disk, over the clip."""
     cache = domain.cache
-    length = common(cache.range, stage.scene.range)
-    found = [cache.part(name) for name in parts_of(domain)]
-    return spans(cache.range, stage) and all(part and part.frames >= COVERED * length for part in found)
+    length = common(cache.range, context.scene.range)
+    parts = [cache.part(name) for name in parts_of(domain)]
+    return spans(cache.range, context) and all(part and part.frames >= COVERED * length for part in parts)
 
 
 def members(scene: Scene, collection: str | None) -> frozenset[str] | None:
     """Names of the objects in a collection and in those below it; None for no collection: everything."""
     if collection is None:
         return None
-    wanted, found = [collection], set[str]()
+    wanted, names = [collection], set[str]()
     seen = set[str]()
     while wanted:
         name = wanted.pop()
         if name in seen:
             continue
         seen.add(name)
-        for each in scene.collections:
-            if each.name == name:
-                found.update(each.objects)
-            elif each.parent == name:
-                wanted.append(each.name)
-    return frozenset(found)
+        for item in scene.collections:
+            if item.name == name:
+                names.update(item.objects)
+            elif item.parent == name:
+                wanted.append(item.name)
+    return frozenset(names)
 
 
-def collides(one: Object) -> bool:
+def collides(obj: Object) -> bool:
     """Whether it has a collision modifier that is on."""
-    return any(modifier.on for modifier in one.of_type("COLLISION"))
+    return any(modifier.on for modifier in obj.of_type("COLLISION"))
 
 
-def blows(one: Object) -> bool:
+def blows(obj: Object) -> bool:
     """Whether it is a force field whose strength is not zero, or is animated: a gust starts from zero."""
-    animated = any(channel.path == "field.strength" and channel.varies for channel in one.channels)
-    return one.force is not None and (one.force.strength != 0 or animated)
+    animated = any(channel.path == "field.strength" and channel.varies for channel in obj.channels)
+    return obj.force is not None and (obj.force.strength != 0 or animated)
 
 
-def partners_of(unit: Unit, stage: Stage, names: Iterable[str]) -> Iterator[tuple[str, tuple[Object, ...]]]:
+def partners_of(
+    unit: Unit, context: AuditContext, names: Iterable[str]
+) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """Each partner's name with its objects; without partners, ``"anything"`` with all objects but the unit's."""
-    given = tuple(names)
-    for name in given:
-        yield name, stage.named(name)
-    if not given:
-        yield "anything", tuple(one for one in stage.scene.objects if one.name not in unit.names)
+    partners = tuple(names)
+    for name in partners:
+        yield name, context.named(name)
+    if not partners:
+        yield "anything", tuple(obj for obj in context.scene.objects if obj.name not in unit.names)
 
 
-def travel(one: Object) -> tuple[float, float] | None:
+def colliding_partners(
+    unit: Unit, context: AuditContext, names: tuple[str, ...], effectors: Iterable[Effectors]
+) -> dict[str, list[str]]:
+    """Partner → its objects that collide with one of the simulations whose ``effectors`` are given (up to 8 each)."""
+    colliding: dict[str, list[str]] = {}
+    for each in effectors:
+        within = members(context.scene, each.collisions)
+        for name, objects in partners_of(unit, context, names):
+            hits = [obj.name for obj in objects if collides(obj) and (within is None or obj.name in within)]
+            colliding.setdefault(name, []).extend(hits[:8])
+    return colliding
+
+
+def travel(obj: Object) -> tuple[float, float] | None:
     """How far its corners or origin moved (metres), and how far it turned (degrees), since the start.
 
     At the middle or at the end, whichever is more; None if its motion was not played.
     """
-    if len(one.moments) < 2:
+    if len(obj.moments) < 2:
         return None
-    first = one.moments[0]
+    first = obj.moments[0]
     metres = turned = 0.0
-    for moment in one.moments[1:]:
+    for moment in obj.moments[1:]:
         metres = max(metres, dist(first.location, moment.location))
         for before, after in ((first.low, moment.low), (first.high, moment.high)):
             if before is not None and after is not None:
@@ -152,15 +167,15 @@ def travel(one: Object) -> tuple[float, float] | None:
     return metres, turned
 
 
-def moved(one: Object) -> bool:
+def moved(obj: Object) -> bool:
     """Whether it visibly moved or turned."""
-    way = travel(one)
-    return way is not None and (way[0] >= MOVED_METRES or way[1] >= MOVED_DEGREES)
+    distances = travel(obj)
+    return distances is not None and (distances[0] >= MOVED_METRES or distances[1] >= MOVED_DEGREES)
 
 
-def reaches(domain: Domain, one: Object) -> bool:
+def reaches(domain: Domain, obj: Object) -> bool:
     """Whether an object's bounds overlap the domain's box at the start, middle or end."""
-    boxes = ((moment.low, moment.high) for moment in one.moments)
+    boxes = ((moment.low, moment.high) for moment in obj.moments)
     return any(low and high and _meet(domain.low, domain.high, low, high) for low, high in boxes)
 
 

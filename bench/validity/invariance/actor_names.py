@@ -10,14 +10,14 @@ from bench.audit.roles import UNMARKED
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from bench.audit.actors import Found
+    from bench.audit.actors import ActorResolution
     from bench.audit.facts import Scene
     from bench.scenes.spec import Spec
 
 _NOT_MOVED = (*UNMARKED, "collider", "rigid_passive")
 
 
-def actor_objects(spec: Spec, scene: Scene, found: Mapping[str, Found]) -> list[dict[str, Any]]:
+def actor_objects(spec: Spec, scene: Scene, found: Mapping[str, ActorResolution]) -> list[dict[str, Any]]:
     """Each actor: its name, its last synonym, whether nothing simulates it, its objects by unit.
 
     ``parts``: further objects that belong to a static actor by contact, such as legs to a table top.

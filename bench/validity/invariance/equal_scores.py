@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench.audit.untrusted_blend import NotScored, Refused
+from bench.audit.untrusted_blend import NotScored, JobRefused
 from bench.validity.invariance.actor_names import actor_objects
 from bench.validity.proof import ProofRow
 
@@ -34,7 +34,7 @@ def prove(builder: VariantBuilder) -> Iterator[ProofRow]:
         try:
             path, _ = builder.make(rewrite, "rewrite", kind=rewrite, actors=actors)
             after = builder.audit(path)
-        except Refused as error:
+        except JobRefused as error:
             yield ProofRow(name=rewrite, holds=None, why=str(error))
         except NotScored as error:
             yield ProofRow(name=rewrite, holds=False, why=str(error))

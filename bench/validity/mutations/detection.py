@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING, Any
 
-from bench.audit.untrusted_blend import NotScored, Refused
+from bench.audit.untrusted_blend import NotScored, JobRefused
 from bench.validity.mutations.planning import MutationResult, checks_of, judge, planned_mutations
 from bench.validity.proof import ProofRow
 
@@ -36,7 +36,7 @@ def prove(builder: VariantBuilder) -> Iterator[ProofRow]:
             )
             result = judge(planned, builder.reading, builder.read(path).audit, changed)
         except NotScored as error:
-            skipped = planned.mutation.optional and isinstance(error, Refused)
+            skipped = planned.mutation.optional and isinstance(error, JobRefused)
             yield _row(planned, None if skipped else False, str(error))
             continue
         broken.add(planned.place)

@@ -10,8 +10,8 @@ from bench.validity.mutations.catalogue import MUTATIONS
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from bench.audit.actors import Found
-    from bench.audit.audit import Audit, Checked
+    from bench.audit.actors import ActorResolution
+    from bench.audit.audit import Audit, CheckResult
     from bench.audit.facts import Object, Scene
     from bench.validity.mutations.catalogue import Consequence, Mutation, Who
     from bench.validity.variant_builder import SceneReading
@@ -46,7 +46,7 @@ class PlannedMutation:
         return f"{self.place.label} by {self.mutation.label}"
 
 
-def checks_of(audit: Audit) -> dict[CheckPlace, Checked]:
+def checks_of(audit: Audit) -> dict[CheckPlace, CheckResult]:
     """All checks of an audit, by place."""
     checks = {
         CheckPlace(actor.name, number, check.predicate): check
@@ -59,7 +59,7 @@ def checks_of(audit: Audit) -> dict[CheckPlace, Checked]:
     return checks
 
 
-def planned_mutations(audit: Audit, actors: Mapping[str, Found]) -> Iterator[PlannedMutation]:
+def planned_mutations(audit: Audit, actors: Mapping[str, ActorResolution]) -> Iterator[PlannedMutation]:
     """Yields the mutations of every check that passes in a scene."""
     for place, check in checks_of(audit).items():
         if check.outcome != "passed":
@@ -77,7 +77,7 @@ def planned_mutations(audit: Audit, actors: Mapping[str, Found]) -> Iterator[Pla
 
 
 def _objects(
-    mutation: Mutation, check: Checked, own: Found | None, actors: Mapping[str, Found]
+    mutation: Mutation, check: CheckResult, own: ActorResolution | None, actors: Mapping[str, ActorResolution]
 ) -> Iterator[tuple[str, ...]]:
     """Yields the objects to change: one choice for each partner where there are several."""
     if own is None or mutation.on == "scene":
@@ -93,11 +93,11 @@ def _objects(
         yield tuple(obj.name for unit in own.units[: _units_to_break(check)] for obj in unit.objects)
 
 
-def _of_actor(actor: Found) -> tuple[str, ...]:
+def _of_actor(actor: ActorResolution) -> tuple[str, ...]:
     return tuple(name for unit in actor.units for name in sorted(unit.names))
 
 
-def _units_to_break(check: Checked) -> int:
+def _units_to_break(check: CheckResult) -> int:
     """The smallest number of units that must be broken for the check to fail, whichever they are."""
     if check.wanted == "must_not_have" or "needed" not in check.seen:
         return 1
@@ -151,7 +151,7 @@ class _AffectedActors:
     def _of(self, objects: set[str]) -> set[str]:
         return {name for name, actor in self._found.items() if any(u.names & objects for u in actor.units)}
 
-    def explains(self, consequence: Consequence, place: CheckPlace, check: Checked) -> bool:
+    def explains(self, consequence: Consequence, place: CheckPlace, check: CheckResult) -> bool:
         """Whether a check may flip as that consequence."""
         if place.predicate not in consequence.predicates:
             return False

@@ -8,8 +8,8 @@ import pytest
 from in_blender import facts_of
 
 from bench.audit.actors import find_actors
-from bench.audit.audit import Audit, audited, check_predicates
-from bench.audit.names import match, words_of
+from bench.audit.audit import Audit, audit_scene, check_predicates
+from bench.audit.names import match_name, words_of
 from bench.scenes.spec import BadSpec, Spec
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def spec(**changed: Any) -> Spec:
 
 def result(scene: Scene, asked: Spec | None = None) -> Audit:
     asked = asked or spec()
-    return audited(asked, scene, find_actors(asked, scene))
+    return audit_scene(asked, scene, find_actors(asked, scene))
 
 
 def failed(found: Audit) -> dict[str, list[str]]:
@@ -90,14 +90,14 @@ def failed(found: Audit) -> dict[str, list[str]]:
 
 @pytest.mark.blender
 @pytest.mark.parametrize("guise", ALIKE)
-def test_the_same_scene_scores_the_same_in_every_guise(guise: str, scenes: dict[str, Scene]) -> None:
+def test_an_equivalent_scene_scores_the_same(guise: str, scenes: dict[str, Scene]) -> None:
     found = result(scenes[guise])
     assert (found.mpr, failed(found)) == (1.0, {})
     assert {actor.outcome for actor in found.actors} == {"resolved"}
 
 
 @pytest.mark.blender
-def test_it_is_told_by_what_an_actor_was_found(scenes: dict[str, Scene]) -> None:
+def test_the_audit_says_how_an_actor_was_found(scenes: dict[str, Scene]) -> None:
     by = {
         guise: {actor.name: actor.by for actor in result(scenes[guise]).actors}
         for guise in ("plain", "nameless", "collected")
@@ -108,7 +108,7 @@ def test_it_is_told_by_what_an_actor_was_found(scenes: dict[str, Scene]) -> None
 
 
 @pytest.mark.blender
-def test_what_an_instance_shows_is_no_thing_beside_it(scenes: dict[str, Scene]) -> None:
+def test_instanced_objects_are_not_separate_units(scenes: dict[str, Scene]) -> None:
     units = find_actors(spec(), scenes["instanced"])["lamp"].units
     assert [unit.name for unit in units] == ["Lamp"]
     assert units[0].names == {"Lamp", "Base", "Shade"}
@@ -123,7 +123,7 @@ def test_lengths_are_metres_whatever_the_unit(scenes: dict[str, Scene]) -> None:
 
 
 @pytest.mark.blender
-def test_an_actor_that_could_be_either_of_two_is_ambiguous_and_judged_by_both(
+def test_an_actor_with_two_candidates_is_ambiguous_and_judged_by_both(
     scenes: dict[str, Scene],
 ) -> None:
     cloth = result(scenes["two_cloths"]).actors[0]
@@ -140,7 +140,7 @@ def test_a_missing_actor_scores_nothing_and_counts(scenes: dict[str, Scene]) -> 
 
 
 @pytest.mark.blender
-def test_fewer_than_asked_for_do_not_pass(scenes: dict[str, Scene]) -> None:
+def test_fewer_units_than_required_do_not_pass(scenes: dict[str, Scene]) -> None:
     actors = [{**actor, "count": 5} if actor["name"] == "domino" else actor for actor in SPEC["actors"]]
     found = result(scenes["plain"], spec(actors=actors))
     dominoes = next(actor for actor in found.actors if actor.name == "domino")
@@ -149,7 +149,7 @@ def test_fewer_than_asked_for_do_not_pass(scenes: dict[str, Scene]) -> None:
 
 
 @pytest.mark.blender
-def test_what_its_collection_hides_is_not_renderable(scenes: dict[str, Scene]) -> None:
+def test_an_object_in_a_hidden_collection_is_not_renderable(scenes: dict[str, Scene]) -> None:
     assert failed(result(scenes["hidden_members"])) == {"lamp": ["renderable"]}
 
 
@@ -162,7 +162,7 @@ def test_a_predicate_that_must_not_hold_passes_when_it_does_not(scenes: dict[str
 
 
 @pytest.mark.blender
-def test_what_particles_are_shown_as_is_part_of_what_emits_them(scenes: dict[str, Scene]) -> None:
+def test_objects_shown_as_particles_belong_to_their_emitter(scenes: dict[str, Scene]) -> None:
     check = ["particle_system"]
     actors = [
         {"name": "campfire", "synonyms": ["sparks"], "role": "particle_emitter", "must_have": check},
@@ -191,7 +191,7 @@ def test_what_particles_are_shown_as_is_part_of_what_emits_them(scenes: dict[str
         ("123", ()),
     ],
 )
-def test_a_name_is_cut_into_words(name: str, words: tuple[str, ...]) -> None:
+def test_a_name_is_split_into_words(name: str, words: tuple[str, ...]) -> None:
     assert words_of(name) == words
 
 
@@ -205,15 +205,15 @@ def test_a_name_is_cut_into_words(name: str, words: tuple[str, ...]) -> None:
         ("bowl_of_milk", "bowl", "milk"),
     ],
 )
-def test_a_name_speaks_of_what_its_last_noun_says(name: str, better: str, worse: str) -> None:
-    first, second = match(name, [better]), match(name, [worse])
+def test_the_last_noun_of_a_name_decides_its_actor(name: str, better: str, worse: str) -> None:
+    first, second = match_name(name, [better]), match_name(name, [worse])
     assert first is not None
     assert second is None or first > second
 
 
-def test_part_of_a_word_is_no_match() -> None:
-    assert match("stablecloth", ["table", "cloth"]) is None
-    assert match("carpet", ["car", "pet"]) is None
+def test_part_of_a_word_does_not_match() -> None:
+    assert match_name("stablecloth", ["table", "cloth"]) is None
+    assert match_name("carpet", ["car", "pet"]) is None
 
 
 @pytest.mark.parametrize(
@@ -224,7 +224,7 @@ def test_part_of_a_word_is_no_match() -> None:
         ({"cloth_collision_partners": {"partners": ["chair"]}}, "no actor is called chair"),
     ],
 )
-def test_a_spec_that_asks_for_what_is_none_is_refused(check: Any, said: str) -> None:
+def test_a_spec_with_unknown_predicates_or_partners_is_refused(check: Any, said: str) -> None:
     actors = [{**SPEC["actors"][0], "must_have": [check]}, *SPEC["actors"][1:]]
     with pytest.raises(BadSpec, match=said):
         check_predicates(spec(actors=actors))

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from in_blender import HERE, run
 
 from bench.audit import untrusted_blend
-from bench.audit.audit import Audit, audit, opened
-from bench.audit.untrusted_blend import GIB, Means, NotScored, Untrusted
+from bench.audit.audit import Audit, audit, open_scene
+from bench.audit.untrusted_blend import GIB, BlenderOptions, NotScored, UntrustedBlend
 from bench.scenes.spec import read_spec
 from simworlds.cli import main
 from simworlds.sandbox.program import Program
@@ -63,7 +63,7 @@ def state(folder: Path) -> dict[str, tuple[int, int]]:
     return {str(path): (path.stat().st_mtime_ns, path.stat().st_size) for path in found}
 
 
-def audited(name: str, files: Path, spec: Spec, means: Means | None = None) -> Audit:
+def audited(name: str, files: Path, spec: Spec, means: BlenderOptions | None = None) -> Audit:
     """The audit of a file; nothing beside it is written, and nothing in it executed."""
     before = state(files)
     found = audit(files / f"{name}.blend", spec, means)
@@ -80,7 +80,7 @@ def outcomes(found: Audit) -> dict[str, str]:
 
 
 def scene_of(path: Path) -> Scene:
-    with opened(path, None, lambda _: None) as (_, scene):
+    with open_scene(path, None, lambda _: None) as (_, scene):
         return scene
 
 
@@ -101,30 +101,30 @@ def test_a_file_without_a_camera_is_scored_and_the_same_on_every_run(files: Path
 @pytest.mark.parametrize(
     ("name", "told"), [("script_on_load", "text start.py"), ("python_driver", "driver of Table")]
 )
-def test_what_would_run_is_told_and_not_run(name: str, told: str, files: Path, spec: Spec) -> None:
+def test_scripts_are_reported_and_not_run(name: str, told: str, files: Path, spec: Spec) -> None:
     found = audited(name, files, spec)
     assert (found.mpr, found.blend["scripts_not_run"]) == (1.0, [told])
 
 
-def test_a_bake_elsewhere_than_the_clip_does_not_count(files: Path, spec: Spec) -> None:
+def test_a_bake_outside_the_clip_does_not_count(files: Path, spec: Spec) -> None:
     found = outcomes(audited("other_frames", files, spec))
     assert found["tablecloth: cloth_cache_baked"] == "failed"
     assert found["tablecloth: cloth_modifier"] == "passed"
 
 
-def test_unbaked_physics_is_told_and_looked_at_where_it_starts(files: Path, spec: Spec) -> None:
+def test_unbaked_physics_is_reported_and_read_at_the_start(files: Path, spec: Spec) -> None:
     assert audited("unbaked", files, spec).blend["unplayed"] == "unbaked: cloth of Tablecloth"
     scene = scene_of(files / "unbaked.blend")
     assert [len(named(scene, name).moments) for name in ("Tablecloth", "Table")] == [1, 3]
 
 
-def test_a_missing_library_is_told_and_the_rest_is_scored(files: Path, spec: Spec) -> None:
+def test_a_missing_library_is_reported_and_the_rest_is_scored(files: Path, spec: Spec) -> None:
     found = audited("missing_library", files, spec)
     assert found.blend["missing_libraries"] == ["//library.blend"]
     assert outcomes(found)["tablecloth: cloth_cache_baked"] == "passed"
 
 
-def test_a_million_instances_are_looked_at_in_part(files: Path, spec: Spec) -> None:
+def test_of_a_million_instances_only_some_are_read(files: Path, spec: Spec) -> None:
     assert audited("many_instances", files, spec).mpr == 1.0
 
 
@@ -134,7 +134,7 @@ def test_a_cache_on_disk_counts_while_its_files_are_there(files: Path, spec: Spe
     assert outcomes(audited("on_disk", tmp_path, spec))["tablecloth: cloth_cache_baked"] == "failed"
 
 
-def test_a_fluid_plays_from_a_cache_that_lies_beside_the_file_and_not_where_it_says(files: Path) -> None:
+def test_a_fluid_plays_from_a_cache_that_moved_with_the_file(files: Path) -> None:
     before = state(files)
     here, moved = scene_of(files / "fluid.blend"), scene_of(files / "moved" / "fluid.blend")
     assert state(files) == before
@@ -170,7 +170,9 @@ def test_half_of_a_file_is_not_scored(files: Path, spec: Spec, tmp_path: Path) -
 @pytest.mark.parametrize(
     ("content", "said"), [(None, "no such file"), (b"", "it is empty"), (b"PK\x03\x04 a zip", "not a .blend")]
 )
-def test_what_is_no_blend_is_not_scored(content: bytes | None, said: str, spec: Spec, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_blend_is_not_scored(
+    content: bytes | None, said: str, spec: Spec, tmp_path: Path
+) -> None:
     path = tmp_path / "scene.blend"
     if content is not None:
         path.write_bytes(content)
@@ -187,13 +189,16 @@ def test_a_file_of_a_newer_blender_is_not_scored_and_names_it(
     assert "Blender 9.5" in (found.not_scored or "")
 
 
-def test_more_objects_than_can_be_looked_at_are_not_scored(files: Path) -> None:
-    with Untrusted(files / "good.blend") as file, pytest.raises(NotScored, match="has 2 objects; at most 1"):
+def test_a_scene_with_too_many_objects_is_not_scored(files: Path) -> None:
+    with (
+        UntrustedBlend(files / "good.blend") as file,
+        pytest.raises(NotScored, match="has 2 objects; at most 1"),
+    ):
         file.ask("facts", play=True, most=1, doing="reading")
 
 
 def test_a_file_that_needs_too_much_memory_is_not_scored(files: Path, spec: Spec) -> None:
-    found = audited("heavy", files, spec, Means(memory=GIB // 2))
+    found = audited("heavy", files, spec, BlenderOptions(memory=GIB // 2))
     said = "Blender ended while reading it: it ran out of memory; the limit is 0.5 GB"
     assert (found.not_scored or "").startswith(said)
 
@@ -211,33 +216,33 @@ def test_a_file_that_needs_too_much_memory_is_not_scored(files: Path, spec: Spec
         ("ends", "ended while opening it: it was ended from inside, with exit code 3"),
     ],
 )
-def test_a_blender_that_misbehaves_over_a_file_ends_the_matter(
+def test_a_file_over_which_blender_misbehaves_is_not_scored(
     name: str, said: str, files: Path, spec: Spec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shutil.copy(files / "good.blend", tmp_path / f"{name}.blend")
     packages = {**untrusted_blend.AUDITOR.packages, "bad": HERE}
     monkeypatch.setattr(untrusted_blend, "AUDITOR", Program("bad.bad_entry", packages))
-    assert said in (audit(tmp_path / f"{name}.blend", spec, Means(seconds=3)).not_scored or "")
+    assert said in (audit(tmp_path / f"{name}.blend", spec, BlenderOptions(seconds=3)).not_scored or "")
 
 
 # The command
 
 
-def test_the_command_prints_what_was_seen(files: Path, spec_file: Path) -> None:
+def test_the_command_prints_checks_and_scores(files: Path, spec_file: Path) -> None:
     done = CliRunner().invoke(main, ["bench", "audit", str(files / "good.blend"), "--scene", str(spec_file)])
     assert done.exit_code == 0
     assert "✓ cloth_cache_baked" in done.output
     assert "MPR 1.000" in done.output
 
 
-def test_the_command_tells_why_a_file_is_not_scored(spec_file: Path, tmp_path: Path) -> None:
+def test_the_command_says_why_a_file_is_not_scored(spec_file: Path, tmp_path: Path) -> None:
     words = ["bench", "audit", str(tmp_path / "none.blend"), "--scene", str(spec_file), "--json"]
     done = CliRunner().invoke(main, words)
     assert done.exit_code == 2
     assert json.loads(done.stdout)["not_scored"] == "there is no such file"
 
 
-def test_a_wrong_scene_is_an_error_that_names_the_near_ones(files: Path) -> None:
+def test_an_unknown_scene_is_an_error_with_suggestions(files: Path) -> None:
     done = CliRunner().invoke(main, ["bench", "audit", str(files / "good.blend"), "--scene", "cloth_D1_1"])
     assert done.exit_code == 2
     assert "Did you mean cloth_D1_01" in done.stderr

@@ -8,7 +8,7 @@ import pytest
 from in_blender import facts_of
 
 from bench.audit.predicates.catalogue import PREDICATES
-from bench.audit.predicates.predicate import Stage, Unit
+from bench.audit.predicates.predicate import AuditContext, Unit
 
 if TYPE_CHECKING:
     from bench.audit.facts import Scene
@@ -52,26 +52,26 @@ def holds(predicate: str, scene: Scene) -> bool:
     unit = Unit(tuple(one for one in scene.objects if one.name == "Thing"), "rigid_active")
     assert unit.objects
     row = PREDICATES[predicate]
-    return row.judge(unit, Stage(scene), row.read({})).outcome == "passed"
+    return row.judge(unit, AuditContext(scene), row.read({})).outcome == "passed"
 
 
 @pytest.mark.parametrize("name", RECORDED)
-def test_a_recording_is_seen(name: str, scenes: dict[str, Scene]) -> None:
+def test_recorded_motion_is_detected(name: str, scenes: dict[str, Scene]) -> None:
     assert holds("dense_transform_keys", scenes[name])
 
 
 @pytest.mark.parametrize("name", NOT_RECORDED)
-def test_what_is_posed_pushed_or_simulated_is_no_recording(name: str, scenes: dict[str, Scene]) -> None:
+def test_posed_pushed_or_simulated_motion_is_not_recorded(name: str, scenes: dict[str, Scene]) -> None:
     assert not holds("dense_transform_keys", scenes[name])
 
 
 @pytest.mark.parametrize("name", STORED_SHAPES)
-def test_stored_shapes_are_seen(name: str, scenes: dict[str, Scene]) -> None:
+def test_stored_shapes_are_detected(name: str, scenes: dict[str, Scene]) -> None:
     assert holds("animated_shape_keys", scenes[name])
 
 
 @pytest.mark.parametrize("name", NO_STORED_SHAPES)
-def test_a_shape_that_does_not_change_is_no_motion(name: str, scenes: dict[str, Scene]) -> None:
+def test_a_constant_shape_is_not_motion(name: str, scenes: dict[str, Scene]) -> None:
     assert not holds("animated_shape_keys", scenes[name])
 
 

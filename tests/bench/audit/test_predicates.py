@@ -10,11 +10,18 @@ from in_blender import facts_of
 from places import REPO
 
 from bench.audit.predicates.catalogue import PREDICATES, by_name
-from bench.audit.predicates.predicate import GROUPS, Predicate, Stage, Unit, Verdict, judged
+from bench.audit.predicates.predicate import (
+    GROUPS,
+    AuditContext,
+    Predicate,
+    PredicateVerdict,
+    Unit,
+    verdict_of,
+)
 
 if TYPE_CHECKING:
     from bench.audit.facts import Scene
-    from bench.audit.predicates.predicate import Params
+    from bench.audit.predicates.predicate import PredicateParams
 
 CATALOGUE = """
 universal: renderable solver_enabled
@@ -117,24 +124,24 @@ def scenes(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Scene]:
     return facts_of("predicate_scenes.py", tmp_path_factory.mktemp("predicates"))
 
 
-def judge(name: str, scene: Scene) -> Verdict:
+def judge(name: str, scene: Scene) -> PredicateVerdict:
     _, one, role, given = ASKED[name]
     cast = {each.name: (Unit((each,)),) for each in scene.objects}
     unit = Unit(tuple(each for each in scene.objects if each.name == one), role)
     predicate = PREDICATES[name]
-    return predicate.judge(unit, Stage(scene, cast, 8), predicate.read(given))
+    return predicate.judge(unit, AuditContext(scene, cast, 8), predicate.read(given))
 
 
 @pytest.mark.blender
 @pytest.mark.parametrize("name", PREDICATES)
-def test_it_holds_until_what_it_looks_at_is_taken_away(name: str, scenes: dict[str, Scene]) -> None:
+def test_a_predicate_holds_until_its_cause_is_removed(name: str, scenes: dict[str, Scene]) -> None:
     whole, broken = judge(name, scenes[name]), judge(name, scenes[f"{name}/broken"])
     assert (whole.outcome, broken.outcome) == ("passed", "failed"), (whole.seen, broken.seen)
 
 
 @pytest.mark.blender
 @pytest.mark.parametrize("name", PREDICATES)
-def test_a_change_ends_only_what_it_must(name: str, scenes: dict[str, Scene]) -> None:
+def test_a_change_ends_only_the_predicates_that_follow(name: str, scenes: dict[str, Scene]) -> None:
     same = [other for other in ASKED if ASKED[other][0] == ASKED[name][0] and other != name]
     held = {other for other in same if judge(other, scenes[name]).outcome == "passed"}
     ended = {other for other in held if judge(other, scenes[f"{name}/broken"]).outcome == "failed"}
@@ -142,7 +149,7 @@ def test_a_change_ends_only_what_it_must(name: str, scenes: dict[str, Scene]) ->
 
 
 @pytest.mark.blender
-def test_what_is_seen_is_json_with_the_values_that_decided(scenes: dict[str, Scene]) -> None:
+def test_seen_values_are_json_and_include_the_deciding_ones(scenes: dict[str, Scene]) -> None:
     seen = judge("fluid_cache_baked", scenes["fluid_cache_baked/broken"]).seen["domains"][0]
     assert seen["baked"] == ["data", "noise", "mesh", "particles", "guide"]
     assert seen["on_disk"]["mesh"][2] < 5
@@ -154,20 +161,20 @@ def test_a_cache_that_ends_before_the_clip_is_not_baked_over_it(scenes: dict[str
     sheet = next(one for one in scene.objects if one.name == "Sheet")
     predicate = PREDICATES["cloth_cache_baked"]
     outcomes = [
-        predicate.judge(Unit((sheet,), "cloth"), Stage(scene, {}, least), predicate.read({})).outcome
+        predicate.judge(Unit((sheet,), "cloth"), AuditContext(scene, {}, least), predicate.read({})).outcome
         for least in (12, 24)
     ]
     assert outcomes == ["passed", "failed"]
 
 
 @pytest.mark.blender
-def test_what_should_flow_and_does_not_is_in_no_domain(scenes: dict[str, Scene]) -> None:
+def test_an_actor_of_a_flow_role_without_a_flow_is_in_no_domain(scenes: dict[str, Scene]) -> None:
     scene = scenes["fluid"]
     paddle = next(one for one in scene.objects if one.name == "Paddle")
     still = replace(paddle, modifiers=())
     predicate = PREDICATES["fluid_domain_exists"]
     outcomes = {
-        role: predicate.judge(Unit((still,), role), Stage(scene), predicate.read({})).outcome
+        role: predicate.judge(Unit((still,), role), AuditContext(scene), predicate.read({})).outcome
         for role in ("fluid_flow", "fluid_effector", "static")
     }
     assert outcomes == {"fluid_flow": "failed", "fluid_effector": "failed", "static": "passed"}
@@ -177,17 +184,17 @@ def test_what_should_flow_and_does_not_is_in_no_domain(scenes: dict[str, Scene])
 
 
 @pytest.mark.blender
-def test_particles_that_are_born_late_need_no_cache_before(scenes: dict[str, Scene]) -> None:
+def test_particles_need_no_cache_before_their_birth(scenes: dict[str, Scene]) -> None:
     late = judge("particle_cache_baked", scenes["particles"])
     assert (late.outcome, late.seen["caches"][0]["cache_range"]) == ("passed", [4, 12])
 
 
 @pytest.mark.blender
-def test_a_gust_blows_that_begins_with_no_strength(scenes: dict[str, Scene]) -> None:
+def test_a_force_field_with_animated_strength_counts(scenes: dict[str, Scene]) -> None:
     gust = next(one for one in scenes["particles"].objects if one.name == "Gust")
     assert gust.force is not None
     assert gust.force.strength == 0
-    stage, whole = Stage(scenes["particles"]), PREDICATES["solver_enabled"]
+    stage, whole = AuditContext(scenes["particles"]), PREDICATES["solver_enabled"]
     assert whole.judge(Unit((gust,), "force"), stage, whole.read({})).outcome == "passed"
     fields = PREDICATES["particle_force_fields"]
     flag = Unit(tuple(one for one in scenes["particles"].objects if one.name == "Flag"))
@@ -227,8 +234,8 @@ def test_unknown_parameters_are_refused_by_name(row: Predicate) -> None:
 
 
 def test_two_predicates_of_one_name_are_refused() -> None:
-    def twice(unit: Unit, stage: Stage, params: Params) -> Verdict:
-        return judged(bool(unit and stage and params))
+    def twice(unit: Unit, stage: AuditContext, params: PredicateParams) -> PredicateVerdict:
+        return verdict_of(bool(unit and stage and params))
 
     with pytest.raises(ValueError, match="twice"):
         by_name([Predicate("twice", "cloth", twice), Predicate("twice", "fluid", twice)])

@@ -12,9 +12,9 @@ from places import REPO
 
 from bench.audit.actors import find_actors
 from bench.audit.audit import audit, read_scene
-from bench.audit.relations import KINDS
+from bench.audit.relations import RELATIONS
 from bench.audit.spr import judge_relations
-from bench.audit.untrusted_blend import Untrusted
+from bench.audit.untrusted_blend import UntrustedBlend
 from bench.scenes.spec import RelationType, Spec
 
 if TYPE_CHECKING:
@@ -179,23 +179,23 @@ def test_the_reference_of_relations_is_up_to_date() -> None:
 
 def test_every_type_is_defined_and_tried_both_ways() -> None:
     tried = {(case[0].partition(":")[0], case[3]) for case in (*SPECIMENS, *BEHIND, *NOBODY)}
-    assert set(KINDS) == set(RelationType.__args__)
-    assert tried == {(kind, holds) for kind in KINDS for holds in (True, False)}
-    assert all(len(kind.definition) > 40 for kind in KINDS.values())
+    assert set(RELATIONS) == set(RelationType.__args__)
+    assert tried == {(kind, holds) for kind in RELATIONS for holds in (True, False)}
+    assert all(len(kind.definition) > 40 for kind in RELATIONS.values())
 
 
 @pytest.mark.parametrize("number", range(len(SPECIMENS)), ids=[" ".join(case[:3]) for case in SPECIMENS])
-def test_a_relation_holds_where_things_stand_so_and_nowhere_else(told: dict[str, Any], number: int) -> None:
+def test_a_relation_holds_only_where_it_should(told: dict[str, Any], number: int) -> None:
     found = relations(told, "specimens")[number]
     assert found["outcome"] == ("holds" if SPECIMENS[number][3] else "does not hold"), found["moments"]
 
 
-def test_left_and_front_are_the_camera_s_and_without_one_the_scene_s(told: dict[str, Any]) -> None:
+def test_left_and_front_are_those_of_the_camera_or_of_the_scene(told: dict[str, Any]) -> None:
     for scene, cases in (("seen_from_behind", BEHIND), ("seen_by_nobody", NOBODY)):
         assert outcomes(told, scene) == ["holds" if holds else "does not hold" for *_, holds in cases]
 
 
-def test_values_seen_are_metres_at_each_moment(told: dict[str, Any]) -> None:
+def test_values_seen_are_metres_at_each_time(told: dict[str, Any]) -> None:
     hovering = relations(told, "specimens")[2]["moments"]
     assert [at["when"] for at in hovering] == ["start", "middle", "end"]
     assert [at["frame"] for at in hovering] == [1, 6, 12]
@@ -204,7 +204,7 @@ def test_values_seen_are_metres_at_each_moment(told: dict[str, Any]) -> None:
     assert sunk["depth"] == pytest.approx(0.021, abs=1e-4)
 
 
-def test_a_relation_to_what_is_not_there_does_not_hold(told: dict[str, Any]) -> None:
+def test_a_relation_to_a_missing_actor_does_not_hold(told: dict[str, Any]) -> None:
     [found] = relations(told, "specimens", 1)
     assert (found["outcome"], found["why"]) == ("does not hold", "Chandelier is missing")
 
@@ -212,7 +212,7 @@ def test_a_relation_to_what_is_not_there_does_not_hold(told: dict[str, Any]) -> 
 @pytest.mark.parametrize(
     "guise", [name for name in GUISES if name not in ("collected_each", "ungrouped_hovering")]
 )
-def test_the_same_scene_gives_the_same_verdicts_in_every_guise(told: dict[str, Any], guise: str) -> None:
+def test_an_equivalent_scene_gives_the_same_verdicts(told: dict[str, Any], guise: str) -> None:
     assert outcomes(told, guise) == ["holds" if holds else "does not hold" for *_, holds in KITCHEN]
 
 
@@ -230,7 +230,7 @@ def test_an_assembly_does_not_take_in_the_ground_below_it(told: dict[str, Any]) 
     assert plate["outcome"] == "holds"
 
 
-def test_baked_physics_is_looked_at_where_it_has_come_to(told: dict[str, Any]) -> None:
+def test_baked_physics_is_measured_where_it_has_moved(told: dict[str, Any]) -> None:
     assert outcomes(told, "baked") == ["holds"]
     assert outcomes(told, "baked", 1) == ["does not hold"]
     assert outcomes(told, "baked", 2) == ["holds"]
@@ -238,7 +238,7 @@ def test_baked_physics_is_looked_at_where_it_has_come_to(told: dict[str, Any]) -
     assert (resting["units"], resting["holding"]) == (3, 3)
 
 
-def test_physics_that_is_not_baked_is_not_jumped_to_but_said_to_be_unscored(told: dict[str, Any]) -> None:
+def test_relations_of_unbaked_physics_are_not_scored(told: dict[str, Any]) -> None:
     [end] = relations(told, "falling")
     assert (end["outcome"], end["why"]) == ("not scored", "motion not played: unbaked: rigid-body world")
     assert told["falling"][0]["spr"] is None
@@ -247,7 +247,7 @@ def test_physics_that_is_not_baked_is_not_jumped_to_but_said_to_be_unscored(told
     assert outcomes(told, "falling", 3) == ["not scored"]  # the parent's motion is its own
 
 
-def test_particles_count_as_what_they_are_shed_from(told: dict[str, Any]) -> None:
+def test_particles_count_as_part_of_their_emitter(told: dict[str, Any]) -> None:
     assert [outcomes(told, "raining", number) for number in range(3)] == [
         ["does not hold"],
         ["holds"],
@@ -261,25 +261,25 @@ def test_the_box_of_a_liquid_is_not_the_liquid(told: dict[str, Any]) -> None:
     assert found["moments"][0]["seen"] == {"nothing_of": ["a"]}
 
 
-def test_two_hundred_loose_boxes_are_the_towers_that_they_make(told: dict[str, Any]) -> None:
+def test_two_hundred_loose_boxes_form_their_towers(told: dict[str, Any]) -> None:
     [found] = relations(told, "primitives")
     assert (found["outcome"], found["units"]) == ("holds", 20)
     assert len(found["assembled"]) == 180
 
 
-def test_corners_that_are_nowhere_are_left_out(told: dict[str, Any]) -> None:
+def test_corners_that_are_not_finite_are_ignored(told: dict[str, Any]) -> None:
     [found] = relations(told, "broken")
     assert found["outcome"] == "holds"
     assert found["moments"][0]["seen"]["gap"] == pytest.approx(0.01, abs=1e-5)
 
 
-def test_what_nodes_instance_is_measured(told: dict[str, Any]) -> None:
+def test_instances_of_geometry_nodes_are_measured(told: dict[str, Any]) -> None:
     [found] = relations(told, "scattered")
     assert found["outcome"] == "holds"
     assert found["moments"][0]["seen"]["gap"] < 0.01
 
 
-def test_an_audit_tells_its_relations_alike_on_every_run(told: dict[str, Any], place: Path) -> None:
+def test_relations_are_the_same_on_every_run(told: dict[str, Any], place: Path) -> None:
     asked = Spec.model_validate(ASKED["baked"][0])
     first, second = audit(place / "baked.blend", asked), audit(place / "baked.blend", asked)
     assert first.as_json() == second.as_json()
@@ -294,7 +294,7 @@ def _tuples(told: list[dict[str, Any]]) -> list[dict[str, Any]]:
 @pytest.mark.usefixtures("told")
 def test_a_blender_that_ends_while_it_measures_leaves_relations_unscored(place: Path) -> None:
     asked = Spec.model_validate(ASKED["baked"][0])
-    with Untrusted(place / "baked.blend") as file:
+    with UntrustedBlend(place / "baked.blend") as file:
         scene = read_scene(file, play=True)
     found = judge_relations(asked, scene, find_actors(asked, scene), file)
     assert [one.outcome for one in found] == ["not scored"]

@@ -14,7 +14,7 @@ from PIL import Image
 
 from bench.blenderbench.vlm import CRITERIA, judge_edit, prompt_version
 from bench.judge.errors import NotJudged
-from bench.judge.providers import Provider, provider_of
+from bench.judge.providers import JudgeProvider, provider_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,7 +49,7 @@ def api(monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeMessagesAPI]:
 
 
 @pytest.fixture
-def claude(api: FakeMessagesAPI) -> Provider:
+def claude(api: FakeMessagesAPI) -> JudgeProvider:
     return provider_of("anthropic")
 
 
@@ -57,7 +57,7 @@ def blocks_of(body: dict[str, Any]) -> list[dict[str, Any]]:
     return [block for message in body["messages"] for block in message["content"]]
 
 
-def test_the_score_is_the_mean_of_four_marks(api: FakeMessagesAPI, claude: Provider) -> None:
+def test_the_score_is_the_mean_of_four_marks(api: FakeMessagesAPI, claude: JudgeProvider) -> None:
     judged = judge_edit(INSTRUCTION, GOAL, RESULT, claude, None)
     assert judged.marks.score == 3.0
     assert [getattr(judged.marks, name).mark for name in CRITERIA] == [1, 4, 5, 2]
@@ -70,7 +70,7 @@ def test_the_score_is_the_mean_of_four_marks(api: FakeMessagesAPI, claude: Provi
 
 
 def test_the_judge_sees_the_request_the_goal_and_then_the_result_and_no_more(
-    api: FakeMessagesAPI, claude: Provider
+    api: FakeMessagesAPI, claude: JudgeProvider
 ) -> None:
     judge_edit(INSTRUCTION, GOAL, RESULT, claude, None)
     [request] = api.received("POST /v1/messages")
@@ -97,7 +97,7 @@ def test_another_provider_gets_the_same_question(monkeypatch: pytest.MonkeyPatch
     "wrong",
     [marks(1, 4, 5, 6), marks(1, -1, 5, 2), marks(1, 4, 4.5, 2), {"task_completion": 3}, "Looks fine: 5."],
 )
-def test_invalid_marks_are_sent_back_a_few_times(wrong: Any, api: FakeMessagesAPI, claude: Provider) -> None:
+def test_invalid_marks_are_sent_back_a_few_times(wrong: Any, api: FakeMessagesAPI, claude: JudgeProvider) -> None:
     api.instead.append(wrong)  # type: ignore[attr-defined]
     assert judge_edit(INSTRUCTION, GOAL, RESULT, claude, None).marks.score == 3.0
     assert len(api.received("POST /v1/messages")) == 2
@@ -107,14 +107,14 @@ def test_invalid_marks_are_sent_back_a_few_times(wrong: Any, api: FakeMessagesAP
     assert caught.value.reason == "malformed"
 
 
-def test_a_refusal_is_not_a_low_mark(api: FakeMessagesAPI, claude: Provider) -> None:
+def test_a_refusal_is_not_a_low_mark(api: FakeMessagesAPI, claude: JudgeProvider) -> None:
     api.instead.append(Reply("", stop_reason="refusal"))  # type: ignore[attr-defined]
     with pytest.raises(NotJudged) as caught:
         judge_edit(INSTRUCTION, GOAL, RESULT, claude, None)
     assert caught.value.reason == "refused"
 
 
-def test_caches_marks_by_pixels(api: FakeMessagesAPI, claude: Provider, tmp_path: Path) -> None:
+def test_caches_marks_by_pixels(api: FakeMessagesAPI, claude: JudgeProvider, tmp_path: Path) -> None:
     other = RESULT.copy()
     other.putpixel((0, 0), (255, 255, 255))
     first = judge_edit(INSTRUCTION, GOAL, RESULT, claude, tmp_path)

@@ -14,15 +14,15 @@ from PIL import Image
 
 from bench.audit.untrusted_blend import NotScored
 from bench.frames import video
-from bench.frames.clip_frames import Look, frames_of, take_frames
+from bench.frames.clip_frames import RenderQuality, frames_of, take_frames
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from bench.frames.clip_frames import Taken
+    from bench.frames.clip_frames import FrameSet
 
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
-SMALL = Look(pixels=64 * 36, samples=1)
+SMALL = RenderQuality(pixels=64 * 36, samples=1)
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-def taken(name: str, files: Path, folder: Path, *, static: bool = False) -> Taken:
+def taken(name: str, files: Path, folder: Path, *, static: bool = False) -> FrameSet:
     """The frames of a file; nothing is written beside it."""
     before = sorted(files.iterdir())
     found = take_frames(files / f"{name}.blend", static, folder, SMALL)
@@ -79,7 +79,7 @@ def test_five_frames_are_taken_evenly_from_the_first_to_the_last(files: Path, tm
 
 
 @pytest.mark.blender
-def test_a_static_scene_has_one_frame_and_those_of_before_go(files: Path, tmp_path: Path) -> None:
+def test_a_static_scene_has_one_frame_and_older_frames_are_deleted(files: Path, tmp_path: Path) -> None:
     (tmp_path / "100.png").touch()
     found = taken("square", files, tmp_path, static=True)
     assert [path.name for path in found.paths] == ["000.png"]
@@ -90,9 +90,7 @@ def test_a_static_scene_has_one_frame_and_those_of_before_go(files: Path, tmp_pa
 
 
 @pytest.mark.blender
-def test_what_is_not_baked_is_simulated_as_in_a_render_of_the_clip_and_that_is_told(
-    files: Path, tmp_path: Path
-) -> None:
+def test_unbaked_physics_is_simulated_while_rendering_and_noted(files: Path, tmp_path: Path) -> None:
     found = taken("unbaked", files, tmp_path / "unbaked")
     seen = [colour(path) for path in found.paths]
     assert (seen[0], seen[-1]) == (GREEN, BLUE)
@@ -101,9 +99,7 @@ def test_what_is_not_baked_is_simulated_as_in_a_render_of_the_clip_and_that_is_t
 
 
 @pytest.mark.blender
-def test_what_would_take_too_long_to_simulate_is_left_out_and_that_is_told(
-    files: Path, tmp_path: Path
-) -> None:
+def test_physics_that_takes_too_long_is_left_out_and_noted(files: Path, tmp_path: Path) -> None:
     found = taken("endless", files, tmp_path)
     assert {colour(path) for path in found.paths} == {GREEN}
     (note,) = found.notes
@@ -111,7 +107,7 @@ def test_what_would_take_too_long_to_simulate_is_left_out_and_that_is_told(
 
 
 @pytest.mark.blender
-def test_without_a_camera_one_is_made_that_sees_all_but_the_ground_whole(files: Path, tmp_path: Path) -> None:
+def test_a_missing_camera_is_added_so_that_it_sees_all_but_the_ground(files: Path, tmp_path: Path) -> None:
     found = taken("no_camera", files, tmp_path, static=True)
     assert found.notes == ("the scene has no camera; one that sees all of it was added",)
     with Image.open(found.paths[0]) as image:
@@ -126,11 +122,11 @@ def test_without_a_camera_one_is_made_that_sees_all_but_the_ground_whole(files: 
 
 
 @pytest.mark.blender
-def test_strips_of_an_editor_do_not_cover_the_scene(files: Path, tmp_path: Path) -> None:
+def test_sequencer_strips_do_not_cover_the_scene(files: Path, tmp_path: Path) -> None:
     assert colour(taken("strips", files, tmp_path, static=True).paths[0]) == RED
 
 
-def test_what_is_no_blend_has_no_frames_and_says_why(tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_blend_has_no_frames(tmp_path: Path) -> None:
     (tmp_path / "scene.blend").write_bytes(b"PK\x03\x04 a zip")
     with pytest.raises(NotScored, match=r"not a \.blend"):
         frames_of(tmp_path / "scene.blend", False, tmp_path / "frames")
@@ -149,13 +145,13 @@ def test_frames_of_a_video_are_counted_not_guessed(count: int, wanted: list[floa
     assert brightness(found.paths) == pytest.approx(wanted, abs=0.11)
 
 
-def test_a_large_video_is_shown_smaller(tmp_path: Path) -> None:
+def test_frames_of_a_large_video_are_shrunk(tmp_path: Path) -> None:
     paths = frames_of(written(tmp_path / "clip.mp4", 2, (1920, 1080)), True, tmp_path / "frames")
     with Image.open(paths[0]) as image:
         assert image.size == (1280, 720)
 
 
-def test_a_picture_stands_for_a_static_scene_alone(tmp_path: Path) -> None:
+def test_a_picture_is_accepted_for_a_static_scene_only(tmp_path: Path) -> None:
     Image.new("RGB", (40, 20), RED).save(tmp_path / "still.png")
     (only,) = frames_of(tmp_path / "still.png", True, tmp_path / "frames")
     assert colour(only) == RED
@@ -164,7 +160,7 @@ def test_a_picture_stands_for_a_static_scene_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["noise.mp4", "noise.png", "half.mp4", "tune.mkv"])
-def test_what_cannot_be_decoded_says_so(name: str, tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_decoded_is_reported(name: str, tmp_path: Path) -> None:
     path = tmp_path / name
     path.write_bytes(b"\x00\x00\x00\x18ftypmp42 and then nothing that anybody could read" * 9)
     if name == "half.mp4":

@@ -16,7 +16,7 @@ from pydantic import TypeAdapter
 from bench.audit.actors import find_actors
 from bench.audit.facts import Scene
 from bench.audit.inside import measure
-from bench.audit.spr import judge_relations, share
+from bench.audit.spr import judge_relations, spr_of
 from bench.scenes.spec import Spec
 
 
@@ -322,7 +322,7 @@ def main():
         for each in specs:
             spec = Spec.model_validate(each)
             related = judge_relations(spec, scene, find_actors(spec, scene), Here())
-            found[name].append({"spr": share(related), "relations": [asdict(one) for one in related]})
+            found[name].append({"spr": spr_of(related), "relations": [asdict(one) for one in related]})
     finish(found)
 
 

@@ -11,8 +11,8 @@ from fake_chat_api import FakeChatAPI, Said
 from fake_messages_api import FakeMessagesAPI, Reply
 from PIL import Image, PngImagePlugin
 
-from bench.judge.openai_chat import Chat
-from bench.judge.providers import Provider
+from bench.judge.openai_chat import OpenAIChat
+from bench.judge.providers import JudgeProvider
 from simworlds.llm.claude import Claude, Settings
 from simworlds.llm.prices import Prices
 from simworlds.llm.retries import RetryPolicy
@@ -102,10 +102,10 @@ class Anthropic:
         self.script = Script()
         self.pauses: list[float] = []
 
-    def provider(self, *, model: str = "", max_cost: float | None = None, tries: int = 4) -> Provider:
+    def provider(self, *, model: str = "", max_cost: float | None = None, tries: int = 4) -> JudgeProvider:
         settings = Settings(api_key="key", base_url=self.server.base_url, patience=RetryPolicy(tries=tries))
         connect = lambda: Claude(settings, pause=self.pauses.append)  # noqa: E731
-        return Provider(self.name, model or self.model, connect, spending=Spending(max_cost))
+        return JudgeProvider(self.name, model or self.model, connect, spending=Spending(max_cost))
 
     def fail(self, *faults: Any) -> None:
         self.server.fail("POST /v1/messages", *faults)
@@ -150,9 +150,9 @@ class OpenAI:
         self.server = FakeChatAPI(self._answer)
         self.script = Script()
 
-    def provider(self, *, model: str = "", max_cost: float | None = None, tries: int = 4) -> Provider:
-        connect = lambda: Chat(self.server.base_url, Prices(), retries=tries - 1)  # noqa: E731
-        return Provider(self.name, model or self.model, connect, spending=Spending(max_cost))
+    def provider(self, *, model: str = "", max_cost: float | None = None, tries: int = 4) -> JudgeProvider:
+        connect = lambda: OpenAIChat(self.server.base_url, Prices(), retries=tries - 1)  # noqa: E731
+        return JudgeProvider(self.name, model or self.model, connect, spending=Spending(max_cost))
 
     def fail(self, *faults: Any) -> None:
         self.server.fail(*faults)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bench.judge.anchor_words import content_stems
-from bench.judge.items import reader_of
+from bench.judge.items import items_reader
 from bench.scenes.spec import specs
 
 STEMS = dict(
@@ -37,7 +37,7 @@ def test_there_are_stems_for_the_shipped_prompts_only():
 )
 def test_an_item_shares_a_content_word_with_its_quotation(words, text, is_accepted):
     prompt = f"Here are {words}, at noon."
-    accepted, faults = reader_of(prompt, static=True)(
+    accepted, faults = items_reader(prompt, static=True)(
         {"objects": [{"words": words, "text": text}], "relations": [], "actions": []}
     )
     assert (accepted is not None) == is_accepted, faults

@@ -60,7 +60,7 @@ def test_what_a_model_writes_cannot_move_a_terminals_cursor(claude, frames):
     assert judged(claude, frames).dimensions["aesthetics"][0].evidence == "Seen [2J twice ."
 
 
-def test_tokens_are_told_and_the_price_where_it_is_known(claude, frames):
+def test_tokens_are_reported_and_the_price_if_it_is_known(claude, frames):
     found = judged(claude, frames)
     assert (found.usage.input, found.usage.output, found.usage.cached) == (1000, 200, 0)
     assert found.cost == pytest.approx((1000 * 4 + 200 * 20) / 1e6)
@@ -85,7 +85,7 @@ def test_the_judge_sees_the_prompt_and_the_frames_and_nothing_else(api, tmp_path
             assert (seen.size, seen.tobytes()) == (given.size, given.tobytes())
 
 
-def test_frames_are_told_with_their_place_in_the_film(api, frames):
+def test_frames_are_labelled_with_their_place_in_the_film(api, frames):
     judged(api, frames)
     words, _ = api.question(1)
     for number, share in enumerate((0, 25, 50, 75, 100), 1):
@@ -100,7 +100,7 @@ def test_a_still_is_judged_by_one_frame_and_has_no_actions(api, frames):
     assert found.score == pytest.approx((0.5 + 1 + 1 + 0.75) / 4)
 
 
-def test_a_dimension_that_the_prompt_gives_no_items_for_has_no_score_and_does_not_count(api, frames):
+def test_a_dimension_without_items_has_no_score_and_does_not_count(api, frames):
     api.script.lists = {**LISTS, "relations": []}
     found = judged(api, frames)
     assert found.dimensions["spatial_relations"] == ()
@@ -108,7 +108,7 @@ def test_a_dimension_that_the_prompt_gives_no_items_for_has_no_score_and_does_no
     assert found.score == pytest.approx((0.75 + 1 + 1 + 0.75) / 4)
 
 
-def test_json_in_the_models_words_will_do_where_it_calls_no_tool(claude, frames):
+def test_json_in_the_text_is_accepted_if_no_tool_is_called(claude, frames):
     claude.script.as_text = True
     assert judged(claude, frames).score == 0.9
 
@@ -126,7 +126,7 @@ def test_all_systems_are_judged_on_the_items_of_the_first(api, frames, store, tm
     assert second.items_usage == first.items_usage
 
 
-def test_what_was_asked_is_never_asked_again_and_then_needs_no_key(api, frames, store, monkeypatch):
+def test_a_cached_answer_is_not_asked_again_and_needs_no_key(api, frames, store, monkeypatch):
     first = judged(api, frames, store)
     monkeypatch.delenv("OPENAI_API_KEY")
     api.server.answer = None  # whoever asks breaks
@@ -134,14 +134,14 @@ def test_what_was_asked_is_never_asked_again_and_then_needs_no_key(api, frames, 
     assert len(api.server.requests) == 2
 
 
-def test_another_judge_judges_the_same_items_anew(api, frames, store):
+def test_another_judge_judges_the_same_items(api, frames, store):
     first = judged(api, frames, store)
     other = judged(api, frames, store, provider=api.provider(model="another-model"))
     assert api.stages() == ["items", "verdicts", "verdicts"]
     assert (other.model, other.items_by) == ("another-model", first.items_by)
 
 
-def test_a_repetition_is_asked_and_kept_for_itself(claude, frames, store):
+def test_a_repetition_is_asked_and_cached_separately(claude, frames, store):
     judged(claude, frames, store)
     claude.script.fails = ()
     assert judged(claude, frames, store, repetition=1).score == 1.0
@@ -149,7 +149,7 @@ def test_a_repetition_is_asked_and_kept_for_itself(claude, frames, store):
     assert claude.stages() == ["items", "verdicts", "verdicts"]
 
 
-def test_a_frame_is_known_by_its_pixels_whatever_is_written_beside_them(claude, store, tmp_path):
+def test_a_frame_is_identified_by_its_pixels_not_its_metadata(claude, store, tmp_path):
     judged(claude, film(tmp_path / "a"), store)
     again = film(tmp_path / "b", note="rendered on a Tuesday in 00:01:12")
     assert [one.read_bytes() for one in again] != [one.read_bytes() for one in film(tmp_path / "a")]
@@ -158,7 +158,7 @@ def test_a_frame_is_known_by_its_pixels_whatever_is_written_beside_them(claude, 
 
 
 @pytest.mark.parametrize("change", ["a pixel", "the order", "the prompt", "the wording"])
-def test_what_a_judgement_depends_on_makes_it_another(claude, store, frames, tmp_path, monkeypatch, change):
+def test_a_changed_input_makes_a_new_judgement(claude, store, frames, tmp_path, monkeypatch, change):
     judged(claude, frames, store)
     prompt, shown, asked = PROMPT, list(frames), ["verdicts"]
     if change == "a pixel":
@@ -188,7 +188,7 @@ def test_what_a_judgement_depends_on_makes_it_another(claude, store, frames, tmp
     assert claude.stages() == ["items", "verdicts", *asked]
 
 
-def test_what_is_transparent_is_shown_on_black(claude, frames):
+def test_transparent_pixels_are_shown_on_black(claude, frames):
     clear = Image.new("RGBA", (64, 36), (255, 255, 255, 0))
     clear.paste((200, 30, 30, 255), (0, 0, 8, 8))
     clear.save(frames[0])

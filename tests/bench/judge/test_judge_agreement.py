@@ -5,15 +5,17 @@ from __future__ import annotations
 import pytest
 
 from bench.judge.agreement import agreement, fleiss_kappa, observed_agreement
-from bench.judge.usage import Usage
-from bench.judge.verdicts import Item, Judgement
+from bench.judge.usage import TokenUsage
+from bench.judge.verdicts import JudgedItem, Judgement
 
 
 def judgement(held: dict[str, str], number: int = 0) -> Judgement:
     """A judgement written as dimension → a sign for each item, + or -."""
     dimensions = {
         name: tuple(
-            Item(id=f"{name}.{place}", text=f"item {place}", holds=sign == "+", evidence="Seen.", frames=(1,))
+            JudgedItem(
+                id=f"{name}.{place}", text=f"item {place}", holds=sign == "+", evidence="Seen.", frames=(1,)
+            )
             for place, sign in enumerate(signs, 1)
         )
         for name, signs in held.items()
@@ -26,10 +28,10 @@ def judgement(held: dict[str, str], number: int = 0) -> Judgement:
         prompt_version="v",
         repetition=number,
         dimensions=dimensions,
-        usage=Usage(),
+        usage=TokenUsage(),
         cost=None,
         items_by="m",
-        items_usage=Usage(),
+        items_usage=TokenUsage(),
         items_cost=None,
     )
 

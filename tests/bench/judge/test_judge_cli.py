@@ -84,7 +84,7 @@ def test_repeated_judgements_come_with_their_agreement(claude, frames):
     assert "all items" in words
 
 
-def test_where_judgements_part_the_items_are_named(claude, frames):
+def test_items_with_disagreement_are_named(claude, frames):
     claude.script.instead["verdicts"].append(
         lambda ids: {
             "verdicts": [{"id": one, "evidence": "No.", "frames": [], "holds": False} for one in ids]
@@ -94,7 +94,7 @@ def test_where_judgements_part_the_items_are_named(claude, frames):
     assert "disagreement on objects_present.1 (0.50)" in words
 
 
-def test_a_judgement_that_fails_is_told_and_the_others_stand(claude, frames):
+def test_a_failed_judgement_is_reported_and_the_others_count(claude, frames):
     claude.script.instead["verdicts"].append(claude.refusal())
     found = run(*frames, "--prompt", PROMPT, "--repeat", 3, "--json", "--base-url", claude.server.base_url)
     assert found.exit_code == 2
@@ -104,7 +104,7 @@ def test_a_judgement_that_fails_is_told_and_the_others_stand(claude, frames):
     assert "repetition 0" in found.stderr
 
 
-def test_what_would_fail_again_is_not_tried_again(claude, frames):
+def test_a_lasting_failure_is_not_repeated(claude, frames):
     claude.fail(Status(401))
     found = run(*frames, "--prompt", PROMPT, "--repeat", 5, "--base-url", claude.server.base_url)
     assert (found.exit_code, len(claude.server.requests)) == (2, 1)
@@ -112,7 +112,7 @@ def test_what_would_fail_again_is_not_tried_again(claude, frames):
     assert found.stdout == ""
 
 
-def test_a_still_is_told_by_the_scene_or_by_the_caller(claude, frames):
+def test_a_still_is_known_from_the_scene_or_the_option(claude, frames):
     claude.script.lists = STILL_LISTS
     options = ["--base-url", claude.server.base_url, "--json"]
     found = json.loads(run(frames[0], "--prompt", STILL, "--static", *options).output)
@@ -121,7 +121,7 @@ def test_a_still_is_told_by_the_scene_or_by_the_caller(claude, frames):
     assert run(*frames, "--scene", "cloth_D1_01", "--static", *options).exit_code == 2
 
 
-def test_a_limit_on_the_cost_is_kept(claude, frames):
+def test_the_limit_of_the_cost_is_respected(claude, frames):
     found = run(*frames, "--prompt", PROMPT, "--max-cost", "0.01", "--base-url", claude.server.base_url)
     assert found.exit_code == 2
     assert "over budget" in found.stderr
@@ -141,7 +141,7 @@ def test_a_limit_on_the_cost_is_kept(claude, frames):
         (["--price", "cheap", "--dry-run"], "is no price"),
     ],
 )
-def test_what_cannot_be_judged_is_told(words, told):
+def test_the_reason_why_nothing_was_judged_is_printed(words, told):
     found = run(*words)
     assert found.exit_code == 2
     assert told in found.output
@@ -161,7 +161,7 @@ def _alone(monkeypatch):
 
 @pytest.mark.usefixtures("_alone")
 @pytest.mark.parametrize("provider", ["anthropic", "openai"])
-def test_a_dry_run_shows_what_would_be_asked_and_needs_no_key(frames, provider):
+def test_a_dry_run_shows_the_questions_and_needs_no_key(frames, provider):
     found = run(*frames, "--prompt", PROMPT, "--dry-run", "--provider", provider)
     assert found.exit_code == 0, found.output
     assert "═══ items: asked 1 time, 0 pictures" in found.output
@@ -172,7 +172,7 @@ def test_a_dry_run_shows_what_would_be_asked_and_needs_no_key(frames, provider):
 
 
 @pytest.mark.usefixtures("_alone")
-def test_a_dry_run_of_all_scenes_tells_what_one_system_costs():
+def test_a_dry_run_of_all_scenes_shows_the_cost_of_one_system():
     rows = json.loads(run("--dry-run", "--json", "--repeat", 2).output)
     asked = {stage: [row for row in rows if row["stage"] == stage] for stage in ("items", "verdicts")}
     assert sum(row["times"] for row in asked["items"]) == 50
@@ -189,7 +189,7 @@ def test_the_costs_in_the_documentation_are_what_the_command_prints():
     )
 
 
-def test_a_dry_run_tells_what_is_kept_already_and_then_shows_the_items(claude, frames):
+def test_a_dry_run_shows_cached_answers_and_items(claude, frames):
     options = [*frames, "--prompt", PROMPT, "--base-url", claude.server.base_url]
     run(*options)
     rows = json.loads(run(*options, "--dry-run", "--repeat", 3, "--json").output)
@@ -198,7 +198,7 @@ def test_a_dry_run_tells_what_is_kept_already_and_then_shows_the_items(claude, f
     assert len(claude.server.requests) == 2
 
 
-def test_the_estimate_of_a_question_is_what_it_is_sent_as(claude, frames):
+def test_the_estimated_question_is_the_one_that_is_sent(claude, frames):
     options = [*frames, "--prompt", PROMPT, "--base-url", claude.server.base_url]
     run(*options)
     rows = json.loads(run(*options, "--dry-run", "--json").output)

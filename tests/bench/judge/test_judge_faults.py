@@ -33,7 +33,7 @@ def judged(api, frames, store=None, **given):
 @pytest.mark.parametrize(
     "fault", [Status(429, SOON), Status(503, SOON), Status(529, SOON), Drop(), Truncate(40)], ids=str
 )
-def test_what_passes_is_waited_out(api, frames, fault):
+def test_passing_errors_are_retried(api, frames, fault):
     api.fail(fault)
     assert judged(api, frames).score == 0.9
     assert api.stages() == ["items", "items", "verdicts"]
@@ -68,7 +68,7 @@ WRONG: dict[str, tuple[Any, str]] = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_verdicts_that_are_none_go_back_with_what_is_wrong(claude, frames, name):
+def test_invalid_verdicts_go_back_with_their_faults(claude, frames, name):
     make, told = WRONG[name]
     claude.script.instead["verdicts"].append(lambda ids: {"verdicts": make(ids)})
     assert judged(claude, frames).score == 0.9
@@ -77,7 +77,7 @@ def test_verdicts_that_are_none_go_back_with_what_is_wrong(claude, frames, name)
 
 
 @pytest.mark.parametrize("text", ['{"verdicts": [', "It looks very nice.", "", '{"verdicts": NaN}'])
-def test_an_answer_that_is_no_json_goes_back(api, frames, text):
+def test_an_answer_that_is_not_json_goes_back(api, frames, text):
     api.script.instead["verdicts"].append(text)
     assert judged(api, frames).score == 0.9
     assert api.stages() == ["items", "verdicts", "verdicts"]
@@ -86,7 +86,7 @@ def test_an_answer_that_is_no_json_goes_back(api, frames, text):
     assert len(pictures) == 5
 
 
-def test_an_answer_that_never_is_one_is_no_judgement_and_is_paid_for(claude, frames, store):
+def test_repeated_invalid_answers_give_no_judgement_and_count_their_cost(claude, frames, store):
     claude.script.instead["verdicts"].extend([lambda ids: {"verdicts": verdicts(ids[1:])}] * 3)
     with pytest.raises(
         NotJudged, match=r"All 3 answers were invalid\. The last: 'objects_present.1': the verdict"
@@ -99,7 +99,7 @@ def test_an_answer_that_never_is_one_is_no_judgement_and_is_paid_for(claude, fra
     assert claude.stages() == ["items", *["verdicts"] * 4]
 
 
-def test_a_refusal_is_no_judgement(api, frames):
+def test_a_refusal_gives_no_judgement(api, frames):
     api.script.instead["verdicts"].append(api.refusal())
     with pytest.raises(NotJudged, match="declined to answer: not this") as caught:
         judged(api, frames)
@@ -108,7 +108,7 @@ def test_a_refusal_is_no_judgement(api, frames):
     assert len(api.server.requests) == 2
 
 
-def test_an_answer_that_is_cut_off_is_asked_for_again_and_given_up_in_the_end(api, frames):
+def test_a_cut_off_answer_is_asked_for_again_a_few_times(api, frames):
     api.script.instead["verdicts"].append(api.cut())
     assert judged(api, frames).score == 0.9
     api.script.instead["verdicts"].extend([api.cut()] * 3)
@@ -139,7 +139,7 @@ BAD_LISTS: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize("name", BAD_LISTS)
-def test_a_list_that_the_prompt_does_not_bear_out_goes_back(claude, frames, name):
+def test_a_list_that_the_prompt_does_not_support_goes_back(claude, frames, name):
     entry, told = BAD_LISTS[name]
     claude.script.instead["items"].append({**LISTS, "objects": [*LISTS["objects"], entry]})
     assert judged(claude, frames).score == 0.9
@@ -159,7 +159,7 @@ def test_a_list_that_the_prompt_does_not_bear_out_goes_back(claude, frames, name
         ),
     ],
 )
-def test_a_list_that_is_empty_or_has_no_end_goes_back(claude, frames, lists, told):
+def test_an_empty_or_too_long_list_goes_back(claude, frames, lists, told):
     claude.script.instead["items"].append(lists)
     judged(claude, frames)
     assert told in claude.question(1)[0]
@@ -173,7 +173,7 @@ def test_a_still_has_no_actions(claude, frames):
     assert "actions: nothing happens in a still" in claude.question(1)[0]
 
 
-def test_words_are_found_however_they_are_set(claude, frames):
+def test_quotations_match_whatever_their_case_and_punctuation(claude, frames):
     entry = {"words": "MARKET  stall; the left", "text": "a market stall"}
     claude.script.instead["items"].append({**LISTS, "objects": [entry]})
     assert judged(claude, frames).dimensions["objects_present"][0].text == "a market stall"
@@ -185,7 +185,7 @@ def test_words_are_found_however_they_are_set(claude, frames):
 @pytest.mark.parametrize(
     ("status", "advice"), [(401, "Check the key"), (404, "Check the model's name"), (400, "")]
 )
-def test_a_request_that_is_not_taken_is_not_repeated(api, frames, status, advice):
+def test_a_rejected_request_is_not_repeated(api, frames, status, advice):
     api.fail(Status(status))
     with pytest.raises(NotJudged, match=f"(does not take|rejects) the request: {status}.*{advice}") as caught:
         judged(api, frames)
@@ -199,14 +199,14 @@ def test_a_server_that_never_answers_is_given_up(api, frames):
     assert (caught.value.reason, len(api.server.requests)) == ("unreachable", 2)
 
 
-def test_what_is_no_answer_of_the_api_is_not_believed(api, frames):
+def test_a_reply_that_is_not_the_apis_is_not_accepted(api, frames):
     api.fail(*[Raw(HTML)] * 3)
     with pytest.raises(NotJudged, match=r"No answer from|is not a valid completion") as caught:
         judged(api, frames, provider=api.provider(tries=1))
     assert caught.value.reason == "unreachable"
 
 
-def test_an_address_that_nobody_listens_at_is_told(frames):
+def test_a_refused_connection_is_reported(frames):
     api = OpenAI()
     api.server._server.server_close()
     with pytest.raises(NotJudged, match=r"No answer from http://127\.0\.0\.1.*refused"):
@@ -215,7 +215,7 @@ def test_an_address_that_nobody_listens_at_is_told(frames):
 
 @pytest.mark.parametrize("name", ["anthropic", "openai"])
 @pytest.mark.parametrize("address", ["nonsense", "ftp://models.invalid", "http://[::1"])
-def test_an_address_that_is_none_is_told_at_once(name, address):
+def test_an_invalid_address_is_reported_before_any_request(name, address):
     with pytest.raises(NotJudged, match="The model's address") as caught:
         provider_of(name, base_url=address).ready()
     assert caught.value.reason == "not set up"
@@ -224,14 +224,14 @@ def test_an_address_that_is_none_is_told_at_once(name, address):
 NOWHERE = b"HTTP/1.1 302 Found\r\nLocation: http://[::1\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
 
 
-def test_a_server_that_sends_one_on_to_nowhere_gives_no_answer(api, frames):
+def test_a_redirect_to_an_invalid_address_gives_no_answer(api, frames):
     api.fail(Raw(NOWHERE))
     with pytest.raises(NotJudged, match="No answer from") as caught:
         judged(api, frames, provider=api.provider(tries=1))
     assert caught.value.reason == "unreachable"
 
 
-def test_nothing_is_asked_that_may_cost_more_than_the_limit(claude, frames):
+def test_a_question_that_could_exceed_the_limit_is_not_asked(claude, frames):
     with pytest.raises(NotJudged, match=r"The limit of \$0.01 is reached") as caught:
         judged(claude, frames, provider=claude.provider(max_cost=0.01))
     assert (caught.value.reason, claude.server.requests) == ("over budget", [])
@@ -243,7 +243,7 @@ def test_a_limit_needs_a_price(api, frames):
     assert (caught.value.reason, api.server.requests) == ("over budget", [])
 
 
-def test_a_price_of_ones_own_counts(api, frames):
+def test_a_given_price_counts(api, frames):
     provider = provider_of(
         api.name, model="some-model", base_url=api.server.base_url, price=Price(10.0, 100.0), max_cost=9
     )
@@ -262,7 +262,7 @@ def test_without_a_key_it_says_which(frames, monkeypatch, name, key):
 
 
 @pytest.mark.parametrize("key", ["clé", "two\nlines"])
-def test_a_key_that_is_none_is_not_sent(monkeypatch, key):
+def test_an_invalid_key_is_not_sent(monkeypatch, key):
     monkeypatch.setenv("OPENAI_API_KEY", key)
     with pytest.raises(NotJudged, match="OPENAI_API_KEY has characters that are not allowed"):
         provider_of("openai").ready()
@@ -276,7 +276,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch):
     provider_of("anthropic").ready()
 
 
-def test_a_provider_that_is_none_is_told():
+def test_an_unknown_provider_is_reported():
     with pytest.raises(ValueError, match=r"no provider 'gemini'\. Choose anthropic or openai"):
         provider_of("gemini")
 
@@ -285,7 +285,7 @@ def test_a_provider_that_is_none_is_told():
 
 
 @pytest.mark.parametrize("prompt", ["", " \n ", "x" * (LONGEST_PROMPT + 1)])
-def test_a_prompt_without_words_or_end_is_not_judged(claude, frames, prompt):
+def test_an_empty_or_too_long_prompt_is_not_judged(claude, frames, prompt):
     with pytest.raises(NotJudged) as caught:
         judge(prompt, frames, static=False, provider=claude.provider(), cache=None)
     assert (caught.value.reason, claude.server.requests) == ("prompt", [])
@@ -308,7 +308,7 @@ def _huge(path: Path) -> None:
 
 
 @pytest.mark.parametrize("spoil", [_missing, _half, _text, _huge])
-def test_frames_that_cannot_be_shown_are_found_before_anything_is_asked(claude, frames, spoil):
+def test_unreadable_frames_are_found_before_any_request(claude, frames, spoil):
     spoil(frames[3])
     with pytest.raises(NotJudged, match=r"frame_3\.png") as caught:
         judged(claude, frames)
@@ -316,7 +316,7 @@ def test_frames_that_cannot_be_shown_are_found_before_anything_is_asked(claude, 
 
 
 @pytest.mark.parametrize(("count", "static"), [(1, False), (21, False), (0, False), (2, True), (0, True)])
-def test_a_film_has_some_frames_and_a_still_has_one(claude, frames, count, static):
+def test_the_number_of_frames_is_checked(claude, frames, count, static):
     with pytest.raises(NotJudged, match=f"Give .*, not {count}") as caught:
         judge(PROMPT, frames[:1] * count, static=static, provider=claude.provider(), cache=None)
     assert caught.value.reason == "frames"

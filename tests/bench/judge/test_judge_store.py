@@ -44,7 +44,7 @@ DAMAGE: dict[str, Callable[[bytes], bytes]] = {
 
 @pytest.mark.parametrize("kind", ["items", "verdicts"])
 @pytest.mark.parametrize("how", DAMAGE)
-def test_a_damaged_entry_is_as_good_as_none_and_is_written_anew(claude, frames, store, kind, how):
+def test_a_damaged_entry_is_ignored_and_replaced(claude, frames, store, kind, how):
     first = judged(claude, frames, store)
     path = entry(store, kind)
     sound = path.read_bytes()
@@ -62,21 +62,21 @@ def test_entries_are_json_that_people_can_read(claude, frames, store):
     assert [path.suffix for path in (store / "verdicts").iterdir()] == [".json"]
 
 
-def test_where_nothing_can_be_kept_nothing_is_asked(claude, frames, store):
+def test_nothing_is_asked_if_answers_cannot_be_kept(claude, frames, store):
     store.write_text("a file")
     with pytest.raises(NotJudged, match="Cannot keep answers") as caught:
         judged(claude, frames, store)
     assert (caught.value.reason, claude.server.requests) == ("cache", [])
 
 
-def test_an_answer_that_cannot_be_kept_is_given_all_the_same(claude, frames, store, caplog):
+def test_an_answer_that_cannot_be_written_is_still_returned(claude, frames, store, caplog):
     store.mkdir()
     (store / "verdicts").write_text("a file")
     assert judged(claude, frames, store).score == 0.9
     assert "this question will be asked again" in caplog.text
 
 
-def test_two_who_want_the_same_ask_once(claude, frames, store):
+def test_two_processes_with_the_same_question_ask_once(claude, frames, store):
     gate = Gate()
     claude.script.before = gate
     with ThreadPoolExecutor(2) as pool:

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from written_results import Written
 
     from bench.markdown_tables import Table
-    from bench.results.figures import Figure
+    from bench.results.figures import MacroAverage
     from bench.results.scores import Metric
 
 
-def figure(results: Written, metric: Metric, category: str = OVERALL) -> Figure:
+def figure(results: Written, metric: Metric, category: str = OVERALL) -> MacroAverage:
     return figures_of(results.read().systems[0])[metric][category]
 
 
@@ -48,7 +48,7 @@ def test_a_static_scene_counts_for_relations_and_the_judge_alone(results: Writte
     assert (figure(results, "spr").value, figure(results, "vlm").value) == (0.75, 0.5)
 
 
-def test_what_was_not_scored_is_no_zero_and_is_counted_and_shown(results: Written) -> None:
+def test_unscored_scenes_are_counted_and_not_zero(results: Written) -> None:
     results.add("mine", "cloth_D1_01", 1.0, 1.0, 1.0)
     results.add("mine", "cloth_D1_02", why="Blender crashed")
     found = figure(results, "mpr")
@@ -62,7 +62,7 @@ def test_what_was_not_scored_is_no_zero_and_is_counted_and_shown(results: Writte
     assert rows["if not scored is 0"] == ("0.50", "0.50", "0.50")
 
 
-def test_where_nothing_was_scored_there_is_no_number(results: Written) -> None:
+def test_without_scored_scenes_there_is_no_figure(results: Written) -> None:
     results.add("mine", "cloth_D1_01")
     found = figure(results, "mpr")
     assert (found.value, found.low, found.bound) == (None, None, None)
@@ -110,7 +110,7 @@ def test_ablations_are_known_by_their_settings_and_shown_over_common_scenes(resu
     assert ("SimWorlds (published in the paper)", "no stages", "0.94", "0.92", "0.76", "15") in told.rows
 
 
-def test_the_papers_figures_stand_beside_and_are_called_published(results: Written) -> None:
+def test_the_papers_figures_are_marked_as_published(results: Written) -> None:
     results.add("mine", "cloth_D1_01", 1.0, 1.0, 1.0)
     found = tables(results.read(), with_paper=True)
     table = named(found, "MPR by category")
@@ -123,7 +123,7 @@ def test_the_papers_figures_stand_beside_and_are_called_published(results: Writt
     assert {row[0]: row[1:] for row in table.rows}["Overall"] == ("1.00", "0.87", "0.67")
 
 
-def test_a_scene_takes_what_was_measured(results: Written) -> None:
+def test_the_cost_per_scene_is_the_measured_mean(results: Written) -> None:
     results.add("mine", "cloth_D1_01", 1.0, 1.0, 1.0, minutes=10, cost=0.5, seconds=(4, 8, 2))
     results.add("mine", "cloth_D1_02", 1.0, 1.0, minutes=20, cost=1.5, seconds=(6, 10, 99), frames=1)
     ((*_, dollars, minutes, audit, frames, judge),) = named(tables(results.read()), "Cost per scene").rows
@@ -139,7 +139,7 @@ def test_workers_take_the_next_task_when_they_are_free() -> None:
     assert makespan([2, 2, 2], 1) == 6
 
 
-def test_what_was_not_measured_takes_as_long_as_its_category_or_as_all(results: Written) -> None:
+def test_unmeasured_scenes_get_the_mean_of_their_category_or_of_all(results: Written) -> None:
     results.add("mine", "cloth_D1_01", 1.0, 1.0, seconds=(10, 5, 0), minutes=1)
     results.add("mine", "rigid_D1_01", 1.0, 1.0, 1.0, seconds=(20, 5, 3), minutes=0)
     found = estimate(results.read(), systems=2, machines=25, at_a_time=2)
@@ -155,7 +155,7 @@ def test_what_was_not_measured_takes_as_long_as_its_category_or_as_all(results: 
     assert found.together <= 2 * found.longest
 
 
-def test_an_estimate_takes_what_making_a_scene_lasts_from_whoever_knows(results: Written) -> None:
+def test_an_estimate_takes_the_making_time_from_the_option_or_the_minutes(results: Written) -> None:
     results.add("mine", "cloth_D1_01", 1.0, 1.0, minutes=1)
     given = estimate(results.read(), systems=1, machines=1, at_a_time=1, making=100)
     assert given is not None

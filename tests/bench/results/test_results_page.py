@@ -128,7 +128,7 @@ def full(results: Written) -> Written:
 # The page
 
 
-def test_each_scene_has_its_prompt_its_frames_and_what_failed_with_the_values_seen(full: Written) -> None:
+def test_each_scene_shows_its_prompt_frames_and_failed_checks_with_values(full: Written) -> None:
     seen = page_of(full)
     assert "A red tablecloth drapes over a small round wooden table" in seen.text
     frames = [image for image in seen.of("img") if image.get("src")]
@@ -143,7 +143,7 @@ def test_each_scene_has_its_prompt_its_frames_and_what_failed_with_the_values_se
     assert len(failing) == 3
 
 
-def test_what_failed_leads_to_its_definition(full: Written) -> None:
+def test_a_failed_check_links_to_its_definition(full: Written) -> None:
     seen = page_of(full)
     links = {link["href"]: link.get("title") for link in seen.of("a")}
     ids = {one["id"] for one in seen.of("dt") if "id" in one}
@@ -151,7 +151,7 @@ def test_what_failed_leads_to_its_definition(full: Written) -> None:
     assert "bak" in str(links["#is-cloth_cache_baked"])
 
 
-def test_systems_stand_side_by_side_and_why_one_was_not_scored_is_told(full: Written) -> None:
+def test_systems_are_side_by_side_with_the_reason_for_a_missing_score(full: Written) -> None:
     seen = page_of(full)
     cards = [one for one in seen.of("section") if one.get("class") == "card"]
     assert len(cards) == 4
@@ -159,7 +159,7 @@ def test_systems_stand_side_by_side_and_why_one_was_not_scored_is_told(full: Wri
     assert "this scene was not given to the system" in seen.text
 
 
-def test_nothing_of_what_results_hold_is_taken_for_html(full: Written) -> None:
+def test_text_from_results_is_escaped(full: Written) -> None:
     seen = page_of(full)
     assert EVIL in seen.text
     assert len(seen.of("script")) == 1
@@ -179,7 +179,7 @@ def test_the_page_needs_no_network_and_runs_no_script_but_its_own(full: Written)
     assert all(str(link["href"]).startswith("#") for link in seen.of("a"))
 
 
-def test_scenes_can_be_told_apart_by_category_level_and_whether_anything_failed(full: Written) -> None:
+def test_scenes_can_be_filtered_by_category_level_and_failure(full: Written) -> None:
     scenes = {one["id"]: one for one in page_of(full).of("article")}
     assert scenes["cloth_D1_01"]["data-category"] == "cloth"
     assert scenes["static_D1_01"]["data-level"] == "D1"
@@ -210,7 +210,7 @@ def test_a_link_out_of_a_scenes_folder_is_not_followed(full: Written) -> None:
 
 
 @pytest.mark.parametrize("name", ["audit.json", "judgement.json", "frames/000.png"])
-def test_evidence_that_is_damaged_or_gone_is_left_out(name: str, full: Written) -> None:
+def test_damaged_or_missing_evidence_is_left_out(name: str, full: Written) -> None:
     path = full.folder / "mine" / "cloth_D1_01" / name
     path.write_bytes(b"[[[")
     assert "A red tablecloth" in page_of(full).text
@@ -221,7 +221,7 @@ def test_evidence_that_is_damaged_or_gone_is_left_out(name: str, full: Written) 
 # The command
 
 
-def test_tables_are_printed_and_written_as_asked(full: Written, tmp_path: Path) -> None:
+def test_tables_are_printed_and_written(full: Written, tmp_path: Path) -> None:
     done = reported(full, "--markdown", str(tmp_path / "a.md"), "--json", str(tmp_path / "a.json"), "--html",
                     str(tmp_path / "a.html"))  # fmt: skip
     assert done.exit_code == 0, done.output
@@ -235,11 +235,11 @@ def test_tables_are_printed_and_written_as_asked(full: Written, tmp_path: Path) 
     assert not (full.folder / "report.html").exists()
 
 
-def test_numbers_can_be_printed_instead(full: Written) -> None:
+def test_figures_can_be_printed_as_json(full: Written) -> None:
     assert json.loads(reported(full, "--json", "-").stdout)["systems"].keys() == {"mine", "theirs"}
 
 
-def test_what_cannot_be_read_is_named_and_the_rest_is_reported(full: Written) -> None:
+def test_unreadable_results_are_named_and_the_rest_is_reported(full: Written) -> None:
     (full.folder / "mine" / "static_D1_01" / "record.json").write_text("{")
     other = full.folder / "mine" / "cloth_D9_01"
     other.mkdir()
@@ -251,21 +251,21 @@ def test_what_cannot_be_read_is_named_and_the_rest_is_reported(full: Written) ->
     assert "There is no scene 'cloth_D9_01'" in done.stdout
 
 
-def test_two_results_of_one_scene_by_one_name_are_not_mixed(full: Written, tmp_path: Path) -> None:
+def test_a_second_result_of_a_scene_is_ignored_and_reported(full: Written, tmp_path: Path) -> None:
     second = type(full)(tmp_path / "second")
     second.add("mine", "cloth_D1_01", 1.0, 1.0)
     done = CliRunner().invoke(main, ["bench", "report", str(full.folder), str(second.folder)])
     assert "mine has another result for cloth_D1_01; this one is ignored" in done.stdout
 
 
-def test_without_results_or_with_an_unknown_system_it_says_so(full: Written, tmp_path: Path) -> None:
+def test_missing_results_and_unknown_systems_are_errors(full: Written, tmp_path: Path) -> None:
     done = CliRunner().invoke(main, ["bench", "report", str(tmp_path / "none")])
     assert (done.exit_code, "Make some with 'simworlds bench run'" in done.stderr) == (2, True)
     done = reported(full, "--baseline", "viga")
     assert (done.exit_code, "Choose one of: mine, theirs" in done.stderr) == (2, True)
 
 
-def test_an_estimate_is_told_in_words_and_as_numbers(full: Written) -> None:
+def test_an_estimate_is_printed_as_text_and_as_json(full: Written) -> None:
     done = CliRunner().invoke(main, ["bench", "estimate", str(full.folder)])
     assert done.exit_code == 0
     assert "times measured for 2 of 50 scenes" in done.stdout

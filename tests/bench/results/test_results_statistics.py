@@ -24,12 +24,12 @@ def test_the_interval_is_that_of_all_resamples_within_cells() -> None:
     assert found == pytest.approx(numpy.quantile(every, [0.025, 0.975]), abs=0.004)
 
 
-def test_cells_are_drawn_from_by_themselves() -> None:
+def test_each_cell_is_resampled_separately() -> None:
     # Of [0, 1], the mean of two draws is 0 in one of four cases; the cell of one scene stays as it is.
     assert interval({"a": [0.0, 1.0], "b": [0.5]}) == (0.25, 0.75)
 
 
-def test_what_does_not_vary_has_an_interval_of_no_width_and_what_stands_alone_has_none() -> None:
+def test_constant_scores_have_a_zero_interval_and_single_scores_none() -> None:
     assert interval({"a": [0.5, 0.5]}) == (0.5, 0.5)
     assert interval({"a": [0.5], "b": [0.7]}) is None
     assert interval({}) is None
@@ -59,9 +59,7 @@ def test_the_same_scores_have_the_same_interval_on_every_run() -> None:
         ({"a": [0.0, 0.0]}, 1.0),
     ],
 )
-def test_p_is_the_share_of_swaps_that_are_as_far_from_nothing(
-    cells: dict[str, list[float]], p: float
-) -> None:
+def test_p_is_the_share_of_swaps_that_are_as_far_from_zero(cells: dict[str, list[float]], p: float) -> None:
     assert permutation(cells) == (p, True)
 
 
@@ -95,7 +93,7 @@ def test_for_many_scenes_p_is_drawn_and_near_the_exact_one() -> None:
     assert not found[1]
 
 
-def test_p_is_never_nothing() -> None:
+def test_p_is_never_zero() -> None:
     assert permutation({"a": [0.1] * 40}) == (1 / 20_001, False)
     assert permutation({}) is None
 

@@ -24,7 +24,7 @@ from bench.sweep.records import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from bench.results.scores import Results
+    from bench.results.scores import ResultSet
 
 _BY = Provenance(
     simworlds="0", commit="c" * 40, dirty=False, code="", python="3", packages={}, blender="5.1.2", machine=""
@@ -96,7 +96,7 @@ class Written:
         write_record(folder, record)
         return folder
 
-    def read(self) -> Results:
+    def read(self) -> ResultSet:
         """As a report reads it."""
         from bench.results.scores import read_results
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import yaml
 
-from bench.audit.names import match
+from bench.audit.names import match_name
 from bench.audit.predicates.catalogue import PREDICATES
 from bench.scenes.levels import level_of
 from bench.scenes.spec import FOLDER, BadSpec, Spec, read_spec, spec_of, specs
@@ -34,7 +34,7 @@ def test_a_scene_keeps_all_rules(name: str):
     assert faults(spec_of(name)) == ()
 
 
-def test_the_scenes_together_are_fifty_exercise_all_predicates_and_differ():
+def test_the_fifty_scenes_have_no_faults_as_a_set():
     assert len(specs()) == 50
     assert faults_together(specs()) == ()
 
@@ -54,17 +54,17 @@ def test_the_published_prompts_are_there_word_for_word():
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_every_phrase_for_an_actor_leads_to_that_actor(name: str):
+def test_every_name_of_an_actor_matches_that_actor_best(name: str):
     spec = spec_of(name)
     for one in spec.actors:
         for phrase in (one.name, *one.synonyms):
-            found = {other.name: match(phrase, (other.name, *other.synonyms)) for other in spec.actors}
+            found = {other.name: match_name(phrase, (other.name, *other.synonyms)) for other in spec.actors}
             best = max((hit, who) for who, hit in found.items() if hit is not None)
             assert best[1] == one.name, phrase
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_parameters_of_checks_are_read_as_blenders_own_words(name: str):
+def test_parameters_of_checks_are_valid(name: str):
     for one in spec_of(name).actors:
         for check in one.must_have:
             PREDICATES[check.predicate].read(check.params)
@@ -275,7 +275,7 @@ BROKEN: dict[str, tuple[str, Callable[[dict[str, Any]], object], str]] = {
 
 
 @pytest.mark.parametrize("case", BROKEN)
-def test_a_rule_finds_what_breaks_it(case: str):
+def test_a_rule_finds_its_fault(case: str):
     name, change, said = BROKEN[case]
     spec = written(name)
     change(spec)
@@ -284,7 +284,7 @@ def test_a_rule_finds_what_breaks_it(case: str):
     )
 
 
-def test_a_scene_that_is_left_out_is_missed():
+def test_a_missing_scene_is_a_fault():
     rest = [spec for spec in specs() if spec.id != "fluid_D2_03"]
     told = faults_together(rest)
     assert "fluid_D2: 2 scenes instead of 3" in told
@@ -292,12 +292,12 @@ def test_a_scene_that_is_left_out_is_missed():
     assert "fluid_D2_03.yaml: the file is not named after its scene's id" in told
 
 
-def test_a_gap_in_the_numbers_is_told():
+def test_a_gap_in_the_numbers_is_a_fault():
     rest = [spec for spec in specs() if spec.id != "fluid_D2_02"]
     assert "fluid_D2: the ids are numbered 1, 3, not from 01 without gaps" in faults_together(rest)
 
 
-def test_a_scene_under_another_id_is_found_again():
+def test_a_copy_of_a_scene_under_another_id_is_a_fault():
     copy = spec_of("rigid_D2_02").model_copy(update={"id": "rigid_D2_04"})
     told = [fault for fault in faults_together([*specs(), copy]) if "rigid_D2_02 and rigid_D2_04" in fault]
     assert [fault.partition(": ")[2] for fault in told] == [
@@ -307,7 +307,7 @@ def test_a_scene_under_another_id_is_found_again():
     ]
 
 
-def test_other_words_do_not_hide_the_same_mechanism():
+def test_a_copied_mechanism_with_other_words_is_a_fault():
     spec = written("soft_D2_01")
     names = {"cactus": "reed", "gust": "draught", "pot": "vase", "windowsill": "mantelpiece"}
     text = yaml.safe_dump(
@@ -332,15 +332,13 @@ LEVELS: list[tuple[str, Callable[[dict[str, Any]], object], str]] = [
 
 
 @pytest.mark.parametrize(("name", "change", "level"), LEVELS)
-def test_the_level_follows_from_what_is_asked_for(
-    name: str, change: Callable[[dict[str, Any]], object], level: str
-):
+def test_the_level_follows_from_the_checks(name: str, change: Callable[[dict[str, Any]], object], level: str):
     spec = written(name)
     change(spec)
     assert level_of(Spec.model_validate(spec)) == level
 
 
-def test_a_file_that_is_no_spec_says_where_it_is_wrong(tmp_path: Path):
+def test_an_invalid_spec_file_says_where_it_is_wrong(tmp_path: Path):
     file = tmp_path / "cloth_D1_01.yaml"
     file.write_text(yaml.safe_dump({**written("cloth_D1_01"), "levle": "D1"}), "utf-8")
     with pytest.raises(BadSpec, match=r"cloth_D1_01\.yaml: levle"):

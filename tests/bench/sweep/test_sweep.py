@@ -13,8 +13,8 @@ from click.testing import CliRunner
 from processes_below import all_end, below
 from sweeping import CHEAP, SCENES, content, record, scores, written
 
-from bench.audit.untrusted_blend import Means
-from bench.frames.clip_frames import Look
+from bench.audit.untrusted_blend import BlenderOptions
+from bench.frames.clip_frames import RenderQuality
 from bench.sweep.executor import LocalExecutor
 from bench.sweep.records import SystemInfo, read_record, write_record
 from bench.sweep.scene_selection import select_scenes
@@ -178,7 +178,7 @@ def test_a_killed_sweep_leaves_whole_records_and_no_process_and_goes_on(
 
 
 def test_a_crash_costs_only_one_scene(made: Path, tmp_path: Path) -> None:
-    how = ScoringOptions(Means(), Look(), frames=False)
+    how = ScoringOptions(BlenderOptions(), RenderQuality(), frames=False)
     system = FolderSystem(SystemInfo(name="theirs", kind="folder"), made)
     tasks = make_tasks(system, select_scenes(["cloth_D1_01", "cloth_D1_03"]), tmp_path, how)
 

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from judge_apis import Anthropic
 from PIL import Image
 
-from bench.audit.untrusted_blend import Means
-from bench.frames.clip_frames import Look
+from bench.audit.untrusted_blend import BlenderOptions
+from bench.frames.clip_frames import RenderQuality
 from bench.sweep.judging import JudgeOptions, judge_all, judge_of
 from bench.sweep.records import Judged, read_record, write_record
 from bench.sweep.sweep import ScoringOptions, make_rescore_tasks
@@ -69,7 +69,7 @@ def judged(out: Path, api: Anthropic, **given: object) -> dict[str, Judged]:
     """What stands in each system's record after a judge was asked."""
     who = {"provider": "anthropic", "base_url": api.server.base_url, "cache": out.parent / "kept", **given}
     judge = judge_of(JudgeOptions(**who))  # type: ignore[arg-type]
-    for tasks in make_rescore_tasks(out, ScoringOptions(Means(), Look())):
+    for tasks in make_rescore_tasks(out, ScoringOptions(BlenderOptions(), RenderQuality())):
         assert len(list(judge_all(tasks, judge))) == len(tasks)
     found = {path.parent.parent.name: read_record(path.parent) for path in out.glob("*/*/record.json")}
     return {name: one.judged for name, one in found.items() if one is not None and one.judged is not None}

@@ -13,7 +13,7 @@ import pytest
 from small_specs import DRAPE, POUR, ROOM, STILL, spec_like
 
 from bench.audit.predicates.catalogue import PREDICATES
-from bench.audit.predicates.predicate import Verdict
+from bench.audit.predicates.predicate import PredicateVerdict
 from bench.audit.untrusted_blend import Crashed
 from bench.validity import variant_builder
 from bench.validity.invariance.actor_names import actor_objects
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.audit.predicates.predicate import Params, Stage, Unit
+    from bench.audit.predicates.predicate import AuditContext, PredicateParams, Unit
     from bench.validity.proof import Proof
 
 pytestmark = pytest.mark.blender
@@ -148,16 +148,16 @@ def test_every_mutation_fails_its_check_and_no_other(
         assert {*asked, *(check.predicate for check in builder.spec.assertions)} <= broken
 
 
-def always(unit: Unit, stage: Stage, params: Params) -> Verdict:
+def always(unit: Unit, stage: AuditContext, params: PredicateParams) -> PredicateVerdict:
     del unit, stage, params
-    return Verdict("passed", {})
+    return PredicateVerdict("passed", {})
 
 
-def if_baked(unit: Unit, stage: Stage, params: Params) -> Verdict:
+def if_baked(unit: Unit, stage: AuditContext, params: PredicateParams) -> PredicateVerdict:
     """Passes only if all cloth of the scene is baked, which has nothing to do with being renderable."""
     del unit, params
     cloths = [one.cloth for each in stage.scene.objects for one in each.modifiers if one.cloth]
-    return Verdict("passed" if all(cloth.cache.is_baked for cloth in cloths) else "failed", {})
+    return PredicateVerdict("passed" if all(cloth.cache.is_baked for cloth in cloths) else "failed", {})
 
 
 def test_detects_a_predicate_that_always_passes(

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from small_specs import DRAPE, POUR, ROOM, spec_like
 
 from bench.audit.predicates.catalogue import PREDICATES
-from bench.audit.predicates.predicate import Verdict
+from bench.audit.predicates.predicate import PredicateVerdict
 from bench.scenes.spec import specs
 from bench.validity.mutations.catalogue import MUTATIONS
 from bench.validity.proof import Proof, ProofRow
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from click.testing import Result
 
-    from bench.audit.predicates.predicate import Params, Stage, Unit
+    from bench.audit.predicates.predicate import AuditContext, PredicateParams, Unit
 
 QUICK = ("satisfiable", "deterministic")
 STATIC = "static_D1_01"
@@ -125,9 +125,9 @@ def test_proves_scenes_in_parallel_and_reports_those_that_cannot_be_opened(
 # How it ends
 
 
-def never(unit: Unit, stage: Stage, params: Params) -> Verdict:
+def never(unit: Unit, stage: AuditContext, params: PredicateParams) -> PredicateVerdict:
     del unit, stage, params
-    return Verdict("failed", {})
+    return PredicateVerdict("failed", {})
 
 
 @pytest.mark.blender
