@@ -9,7 +9,7 @@ from asks import LOOK, MESSAGES, RUN, ask, png
 from fake_messages_api import Reply
 from pydantic import BaseModel
 
-from simworlds.llm.context import Limits, fit
+from simworlds.llm.context import ContextLimits, fit
 from simworlds.llm.messages import Kept, Picture, Text, ToolResult, user
 from simworlds.llm.recorded import Recorded, Recording
 from simworlds.llm.spending import Metered, Spending
@@ -18,7 +18,7 @@ from simworlds.llm.structured import ask_for, fits
 if TYPE_CHECKING:
     from simworlds.llm.messages import Message, Model
 
-LIMITS = Limits(budget=2500, pictures=4, newest=2, long=300)
+LIMITS = ContextLimits(budget=2500, pictures=4, newest=2, long=300)
 
 
 class Verdict(BaseModel):
