@@ -379,7 +379,9 @@ def test_tags_that_say_something_else_than_the_plan_are_told(studio: Studio) -> 
     )
     found = verified(studio, "R15", plan).findings
     assert [one.objects for one in found] == [("Actor",)] * 2
-    assert "tagged deformation_kind='none', but its planned role 'rigid' needs 'sim_rigid'" in found[0].message
+    assert (
+        "tagged deformation_kind='none', but its planned role 'rigid' needs 'sim_rigid'" in found[0].message
+    )
     assert "tagged motion_kind='keyframe'" in found[1].message
 
 
