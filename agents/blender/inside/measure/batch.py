@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers batches of measurements, frame by frame (see agents.protocol.measures.measure)."""
+"""Answers batches of measurements, frame by frame (see agents.protocol.measures.requests)."""
 
 import itertools
 import math
