@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from agents.plan.scene import ScenePlan
 
 Finding = Mapping[str, Any]
-"""A finding of the verifier, as ``agents.protocol.report.report.as_json`` gives it."""
+"""A finding of the verifier, as ``agents.protocol.report.json_report.as_json`` gives it."""
 
 
 @dataclass(frozen=True, slots=True)

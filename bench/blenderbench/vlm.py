@@ -76,7 +76,11 @@ class EditJudgement(_Part):
 
 
 def judge_edit(
-    instruction: str, goal: Image.Image, result: Image.Image, provider: JudgeProvider, cache_folder: Path | None
+    instruction: str,
+    goal: Image.Image,
+    result: Image.Image,
+    provider: JudgeProvider,
+    cache_folder: Path | None,
 ) -> EditJudgement:
     """Judges an edit. Raises NotJudged with the reason where that fails, rather than a low mark."""
     plain = [_plain(picture) for picture in (goal, result)]

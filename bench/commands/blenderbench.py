@@ -184,7 +184,7 @@ def _rule(given: dict[str, Any]) -> ScoringRule:
         raise BadResults("--best-round chooses by N-CLIP, which needs weights: name them by --clip.")
     clip = load_clip(given["clip"], _tell) if given["clip"] else None
     convention = "peer" if given["peer"] else "paper"
-    return ScoringRule(convention, clip, given["best_round"], _provider(given), cache)
+    return ScoringRule(convention, clip, given["best_round"], _provider(given), judge_cache(given["cache"]))
 
 
 def _provider(given: dict[str, Any]) -> JudgeProvider | None:

@@ -157,26 +157,18 @@ def _specs(names: Sequence[str], system: SceneSystem) -> Any:
     from bench.scenes.spec import specs  # noqa: PLC0415 - not for --help
     from bench.sweep.scene_selection import select_scenes  # noqa: PLC0415
 
-    found = select_scenes(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
-    if not found:
+    chosen = select_scenes(names) if names else tuple(spec for spec in specs() if system.is_for(spec))
+    if not chosen:
         raise click.UsageError("--scenes names no scene.")
-    return specs_chosen
+    return chosen
 
 
 def _scoring_options(given: dict[str, Any]) -> ScoringOptions:
-    from bench.audit.untrusted_blend import GIB, BlenderOptions  # noqa: PLC0415
     from bench.frames.clip_frames import RenderQuality  # noqa: PLC0415 - not for --help
     from bench.sweep.sweep import ScoringOptions  # noqa: PLC0415
 
-    means = BlenderOptions(
-        given["blender"],
-        given["blender_exe"],
-        given["seconds"],
-        int(given["memory"] * GIB),
-        tuple(folder.expanduser().resolve() for folder in given["read"]),
-    )
     look = RenderQuality(_pixels(given["frame_size"]), given["frame_samples"])
-    return ScoringOptions(means, look, given["frames"] != "none", given["frames"] == "video")
+    return ScoringOptions(blender_options(given), look, given["frames"] != "none", given["frames"] == "video")
 
 
 def _pixels(size: str) -> int:
@@ -188,7 +180,6 @@ def _pixels(size: str) -> int:
 
 def _judge(given: dict[str, Any]) -> SweepJudge:
     from bench.sweep.judging import JudgeOptions, judge_of  # noqa: PLC0415 - not for --help
-    from simworlds.settings import cache_folder, home_folder  # noqa: PLC0415
 
     cache = judge_cache(given["judge_cache"])
     who = (given["judge"], given["judge_model"], given["judge_url"], given["judge_max_cost"], cache)

@@ -33,10 +33,10 @@ with_system_options = combine(
         "--role-model", multiple=True, metavar="ROLE=NAME", help=f"simworlds: another one for {_ROLES}."
     ),
     click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="simworlds: for each scene."),
-    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help=f"{_RUNS} for each scene."),
-    click.option("--samples", type=click.IntRange(1), help=f"{_RUNS} samples of the rendering."),
+    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help=f"{_BOTH} for each scene."),
+    click.option("--samples", type=click.IntRange(1), help=f"{_BOTH} samples of the rendering."),
     click.option(
-        "--render-minutes", type=click.FloatRange(0, min_open=True), help=f"{_RUNS} for the rendering."
+        "--render-minutes", type=click.FloatRange(0, min_open=True), help=f"{_BOTH} for the rendering."
     ),
     click.option("--no-verifier", is_flag=True, help="simworlds: leave the verifier out (ablation)."),
     click.option("--no-stages", is_flag=True, help="simworlds: build everything in one pass (ablation)."),
@@ -64,7 +64,7 @@ def system_of(given: dict[str, Any]) -> SceneSystem:
         )
         source = Path(folder).expanduser().resolve()
         return FolderSystem(
-            _info("folder", given["name"] or _plain(source.name), (), {"folder": str(source)}), source
+            _info("folder", given["name"] or _as_name(source.name), (), {"folder": str(source)}), source
         )
     if folder or kind not in ("simworlds", "replay"):
         raise click.UsageError("--system is simworlds, replay, or folder=DIR.")

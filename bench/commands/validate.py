@@ -52,7 +52,7 @@ def validate(scenes: str, properties: str, jobs: int, output: Path | None, again
 
     asked, chosen = _properties(properties), _scenes(scenes)
     tasks = [ProofTask(spec, asked, again) for spec in chosen]
-    found: dict[str, ProvenScene] = {}
+    done_by_scene: dict[str, ProvenScene] = {}
     started = time.monotonic()
     click.echo(f"{len(tasks)} scenes, {', '.join(asked)}", err=True)
     try:
@@ -82,7 +82,7 @@ def _properties(names: str) -> tuple[Property, ...]:
         raise click.BadParameter(
             f"{', '.join(unknown)}: the properties are {', '.join(PROPERTIES)}", param_hint="--properties"
         )
-    return tuple(name for name in PROPERTIES if name in requested)
+    return tuple(name for name in PROPERTIES if name in given)
 
 
 def _scenes(names: str) -> tuple[Spec, ...]:

@@ -53,7 +53,7 @@ def ask_judge(provider: JudgeProvider, ask: Ask, reader: AnswerReader[T]) -> Jud
     return JudgeAnswer(reply.value, reply.turn.model, _spent(spending))
 
 
-def checked_reader(shape: type[M], find_faults: Callable[[M], Iterable[str]]) -> Reader[M]:
+def checked_reader(shape: type[M], find_faults: Callable[[M], Iterable[str]]) -> AnswerReader[M]:
     """Accepts data of that shape in which ``find_faults`` finds none."""
     read = fits(shape)
 

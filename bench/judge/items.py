@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from bench.judge.answer_cache import AnswerCache
     from bench.judge.providers import JudgeProvider
-    from simworlds.llm.structured import Reader
+    from simworlds.llm.structured import AnswerReader
 
 MOST = 40
 """Items of one list; the longest prompt names half as many."""
@@ -89,7 +89,7 @@ def one_line(text: str) -> str:
     return " ".join("".join(char if char.isprintable() else " " for char in text).split())
 
 
-def items_reader(prompt: str, *, static: bool) -> Reader[Enumeration]:
+def items_reader(prompt: str, *, static: bool) -> AnswerReader[Enumeration]:
     """Accepts an Enumeration whose items the prompt supports."""
     return checked_reader(Enumeration, lambda enumeration: _faults(enumeration, prompt, static=static))
 

@@ -9,7 +9,7 @@ import click
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from bench.judge.agreement import AgreementScores, Agreement
+    from bench.judge.agreement import Agreement, AgreementScores
     from bench.judge.estimate import QuestionEstimate
     from bench.judge.verdicts import JudgedItem, Judgement
     from simworlds.llm.spending import SpendingRow
@@ -18,7 +18,7 @@ _WIDTH = 110
 
 
 def judgement_lines(
-    judged: Sequence[Judgement], agreed: Agreement | None, spent: SpendingRow
+    judgements: Sequence[Judgement], agreement: Agreement | None, spent: SpendingRow
 ) -> Iterator[str]:
     """Each judgement, how far they agree, and what they cost now."""
     for judgement in judgements:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from simworlds.schemas.notation import shape_of
-
 from agents.blender import plan_check
 from agents.blender.team import PROMPTS
 from agents.blender.tool_catalogue import TOOLS
@@ -14,6 +12,7 @@ from agents.plan.scene import ScenePlan
 from docs.generate.markdown import GENERATED, page, schema_table, table
 from kb_serve.server import BASE_LIST, INSTRUCTIONS, TEMPLATES
 from kb_serve.tool import tool
+from simworlds.schemas.notation import shape_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench.audit.untrusted_blend import NotScored, JobRefused
+from bench.audit.untrusted_blend import JobRefused, NotScored
 from bench.validity.invariance.actor_names import actor_objects
 from bench.validity.proof import ProofRow
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING, Any
 
-from bench.audit.untrusted_blend import NotScored, JobRefused
+from bench.audit.untrusted_blend import JobRefused, NotScored
 from bench.validity.mutations.planning import MutationResult, checks_of, judge, planned_mutations
 from bench.validity.proof import ProofRow
 

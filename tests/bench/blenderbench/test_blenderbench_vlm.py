@@ -97,7 +97,9 @@ def test_another_provider_gets_the_same_question(monkeypatch: pytest.MonkeyPatch
     "wrong",
     [marks(1, 4, 5, 6), marks(1, -1, 5, 2), marks(1, 4, 4.5, 2), {"task_completion": 3}, "Looks fine: 5."],
 )
-def test_invalid_marks_are_sent_back_a_few_times(wrong: Any, api: FakeMessagesAPI, claude: JudgeProvider) -> None:
+def test_invalid_marks_are_sent_back_a_few_times(
+    wrong: Any, api: FakeMessagesAPI, claude: JudgeProvider
+) -> None:
     api.instead.append(wrong)  # type: ignore[attr-defined]
     assert judge_edit(INSTRUCTION, GOAL, RESULT, claude, None).marks.score == 3.0
     assert len(api.received("POST /v1/messages")) == 2
