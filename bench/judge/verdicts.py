@@ -11,10 +11,11 @@ from pydantic import BaseModel, ConfigDict, NonNegativeFloat, computed_field
 from bench.judge.ask import checked_reader
 from bench.judge.questions import Verdict, Verdicts
 from bench.judge.usage import AnswerCost, TokenUsage
-from simworlds.llm.structured import AnswerReader
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
+
+    from simworlds.llm.structured import AnswerReader
 
 
 _DIGITS = 6
