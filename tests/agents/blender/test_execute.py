@@ -119,7 +119,7 @@ def test_failed_code_is_undone_when_asked(session: LiveSession) -> None:
     session.use(TOOL, code="bpy.data.objects.new('Before', None)")
     found = session.use(TOOL, code="bpy.data.objects.new('Half', None)\n1 / 0", on_error="restore")
     assert found.failed
-    assert "put back" in found.text
+    assert "The scene was restored from checkpoint" in found.text
     assert session.run("sorted(o.name for o in bpy.data.objects)") == []  # no user, so not written out
 
 

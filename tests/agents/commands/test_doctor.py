@@ -103,7 +103,7 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
     lines = done.stdout.splitlines()
     assert max(map(len, lines)) <= 80
     assert lines[0].startswith("✓  Blender    ")
-    assert "!  Sandbox    none: your files are open to what runs in Blender" in done.stdout
+    assert "!  Sandbox    none: code in Blender can read and write your files" in done.stdout
     assert "- does not prevent: reading and writing any file that you can" in done.stdout
     assert "→ simworlds kb build" in done.stdout
     assert re.search(

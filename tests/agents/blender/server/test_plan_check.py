@@ -53,7 +53,7 @@ def test_rules_of_a_skipped_stage_apply_from_the_next_one() -> None:
         opt_out=["uv", "deformation_setup", "motion"],
     )
     lines = plan_check.summary(still).splitlines()
-    assert "- Phases: none; the scene is still." in lines
+    assert "- Phases: none; nothing moves." in lines
     assert lines[-1] == "- Checked from camera on: R14, R15, R18, T1–T7."
 
 
