@@ -396,6 +396,7 @@ def test_a_second_way_into_the_build_is_seen(tmp_path: Path) -> None:
     assert rebuilders(tmp_path) == ["kb_serve.a.f", "kb_serve.b"]
 
 
+@pytest.mark.slow
 def test_importing_every_module_needs_no_blender_and_prints_nothing() -> None:
     names = [
         name

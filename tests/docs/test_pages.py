@@ -9,6 +9,7 @@ from dataclasses import fields
 from os.path import normpath
 from pathlib import Path
 
+import pytest
 from places import REPO
 
 from agents.blender import plan_check
@@ -30,11 +31,13 @@ def check(folder: Path) -> subprocess.CompletedProcess[str]:
     return run("--check", "--folder", str(folder))
 
 
+@pytest.mark.slow
 def test_written_pages_are_up_to_date(tmp_path: Path) -> None:
     for done in (run("--folder", str(tmp_path)), check(tmp_path)):
         assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+@pytest.mark.slow
 def test_changed_and_missing_pages_are_named(tmp_path: Path) -> None:
     absent = outdated(tmp_path)
     assert absent[:6] == [
@@ -128,6 +131,7 @@ def test_links_of_the_rules_pages_lead_to_pages() -> None:
                 assert normpath(Path(name).parent / target) in texts, (name, target)
 
 
+@pytest.mark.slow
 def test_the_page_of_a_removed_rule_is_outdated_and_removed(tmp_path: Path) -> None:
     write(tmp_path)
     (tmp_path / "rules" / "X1.md").write_text("# X1\n")

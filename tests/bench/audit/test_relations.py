@@ -20,6 +20,8 @@ from bench.scenes.spec import RelationType, Spec
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.blender
+
 Case = tuple[str, str, str, bool]
 SIDES = ("LeftOf", "RightOf", "InFrontOf", "Behind")
 # Type, a, b, whether it holds; with a tolerance of 2 cm, or what stands behind the type.

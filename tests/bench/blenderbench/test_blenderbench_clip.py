@@ -20,6 +20,8 @@ from bench.blenderbench.n_clip import SHAPES, Tower, clip_distance, preprocess
 from bench.blenderbench.weights import FILE, SHA256, load_clip
 from simworlds.cli import main
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = json.loads((Path(__file__).with_name("clip_reference.json")).read_text())
 EMBEDDINGS = np.array([row["embedding"] for row in REFERENCE["pictures"]])
 

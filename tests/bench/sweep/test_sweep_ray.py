@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
     from sweeping import Command
 
+pytestmark = pytest.mark.slow
+
 HERE = Path(__file__).parent
 SCENES = ("cloth_D1_01", "cloth_D1_02", "cloth_D2_01", "cloth_D2_02", "cloth_D2_03", "rigid_D1_01")
 LOOPBACK = {"RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0"}

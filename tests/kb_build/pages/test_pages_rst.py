@@ -264,6 +264,7 @@ def test_a_page_that_the_parser_gives_up_on_is_kept_as_plain_text(
     assert "kept as plain text" in page.warnings[0]
 
 
+@pytest.mark.slow
 def test_substitutions_that_multiply_are_stopped(tmp_path: Path) -> None:
     bomb = "".join(f".. |b{n}| replace:: {f'|b{n - 1}| ' * 10 if n else 'boom'}\n" for n in range(10))
     page = read_one(tmp_path, f"Page\n====\n\n|b9|\n\n{bomb}")

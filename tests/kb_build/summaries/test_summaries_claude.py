@@ -452,6 +452,7 @@ def start_build(api: FakeMessagesAPI, store: SummaryStore) -> subprocess.Popen[b
     return subprocess.Popen(arguments)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["kill", "interrupt"])
 def test_a_build_that_dies_while_waiting_picks_its_batch_up_again(store, how):
     import signal
@@ -469,6 +470,7 @@ def test_a_build_that_dies_while_waiting_picks_its_batch_up_again(store, how):
     assert outcome.report.input_tokens == 400
 
 
+@pytest.mark.slow
 def test_a_build_that_dies_while_sending_finds_its_batch_again(store):
     with FakeMessagesAPI(good, polls=2) as api:
         api.fail(CREATE, Drop(handled=True))
@@ -482,6 +484,7 @@ def test_a_build_that_dies_while_sending_finds_its_batch_again(store):
     assert outcome.report.made == 4
 
 
+@pytest.mark.slow
 def test_a_build_that_dies_before_the_batch_arrived_sends_it_anew(store):
     with FakeMessagesAPI(good) as api:
         api.fail(CREATE, Hang(60))

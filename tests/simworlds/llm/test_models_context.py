@@ -152,6 +152,7 @@ def test_the_same_conversation_is_always_cut_the_same():
     assert fit(messages, SMALL) == fit(conversation(60, pictures=1), SMALL)
 
 
+@pytest.mark.slow
 def test_conversations_of_every_shape_stay_sound():
     chance = random.Random(3)
     for _ in range(40):

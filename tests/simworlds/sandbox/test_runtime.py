@@ -80,6 +80,7 @@ def test_a_script_runs_with_this_environments_bpy(tmp_path: Path, bpy_version: s
     assert "wherever it likes" in log.read_text()
 
 
+@pytest.mark.slow
 def test_a_named_executable_is_used_and_decides_the_version(tmp_path: Path, blender: Path) -> None:
     real = executable_version(blender)
     for asked in (None, real, real.rpartition(".")[0]):
@@ -87,6 +88,7 @@ def test_a_named_executable_is_used_and_decides_the_version(tmp_path: Path, blen
         assert (runtime.kind, runtime.version) == ("executable", real)
 
 
+@pytest.mark.slow
 def test_a_script_runs_in_a_named_executable(tmp_path: Path, blender: Path) -> None:
     runtime = find_runtime(None, home=tmp_path, blender_exe=blender)
     output = tmp_path / "out.json"
@@ -98,6 +100,7 @@ def test_a_script_runs_in_a_named_executable(tmp_path: Path, blender: Path) -> N
     assert report["rest"] == ["--flag"]
 
 
+@pytest.mark.slow
 def test_a_script_that_fails_in_a_named_executable_is_an_error(tmp_path: Path, blender: Path) -> None:
     runtime = find_runtime(None, home=tmp_path, blender_exe=blender)
     with pytest.raises(ProgramFailed, match="no such luck"):
@@ -266,6 +269,7 @@ def wait_for(condition, seconds: float = 30.0) -> bool:
     return False
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes through /proc")
 def test_a_script_that_hangs_is_stopped_with_its_children(tmp_path: Path) -> None:
     with pytest.raises(ProgramFailed, match="stopped after 3 s"):
