@@ -183,8 +183,9 @@ def test_a_dry_run_of_all_scenes_shows_the_cost_of_one_system():
 
 @pytest.mark.usefixtures("_alone")
 def test_the_costs_in_the_documentation_are_what_the_command_prints():
-    told = run("--dry-run").output.rpartition("An answer that is none")[0]
-    assert told in DOCS.read_text("utf-8"), (
+    costs, separator, _ = run("--dry-run").output.rpartition("An invalid answer")
+    assert separator
+    assert costs in DOCS.read_text("utf-8"), (
         "copy the output of 'simworlds bench judge --dry-run' to docs/judge.md"
     )
 
