@@ -16,9 +16,7 @@ class _Command(NamedTuple):
 
 _COMMANDS = {
     "bench": _Command("bench.commands.bench", "bench", "Score scenes of any system: 4DBuildBench."),
-    "demo": _Command(
-        "agents.commands.runs", "demo", "Play a prepared session without an API key, in a real Blender."
-    ),
+    "demo": _Command("agents.commands.runs", "demo", "Play a transcript in a real Blender; no key needed."),
     "docs": _Command("kb_serve.cli", "docs", "Query the knowledge base."),
     "doctor": _Command("agents.commands.doctor", "doctor", "Check whether a live Blender can run here."),
     "edit": _Command(

@@ -76,7 +76,7 @@ _scoring = combine(
     multiple=True,
     metavar="NAMES",
     help="Ids, categories, levels, patterns, or all, dynamic, ablation; with commas.  [default: all; of replay, those "
-    "with a session]",
+    "with a transcript]",
 )
 @click.option(
     "--out",

@@ -25,7 +25,7 @@ with_system_options = combine(
         "--system",
         required=True,
         metavar="simworlds|replay|folder=DIR",
-        help="Who makes the scenes: SimWorlds, the sessions that ship with it, or whoever made the files in DIR.",
+        help="Who makes the scenes: SimWorlds, the transcripts that ship with it, or the author of the files in DIR.",
     ),
     click.option("--name", help="What the results call it.  [default: simworlds, replay, DIR's name]"),
     click.option("--model", metavar="NAME", help="simworlds: the model for all roles."),

@@ -90,11 +90,11 @@ class OpenAIChat:
             self._client = openai.OpenAI(api_key=key, base_url=base_url, timeout=timeout, max_retries=retries)
         except (httpx2.InvalidURL, openai.OpenAIError, ValueError, TypeError) as error:
             raise Rejected(
-                f"The model's address (OPENAI_BASE_URL) or a proxy's is invalid: {error}."
+                f"The address of the model (OPENAI_BASE_URL) or of a proxy is invalid: {error}."
             ) from error
         address = self._client.base_url
         if address.scheme not in ("http", "https") or not address.host:
-            raise Rejected(f"The model's address (OPENAI_BASE_URL), {address}, is not a web address.")
+            raise Rejected(f"The address of the model (OPENAI_BASE_URL) is not an HTTP URL: {address}.")
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
         """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Refused, CutShort."""

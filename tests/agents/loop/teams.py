@@ -93,12 +93,12 @@ def _plans(params: Params) -> Reply:
 
 
 def _tactics(params: Params) -> Reply:
-    stage = "modeling" if "not the JSON" in last_words(params) else "uv"
+    stage = "modeling" if "not the requested JSON" in last_words(params) else "uv"
     return reply({"stage": stage, "goal": "Build it."})
 
 
 def _decides(params: Params) -> Reply:
-    if "not the JSON" in last_words(params):
+    if "not the requested JSON" in last_words(params):
         return reply(ADVANCE)
     return reply({"transition": "retry", "reason": "Something is wrong."})  # but what?
 

@@ -124,6 +124,6 @@ def test_only_what_is_there_or_is_added_can_be_changed() -> None:
 
 def test_actors_need_a_task_that_sets_them_in_motion() -> None:
     actor = {"name": "Jug", "deformation_kind": "sim_rigid", "motion_kind": "bake"}
-    with pytest.raises(ValueError, match="give it a task"):
+    with pytest.raises(ValueError, match="no task is in the stage motion"):
         edit_plan(("modify", "texture", "Jug"), actors=[actor])
     assert edit_plan(("modify", "motion", "Jug"), actors=[actor]).actors[0].name == "Jug"

@@ -71,7 +71,7 @@ def test_a_retry_that_does_not_say_what_to_mend_is_sent_back(troubled: Played) -
 
 def test_what_did_not_fit_is_not_kept_in_the_conversation(troubled: Played) -> None:
     last = [one for one in troubled.requests if whose(one)[0] == "planner"][-1]
-    assert "not the JSON" not in words_of(last)
+    assert "not the requested JSON" not in words_of(last)
 
 
 def test_an_unknown_tool_is_told_with_those_that_there_are(troubled: Played) -> None:

@@ -126,7 +126,7 @@ def blended():
 
 def broken(change, *names, **options):
     """A change of objects, as the proofs make it."""
-    return lambda: changes.sabotage(change, list(names), options)
+    return lambda: changes.mutate(change, list(names), options)
 
 
 def no_world():
@@ -155,31 +155,31 @@ CLOTH, SOFT, DUST = {"types": ["CLOTH"]}, {"types": ["SOFT_BODY"]}, {"types": ["
 COLLISION, FLUID = {"types": ["COLLISION"]}, {"types": ["FLUID"]}
 # Predicate → the scene in which it holds, and what ends that.
 CASES = {
-    "renderable": (cloth, broken("hide", "Sheet")),
-    "solver_enabled": (cloth, broken("mute", "Sheet", **CLOTH)),
-    "cloth_modifier": (cloth, broken("remove", "Sheet", **CLOTH)),
-    "cloth_cache_baked": (cloth, broken("free", "Sheet", **CLOTH)),
+    "renderable": (cloth, broken("hide_in_render", "Sheet")),
+    "solver_enabled": (cloth, broken("switch_off", "Sheet", **CLOTH)),
+    "cloth_modifier": (cloth, broken("remove_modifier", "Sheet", **CLOTH)),
+    "cloth_cache_baked": (cloth, broken("free_bake", "Sheet", **CLOTH)),
     "cloth_self_collision": (
         cloth,
         broken("set_value", "Sheet", **CLOTH, path="collision_settings.use_self_collision", value=False),
     ),
     "cloth_pin_group": (cloth, broken("clear_group", "Sheet", **CLOTH, path="settings.vertex_group_mass")),
-    "cloth_collision_partners": (cloth, broken("remove", "Table", **COLLISION)),
-    "soft_modifier": (soft, broken("remove", "Jelly", **SOFT)),
-    "soft_cache_baked": (soft, broken("free", "Jelly", **SOFT)),
-    "soft_collision_partners": (soft, broken("mute", "Block", **COLLISION, where="show_viewport")),
+    "cloth_collision_partners": (cloth, broken("remove_modifier", "Table", **COLLISION)),
+    "soft_modifier": (soft, broken("remove_modifier", "Jelly", **SOFT)),
+    "soft_cache_baked": (soft, broken("free_bake", "Jelly", **SOFT)),
+    "soft_collision_partners": (soft, broken("switch_off", "Block", **COLLISION, where="show_viewport")),
     "soft_goal_group": (soft, broken("set_value", "Jelly", **SOFT, path="settings.use_goal", value=False)),
     "soft_rigid_partners": (soft, no_world),
     "rigid_settings": (rigid, broken("remove_body", "Left")),
-    "rigid_type": (rigid, broken("turn_type", "Left")),
-    "rigid_shape": (rigid, broken("other_shape", "Left", shapes=[])),
-    "rigid_world_populated": (rigid, broken("expel", "Floor", "Left", "Right")),
-    "rigid_cache_baked": (rigid, broken("free_world")),
-    "rigid_constraint": (rigid, broken("untie", "Left")),
-    "rigid_constraint_no_collision": (rigid, broken("let_collide", "Left")),
-    "rigid_collision_modifier": (rigid, broken("remove", "Left", **COLLISION)),
+    "rigid_type": (rigid, broken("swap_body_type", "Left")),
+    "rigid_shape": (rigid, broken("change_shape", "Left", shapes=[])),
+    "rigid_world_populated": (rigid, broken("remove_from_world", "Floor", "Left", "Right")),
+    "rigid_cache_baked": (rigid, broken("free_world_bake")),
+    "rigid_constraint": (rigid, broken("detach_constraint", "Left")),
+    "rigid_constraint_no_collision": (rigid, broken("enable_constraint_collisions", "Left")),
+    "rigid_collision_modifier": (rigid, broken("remove_modifier", "Left", **COLLISION)),
     "rigid_positive_mass": (rigid, broken("set_body", "Left", attribute="mass", value=0.0)),
-    "particle_system": (particles, broken("remove", "Flag", **DUST)),
+    "particle_system": (particles, broken("remove_modifier", "Flag", **DUST)),
     "particle_type": (
         particles,
         broken("set_value", "Flag", **DUST, path="particle_system.settings.type", value="HAIR"),
@@ -188,17 +188,17 @@ CASES = {
         particles,
         broken("set_value", "Flag", **DUST, path="particle_system.settings.count", value=0),
     ),
-    "particle_cache_baked": (particles, broken("free", "Flag", **DUST)),
-    "particle_collision_partners": (particles, broken("remove", "Wall", **COLLISION)),
-    "particle_from_deformed": (particles, broken("put_first", "Flag", **DUST)),
-    "particle_force_fields": (particles, broken("calm", "Wind")),
-    "fluid_modifier": (fluid, broken("remove", "Water", **FLUID)),
-    "fluid_type": (fluid, broken("swap", "Tap", kind="FLOW")),
-    "fluid_domain_exists": (fluid, broken("put_away", "Tap")),
+    "particle_cache_baked": (particles, broken("free_bake", "Flag", **DUST)),
+    "particle_collision_partners": (particles, broken("remove_modifier", "Wall", **COLLISION)),
+    "particle_from_deformed": (particles, broken("move_first", "Flag", **DUST)),
+    "particle_force_fields": (particles, broken("remove_field_strength", "Wind")),
+    "fluid_modifier": (fluid, broken("remove_modifier", "Water", **FLUID)),
+    "fluid_type": (fluid, broken("swap_fluid_type", "Tap", kind="FLOW")),
+    "fluid_domain_exists": (fluid, broken("move_out_of_domain", "Tap")),
     "fluid_flow_count": (fluid, broken("close_flows", flows=["Tap"], least=1)),
-    "fluid_dynamic_effector": (fluid, broken("stand_still", "Paddle")),
-    "fluid_guiding": (guided, broken("unguide")),
-    "fluid_resolution": (fluid, broken("coarsen", "Water", least=32)),
+    "fluid_dynamic_effector": (fluid, broken("remove_keys", "Paddle")),
+    "fluid_guiding": (guided, broken("disable_guiding")),
+    "fluid_resolution": (fluid, broken("lower_resolution", "Water", least=32)),
     "fluid_mesh": (
         fluid,
         broken("set_value", "Water", **FLUID, path="domain_settings.use_mesh", value=False),
@@ -206,9 +206,9 @@ CASES = {
     "fluid_cache_baked": (fluid, lose_files),
     "dense_transform_keys": (recorded, fewer_keys),
     "animated_shape_keys": (blended, no_blend),
-    "static_has_cache": (cloth, broken("free", "Sheet", **CLOTH)),
+    "static_has_cache": (cloth, broken("free_bake", "Sheet", **CLOTH)),
     "static_has_rigid_world": (rigid, no_world),
-    "static_has_solver": (cloth, broken("remove", "Sheet", **CLOTH)),
+    "static_has_solver": (cloth, broken("remove_modifier", "Sheet", **CLOTH)),
 }
 
 

@@ -138,7 +138,7 @@ def test_the_limit_of_the_cost_is_respected(claude, frames):
         (["a.png", "--scene", "cloth_D1_01", "--prompt", "x"], "not both"),
         (["a.png", "--scene", "cloth_D9_01"], "no scene 'cloth_D9_01'"),
         (["a.png", "b.png", "--prompt", "x"], "a.png cannot be read"),
-        (["--price", "cheap", "--dry-run"], "is no price"),
+        (["--price", "cheap", "--dry-run"], "is not a price"),
     ],
 )
 def test_the_reason_why_nothing_was_judged_is_printed(words, told):

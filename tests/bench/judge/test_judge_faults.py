@@ -216,7 +216,7 @@ def test_a_refused_connection_is_reported(frames):
 @pytest.mark.parametrize("name", ["anthropic", "openai"])
 @pytest.mark.parametrize("address", ["nonsense", "ftp://models.invalid", "http://[::1"])
 def test_an_invalid_address_is_reported_before_any_request(name, address):
-    with pytest.raises(NotJudged, match="The model's address") as caught:
+    with pytest.raises(NotJudged, match="The address of the model") as caught:
         provider_of(name, base_url=address).ready()
     assert caught.value.reason == "not set up"
 

@@ -360,9 +360,9 @@ def test_progress_is_told_as_frames_go_by(session: LiveSession) -> None:
         ({"actors": ["Crate"] * 2}, "twice"),
         ({"actors": [f"A{n}" for n in range(9)]}, "actors"),
         ({"actors": ["Crate"], "frames": [1, 61]}, "Frame 61 is outside the scene's range, 1 to 60"),
-        ({"actors": ["Crate"], "frames": [5]}, "one frame alone"),
+        ({"actors": ["Crate"], "frames": [5]}, "a single frame shows no motion"),
         ({"actors": ["Crate"], "frames": [1, 2.5]}, "frames"),
-        ({"actors": ["Crate"], "phases": [{"name": "a", "start": 9, "end": 9}]}, "not after its start"),
+        ({"actors": ["Crate"], "phases": [{"name": "a", "start": 9, "end": 9}]}, "must end after its start"),
         ({"actors": ["Crate"], "phases": [{"name": "a", "start": 1}]}, "end"),
         ({"actors": ["Crate"], "phases": [{"name": "a", "start": 0, "end": 9}]}, "Frame 0 is outside"),
         (

@@ -913,7 +913,7 @@ def test_five_hundred_objects_take_less_than_a_third_of_a_second(session: LiveSe
     )
     arguments = {"detail": "normal", "objects": None, "sections": list(SECTIONS)}
     spent = session.run(
-        "import time\nfrom simworlds_worker.state.scene_state import scene_state\n"
+        "import time\nfrom simworlds_worker.state.readout import scene_state\n"
         f"def spent():\n    started = time.process_time()\n    scene_state({arguments}, print)\n"
         "    return time.process_time() - started\nmin(spent() for _ in range(4))"
     )

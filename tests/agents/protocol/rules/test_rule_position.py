@@ -256,7 +256,7 @@ def test_a_camera_that_lies_on_its_side_has_no_left(session: LiveSession) -> Non
     script = cube("A", (1, 0, 0)) + cube("B", (0, 0, 0)) + tipped
     found = the_finding(judged(session, "R12", script, kind="RightOf", a="A", b="B", frame="camera"))
     assert found.outcome == "undecided"
-    assert "upright" in found.message
+    assert "vertical" in found.message
 
 
 def test_a_moving_camera_is_taken_where_it_is_first(session: LiveSession) -> None:

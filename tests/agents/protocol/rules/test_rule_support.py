@@ -243,7 +243,7 @@ def test_turned_and_scaled_meshes_rest_as_others_do(session: LiveSession, more: 
 @pytest.mark.parametrize(
     ("more", "reason"),
     [
-        ('bpy.data.objects["Planks"].data.vertices[0].co.x = math.nan', "not numbers"),
+        ('bpy.data.objects["Planks"].data.vertices[0].co.x = math.nan', "not finite"),
         ('bpy.data.objects["Planks"].data.clear_geometry()', "no object named 'Crate' has a surface"),
         ('bpy.data.collections["Crate"].name = "Box"', "no object named 'Crate' has a surface"),
     ],

@@ -169,7 +169,7 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(session: LiveSession,
             "relations[0].a: There is no object 'Lmap'; did you mean 'Lamp'",
         ),
         (["text.blend", "--plan", "loose.json"], "tolerances: contact cannot be loosened"),
-        (["text.blend", "--image", "nowhere/seen.png"], "nowhere to put seen.png into"),
+        (["text.blend", "--image", "nowhere/seen.png"], "nowhere for seen.png does not exist"),
         (["text.blend", "--blender-exe", "nowhere/blender"], "No Blender was found"),
     ],
 )
