@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rich.console import Console, Group
     from rich.text import Text
 
-    from agents.commands.doctor_checks import BlenderChoice, CheckResult, State
+    from agents.commands.doctor_checks import BlenderChoice, DoctorResult, State
     from simworlds.sandbox.confined_command import Kind
 
 _NEEDED = ("Blender", "Start", "Sandbox")  # without these Blender cannot work, or must not
@@ -51,11 +51,11 @@ def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | Non
     sys.exit(0 if well else 1)
 
 
-def _run_checks(choice: BlenderChoice, console: Console) -> list[CheckResult]:
+def _run_checks(choice: BlenderChoice, console: Console) -> list[DoctorResult]:
     """The result of each check; on a terminal, what is being done is shown meanwhile."""
     from agents.commands.doctor_checks import checks  # noqa: PLC0415 - not for --help
 
-    results: list[CheckResult] = []
+    results: list[DoctorResult] = []
     with console.status("") as status, closing(checks(choice)) as each:
         for doing, check in each:
             status.update(f"[dim]{doing} …[/dim]")
@@ -63,7 +63,7 @@ def _run_checks(choice: BlenderChoice, console: Console) -> list[CheckResult]:
     return results
 
 
-def _page(results: list[CheckResult], well: bool) -> Group:
+def _page(results: list[DoctorResult], well: bool) -> Group:
     from rich.console import Group  # noqa: PLC0415 - not for --json
     from rich.table import Table  # noqa: PLC0415 - not for --json
     from rich.text import Text  # noqa: PLC0415

@@ -67,7 +67,7 @@ _ESCAPES = {
 
 
 @dataclass(frozen=True, slots=True)
-class CheckResult:
+class DoctorResult:
     """The result of a check. ``poor``: Blender works, but something is missing; ``advice``: what would help.
 
     ``place`` is a path concerned; ``keeps`` and ``lacks`` list what the sandbox does and does not guarantee; ``data``
@@ -93,7 +93,7 @@ class BlenderChoice:
     sandbox: Kind | None = None
 
 
-Check = tuple[str, "Callable[[], CheckResult]"]
+Check = tuple[str, "Callable[[], DoctorResult]"]
 
 
 def checks(choice: BlenderChoice) -> Generator[Check]:
@@ -133,11 +133,11 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
 # Blender
 
 
-def _find(choice: BlenderChoice, runtimes: list[Runtime]) -> CheckResult:
+def _find(choice: BlenderChoice, runtimes: list[Runtime]) -> DoctorResult:
     try:
         runtime = find_blender(choice.version, choice.blender_exe)
     except CannotStart as error:
-        return CheckResult("Blender", "bad", str(error))
+        return DoctorResult("Blender", "bad", str(error))
     runtimes.append(runtime)
     how = {
         "executable": "given by --blender-exe or BLENDER_EXE",
@@ -145,10 +145,10 @@ def _find(choice: BlenderChoice, runtimes: list[Runtime]) -> CheckResult:
         "managed": "the bpy package of an environment installed for it",
     }[runtime.kind]
     data = {"version": runtime.version, "kind": runtime.kind, "executable": str(runtime.executable)}
-    return CheckResult("Blender", "good", f"{runtime.version}, {how}", place=data["executable"], data=data)
+    return DoctorResult("Blender", "good", f"{runtime.version}, {how}", place=data["executable"], data=data)
 
 
-def _start(launch: Launch, folder: RunFolder, held: ExitStack, started: list[Supervisor]) -> CheckResult:
+def _start(launch: Launch, folder: RunFolder, held: ExitStack, started: list[Supervisor]) -> DoctorResult:
     os.environ[_VARIABLE] = "x"
     began = time.perf_counter()
     try:
@@ -159,20 +159,20 @@ def _start(launch: Launch, folder: RunFolder, held: ExitStack, started: list[Sup
         del os.environ[_VARIABLE]
     seconds = time.perf_counter() - began
     text = f"ready after {_time(seconds)}"
-    return CheckResult("Start", "good", text, data={"seconds": round(seconds, 3)})
+    return DoctorResult("Start", "good", text, data={"seconds": round(seconds, 3)})
 
 
-def _not_started(runtime: Runtime, error: str) -> CheckResult:
+def _not_started(runtime: Runtime, error: str) -> DoctorResult:
     missing = missing_libraries(runtime, error)
     if not missing:
-        return CheckResult("Start", "bad", error)
+        return DoctorResult("Start", "bad", error)
     packages = sorted({PACKAGES[library] for library in missing if library in PACKAGES})
     other = [library for library in missing if library not in PACKAGES]
     advice = f"apt-get install {' '.join(packages)}" if packages else ""
     if other:
         advice += f"{' and ' if advice else ''}the packages that contain {', '.join(other)}"
     text = f"system libraries are missing: {', '.join(missing)}"
-    return CheckResult("Start", "bad", text, advice=advice, data={"missing": missing, "packages": packages})
+    return DoctorResult("Start", "bad", text, advice=advice, data={"missing": missing, "packages": packages})
 
 
 def missing_libraries(runtime: Runtime, error: str) -> list[str]:
@@ -206,7 +206,7 @@ def _output(words: list[str]) -> str:
 # The sandbox
 
 
-def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> CheckResult:
+def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> DoctorResult:
     data = {"kind": sandbox.kind, "holds": sandbox.holds, "lacks": sandbox.lacks}
     with tempfile.TemporaryDirectory(prefix=".simworlds-doctor-", dir=_outside()) as outside:
         file = Path(outside) / "file"
@@ -215,14 +215,14 @@ def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Che
         try:
             tried: dict[str, Any] = blender.call("check_escapes", request, timeout=_TRY_SECONDS).value
         except BlenderError as error:
-            return CheckResult("Sandbox", "bad", str(error), data=data)
+            return DoctorResult("Sandbox", "bad", str(error), data=data)
     escapes = [text for name, text in _ESCAPES.items() if tried.get(name)]
     expected = {_ESCAPES["read"], _ESCAPES["write"]} if sandbox.kind == "none" else set[str]()
     if not confine_self.has_seccomp():
         expected |= {_ESCAPES["network"], _ESCAPES["process"]}
     if broken := [text for text in escapes if text not in expected]:
         text = f"{sandbox.kind}, but it does not work: {'; '.join(broken)}"
-        return CheckResult("Sandbox", "bad", text, lacks=tuple(broken), data=data)
+        return DoctorResult("Sandbox", "bad", text, lacks=tuple(broken), data=data)
     advice = _better(sandbox.kind) if wanted is None else ""
     text = {
         "bubblewrap": "bubblewrap, tested: nothing escapes",
@@ -230,7 +230,7 @@ def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Che
         "none": "none: code in Blender can read and write your files",
     }[sandbox.kind]
     state: State = "poor" if sandbox.kind == "none" else "good"
-    return CheckResult(
+    return DoctorResult(
         "Sandbox", state, text, advice=advice, keeps=sandbox.holds, lacks=sandbox.lacks, data=data
     )
 
@@ -254,50 +254,50 @@ def _better(kind: Kind) -> str:
 
 
 def _tried(
-    blender: Supervisor, name: str, key: str, describe: Callable[[dict[str, Any]], CheckResult]
-) -> CheckResult:
+    blender: Supervisor, name: str, key: str, describe: Callable[[dict[str, Any]], DoctorResult]
+) -> DoctorResult:
     try:
         return describe(blender.call(key, {}, timeout=_TRY_SECONDS).value)
     except (LookupError, TypeError, BlenderError) as error:
-        return CheckResult(name, "poor", f"does not work: {error}".partition(" A new Blender")[0])
+        return DoctorResult(name, "poor", f"does not work: {error}".partition(" A new Blender")[0])
 
 
-def _workbench(facts: dict[str, Any]) -> CheckResult:
+def _workbench(facts: dict[str, Any]) -> DoctorResult:
     if facts["fault"]:
         advice = "apt-get install libegl1 libgl1-mesa-dri" if "EGL" in facts["fault"] else ""
         text = f"does not work: {facts['fault']}. Previews use Cycles instead, which is slower"
-        return CheckResult("Workbench", "poor", text, advice=advice, data=facts)
+        return DoctorResult("Workbench", "poor", text, advice=advice, data=facts)
     where = f" on {facts['renderer']}" if facts["renderer"] else ""
     slow = "; without a graphics card, a first EEVEE frame takes half a minute" if facts["software"] else ""
-    return CheckResult(
+    return DoctorResult(
         "Workbench", "good", f"first image in {_time(facts['seconds'])}{where}{slow}", data=facts
     )
 
 
-def _cycles(facts: dict[str, Any]) -> CheckResult:
+def _cycles(facts: dict[str, Any]) -> DoctorResult:
     if facts["fault"]:
-        return CheckResult("Cycles", "poor", f"does not work: {facts['fault']}", data=facts)
+        return DoctorResult("Cycles", "poor", f"does not work: {facts['fault']}", data=facts)
     cards = [f"{name} ({kind})" for kind, names in facts["devices"].items() for name in names]
     where = (
         f"the processor and {', '.join(cards)}" if cards else "the processor, without a usable graphics card"
     )
-    return CheckResult("Cycles", "good", f"first image in {_time(facts['seconds'])}, on {where}", data=facts)
+    return DoctorResult("Cycles", "good", f"first image in {_time(facts['seconds'])}, on {where}", data=facts)
 
 
-def _films(facts: dict[str, Any]) -> CheckResult:
+def _films(facts: dict[str, Any]) -> DoctorResult:
     if not facts["supported"]:
-        return CheckResult("Films", "poor", "this Blender can write only single frames", data=facts)
-    return CheckResult("Films", "good", f"through FFmpeg (libavcodec {facts['version']})", data=facts)
+        return DoctorResult("Films", "poor", "this Blender can write only single frames", data=facts)
+    return DoctorResult("Films", "good", f"through FFmpeg (libavcodec {facts['version']})", data=facts)
 
 
-def _fluids(launch: Launch) -> CheckResult:
+def _fluids(launch: Launch) -> DoctorResult:
     """Runs in processes of its own, since a Blender without fluid support crashes."""
     try:
         support = check_fluids(launch)
     except CannotStart as error:
-        return CheckResult("Fluids", "poor", str(error))
+        return DoctorResult("Fluids", "poor", str(error))
     state: State = "good" if support.fault is None else "poor"
-    return CheckResult("Fluids", state, str(support).partition(" A new Blender")[0], data=asdict(support))
+    return DoctorResult("Fluids", state, str(support).partition(" A new Blender")[0], data=asdict(support))
 
 
 def _time(seconds: float) -> str:
@@ -307,7 +307,7 @@ def _time(seconds: float) -> str:
 # Around Blender
 
 
-def _knowledge(version: str | None) -> CheckResult:
+def _knowledge(version: str | None) -> DoctorResult:
     path = os.pathsep.join(filter(None, [str(_SOURCE), os.environ.get("PYTHONPATH")]))
     try:
         done = subprocess.run(
@@ -321,16 +321,16 @@ def _knowledge(version: str | None) -> CheckResult:
         )
         bases: list[dict[str, Any]] = json.loads(done.stdout)
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
-        return CheckResult("Knowledge", "poor", f"the list of bases cannot be read: {error}")
+        return DoctorResult("Knowledge", "poor", f"the list of bases cannot be read: {error}")
     minors = {".".join(str(base.get("blender", "")).split(".")[:2]): base for base in bases}
     minor = ".".join((version or "").split(".")[:2])
     data = {"built": sorted(minors), "wanted": minor}
     if (base := minors.get(minor)) is not None:
         text = f"for Blender {base['blender']}, {base.get('bytes', 0) / 1e6:,.0f} MB"
-        return CheckResult("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
+        return DoctorResult("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
     have = f", only for {', '.join(sorted(minors))}" if minors else ""
     advice = f"simworlds kb build {minor}".rstrip()
-    return CheckResult(
+    return DoctorResult(
         "Knowledge",
         "poor",
         f"no base{f' for Blender {minor}' if minor else ''}{have}",
@@ -339,7 +339,7 @@ def _knowledge(version: str | None) -> CheckResult:
     )
 
 
-def _room(sandbox: Sandbox) -> CheckResult:
+def _room(sandbox: Sandbox) -> DoctorResult:
     place = runs_folder()
     existing = next(folder for folder in (place, *place.parents) if folder.is_dir())
     free = shutil.disk_usage(existing).free
@@ -350,5 +350,5 @@ def _room(sandbox: Sandbox) -> CheckResult:
     data = {"memory": memory, "free": free, "runs": str(place)}
     if free < _LEAST_FREE:
         advice = "free some space there, or set SIMWORLDS_HOME"
-        return CheckResult("Room", "poor", text, place=str(place), advice=advice, data=data)
-    return CheckResult("Room", "good", text, place=str(place), data=data)
+        return DoctorResult("Room", "poor", text, place=str(place), advice=advice, data=data)
+    return DoctorResult("Room", "good", text, place=str(place), data=data)

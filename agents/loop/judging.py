@@ -12,7 +12,7 @@ from agents.loop.events import Reviewed, Verified
 from agents.loop.run import RUNNER, VERIFIER, VERIFY
 from agents.plan.part import STAGES
 from agents.plan.tactical import Review
-from simworlds.llm.errors import Misfit, Refused
+from simworlds.llm.errors import Declined, Misfit
 from simworlds.llm.messages import Text
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def review(run: Run, reviewer: Reviewer, tactic: TacticalPlan, actors: Sequence[
     """The reviewer's verdict. A reviewer that declines, or gives no valid answer, blocks."""
     try:
         return reviewer.review(tactic, run.attempt or 1, evidence(run, tactic.stage, actors))
-    except (Refused, Misfit) as error:
+    except (Declined, Misfit) as error:
         return Review(judgements=(), blocking=True, summary=f"There is no review: {error}"[:4000])
 
 

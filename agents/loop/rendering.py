@@ -16,7 +16,7 @@ from agents.loop.run import RUNNER
 from agents.plan.tactical import FinalReview
 from agents.roles.coder import Coder
 from agents.roles.final_reviewer import final_review
-from simworlds.llm.errors import Misfit, Refused
+from simworlds.llm.errors import Declined, Misfit
 from simworlds.llm.messages import Picture, Text
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def review(run: Run, task: RunTask, rendering: RenderResult, number: int) -> Fin
         content += [Text(f"Frame {path.stem} ({25 * place} %):"), Picture(preview_png(path))]
     try:
         review = final_review(run.context, task.plan_text, content, edit=task.edit)
-    except (Refused, Misfit) as error:
+    except (Declined, Misfit) as error:
         review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
     run.journal.note(FinalReviewed(round=number, review=review))
     return review

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from simworlds.llm import tokens
 from simworlds.llm.context import ContextLimits, fit
-from simworlds.llm.errors import CutShort, Misfit, Refused
+from simworlds.llm.errors import CutShort, Declined, Misfit
 from simworlds.llm.messages import Ask, Text, ToolResult, user
 from simworlds.llm.structured import ask_for, complaint, read
 
@@ -116,7 +116,7 @@ class Conversation:
         while True:
             try:
                 turn = self._context.answer(self._ask(stage, self._messages), self._say)
-            except Refused as refused:
+            except Declined as refused:
                 return WorkResult("refused", str(refused), calls, refused.turn)
             except CutShort as cut:
                 cuts += 1
@@ -142,7 +142,7 @@ class Conversation:
         worked = self.work(stage, *said, pinned=pinned)
         if worked.how != "done" or worked.turn is None:
             if worked.how == "refused":
-                raise Refused(worked.said, _sure(worked.turn))
+                raise Declined(worked.said, _sure(worked.turn))
             self._hear(("That is enough. Give your answer now, as the JSON that is asked for.",), pinned)
             return self._read_on(stage, reader, self._messages)
         try:

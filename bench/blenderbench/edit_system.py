@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from pydantic import BaseModel, ConfigDict
 
-from bench.blenderbench.errors import BadPicture, TaskFailed
+from bench.blenderbench.errors import TaskFailed, UnreadableRender
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import read, write
-from bench.blenderbench.task_scenes import Rendered, RenderSettings, make_start, render
+from bench.blenderbench.task_scenes import EditRenderSettings, Rendered, make_start, render
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -72,7 +72,7 @@ class PreparedStart(BaseModel):
 
 
 def prepare_start(
-    task: BenchTask, place: TaskFolder, rendering: RenderSettings, tell: Tell
+    task: BenchTask, place: TaskFolder, rendering: EditRenderSettings, tell: Tell
 ) -> tuple[PreparedStart, float | None]:
     """Makes the start scene if it is missing. Returns it, and the PL of its render against the set's own."""
     if place.started.is_file():
@@ -91,5 +91,5 @@ def prepare_start(
         return started, None
     try:
         return started, photometric_loss(read_picture(place.start_picture), read_picture(task.start))
-    except BadPicture as error:
+    except UnreadableRender as error:
         raise TaskFailed(str(error)) from error

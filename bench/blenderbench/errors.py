@@ -2,7 +2,7 @@
 
 BlenderBenchError
 ├── NoTasks      the folder is not a BlenderBench, or has no such task
-├── BadPicture   a picture that cannot be compared: not a PNG, broken, or too large
+├── UnreadableRender   a picture that cannot be compared: not a PNG, broken, or too large
 ├── NoWeights    CLIP's weights are missing or invalid
 ├── BadResults   a folder of results that cannot be continued or read
 ├── EditSystemNotReady     a system that cannot run here; no task was started
@@ -20,7 +20,7 @@ class NoTasks(BlenderBenchError):  # noqa: N818 - these read as the states they 
     """The set or the task does not exist."""
 
 
-class BadPicture(BlenderBenchError):  # noqa: N818
+class UnreadableRender(BlenderBenchError):  # noqa: N818
     """A picture cannot be compared."""
 
 

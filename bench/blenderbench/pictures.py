@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PIL import Image, UnidentifiedImageError
 
-from bench.blenderbench.errors import BadPicture
+from bench.blenderbench.errors import UnreadableRender
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -20,13 +20,13 @@ _DEEP_GREY = ("I", "F")  # how the names of Pillow's modes with more than 8 bits
 
 
 def size_of(path: Path) -> tuple[int, int]:
-    """Width and height of a PNG that can be compared, from its first bytes. Raises BadPicture."""
+    """Width and height of a PNG that can be compared, from its first bytes. Raises UnreadableRender."""
     with _opened(path) as picture:
         return picture.size
 
 
 def read_picture(path: Path) -> Image.Image:
-    """A PNG as RGB; transparency is left out, as by the peer. Raises BadPicture."""
+    """A PNG as RGB; transparency is left out, as by the peer. Raises UnreadableRender."""
     with _opened(path) as picture:
         picture.load()
         if picture.mode == "P":  # a palette may hold transparency of its own kind
@@ -43,18 +43,20 @@ def _opened(path: Path) -> Generator[Image.Image]:
                 _check(path, picture)
                 yield picture
     except UnidentifiedImageError as error:
-        raise BadPicture(f"{path} is not a PNG.") from error
+        raise UnreadableRender(f"{path} is not a PNG.") from error
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
-        raise BadPicture(f"{path} is larger than {MOST_PIXELS:,} pixels.") from error
+        raise UnreadableRender(f"{path} is larger than {MOST_PIXELS:,} pixels.") from error
     except (OSError, ValueError, SyntaxError, MemoryError) as error:  # what Pillow raises for broken files
-        raise BadPicture(f"{path} cannot be read as a picture: {error}.") from error
+        raise UnreadableRender(f"{path} cannot be read as a picture: {error}.") from error
 
 
 def _check(path: Path, picture: Image.Image) -> None:
     width, height = picture.size
     if width * height > MOST_PIXELS:
-        raise BadPicture(f"{path} has {width} × {height} pixels; {MOST_PIXELS:,} at most.")
+        raise UnreadableRender(f"{path} has {width} × {height} pixels; {MOST_PIXELS:,} at most.")
     if max(width, height) > LONGEST * min(width, height):
-        raise BadPicture(f"{path} is {width} × {height}: one side is more than {LONGEST} times the other.")
+        raise UnreadableRender(
+            f"{path} is {width} × {height}: one side is more than {LONGEST} times the other."
+        )
     if picture.mode.startswith(_DEEP_GREY):
-        raise BadPicture(f"{path} is grey with more than 8 bits; save it as RGB with 8 bits a channel.")
+        raise UnreadableRender(f"{path} is grey with more than 8 bits; save it as RGB with 8 bits a channel.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from bench.blenderbench.errors import BadPicture, BadResults
+from bench.blenderbench.errors import BadResults, UnreadableRender
 from bench.blenderbench.n_clip import clip_distance
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
@@ -83,7 +83,7 @@ def _scored(place: TaskFolder, record: TaskRecord, rule: ScoringRule) -> Score:
     try:
         goal = read_picture(place.goal)
         pictures = [read_picture(place.root / file) for file in record.rounds]
-    except BadPicture as error:
+    except UnreadableRender as error:
         return bare.model_copy(update={"missing": dict.fromkeys(rule.metrics, str(error))})
     rounds = tuple(
         _round(file, picture, goal, rule) for file, picture in zip(record.rounds, pictures, strict=True)

@@ -13,7 +13,7 @@ from agents.loop.stage import MAX_REPLANS_PER_STAGE, MAX_RETRIES_PER_STAGE
 from bench.blenderbench.edit_system import EditOutput, prepare_start
 from bench.blenderbench.errors import EditSystemNotReady, TaskFailed
 from bench.blenderbench.results import round_file
-from bench.blenderbench.task_scenes import RenderSettings, render
+from bench.blenderbench.task_scenes import EditRenderSettings, render
 from bench.sweep.command import last_output, run_simworlds
 from bench.sweep.systems.simworlds_runs import KEYS
 
@@ -42,7 +42,7 @@ class SimWorldsEdit:
     the command, such as its model; ``limits``: of one session.
     """
 
-    rendering: RenderSettings
+    rendering: EditRenderSettings
     reference: Reference = "goal"
     options: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.blenderbench.edit_system import EditOutput, prepare_start
-from bench.blenderbench.errors import BadPicture, BadResults, NoTasks, TaskFailed
+from bench.blenderbench.errors import BadResults, NoTasks, TaskFailed, UnreadableRender
 from bench.blenderbench.pictures import read_picture
 from bench.blenderbench.results import round_file
 from bench.blenderbench.simworlds_edit import SimWorldsEdit
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from bench.blenderbench.edit_system import EditSystem, Tell
     from bench.blenderbench.results import TaskFolder
     from bench.blenderbench.simworlds_edit import Reference
-    from bench.blenderbench.task_scenes import RenderSettings
+    from bench.blenderbench.task_scenes import EditRenderSettings
     from bench.blenderbench.task_set import BenchTask
 
 MOST_ROUNDS = 100
@@ -32,7 +32,7 @@ _FOLDER = "folder="
 class UneditedStart:
     """Edits nothing: the score of the start scene."""
 
-    rendering: RenderSettings
+    rendering: EditRenderSettings
     kind: str = "start"
     name: str = "unedited"
     takes_over: bool = False
@@ -82,7 +82,7 @@ class RendersFolder:
                 raise TaskFailed(f"{path} is a link out of {self.root}.")
             try:
                 read_picture(path)
-            except BadPicture as error:
+            except UnreadableRender as error:
                 raise TaskFailed(str(error)) from error
             shutil.copyfile(path, place.root / round_file(number))
         return EditOutput(tuple(round_file(number) for number in range(1, len(found) + 1)), cost=None)
@@ -99,7 +99,7 @@ def _rounds(folder: Path) -> Iterator[Path]:
 
 def system_of(
     name: str,
-    rendering: RenderSettings,
+    rendering: EditRenderSettings,
     reference: Reference,
     options: tuple[str, ...],
     limits: tuple[str, ...],

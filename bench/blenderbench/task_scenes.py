@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict
 
 from bench.audit.untrusted_blend import AUDITOR
-from bench.blenderbench.errors import BadPicture, TaskFailed
+from bench.blenderbench.errors import TaskFailed, UnreadableRender
 from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox, default_limits
@@ -44,7 +44,7 @@ _LISTED = 5
 
 
 @dataclass(frozen=True, slots=True)
-class RenderSettings:
+class EditRenderSettings:
     """How scenes are rendered: samples of Cycles, the Blender (by default this environment's) and its limits.
 
     ``seconds``: of one step in it; ``memory``: in bytes (None: three quarters of the machine's).
@@ -73,7 +73,7 @@ class Rendered(BaseModel):
     samples: int
 
 
-def make_start(task: BenchTask, blend: Path, settings: RenderSettings) -> tuple[str, ...]:
+def make_start(task: BenchTask, blend: Path, settings: EditRenderSettings) -> tuple[str, ...]:
     """Runs a task's ``start.py`` on its raw file, and saves the scene as ``blend`` with all that can be packed.
 
     Returns, in words, what could not be packed. Raises TaskFailed for what is the task's fault, CannotStart where no
@@ -87,7 +87,7 @@ def make_start(task: BenchTask, blend: Path, settings: RenderSettings) -> tuple[
         return scene.save(blend)
 
 
-def render(blend: Path, picture: Path, size: tuple[int, int], settings: RenderSettings) -> Rendered:
+def render(blend: Path, picture: Path, size: tuple[int, int], settings: EditRenderSettings) -> Rendered:
     """Renders a scene through its own camera, as ``picture``. Raises TaskFailed, CannotStart."""
     with _opened(blend, (blend,), picture.parent, settings) as scene:
         return scene.render(picture, size, settings.samples)
@@ -132,7 +132,9 @@ class _Scene:
 
 
 @contextmanager
-def _opened(blend: Path, read: tuple[Path, ...], beside: Path, settings: RenderSettings) -> Generator[_Scene]:
+def _opened(
+    blend: Path, read: tuple[Path, ...], beside: Path, settings: EditRenderSettings
+) -> Generator[_Scene]:
     """A file, open. The process has its folder in ``beside``, on the disk of what is made.
 
     Raises TaskFailed, CannotStart.
@@ -155,7 +157,7 @@ def _opened(blend: Path, read: tuple[Path, ...], beside: Path, settings: RenderS
             process.close()
     except CannotStart:
         raise
-    except (BlenderError, BadPicture) as error:
+    except (BlenderError, UnreadableRender) as error:
         raise TaskFailed(f"{blend.name}: {error}") from error
     except (LookupError, TypeError, ValueError) as error:  # code in it may answer in the worker's name
         raise TaskFailed(f"{blend.name}: Blender's reply was not valid ({error})") from error

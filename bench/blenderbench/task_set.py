@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from bench.audit.untrusted_blend import NotScored, resolve_blend
-from bench.blenderbench.errors import BadPicture, NoTasks
+from bench.blenderbench.errors import NoTasks, UnreadableRender
 from bench.blenderbench.pictures import size_of
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def _task(root: Path, folder: Path) -> BenchTask:
         size = size_of(goal)
     except NotScored as error:
         raise _Fault(f"{blend}: {error}") from error
-    except BadPicture as error:
+    except UnreadableRender as error:
         raise _Fault(str(error)) from error
     if min(size) < _SHORTEST_SIDE:
         raise _Fault(f"{goal} is {size[0]} × {size[1]}; a goal has at least {_SHORTEST_SIDE} pixels a side.")

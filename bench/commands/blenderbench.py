@@ -93,12 +93,12 @@ def run(folder: Path, **given: Any) -> None:
     """
     from bench.blenderbench.run import run as start  # noqa: PLC0415
     from bench.blenderbench.systems import system_of  # noqa: PLC0415
-    from bench.blenderbench.task_scenes import RenderSettings  # noqa: PLC0415
+    from bench.blenderbench.task_scenes import EditRenderSettings  # noqa: PLC0415
     from bench.blenderbench.task_set import read_set, select_tasks  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
     memory = int(given["memory"] * _GIB) if given["memory"] else None
-    rendering = RenderSettings(
+    rendering = EditRenderSettings(
         given["samples"], given["blender"], given["blender_exe"], given["seconds"], memory
     )
     options = _words(given, "model", "blender", "blender_exe")

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from bench.judge.errors import NotJudged, Reason
 from bench.judge.usage import AnswerCost, TokenUsage
-from simworlds.llm.errors import CutShort, Misfit, ModelError, OverBudget, Refused, Rejected, Unreachable
+from simworlds.llm.errors import CutShort, Declined, Misfit, ModelError, OverBudget, Rejected, Unreachable
 from simworlds.llm.spending import Metered, Spending
 from simworlds.llm.structured import ask_for, fits
 
@@ -26,7 +26,7 @@ TRIES = 3
 """Attempts at a valid answer."""
 _REASONS: tuple[tuple[type[ModelError], Reason], ...] = (
     (OverBudget, "over budget"),
-    (Refused, "refused"),
+    (Declined, "refused"),
     (CutShort, "cut short"),
     (Misfit, "malformed"),
     (Rejected, "rejected"),

@@ -97,7 +97,7 @@ class OpenAIChat:
             raise Rejected(f"The address of the model (OPENAI_BASE_URL) is not an HTTP URL: {address}.")
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
-        """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Refused, CutShort."""
+        """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Declined, CutShort."""
         del on_text  # answers come in one piece
         package = self._package
         try:

@@ -42,7 +42,7 @@ class RelationMomentRow(_Part):
     seen: dict[str, Any] = {}
 
 
-class RelationRow(_Part):
+class AuditedRelation(_Part):
     """See ``bench.audit.spr.RelationResult``."""
 
     type: str
@@ -57,6 +57,6 @@ class AuditFile(_Part):
     """See ``bench.audit.audit.Audit``."""
 
     actors: tuple[ActorRow, ...] = ()
-    relations: tuple[RelationRow, ...] = ()
+    relations: tuple[AuditedRelation, ...] = ()
     assertions: tuple[CheckRow, ...] = ()
     blend: dict[str, Any] = {}

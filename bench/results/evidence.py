@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.results.audit_file import ActorRow, CheckRow, RelationRow
+    from bench.results.audit_file import ActorRow, AuditedRelation, CheckRow
     from bench.results.scores import SceneResult
     from bench.sweep.records import File
 
@@ -206,7 +206,7 @@ def _relations(audit: AuditFile, score: float | None) -> Iterator[EvidencePart]:
         yield EvidencePart("Relations", "", score, tuple(_relation(relation) for relation in audit.relations))
 
 
-def _relation(relation: RelationRow) -> EvidenceLine:
+def _relation(relation: AuditedRelation) -> EvidenceLine:
     seen = relation.why or "; ".join(
         f"{moment.when}: {moment.unit} {_format_values(moment.seen)}" for moment in relation.moments
     )

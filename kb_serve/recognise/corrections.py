@@ -158,7 +158,7 @@ def _with_step(chain: Chain, number: int, name: str) -> Chain:
     return replace(chain, steps=tuple(steps))
 
 
-class RemovedSymbols:
+class RemovedSymbolLookup:
     """Looks up symbols that only other versions have."""
 
     def __init__(self, reader: BaseReader) -> None:

@@ -13,7 +13,7 @@ from kb_serve.recognise.recognition import MissingName
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.chains import Chain
-    from kb_serve.recognise.corrections import Corrector, RemovedSymbol, RemovedSymbols
+    from kb_serve.recognise.corrections import Corrector, RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
@@ -36,7 +36,7 @@ class Expressions:
     """Recognises code against one base."""
 
     def __init__(
-        self, reader: BaseReader, resolver: Resolver, corrector: Corrector, removed: RemovedSymbols
+        self, reader: BaseReader, resolver: Resolver, corrector: Corrector, removed: RemovedSymbolLookup
     ) -> None:
         self._reader = reader
         self._resolver = resolver

@@ -14,7 +14,7 @@ from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
-    from kb_serve.recognise.corrections import RemovedSymbol, RemovedSymbols
+    from kb_serve.recognise.corrections import RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.resolver import Resolver
@@ -30,7 +30,7 @@ class Messages:
     """Recognises error messages against one base."""
 
     def __init__(
-        self, reader: BaseReader, resolver: Resolver, removed: RemovedSymbols, enum_values: EnumValues
+        self, reader: BaseReader, resolver: Resolver, removed: RemovedSymbolLookup, enum_values: EnumValues
     ) -> None:
         self._reader = reader
         self._resolver = resolver

@@ -11,7 +11,7 @@ from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.calls import NO_OVERRIDE, OVERRIDE, wrong_arguments
 from kb_serve.recognise.chains import Chain, find_chains
-from kb_serve.recognise.corrections import Corrector, RemovedSymbols, nearest
+from kb_serve.recognise.corrections import Corrector, RemovedSymbolLookup, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
 from kb_serve.recognise.message_patterns import without_callers_names, without_wording
@@ -38,7 +38,7 @@ class Recogniser:
         self._reader = reader
         self._resolver = Resolver(reader)
         self._corrector = Corrector(reader, self._resolver)
-        self._removed = RemovedSymbols(reader)
+        self._removed = RemovedSymbolLookup(reader)
         self._spellings = Spellings(reader, self._removed)
         self._enum_values = EnumValues(reader)
         self._messages = Messages(reader, self._resolver, self._removed, self._enum_values)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class NameMatch:
+class RecognisedName:
     """A symbol or page that the query names. ``sure`` is 1 for an exact spelling and less for a likely reading."""
 
     id: str
@@ -37,7 +37,7 @@ class Recognition:
     ``notes`` are further sentences for the caller.
     """
 
-    matches: list[NameMatch] = field(default_factory=list)
+    matches: list[RecognisedName] = field(default_factory=list)
     missing: list[MissingName] = field(default_factory=list)
     corrections: list[Correction] = field(default_factory=list)
     removed: list[RemovedSymbol] = field(default_factory=list)
@@ -48,11 +48,11 @@ class Recognition:
         for number, match in enumerate(self.matches):
             if match.id == identifier:
                 if sure > match.sure:
-                    self.matches[number] = NameMatch(identifier, sure, why)
+                    self.matches[number] = RecognisedName(identifier, sure, why)
                 return
-        self.matches.append(NameMatch(identifier, sure, why))
+        self.matches.append(RecognisedName(identifier, sure, why))
 
     @property
-    def best(self) -> NameMatch | None:
+    def best(self) -> RecognisedName | None:
         """The surest match."""
         return max(self.matches, key=lambda match: match.sure, default=None)

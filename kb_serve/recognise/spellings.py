@@ -12,7 +12,7 @@ from kb_serve.recognise.addresses import find_page
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.corrections import RemovedSymbols
+    from kb_serve.recognise.corrections import RemovedSymbolLookup
     from kb_serve.recognise.recognition import Recognition
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
@@ -48,7 +48,7 @@ def _called(text: str) -> str:
 class Spellings:
     """Recognises whole spellings against one base."""
 
-    def __init__(self, reader: BaseReader, removed: RemovedSymbols) -> None:
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
         self._reader = reader
         self._removed = removed
 

@@ -100,7 +100,7 @@ class Claude:
         self._client.close()
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
-        """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Refused, CutShort."""
+        """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Declined, CutShort."""
         lost: list[Usage] = []
         for failed in itertools.count(1):
             answer = StreamedAnswer()

@@ -5,7 +5,7 @@ ModelError
 │   └── TooLong        the conversation is too long for the model
 ├── Unreachable        no attempt gave a whole answer
 ├── Stopped            the model answered, but not with a turn that the conversation can go on from
-│   ├── Refused        it declined
+│   ├── Declined        it declined
 │   └── CutShort       it ran into its limit
 ├── Misfit             no answer was the JSON that was requested
 ├── OverBudget         the call could cost more than the limit leaves
@@ -53,7 +53,7 @@ class Stopped(ModelError):  # noqa: N818
         super().__init__(message)
 
 
-class Refused(Stopped):
+class Declined(Stopped):
     """The model declined to answer."""
 
 
@@ -93,10 +93,10 @@ class UnreadableRecord(ModelError):  # noqa: N818
 
 
 def raise_for_stop(turn: Turn) -> Turn:
-    """``turn``, if the conversation can go on from it. Raises Refused, CutShort."""
+    """``turn``, if the conversation can go on from it. Raises Declined, CutShort."""
     if turn.stop_reason == "refusal":
         why = f": {turn.stop_details}" if turn.stop_details else ""
-        raise Refused(f"The model ({turn.model}) declined to answer{why}", turn)
+        raise Declined(f"The model ({turn.model}) declined to answer{why}", turn)
     if turn.stop_reason in ("max_tokens", "model_context_window_exceeded"):
         limit = "its limit" if turn.stop_reason == "max_tokens" else "the end of the model's context"
         raise CutShort(f"The answer was cut off at {limit}, after {turn.usage.output} tokens.", turn)

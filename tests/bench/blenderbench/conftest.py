@@ -11,7 +11,7 @@ import pytest
 
 from bench.blenderbench.run import run
 from bench.blenderbench.systems import UneditedStart
-from bench.blenderbench.task_scenes import RenderSettings
+from bench.blenderbench.task_scenes import EditRenderSettings
 from bench.blenderbench.task_set import TaskSet, read_set
 from simworlds.sandbox.runtime import clean_environment, installed_bpy
 
@@ -39,13 +39,13 @@ def mini(tmp_path_factory: pytest.TempPathFactory) -> TaskSet:
 
 
 @pytest.fixture(scope="session")
-def rendering() -> RenderSettings:
+def rendering() -> EditRenderSettings:
     """As few samples as the miniature's own renders have."""
-    return RenderSettings(samples=4, seconds=120)
+    return EditRenderSettings(samples=4, seconds=120)
 
 
 @pytest.fixture(scope="session")
-def unedited(mini: TaskSet, rendering: RenderSettings, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def unedited(mini: TaskSet, rendering: EditRenderSettings, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The results of a system that edits nothing. Never write to them."""
     out = tmp_path_factory.mktemp("results") / "unedited"
     run(mini, mini.tasks, UneditedStart(rendering), out)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bench.blenderbench.errors import BadPicture
+from bench.blenderbench.errors import UnreadableRender
 from bench.blenderbench.photometric import photometric_loss
 from bench.blenderbench.pictures import read_picture
 
@@ -88,21 +88,21 @@ def test_drops_transparency_and_resolves_palettes(tmp_path: Path) -> None:
 def test_names_a_truncated_picture(tmp_path: Path) -> None:
     noise((64, 64), 5).save(tmp_path / "whole.png")
     (tmp_path / "torn.png").write_bytes((tmp_path / "whole.png").read_bytes()[:3000])
-    with pytest.raises(BadPicture, match=r"torn\.png cannot be read as a picture"):
+    with pytest.raises(UnreadableRender, match=r"torn\.png cannot be read as a picture"):
         read_picture(tmp_path / "torn.png")
 
 
 @pytest.mark.parametrize("name", ["none.png", "folder.png"])
 def test_rejects_what_is_not_a_file(name: str, tmp_path: Path) -> None:
     (tmp_path / "folder.png").mkdir()
-    with pytest.raises(BadPicture, match=name.replace(".", r"\.")):
+    with pytest.raises(UnreadableRender, match=name.replace(".", r"\.")):
         read_picture(tmp_path / name)
 
 
 def test_rejects_a_renamed_jpeg_and_deep_grey(tmp_path: Path) -> None:
     noise((8, 8), 6).save(tmp_path / "photo.png", format="JPEG")
-    with pytest.raises(BadPicture, match="is not a PNG"):
+    with pytest.raises(UnreadableRender, match="is not a PNG"):
         read_picture(tmp_path / "photo.png")
     Image.fromarray(np.full((8, 8), 40_000, dtype=np.uint16)).save(tmp_path / "deep.png")
-    with pytest.raises(BadPicture, match="grey with more than 8 bits"):
+    with pytest.raises(UnreadableRender, match="grey with more than 8 bits"):
         read_picture(tmp_path / "deep.png")

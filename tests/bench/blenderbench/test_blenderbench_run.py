@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from bench.blenderbench.task_scenes import RenderSettings
+    from bench.blenderbench.task_scenes import EditRenderSettings
     from bench.blenderbench.task_set import BenchTask, TaskSet
 
 pytestmark = pytest.mark.blender
@@ -69,7 +69,7 @@ def test_renders_every_start_scene_through_the_sets_camera(unedited: Path, mini:
 
 
 def test_start_py_replaces_the_goals_camera_of_a_raw_file(
-    unedited: Path, mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+    unedited: Path, mini: TaskSet, rendering: EditRenderSettings, tmp_path: Path
 ) -> None:
     task = task_of(mini, "level1/table1")
     untouched = task.code.replace("camera.location =", "ignored =").replace(
@@ -83,7 +83,7 @@ def test_start_py_replaces_the_goals_camera_of_a_raw_file(
 
 
 def test_the_start_scene_is_complete_and_has_no_goal_beside_it(
-    unedited: Path, mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+    unedited: Path, mini: TaskSet, rendering: EditRenderSettings, tmp_path: Path
 ) -> None:
     place = task_folder(unedited, "level2/mug1")
     assert [path.name for path in place.start.parent.iterdir()] == ["start.blend"]
@@ -108,7 +108,7 @@ scene.frame_set({frame})
 
 
 def test_plays_unbaked_motion_up_to_the_frame(
-    mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+    mini: TaskSet, rendering: EditRenderSettings, tmp_path: Path
 ) -> None:
     task = task_of(mini, "level1/table1")
     pictures = [tmp_path / "1.png", tmp_path / "10.png"]
@@ -121,7 +121,9 @@ def test_plays_unbaked_motion_up_to_the_frame(
     assert loss(*pictures) > 0.2
 
 
-def test_names_a_file_that_cannot_be_packed(mini: TaskSet, rendering: RenderSettings, tmp_path: Path) -> None:
+def test_names_a_file_that_cannot_be_packed(
+    mini: TaskSet, rendering: EditRenderSettings, tmp_path: Path
+) -> None:
     task = task_of(mini, "level1/table1")
     code = "import bpy\nbpy.data.images['Label'].filepath = '//elsewhere.png'\n"
     (tmp_path / "kept").mkdir()
@@ -162,7 +164,7 @@ BAD_CODE = {
 
 
 def test_a_failed_task_says_why_and_others_go_on(
-    one: Path, rendering: RenderSettings, tmp_path: Path
+    one: Path, rendering: EditRenderSettings, tmp_path: Path
 ) -> None:
     for number, (code, _) in enumerate(BAD_CODE.values(), 2):
         shutil.copytree(one / "level1" / "table1", tmp_path / "set" / "level1" / f"table{number}")
@@ -177,7 +179,7 @@ def test_a_failed_task_says_why_and_others_go_on(
 
 
 def test_start_py_cannot_write_or_read_outside_the_sandbox(
-    one: Path, rendering: RenderSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    one: Path, rendering: EditRenderSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Held by the sandbox where agents build; here it is shown to be used."""
     root = tmp_path / "set"
@@ -196,7 +198,7 @@ def test_start_py_cannot_write_or_read_outside_the_sandbox(
     assert not target.exists()
 
 
-def test_ends_code_that_takes_too_long(one: Path, rendering: RenderSettings, tmp_path: Path) -> None:
+def test_ends_code_that_takes_too_long(one: Path, rendering: EditRenderSettings, tmp_path: Path) -> None:
     shutil.copytree(one, tmp_path / "set")
     (tmp_path / "set" / "level1" / "table1" / "start.py").write_text("import time\ntime.sleep(600)\n")
     found = read_set(tmp_path / "set")
@@ -267,7 +269,7 @@ def test_rejects_results_of_a_task_that_has_changed(one: Path, tmp_path: Path) -
 
 
 def test_rejects_a_folder_with_results_of_another_setup(
-    mini: TaskSet, rendering: RenderSettings, tmp_path: Path
+    mini: TaskSet, rendering: EditRenderSettings, tmp_path: Path
 ) -> None:
     theirs = tmp_path / "theirs"
     picture(theirs / "level1" / "table1" / "1.png", 1)

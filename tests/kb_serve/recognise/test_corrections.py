@@ -10,7 +10,7 @@ import pytest
 from asking import SEED, classes, misspelt, of_data, owner_and_name
 
 from kb_serve.recognise.chains import find_chains
-from kb_serve.recognise.corrections import LIKELY, Corrector, RemovedSymbols, nearest, similarity
+from kb_serve.recognise.corrections import LIKELY, Corrector, RemovedSymbolLookup, nearest, similarity
 from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def test_names_that_may_follow_include_inherited_ones(corrector: Corrector) -> N
 
 
 def test_former_members_are_found_on_the_class_and_on_its_bases(reader: BaseReader) -> None:
-    drifts = RemovedSymbols(reader)
+    drifts = RemovedSymbolLookup(reader)
     own = drifts.of_member("bpy.types.Action", "fcurves")
     assert own is not None
     assert (own.path, own.last) == ("bpy.types.Action.fcurves", "4.5")
@@ -116,7 +116,7 @@ def test_former_members_are_found_on_the_class_and_on_its_bases(reader: BaseRead
 
 
 def test_replacements_come_best_first_and_exist(reader: BaseReader) -> None:
-    drifts, checked = RemovedSymbols(reader), 0
+    drifts, checked = RemovedSymbolLookup(reader), 0
     for (path,) in reader.rows("SELECT DISTINCT path FROM replacements ORDER BY path LIMIT 400"):
         removed = drifts.of_path(path)
         if removed is not None:

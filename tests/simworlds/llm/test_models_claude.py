@@ -12,7 +12,7 @@ from asks import LOOK, MESSAGES, OPUS, ask, png
 from fake_messages_api import Reply, Stall, Status
 
 from simworlds.llm.claude import Claude, Settings
-from simworlds.llm.errors import CutShort, Refused, Rejected, TooLong
+from simworlds.llm.errors import CutShort, Declined, Rejected, TooLong
 from simworlds.llm.messages import Kept, Message, Picture, Text, Tool, ToolResult, ToolUse, Usage, user
 from simworlds.llm.prices import Price, Prices
 
@@ -158,7 +158,7 @@ def test_a_model_without_a_known_price_has_no_cost_but_tokens(make_claude):
 def test_a_refusal_keeps_the_text_and_the_reason(api, claude):
     why = {"type": "refusal", "category": "cyber", "explanation": "It asks for malware."}
     api.answer = lambda params: Reply("I would rather", stop_reason="refusal", stop_details=why)
-    with pytest.raises(Refused, match=r"declined.*cyber: It asks for malware") as refused:
+    with pytest.raises(Declined, match=r"declined.*cyber: It asks for malware") as refused:
         claude.answer(ask())
     assert refused.value.turn.text == "I would rather"
     assert refused.value.turn.usage.output == 20

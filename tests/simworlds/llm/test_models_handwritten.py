@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asks import ask
 
-from simworlds.llm.errors import CutShort, Drifted, Refused, UnreadableRecord, raise_for_stop
+from simworlds.llm.errors import CutShort, Declined, Drifted, UnreadableRecord, raise_for_stop
 from simworlds.llm.messages import Message, Text, ToolResult, ToolUse, user
 from simworlds.llm.recorded import Recorded
 from simworlds.llm.transcript import read_turn
@@ -117,7 +117,7 @@ def test_an_unexpected_request_is_a_drift(session: Path, said, misfit):
 
 def test_turns_may_end_badly():
     assert read_turn("1.md", "role: coder\nstop: refusal\n---\nNo.").turn.stop_reason == "refusal"
-    for stop, error in (("refusal", Refused), ("max_tokens", CutShort)):
+    for stop, error in (("refusal", Declined), ("max_tokens", CutShort)):
         turn = read_turn("1.md", f"role: coder\nstop: {stop}\n---\nNo.").turn
         with pytest.raises(error):
             raise_for_stop(turn)

@@ -13,7 +13,7 @@ from asks import Scripted, ask, png
 from fake_messages_api import Reply
 
 from simworlds.llm.canonical import alike, form_of, normal
-from simworlds.llm.errors import CutShort, Drifted, Refused, Stopped, UnreadableRecord
+from simworlds.llm.errors import CutShort, Declined, Drifted, Stopped, UnreadableRecord
 from simworlds.llm.messages import Kept, Message, Picture, Text, ToolResult, ToolUse, Turn, Usage, user
 from simworlds.llm.recorded import Recorded, Recording
 
@@ -99,11 +99,11 @@ def test_a_recorded_turn_is_never_live():
 
 
 def test_turns_that_ended_badly_end_as_badly_again():
-    refused = Refused("no", says("I would rather not.") and replace(says("No."), stop_reason="refusal"))
+    refused = Declined("no", says("I would rather not.") and replace(says("No."), stop_reason="refusal"))
     cut = CutShort("cut", replace(says("Half"), stop_reason="max_tokens"))
     rows = record((FIRST, refused), (SECOND, cut))
     played = Recorded(rows)
-    with pytest.raises(Refused):
+    with pytest.raises(Declined):
         played.answer(FIRST)
     with pytest.raises(CutShort, match="after 5 tokens") as error:
         played.answer(SECOND)

@@ -9,7 +9,7 @@ import pytest
 from asks import OPUS, Scripted, ask
 
 from simworlds.llm import tokens
-from simworlds.llm.errors import CutShort, OverBudget, Refused, Unreachable
+from simworlds.llm.errors import CutShort, Declined, OverBudget, Unreachable
 from simworlds.llm.messages import Text, Turn, Usage
 from simworlds.llm.prices import PRICES, Price, Prices, read_price
 from simworlds.llm.spending import Metered, Spending
@@ -35,7 +35,7 @@ def test_stopped_turns_are_counted():
     spending = Spending()
     lost = Unreachable("gone")
     lost.lost = Usage(1_000_000, 0)
-    answers = [Refused("no", turn(1.0)), CutShort("short", turn(2.0)), lost, Unreachable("nobody")]
+    answers = [Declined("no", turn(1.0)), CutShort("short", turn(2.0)), lost, Unreachable("nobody")]
     model = Metered(Scripted(*answers), spending)
     for error in answers:
         with pytest.raises(type(error)):

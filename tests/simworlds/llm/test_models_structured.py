@@ -9,7 +9,7 @@ import pytest
 from asks import Scripted, ask
 from pydantic import BaseModel, ConfigDict, Field
 
-from simworlds.llm.errors import CutShort, Misfit, Refused
+from simworlds.llm.errors import CutShort, Declined, Misfit
 from simworlds.llm.messages import Text, ToolResult, ToolUse, Turn, Usage
 from simworlds.llm.structured import ask_for, fits, read
 
@@ -131,8 +131,8 @@ def test_a_cut_off_answer_is_requested_shorter():
 
 
 def test_a_refusal_is_not_argued_with():
-    model = Scripted(Refused("no", says("No.")))
-    with pytest.raises(Refused):
+    model = Scripted(Declined("no", says("No.")))
+    with pytest.raises(Declined):
         ask_for(model, ask("Decide."), fits(Decision))
 
 
