@@ -14,9 +14,8 @@ from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from places import REPO
-
-sys.path[:0] = [str(REPO), str(REPO / "tests" / "agents")]
+REPO = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(REPO), str(REPO / "tests"), str(REPO / "tests" / "agents")]
 
 from live_session import LiveSession  # noqa: E402
 from mutation import TOOLS, Mutation  # noqa: E402

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from places import REPO
-
-sys.path[:0] = [str(REPO), str(REPO / "tests" / "agents")]
+REPO = Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(REPO), str(REPO / "tests"), str(REPO / "tests" / "agents")]
 
 from live_session import LiveSession  # noqa: E402
 from PIL import Image, ImageDraw  # noqa: E402
