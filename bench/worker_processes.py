@@ -15,6 +15,7 @@ from multiprocessing.connection import wait
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from simworlds.end_with_parent import end_with_parent
+from simworlds.processes import signal_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
@@ -77,7 +78,9 @@ class _Worker:
             return self.pipe.recv()
         except EOFError:
             self.process.join()
-            return "fault", f"its process ended without a result ({_ending(self.process.exitcode)})"
+            code = self.process.exitcode
+            how = f"exit code {code}" if code is None or code >= 0 else signal_name(code)
+            return "fault", f"its process ended without a result ({how})"
         except Exception:  # half a message, of a process that was killed over it
             return "fault", "its process sent an invalid message"
 
@@ -99,13 +102,6 @@ def _without_interrupts() -> Generator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _ending(code: int | None) -> str:
-    if code is not None and code < 0:
-        with suppress(ValueError):
-            return signal.Signals(-code).name
-    return f"exit code {code}"
 
 
 def _end(workers: list[_Worker]) -> None:

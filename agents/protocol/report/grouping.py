@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from agents.protocol.report.text_format import ELLIPSIS, MAX_NAMES, fold_names, format_range, plain
+from agents.protocol.report.text_format import ELLIPSIS, MAX_NAMES, fold_names, format_range
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from agents.protocol.report.grouping import group_findings
 from agents.protocol.report.summary import coverage, fix_of, verdict
-from agents.protocol.report.text_format import format_value, plain
+from agents.protocol.report.text_format import format_value
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from agents.protocol.findings import Finding, Report

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from agents.protocol.report.json_report import finite_fields
-from agents.protocol.report.text_format import plain
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from agents.protocol.findings import Finding, Report

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.protocol.report.text_format import format_rule_ids, format_value, plain
+from agents.protocol.report.text_format import format_rule_ids, format_value
 from agents.protocol.rule import NO_ROLES
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from agents.protocol.findings import Finding, Report

@@ -11,7 +11,8 @@ from rich.text import Text
 
 from agents.protocol.report.grouping import group_findings
 from agents.protocol.report.summary import coverage, exit_code, fix_of, verdict
-from agents.protocol.report.text_format import MAX_NAMES, plain
+from agents.protocol.report.text_format import MAX_NAMES
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from typing import TYPE_CHECKING
+
+from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -14,17 +15,6 @@ MAX_NAMES = 4
 _MILLIMETRES_BELOW = 1.0  # metres
 _NUMBERED_NAME = re.compile(r"^(.*?)[._ -]?(\d+)$", re.DOTALL)
 _RULE_ID = re.compile(r"(\D+)(\d+)")
-
-
-def plain(text: str) -> str:
-    """The text on one line, without control characters and what cannot be written as UTF-8."""
-    letters = (
-        letter
-        if unicodedata.category(letter)[0] != "C" or letter == "\u200d"
-        else "\N{REPLACEMENT CHARACTER}"
-        for letter in text
-    )
-    return "".join(letters)
 
 
 def fold_names(names: Iterable[str], most: int = MAX_NAMES) -> str:

@@ -17,9 +17,10 @@ from agents.protocol.report.markdown import as_text
 from agents.protocol.report.sarif import as_sarif, sarif_failure
 from agents.protocol.report.summary import VerificationScope, coverage, exit_code, verdict
 from agents.protocol.report.table import as_table
-from agents.protocol.report.text_format import fold_names, format_rule_ids, format_value, plain
+from agents.protocol.report.text_format import fold_names, format_rule_ids, format_value
 from agents.protocol.rule import NO_ROLES
 from agents.protocol.rules.catalogue import BY_ID, RULES
+from simworlds.terminal.text import plain
 
 V1, V2, C3, W2, W4 = (BY_ID[name] for name in ("V1", "V2", "C3", "W2", "W4"))
 GAP = V1.finding(
