@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simworlds.sandbox.control_group import ControlGroup, group_parents
 from simworlds.sandbox.errors import CannotStart, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
@@ -42,7 +43,14 @@ class Launch:
         """The command's words; ``channel`` is the descriptor of the program's socket."""
         words = self.runtime.command(BOOT, self.program.arguments(str(channel)))
         readable = [*self.program.folders, *_folders_of(self.runtime), *self.read]
-        return self.sandbox.command(words, read=readable, write=[self.workspace, self.private])
+        writable = [self.workspace, self.private]
+        return self.sandbox.command(words, read=readable, write=writable, group=self.group.folders)
+
+    @cached_property
+    def group(self) -> ControlGroup:
+        """The control group of the running worker."""
+        down = "memory" in self.sandbox.without
+        return ControlGroup(self.sandbox.limits, None if down else group_parents())
 
     @cached_property
     def environment(self) -> dict[str, str]:
@@ -72,10 +80,12 @@ class Launch:
         except OSError as error:
             raise CannotStart(f"{self.private} cannot be made: {error.strerror or error}") from error
         empty_folder(self.private)
+        self.group.renew()
         remove_named(self.workspace, HALF_WRITTEN)
 
     def clean(self) -> None:
-        """Removes the private folder and half-written files."""
+        """Removes the private folder, half-written files and the control group."""
+        self.group.close()
         remove(self.private)
         remove_named(self.workspace, HALF_WRITTEN)
 
