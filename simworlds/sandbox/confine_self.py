@@ -19,6 +19,7 @@ MACHINES = ("x86_64", "aarch64")
 LAST_FILTER = "SIMWORLDS_LAST_FILTER"
 """The variable that hands the second filter of system calls to inside/boot.py."""
 
+_OPEN_FILES = 4096  # few enough to be looked through often (see nameless_files.py)
 _LIBC = ctypes.CDLL(None, use_errno=True)
 
 # prctl
@@ -59,9 +60,16 @@ def _checked(result: int, what: str) -> int:
 
 
 def limit(memory: int, file_size: int) -> None:
-    """Limits this process: bytes of private memory and of one file, no core dumps. Calls beyond them fail."""
+    """Limits this process: bytes of private memory and of one file, open files, no core dumps.
+
+    Calls beyond them fail.
+    """
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    for which, amount in ((resource.RLIMIT_DATA, memory), (resource.RLIMIT_FSIZE, file_size)):
+    for which, amount in (
+        (resource.RLIMIT_DATA, memory),
+        (resource.RLIMIT_FSIZE, file_size),
+        (resource.RLIMIT_NOFILE, _OPEN_FILES),
+    ):
         if amount:
             hard = resource.getrlimit(which)[1]
             least = amount if hard == resource.RLIM_INFINITY else min(amount, hard)

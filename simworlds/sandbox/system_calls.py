@@ -20,11 +20,14 @@ OWN_PROCESS = 0x5E1F5E1F
 """Stands in a filter for the number of the process itself, which the launcher fills in (see confine_self.py)."""
 
 # A filter is a program of classic BPF: steps of (code, jump if true, jump if false, constant).
-_LOAD, _AND, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x54, 0x15, 0x35, 0x45, 0x06
+_LOAD, _AND, _EQUAL, _AT_LEAST, _RETURN = 0x20, 0x54, 0x15, 0x35, 0x06
 _ALLOW, _KILL, _ERROR = 0x7FFF0000, 0x80000000, 0x00050000
 _EPERM, _EINVAL, _ENOSYS, _ENOTSUP, _SUCCESS = 1, 22, 38, 95, 0
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16
-_CLONE_THREAD = 0x10000
+# clone: a thread shares memory, working folder and open files, so that all that it opens is seen from outside; and no
+# namespace is its own
+_VM, _FS, _FILES, _THREAD, _NAMESPACES = 0x100, 0x200, 0x400, 0x10000, 0x7E020080
+_SHARED = _VM | _FS | _FILES | _THREAD
 _TRUNCATING, _ACCESS = 0o1000, 0o3
 
 # Wall → the calls that it refuses, whatever their arguments.
@@ -114,7 +117,8 @@ def _close_by_arguments(program: _Program, without: frozenset[Wall]) -> None:
     if "processes" not in without:
         # The C library falls back to clone, whose flags can be checked.
         program.refuse("clone3", _ENOSYS)
-        program.rule("clone", _argument(0), _step(_ANY_BIT, _CLONE_THREAD, 1, 0), _error(_EPERM))
+        is_thread = (_step(_AND, _SHARED | _NAMESPACES), _step(_EQUAL, _SHARED, 1, 0))
+        program.rule("clone", _argument(0), *is_thread, _error(_EPERM))
     if "signals" not in without:
         for call in ("kill", "tgkill"):
             program.rule(call, _argument(0), _step(_EQUAL, OWN_PROCESS, 1, 0), _error(_EPERM))
