@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simworlds.sandbox.control_group import ControlGroup, group_parents
 from simworlds.sandbox.errors import CannotStart, RuntimeMissing
 from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.program import BOOT, Program
@@ -49,7 +50,14 @@ class Launch:
         readable = [*self.program.folders, *_folders_of(self.runtime), *self.read]
         if self.lent is not None:
             readable.append(self.lent)
-        return self.sandbox.command(words, read=readable, write=[self.workspace.mount, self.private.mount])
+        writable = [self.workspace.mount, self.private.mount]
+        return self.sandbox.command(words, read=readable, write=writable, group=self.group.folders)
+
+    @cached_property
+    def group(self) -> ControlGroup:
+        """The control group of the running worker."""
+        down = "memory" in self.sandbox.without
+        return ControlGroup(self.sandbox.limits, None if down else group_parents())
 
     @cached_property
     def environment(self) -> dict[str, str]:
@@ -85,10 +93,12 @@ class Launch:
             except OSError as error:
                 raise CannotStart(f"{folder} cannot be made: {error.strerror or error}") from error
             HostileGround(folder).empty()
+        self.group.renew()
         self.workspace.remove_named(HALF_WRITTEN)
 
     def clean(self) -> None:
-        """Removes the private and the lent folder, and half-written files."""
+        """Removes the private and the lent folder, half-written files and the control group."""
+        self.group.close()
         for folder in self._passing:
             HostileGround(folder).empty()
             with suppress(OSError):
