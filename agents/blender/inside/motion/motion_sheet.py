@@ -26,9 +26,10 @@ _RAYS = 16  # from an actor to the viewer, to see whether it is hidden
 
 
 def motion_sheet(arguments, report):
-    """Follows ``actors`` over ``phases``, and draws them at ``frames`` in ``folder`` (made), in rows of ``width`` pixels.
+    """Follows ``actors`` over ``phases``, and draws them at ``frames``, in rows of ``width`` pixels.
 
-    Returns the range, the sampled frames, and for each actor its caches, keyframes, curves, numbers and pictures.
+    The pictures go to ``folder``, which is made. Returns the range, the sampled frames, and for each actor its caches,
+    keyframes, curves, numbers and pictures.
     """
     scene = bpy.context.scene
     actors = resolve(arguments["actors"], scene)

@@ -283,6 +283,42 @@ def test_reports_changes_lost_between_calls(hardy: LiveSession) -> None:
     assert "lost" not in hardy.use(TOOL, code="1").text
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere nothing is stopped")
+def test_blender_stands_still_between_calls(hardy: LiveSession) -> None:
+    hardy.run("1")
+    tasks = Path(f"/proc/{hardy.blender.inner_pid}/task")
+    assert becomes(lambda: {(task / "stat").read_text().split()[2] for task in tasks.iterdir()} == {"T"})
+    assert hardy.run("1 + 1") == 2
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted by /proc")
+def test_a_thread_that_python_does_not_know_of_is_found(hardy: LiveSession) -> None:
+    code = (
+        "import ctypes\nlibc = ctypes.CDLL(None)\n"
+        "libc.pthread_create(ctypes.byref(ctypes.c_ulong()), None, libc.pause, 0)"
+    )
+    with pytest.raises(LeftBehind, match="1 thread of its own still running"):
+        hardy.use(TOOL, code=code)
+    assert hardy.run(NAMES) == ["Kept"]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "from simworlds_worker import execute\nexecute._run.__code__ = (lambda code: 'forged').__code__",
+        "from simworlds_worker import execute\nexecute._run = lambda code: 'forged'",
+        "from simworlds_worker import execute\nexecute.execute.__defaults__ = (None,)",
+        "import json\njson.dumps.__code__ = (lambda *_, **__: '{}').__code__",
+        "import json\njson.JSONEncoder.encode.__code__ = (lambda *_: '{}').__code__",
+    ],
+    ids=["what a function does", "a name", "defaults", "a module's function", "a method"],
+)
+def test_what_code_changes_in_the_tools_is_restored(hardy: LiveSession, change: str) -> None:
+    hardy.use(TOOL, code=change)
+    assert hardy.run("1 + 1") == 2
+    assert "restarted" not in hardy.use(TOOL, code="1").text
+
+
 def test_blender_outlives_the_thread_that_started_it(tmp_path: Path) -> None:
     made: list[LiveSession] = []
     starter = threading.Thread(target=lambda: made.append(LiveSession(tmp_path / "run")))
