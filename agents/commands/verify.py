@@ -172,7 +172,7 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
             raise _CannotCheckError(f"There is no file {scene}.")
         find_blend_file(str(real), folder, (real.parent,))
         launch = make_launch(
-            folder.workspace.mount,
+            folder.workspace,
             version=choices["blender"],
             blender_exe=choices["blender_exe"],
             # Blender may read the file and the caches beside it, but nothing else in that folder.

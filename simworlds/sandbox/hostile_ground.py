@@ -70,6 +70,19 @@ class HostileGround:
 
     mount: Path
 
+    def make(self) -> HostileGround:
+        """Makes the folder unless it is there; returns it by its real path. Raises OSError."""
+        self.mount.mkdir(parents=True, exist_ok=True)
+        return HostileGround(self.mount.resolve())
+
+    def beside(self, name: str) -> HostileGround:
+        """A folder of that name beside it."""
+        return HostileGround(self.mount.with_name(name))
+
+    def holds(self, path: Path) -> bool:
+        """Whether a path leads below it, as it is spelled."""
+        return path.is_relative_to(self.mount)
+
     def for_blender(self, relative: str = "") -> str:
         """A path below it (or its own) as the process itself opens it."""
         return str(self.mount / relative)

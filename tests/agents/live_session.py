@@ -30,7 +30,7 @@ class LiveSession:
         self, root: Path, *, sandbox: Sandbox | None = None, blender_exe: Path | None = None
     ) -> None:
         folder = RunFolder.make(root)
-        launch = make_launch(folder.workspace.mount, sandbox=sandbox, blender_exe=blender_exe)
+        launch = make_launch(folder.workspace, sandbox=sandbox, blender_exe=blender_exe)
         self.blender = Supervisor(launch, folder)
         self.blender.start()
         self.context = ToolContext(self.blender, no_docs)

@@ -27,6 +27,7 @@ from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
 from simworlds.sandbox.errors import CannotStart, Died, Interrupted, LeftBehind, Lost, Refusal, TookTooLong
+from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
@@ -401,7 +402,7 @@ def test_closing_leaves_no_process_and_no_private_folder(tmp_path: Path) -> None
 def test_refuses_a_second_supervisor_for_a_run(hardy: LiveSession) -> None:
     folder = hardy.blender.folder
     with pytest.raises(Refusal, match="in use by another"):
-        Supervisor(make_launch(folder.workspace.mount), folder)
+        Supervisor(make_launch(folder.workspace), folder)
 
 
 def test_rejects_a_wrong_executable_before_starting_it(tmp_path: Path) -> None:
@@ -410,7 +411,7 @@ def test_rejects_a_wrong_executable_before_starting_it(tmp_path: Path) -> None:
         (tmp_path, "no Blender executable"),
     ):
         with pytest.raises(CannotStart, match=told):
-            make_launch(tmp_path / "run" / "workspace", blender_exe=path)
+            make_launch(HostileGround(tmp_path / "run" / "workspace"), blender_exe=path)
 
 
 def test_reports_why_blender_does_not_start(tmp_path: Path) -> None:
