@@ -367,7 +367,7 @@ class BlenderProcess:
             hint = ", as after bpy.ops.wm.quit_blender or os._exit" if code == 0 else ""
             return f"it was ended from inside, with exit code {code}{hint}"
         name = signal_name(code)
-        if any(word in self._last_output() for word in _NO_MEMORY):
+        if self._launch.group.ran_out_of_memory or any(word in self._last_output() for word in _NO_MEMORY):
             allowed = self._launch.sandbox.limits.memory / 1e9
             return f"it ran out of memory; the limit is {allowed:.1f} GB ({name})"
         if name == "SIGKILL":

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import time
 import weakref
 from contextlib import suppress
 from dataclasses import dataclass
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
 _NAME = "simworlds-{owner}-{number}"
 _NAMES = re.compile(r"simworlds-(\d+)-\d+")
 _MORE_THREADS = 64  # so that the check from outside, which explains itself, comes before the kernel's refusal
+_TRIES, _BETWEEN_TRIES = 30, 0.01  # seconds
 _numbers = count()
+_busy: set[Path] = set()
 
 Version = Literal[1, 2]
 
@@ -108,13 +111,26 @@ class ControlGroup:
 
 
 def _remove_groups(folders: Iterable[Path]) -> None:
+    """Removes groups whose last process may just be ending; those that stay busy are tried again later."""
     for folder in folders:
-        with suppress(OSError):
-            folder.rmdir()
+        for _ in range(_TRIES):
+            try:
+                folder.rmdir()
+            except FileNotFoundError:
+                break
+            except OSError:
+                time.sleep(_BETWEEN_TRIES)
+            else:
+                break
+        else:
+            _busy.add(folder)
 
 
 def _remove_leftovers(parents: Iterable[Path]) -> None:
     """Removes the groups of processes that are gone, and of earlier workers of this one that ended late."""
+    for folder in list(_busy):
+        _busy.discard(folder)
+        _remove_groups([folder])
     for parent in parents:
         with suppress(OSError):
             for entry in list(os.scandir(parent)):

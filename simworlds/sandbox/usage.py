@@ -22,7 +22,7 @@ _MOST_COUNTED = 2_000_000
 _CHECK_SECONDS = 0.25  # between two counts of the files
 _PAUSE = 10.0  # after a slow count, in its durations
 _MUCH_SPACE, _MANY_FILES = 150_000_000, 10_000  # taken since the last count, for the next to come at once
-_QUICK_SECONDS = 0.005
+_QUICK_SECONDS = 0.02
 
 
 class UsageMonitor:
