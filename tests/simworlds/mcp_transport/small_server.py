@@ -12,7 +12,11 @@ from typing import TYPE_CHECKING, Any
 from simworlds.mcp_transport.http import Address, CannotServe, run_http
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
+
+    from mcp.server.transport_security import TransportSecuritySettings
+    from starlette.types import ASGIApp
 
 LARGE = 8 * 1024 * 1024
 
@@ -20,11 +24,13 @@ LARGE = 8 * 1024 * 1024
 class SmallServer:
     """The process from outside."""
 
-    def __init__(self, log: Path, *, patience: float = 60.0, descriptors: int = 128) -> None:
+    def __init__(
+        self, log: Path, *, patience: float = 60.0, descriptors: int = 128, script: str = __file__
+    ) -> None:
         self._log = log
         with log.open("w") as stderr:
             self.process = subprocess.Popen(
-                [sys.executable, __file__, str(patience), str(descriptors)],
+                [sys.executable, script, str(patience), str(descriptors)],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=stderr,
@@ -94,8 +100,7 @@ class _App:
     end of the application; ``/open``: takes all descriptors; ``/close``: gives them back.
     """
 
-    def __init__(self, port: int) -> None:
-        self._port = port
+    def __init__(self) -> None:
         self._go = asyncio.Event()
         self._broken = asyncio.Event()
         self._taken: list[Any] = []
@@ -104,8 +109,6 @@ class _App:
         if scope["type"] == "lifespan":
             await receive()
             await send({"type": "lifespan.startup.complete"})
-            sys.stdout.write(f"{self._port}\n")  # connections are taken from here on
-            sys.stdout.flush()
             ended, broken = asyncio.ensure_future(receive()), asyncio.ensure_future(self._broken.wait())
             await asyncio.wait([ended, broken], return_when=asyncio.FIRST_COMPLETED)
             if self._broken.is_set():
@@ -146,17 +149,23 @@ class _App:
             pass
 
 
-def main() -> None:
-    """Serves; prints the port when it does."""
+def serve(make_app: Callable[[str, TransportSecuritySettings], ASGIApp]) -> None:
+    """Serves as the arguments of the process say; prints the port."""
     patience, descriptors = float(sys.argv[1]), int(sys.argv[2])
     resource.setrlimit(resource.RLIMIT_NOFILE, (descriptors, descriptors))
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
+
+    def announced(path: str, security: TransportSecuritySettings) -> ASGIApp:
+        sys.stdout.write(f"{port}\n")  # connections are taken from here on
+        sys.stdout.flush()
+        return make_app(path, security)
+
     try:
-        run_http(lambda _path, _security: _App(port), Address(port=port), "a test", patience)
+        run_http(announced, Address(port=port), "a test", patience)
     except CannotServe as error:
         sys.exit(f"Error: {error}")
 
 
 if __name__ == "__main__":
-    main()
+    serve(lambda _path, _security: _App())
