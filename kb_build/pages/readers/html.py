@@ -16,9 +16,10 @@ from kb_build.pages.readers import markdown as md
 from kb_build.pages.readers.article import read_article
 from kb_build.pages.readers.assemble import ROOT, PageText, assemble
 from kb_build.pages.readers.html_elements import slug_of
-from kb_build.pages.readers.workers import PageBudget, PageWork, read_apart
+from kb_build.pages.readers.workers import PageBudget, PageWork, read_apart, read_elsewhere
 from kb_build.records import Section
 from simworlds.folder_files import FolderLimits, list_files, read_file
+from simworlds.forked import can_fork
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,7 +56,17 @@ def read_html(  # noqa: PLR0913 - what, and how much of it
     same as if they had been read from their RST sources. A page that cannot be understood is kept and carries
     warnings. Raises SourceError when there are no pages, or one cannot be read from disk.
     """
-    folder = Path(folder)
+    folder, budget = Path(folder), budget or PageBudget()
+    if not can_fork():
+        return read_elsewhere(
+            read_html,
+            folder=folder,
+            source=source,
+            version=version,
+            jobs=jobs,
+            progress=progress,
+            budget=budget,
+        )
     pattern = "info_*.html" if source == "guide" else "*.html"
     try:
         files = list_files(folder, lambda path: path.match(pattern), _LIMITS).files
@@ -67,7 +78,6 @@ def read_html(  # noqa: PLR0913 - what, and how much of it
         raise SourceError(
             f"{folder} holds no pages ({pattern}): give the folder with the documentation's index.html"
         )
-    limits = budget or PageBudget()
     done = 0
 
     def finished(_: str) -> None:
@@ -77,11 +87,11 @@ def read_html(  # noqa: PLR0913 - what, and how much of it
             progress(done, len(names))
 
     work = PageWork(partial(_read_one, folder), done=finished)
-    found = read_apart(names, work, jobs=jobs, budget=limits)
+    found = read_apart(names, work, jobs=jobs, budget=budget)
     texts: list[PageText] = [*found.answers.values()]
     texts += [_plain_page(_bytes(folder, slug), slug, reason) for slug, reason in found.failed.items()]
     listed = read_apart(
-        [ROOT] if ROOT in slugs else [], PageWork(partial(_listed, folder)), jobs=1, budget=limits
+        [ROOT] if ROOT in slugs else [], PageWork(partial(_listed, folder)), jobs=1, budget=budget
     ).answers.get(ROOT, {})
     texts = [replace(text, children=_merged(text.children, listed.get(text.slug, {}))) for text in texts]
     return assemble(texts, source=source, version=version)

@@ -22,8 +22,9 @@ from kb_build.pages.readers.assemble import MOST_WARNINGS, ROOT, PageText, assem
 from kb_build.pages.readers.blender_markup import accept_unknown, note_names
 from kb_build.pages.readers.docutils_speed import shared_transitions
 from kb_build.pages.readers.sphinx_builder import PagesBuilder, drop_needless_work, plain_page
-from kb_build.pages.readers.workers import PageBudget
+from kb_build.pages.readers.workers import PageBudget, read_elsewhere
 from simworlds.folder_files import FolderLimits, list_files, read_file
+from simworlds.forked import can_fork
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping, Sequence
@@ -73,14 +74,22 @@ def read_rst(  # noqa: PLR0913 - what, and how much of it
     faults is kept and carries warnings; one that takes more than its ``budget`` is kept as plain text. Raises
     SourceError when there are no pages, when they cannot be read from disk, or Sphinx cannot work with them at all.
     """
-    folder = Path(folder)
+    folder, budget = Path(folder), budget or PageBudget()
+    if not can_fork():
+        return read_elsewhere(
+            read_rst,
+            folder=folder,
+            source=source,
+            version=version,
+            jobs=jobs,
+            progress=progress,
+            budget=budget,
+        )
     with tempfile.TemporaryDirectory(prefix="simworlds-rst-") as scratch:
         sources = _copy(folder, Path(scratch) / "sources")
         if not sources.slugs:
             raise SourceError(f"{folder} holds no .rst files: give the folder with the sources' index.rst")
-        pages = _build(
-            sources, Path(scratch), _Wanted(source, version, jobs, progress, budget or PageBudget())
-        )
+        pages = _build(sources, Path(scratch), _Wanted(source, version, jobs, progress, budget))
     return assemble(pages, source=source, version=version)
 
 

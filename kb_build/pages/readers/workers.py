@@ -23,12 +23,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 from kb_build.errors import SourceError
 from simworlds.end_with_parent import end_with_parent
+from simworlds.errors import UserError
 from simworlds.processes import describe_exit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from multiprocessing.connection import Connection
     from multiprocessing.context import ForkProcess
+
+    from kb_build.records import Page
 
 _BATCH: Final = 10
 _NO_MEMORY: Final = 77
@@ -48,7 +51,7 @@ class PageBudget:
     cpu_seconds: float = 10
     seconds: float = 120
     memory: int = 1 << 30
-    answer: int = 8 << 20
+    answer: int = 4 << 20
     gathered: int = 256 << 20
     written: int = 256 << 20
     cpu_seconds_in_all: float = 120
@@ -82,12 +85,54 @@ class PageWork:
 
 
 def read_apart(names: Sequence[str], work: PageWork, *, jobs: int, budget: PageBudget) -> ReadPages:
-    """Reads pages in up to ``jobs`` processes at a time, forked from this one, which should have no other threads.
+    """Reads pages in up to ``jobs`` processes at a time, forked from this one, which must have no other threads.
 
     Raises SourceError when reading a page raises it. Whatever else happens to a page is its reason to fail.
     """
     readers = _Readers(work, max(1, jobs), budget, budget.for_all(len(names)) + _cpu_of_children())
     return readers.run(names)
+
+
+def read_elsewhere(read: Callable[..., list[Page]], **given: Any) -> list[Page]:
+    """Runs one of the two functions that read pages in a fresh interpreter, for a process with threads: what is forked
+    from it may hang. ``given``: the arguments by name. Raises UserError as the function does."""
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe(duplex=False)
+    progress = given.pop("progress")
+    process = context.Process(target=_serve, args=(read, given, theirs, os.getpid()))
+    process.start()
+    theirs.close()
+    try:
+        while True:
+            kind, answer = ours.recv()
+            if kind == "failed":
+                raise answer
+            if kind == "read":
+                return answer
+            if progress is not None:
+                progress(*answer)
+    except EOFError:
+        process.join()
+        ended = describe_exit(process.exitcode or 0)
+        raise SourceError(f"the process that read the pages did not survive: {ended}") from None
+    finally:
+        process.kill()
+        process.join()
+        ours.close()
+
+
+def _serve(read: Callable[..., list[Page]], given: dict[str, Any], answers: Connection, parent: int) -> None:
+    end_with_parent(parent)
+
+    def report(done: int, total: int) -> None:
+        answers.send(("progress", (done, total)))
+
+    try:
+        pages = read(**given, progress=report)
+    except UserError as error:
+        answers.send(("failed", error))
+    else:
+        answers.send(("read", pages))
 
 
 @dataclass(slots=True)
