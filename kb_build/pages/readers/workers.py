@@ -159,8 +159,9 @@ class _Readers:
         self.waiting.extend(_chunks(names, self.jobs))
         try:
             while self.waiting or self.running:
-                while self.waiting and len(self.running) < self.jobs:
+                if self.waiting and len(self.running) < self.jobs:
                     self._start(self.waiting.popleft())
+                    continue
                 for connection in wait(list(self.running)):
                     self._receive(connection)
         finally:
