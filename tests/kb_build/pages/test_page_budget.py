@@ -134,10 +134,10 @@ def test_a_page_does_not_pay_for_those_before_it() -> None:
     hoard: list[bytearray] = []
 
     def read(name: str) -> str:
-        hoard.append(bytearray(100 * MIB))
+        hoard.append(bytearray(10 * MIB))
         return name
 
-    found = read_apart(PAGES, PageWork(read), jobs=1, budget=PageBudget(memory=256 * MIB))
+    found = read_apart(PAGES, PageWork(read), jobs=1, budget=PageBudget(memory=32 * MIB))
     assert found.answers.keys() == set(PAGES)
     assert not found.failed
 
