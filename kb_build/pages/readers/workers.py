@@ -14,6 +14,7 @@ import os
 import pickle
 import resource
 import signal
+import sys
 from collections import deque
 from dataclasses import dataclass, field
 from math import sqrt
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from kb_build.records import Page
 
 _BATCH: Final = 10
+_DEEPEST: Final = 1_000
 _NO_MEMORY: Final = 77
 _NO_ANSWER: Final = 78
 _MEMORY = Path("/proc/self/statm")
@@ -279,6 +281,8 @@ def _read_some(
     for number in (signal.SIGPROF, signal.SIGALRM):
         signal.signal(number, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGPROF, signal.SIGALRM})
+    with contextlib.suppress(RecursionError):
+        sys.setrecursionlimit(_DEEPEST)  # whoever calls may have raised it
     _lower(resource.RLIMIT_CORE, 0)
     _lower(resource.RLIMIT_FSIZE, budget.written)
     had = _address_space()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -55,9 +56,24 @@ def headed(draw: st.DrawFn, inner: st.SearchStrategy[str]) -> str:
     return f"{title}\n{draw(st.sampled_from('=-~^')) * draw(st.integers(1, 40))}\n\n{draw(inner)}"
 
 
+def chain(length: int) -> str:
+    """Targets that lead to one another, down to one that exists."""
+    return (
+        "".join(f".. _t{n}: t{n + 1}_\n" for n in range(length)) + f"\n.. _t{length}: https://example.org\n"
+    )
+
+
+def stairs(depth: int, mark: str) -> str:
+    """Blocks within blocks."""
+    return "".join(f"{' ' * len(mark) * n}{mark}x\n\n" for n in range(depth))
+
+
+DISASTERS = st.sampled_from(["", chain(1_500), stairs(300, "- ")])
 RST = st.recursive(
     st.one_of(
         TEXTS,
+        st.builds(chain, st.integers(0, 30)),
+        st.builds(stairs, st.integers(0, 30), st.sampled_from(["- ", "1. ", ".. note:: ", "   "])),
         st.builds(".. _{0}: {1}_".format, NAMES, NAMES),
         st.builds(".. |{0}| replace:: |{1}| {2}".format, NAMES, NAMES, TEXTS),
         st.sampled_from(
@@ -90,12 +106,14 @@ def elements(draw: st.DrawFn, inner: st.SearchStrategy[str]) -> str:
     tag = draw(st.sampled_from(TAGS.split()))
     attributes = draw(st.sampled_from(ATTRIBUTES.split(";")))
     close = draw(st.sampled_from([f"</{tag}>", f"</{tag}>", "", "</p>"]))
-    return f"<{tag} {attributes}>{''.join(draw(st.lists(inner, max_size=4)))}{close}"
+    return f"<{tag} {attributes}>" + f"{''.join(draw(st.lists(inner, max_size=4)))}{close}"
 
 
+SPANS = "<table><tr>" + "<td colspan=1000 rowspan=1000>x</td>" * 2_000
 HTML = st.recursive(TEXTS, elements, max_leaves=40)
+pytestmark = pytest.mark.slow
 BOUNDED = settings(
-    max_examples=40,
+    max_examples=30,
     deadline=None,
     derandomize=True,
     database=None,
@@ -104,7 +122,7 @@ BOUNDED = settings(
 
 
 @BOUNDED
-@given(text=RST)
+@given(text=st.builds("{}\n\n{}".format, RST, DISASTERS))
 def test_any_rst_leaves_the_page_beside_it_as_it_is(text: str) -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -117,7 +135,7 @@ def test_any_rst_leaves_the_page_beside_it_as_it_is(text: str) -> None:
 
 
 @BOUNDED
-@given(text=HTML)
+@given(text=st.builds("{}{}".format, HTML, st.sampled_from(["", "<b>" * 2_000, SPANS])))
 def test_any_html_leaves_the_page_beside_it_as_it_is(text: str) -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
