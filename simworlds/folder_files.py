@@ -131,8 +131,8 @@ class _Walk:
                     self._enter(folder, path / entry.name, depth + 1)
                 elif not entry.is_file(follow_symlinks=False):
                     self.found.special += 1
-                elif self.wanted(path / entry.name):
-                    self._add(path / entry.name, entry.stat(follow_symlinks=False))
+                elif self.wanted(file := path / entry.name):
+                    self._add(file, entry.stat(follow_symlinks=False))
 
     def _enter(self, above: int, path: PurePosixPath, depth: int) -> None:
         if depth > self.limits.depth:

@@ -67,16 +67,18 @@ def read_html(  # noqa: PLR0913 - what, and how much of it
             progress=progress,
             budget=budget,
         )
-    pattern = "info_*.html" if source == "guide" else "*.html"
+    start = "info_" if source == "guide" else ""
     try:
-        files = list_files(folder, lambda path: path.match(pattern), _LIMITS).files
+        files = list_files(
+            folder, lambda path: path.suffix == ".html" and path.name.startswith(start), _LIMITS
+        ).files
     except OSError as error:
         raise SourceError(f"{folder} cannot be read ({error})") from error
     slugs = [file.name.removesuffix(".html") for file in files]
     names = sorted(slug for slug in slugs if slug not in _GENERATED and not _is_asset(slug))
     if not names:
         raise SourceError(
-            f"{folder} holds no pages ({pattern}): give the folder with the documentation's index.html"
+            f"{folder} holds no pages ({start}*.html): give the folder with the documentation's index.html"
         )
     done = 0
 

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from kb_build.records import Page
 
 _BATCH: Final = 10
+_LARGER_BATCH: Final = 60
 _DEEPEST: Final = 1_000
 _NO_MEMORY: Final = 77
 _NO_ANSWER: Final = 78
@@ -158,7 +159,9 @@ class _Readers:
     running: dict[Connection, _Reader] = field(default_factory=dict)
 
     def run(self, names: Sequence[str]) -> ReadPages:
-        self.waiting.extend(_chunks(names, self.jobs))
+        # Where each page is answered at once, a process that fails has read none of the others in vain.
+        batch = _BATCH if self.work.gather else _LARGER_BATCH
+        self.waiting.extend(_chunks(names, self.jobs, batch))
         try:
             while self.waiting or self.running:
                 if self.waiting and len(self.running) < self.jobs:
@@ -258,10 +261,10 @@ class _Readers:
         return reasons.get(code, f"the process that read it did not survive: {describe_exit(code)}")
 
 
-def _chunks(names: Sequence[str], jobs: int) -> list[Sequence[str]]:
+def _chunks(names: Sequence[str], jobs: int, batch: int) -> list[Sequence[str]]:
     """Shares that are large enough for a process each, and small enough for all processes to end together."""
     size = len(names) // jobs
-    size = int(sqrt(len(names) / jobs * _BATCH)) if size >= _BATCH else max(1, size)
+    size = int(sqrt(len(names) / jobs * batch)) if size >= batch else max(1, size)
     return [names[at : at + size] for at in range(0, len(names), size)]
 
 
@@ -281,6 +284,7 @@ def _read_some(
     for number in (signal.SIGPROF, signal.SIGALRM):
         signal.signal(number, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGPROF, signal.SIGALRM})
+    gc.freeze()  # looking through what was here before would copy it
     with contextlib.suppress(RecursionError):
         sys.setrecursionlimit(_DEEPEST)  # whoever calls may have raised it
     _lower(resource.RLIMIT_CORE, 0)
