@@ -171,11 +171,13 @@ def read_file(folder: Path, name: str, *, most: int, cut: bool = False) -> bytes
     with _open_folder(folder, PurePosixPath(name)) as (above, last):
         number = os.open(last, _FILE, dir_fd=above)
     with os.fdopen(number, "rb", buffering=0) as file:
-        if not stat.S_ISREG(os.fstat(number).st_mode):
+        status = os.fstat(number)
+        if not stat.S_ISREG(status.st_mode):
             raise OSError(f"{folder / name} is not a regular file")
+        step = min(status.st_size + 1, _CHUNK)
         parts: list[bytes] = []
         left = most + (not cut)
-        while left > 0 and (part := file.read(min(left, _CHUNK))):
+        while left > 0 and (part := file.read(min(left, step))):
             parts.append(part)
             left -= len(part)
     if left <= 0 and not cut:
