@@ -7,6 +7,7 @@ import signal
 import sys
 import tempfile
 import threading
+import time
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
     from agents.protocol.rule import Rule
 
 _UNCHECKED, _INTERRUPTED = 2, 130
-_LOAD_SECONDS, _STAND_SECONDS = 300.0, 3600.0
-_PATIENCE_SECONDS = 2.0
+_LOAD_SECONDS, _STAND_SECONDS = 300.0, 600.0
+_PATIENCE_SECONDS, _LINE_SECONDS = 2.0, 10.0
 _WIDTH = 132  # of a table that does not go to a terminal
 _PATH = click.Path(path_type=Path)
 
@@ -247,6 +248,7 @@ class _StatusLine:
         self._text = self._what = ""
         self._status: Status | None = None
         self._late = False
+        self._since = 0.0
         self._timer = threading.Timer(_PATIENCE_SECONDS, self._begin)
         self._timer.daemon = True
 
@@ -268,14 +270,18 @@ class _StatusLine:
     def progress(self, done: float, total: float | None, text: str) -> None:
         """Sets how far it is."""
         share = f" {done / total:.0%}" if total else ""
+        line = f"{self._what}{share} {text}".rstrip()
         if self._status is not None:
-            self._status.update(f"{self._what}{share} {text}".rstrip())
+            self._status.update(line)
+        elif self._late and time.monotonic() - self._since >= _LINE_SECONDS:
+            self._say(line)
 
     def _say(self, text: str) -> None:
         self._text = text
         if self._status is not None:
             self._status.update(text)
         elif self._late:
+            self._since = time.monotonic()
             click.echo(f"{text} …", err=True)
 
     def _begin(self) -> None:
@@ -286,6 +292,7 @@ class _StatusLine:
             self._status.start()
         else:
             click.echo(f"{self._text} …", err=True)
+        self._since = time.monotonic()
         self._late = True
 
 
