@@ -30,6 +30,11 @@ class AnimatedSettings:
         value = getattr(owner, name)
         return value if bounds is None else max(value, type(value)(min(bounds[1], 2**53)))
 
+    def highest_at(self, path, value):
+        """The larger of ``value`` and what keyframes give to the setting at ``path``; None stays None."""
+        bounds = self._bounds.get(path)
+        return value if bounds is None or value is None else max(value, bounds[1])
+
     def lowest(self, owner, name):
         """The smallest one."""
         bounds = self._of(owner, name)

@@ -24,7 +24,9 @@ class TooLarge(Exception):  # noqa: N818 - reads as the state it names
 
 @dataclass(frozen=True)
 class Size:
-    """How much geometry there is. ``extent``: of its bounds along x, y and z. ``instances``: objects shown by nodes."""
+    """How much geometry there is. ``extent``: of its bounds along x, y and z. ``instances``: what nodes show as
+    instances, ``inside``: how much geometry these have in all.
+    """
 
     vertices: int = 0
     edges: int = 0
@@ -32,6 +34,7 @@ class Size:
     corners: int = 0
     extent: tuple = (0.0, 0.0, 0.0)
     instances: int = 0
+    inside: int = 0
 
     @property
     def points(self):
@@ -52,6 +55,7 @@ class Size:
             faces=self.faces * count,
             corners=self.corners * count,
             instances=self.instances * count,
+            inside=self.inside * count,
         )
 
     def joined(self, other):
@@ -63,6 +67,7 @@ class Size:
             self.corners + other.corners,
             tuple(map(max, self.extent, other.extent)),
             self.instances + other.instances,
+            self.inside + other.inside,
         )
 
     def checked(self, setting):
@@ -111,7 +116,9 @@ def subdivided(size, levels):
 def base_size(obj, setup):
     """The size of an object's own data, before its modifiers. Raises TooLarge. ``setup``: as for ``grown``."""
     read = _BASES.get(obj.type)
-    return Size() if read is None or obj.data is None else read(obj, obj.data, setup)
+    if read is None or obj.data is None:
+        return Size()
+    return setup.once((read, obj.data), lambda: read(obj, obj.data, setup))
 
 
 def _mesh(_obj, mesh, _setup):
@@ -167,16 +174,21 @@ def _with_bevel(size, curve, setup):
     if curve.bevel_mode == "OBJECT":
         profile = curve.bevel_object
         if profile is not None and profile.type == "CURVE":
-            ring = sum(
-                len(spline.bezier_points or spline.points) * spline.resolution_u
-                for spline in profile.data.splines
-            )
+            ring = setup.once((_outline, profile.data), lambda: _outline(profile.data))
     elif setup.high(curve, "bevel_depth"):
         ring += 4 * (max(setup.high(curve, "bevel_resolution"), 0) + 1)
     if not ring:
         return size
     setting = f"bevel resolution {curve.bevel_resolution}, resolution {curve.resolution_u}"
     return quads(size.vertices * ring, size.extent).checked(setting)
+
+
+def _outline(curve):
+    """How many points a curve has, without a tube."""
+    return sum(
+        max(1, len(spline.bezier_points), len(spline.points)) * spline.resolution_u
+        for spline in curve.splines
+    )
 
 
 def _metaballs(_obj, ball, setup):
@@ -224,7 +236,8 @@ _BASES = {
 def grown(size, modifier, setup):
     """The size after a modifier; of a type that adds nothing, the size before. Raises TooLarge.
 
-    ``setup``: ``render``, ``most_levels`` of subdivision, ``high`` and ``low``: the extremes of a setting in the clip.
+    ``setup``: ``render``, ``most_levels`` of subdivision, ``high`` and ``low``: the extremes of a setting in the clip,
+    ``once(key, work)``: the result of work that is done once per key.
     """
     grow = _GROWTH.get(modifier.type)
     if grow is None:
@@ -254,7 +267,8 @@ def _array(size, modifier, setup):
     if modifier.fit_type != "FIXED_COUNT":
         length = setup.high(modifier, "fit_length")
         if modifier.fit_type == "FIT_CURVE":
-            length = _length_of(modifier.curve)
+            curve = modifier.curve
+            length = setup.once((_length_of, curve), lambda: _length_of(curve))
         apart = math.dist(step, (0.0, 0.0, 0.0))
         count = 1 if apart < 1e-6 else ratio(length, apart) + 1
         setting = f"length {length:g} in steps of {apart:g}"
@@ -275,7 +289,9 @@ def _length_of(curve):
 
 def _mirror(size, modifier, _setup):
     axes = sum(modifier.use_axis)
-    wider = tuple(2 * length if used else length for length, used in zip(size.extent, modifier.use_axis, strict=True))
+    wider = tuple(
+        2 * length if used else length for length, used in zip(size.extent, modifier.use_axis, strict=True)
+    )
     return replace(size.times(2**axes), extent=wider), f"{axes} axes"
 
 

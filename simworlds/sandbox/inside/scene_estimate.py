@@ -95,7 +95,7 @@ class _Sizes:
     def __init__(self, scene, render):
         self.render = render
         animated = AnimatedSettings(scene)
-        self.high, self.low = animated.highest, animated.lowest
+        self.high, self.low, self.high_at = animated.highest, animated.lowest, animated.highest_at
         self.of = {}  # object → Size
         self.particles = {}  # object → [(settings, particles and their children)]
         simplify = scene.render if scene.render.use_simplify else None
@@ -103,6 +103,7 @@ class _Sizes:
         self.most_levels = getattr(simplify, f"simplify_subdivision{kind}") if simplify else math.inf
         self.most_children = getattr(simplify, f"simplify_child_particles{kind}") if simplify else 1.0
         self._nodes = node_estimate.Trees(self)
+        self._done = {}
         self._shared = set()
         self._points = self._count = 0
         self._largest = (0, None)
@@ -138,6 +139,12 @@ class _Sizes:
                 MOST_POINTS,
                 "Lower the resolution of the largest.",
             )
+
+    def once(self, key, work):
+        """The result of ``work()``, done once per key: objects that share data must not multiply the time."""
+        if key not in self._done:
+            self._done[key] = work()
+        return self._done[key]
 
     def is_used(self, modifier):
         """Whether the modifier is evaluated."""
