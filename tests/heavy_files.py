@@ -41,7 +41,7 @@ HEAVY = {
     "realized": "modifier 'Nodes' with node 'Realize Instances'",
 }
 # Like heavy ones, but within the limits.
-LIGHT = ("fine", "switched_off", "simplified", "shared")
+LIGHT = ("fine", "switched_off", "simplified", "shared", "rendered")
 
 _SCRIPT = r'''
 import os, struct, sys, zlib
@@ -176,7 +176,7 @@ def instances():
 
 def corners():
     parent = sheet(across=2)
-    _subdivisions(parent, 6, 4)
+    _subdivisions(parent, 6, 5)
     parent.instance_type = "VERTS"
     sheet("Child").parent = parent
 
@@ -268,6 +268,12 @@ def switched_off():
 def simplified():
     _subdivisions(sheet(), 6, 6, 6)
     scene.render.use_simplify, scene.render.simplify_subdivision = True, 1
+
+
+def rendered():
+    obj = sheet()
+    for _ in range(2):
+        modifier(obj, "SUBSURF", "Sub", levels=1, render_levels=11)
 
 
 def shared():

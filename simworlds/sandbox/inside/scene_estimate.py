@@ -19,7 +19,7 @@ MOST_OBJECTS = 20_000
 MOST_FRAMES = 50_000
 MOST_PIXELS = 1 << 28  # of one image: 16,384 × 16,384
 MOST_PARTICLES = 2_000_000
-MOST_INSTANCES = 2_000_000
+MOST_INSTANCES = 5_000_000
 _NESTED = 8  # Blender shows instances of instances to this depth
 _LONGEST_NAME = 60
 
