@@ -219,9 +219,9 @@ def _print(report: Report, checked: VerificationScope, form: str | None) -> None
     if form is not None:
         click.echo(dump_json((as_json if form == "json" else as_sarif)(report, checked)))
         return
-    from rich.console import Console  # noqa: PLC0415 - not for --json
+    from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --json
 
-    console = Console(highlight=False, soft_wrap=False)
+    console = Console(sys.stdout, soft_wrap=False)
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = _WIDTH
     console.print(as_table(report, checked, console.width))
@@ -272,23 +272,31 @@ class _StatusLine:
         share = f" {done / total:.0%}" if total else ""
         line = f"{self._what}{share} {text}".rstrip()
         if self._status is not None:
-            self._status.update(line)
+            self._update(line)
         elif self._late and time.monotonic() - self._since >= _LINE_SECONDS:
             self._say(line)
 
     def _say(self, text: str) -> None:
         self._text = text
         if self._status is not None:
-            self._status.update(text)
+            self._update(text)
         elif self._late:
             self._since = time.monotonic()
             click.echo(f"{text} …", err=True)
 
+    def _update(self, line: str) -> None:
+        from rich.text import Text  # noqa: PLC0415 - only when it takes long
+
+        assert self._status is not None
+        self._status.update(Text(line))  # a string would be read as markup
+
     def _begin(self) -> None:
         if sys.stderr.isatty():
-            from rich.console import Console  # noqa: PLC0415 - only when it takes long
+            from rich.text import Text  # noqa: PLC0415 - only when it takes long
 
-            self._status = Console(stderr=True).status(self._text)
+            from simworlds.terminal.console import Console  # noqa: PLC0415
+
+            self._status = Console(sys.stderr).status(Text(self._text))
             self._status.start()
         else:
             click.echo(f"{self._text} …", err=True)

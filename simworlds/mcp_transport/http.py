@@ -61,6 +61,7 @@ def run_http(
     config = uvicorn.Config(
         _guarded(make_app(PATH, _security(address)), address),
         log_level="warning",
+        use_colors=False,
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=_GRACE_SECONDS,
