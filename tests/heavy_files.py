@@ -26,6 +26,8 @@ HEAVY = {
     "fluid": "modifier 'Fluid' with 10000 divisions",
     "keyed": "modifier 'Array' with count 100,000,000",
     "later": "modifier 'Array' with count 100,000,000",
+    "numbered": "modifier 'Array' with count 100,000,000",
+    "driven": "modifier 'Array' with count 1,000,000,000",
     "text": "object 'Text' with bevel resolution 32, resolution 64",
     "metaball": "object 'Ball' with resolution 0.005",
     "together": "all objects together",
@@ -41,7 +43,7 @@ HEAVY = {
     "realized": "modifier 'Nodes' with node 'Realize Instances'",
 }
 # Like heavy ones, but within the limits.
-LIGHT = ("fine", "switched_off", "simplified", "shared", "rendered")
+LIGHT = ("fine", "driven_little", "switched_off", "simplified", "shared", "rendered")
 
 _SCRIPT = r'''
 import os, struct, sys, zlib
@@ -134,6 +136,23 @@ def later():
     for frame, shown in ((1, False), (20, True), (1, False)):
         new.show_viewport = shown
         new.keyframe_insert("show_viewport", frame=frame)
+
+
+def numbered():
+    """The curve's path names the modifier by its number."""
+    keyed()
+    action = scene.objects[0].animation_data.action
+    bags = action.layers[0].strips[0].channelbags if hasattr(action, "layers") else [action]
+    bags[0].fcurves[0].data_path = "modifiers[0].count"
+
+
+def driven():
+    obj = sheet()
+    obj["times"] = 1000.0
+    driver = modifier(obj, "ARRAY", "Array").driver_add("count").driver
+    variable = driver.variables.new()
+    variable.name, variable.targets[0].id, variable.targets[0].data_path = "times", obj, '["times"]'
+    driver.expression = "max(1, times * 10**6)"
 
 
 def text():
@@ -259,6 +278,15 @@ def fine():
     modifier(obj, "ARRAY", "Array", count=50)
     tree, nodes = _tree("GeometryNodeMeshGrid", "GeometryNodeSubdivideMesh")
     _grid(nodes[0], 10)
+
+
+def driven_little():
+    obj = sheet()
+    obj["quality"] = 2
+    driver = modifier(obj, "SUBSURF", "Sub").driver_add("levels").driver
+    driver.type = "MAX"
+    variable = driver.variables.new()
+    variable.targets[0].id, variable.targets[0].data_path = obj, '["quality"]'
 
 
 def switched_off():

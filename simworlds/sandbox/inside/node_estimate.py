@@ -46,7 +46,7 @@ class Trees:
         if item.socket_type == "NodeSocketGeometry":
             return size
         value = modifier.get(item.identifier, getattr(item, "default_value", None))
-        return self.setup.high_at(f'modifiers["{modifier.name}"]["{item.identifier}"]', _number(value))
+        return self.setup.high_of(modifier, f'["{item.identifier}"]', _number(value))
 
     def output(self, tree, given, depth):
         """The values of a tree's outputs, in their order. ``given``: identifier of an input → its Size or number."""

@@ -86,6 +86,13 @@ def _check_images():
             _refuse(what, width * height, "pixels", MOST_PIXELS, "Use a smaller image.")
 
 
+def _animated(scene):
+    try:
+        return AnimatedSettings(scene)
+    except TooLarge as error:
+        _refuse(error.setting, error.count, error.unit, error.most, "Bake or remove animation.")
+
+
 # Geometry
 
 
@@ -94,8 +101,8 @@ class _Sizes:
 
     def __init__(self, scene, render):
         self.render = render
-        animated = AnimatedSettings(scene)
-        self.high, self.low, self.high_at = animated.highest, animated.lowest, animated.highest_at
+        animated = _animated(scene)
+        self.high, self.low, self.high_of = animated.highest, animated.lowest, animated.highest_of
         self.of = {}  # object → Size
         self.particles = {}  # object → [(settings, particles and their children)]
         simplify = scene.render if scene.render.use_simplify else None

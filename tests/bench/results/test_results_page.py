@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from click.testing import CliRunner
+from hostile_text import HOSTILE, steering
 
 from bench.sweep.records import read_record, write_record
 from simworlds.cli import main
@@ -19,8 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from click.testing import Result
-    from hostile_text import HOSTILE, steering
-from written_results import Written
+    from written_results import Written
 
 EVIL = '<script>alert("x")</script><img src=x onerror=alert(1)>'
 AUDIT: dict[str, Any] = {
