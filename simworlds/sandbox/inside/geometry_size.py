@@ -315,9 +315,7 @@ def _solidify(size, _modifier, _setup):
 
 def _bevel(size, modifier, setup):
     segments = max(1, setup.high(modifier, "segments"))
-    if modifier.limit_method != "NONE" and segments < 8:
-        return size.times(1 + segments), f"{segments} segments"  # of most meshes, few edges are bevelled
-    faces = size.faces + size.edges * segments + 2 * size.edges * (segments * segments // 4)
+    faces = size.faces + size.edges * segments + 2 * size.edges * (segments * segments // 4 + 1)
     return quads(faces, size.extent), f"{segments:,} segments"
 
 
