@@ -1,20 +1,23 @@
-"""Blender's reply about motion. It is not trusted, so its shape is checked."""
+"""Blender's reply about motion."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
-Frame = Annotated[int, Field(ge=-1_048_574, le=1_048_574)]
+from simworlds.sandbox.replies import Claim, Frame
+
 Text = Annotated[str, Field(max_length=1000)]
 Vector = tuple[float, float, float]
 Side = Annotated[int, Field(ge=16, le=2048)]
 _MOST_ACTORS, _MOST_PICTURES, _MOST_FRAMES = 8, 12, 1500
 
 
-class _Reply(BaseModel):
-    model_config = ConfigDict(allow_inf_nan=False, extra="ignore", protected_namespaces=())
+class _Reply(Claim):
+    """Base of its parts; Blender tells more than is drawn."""
+
+    model_config = ConfigDict(extra="ignore")
 
 
 class ShotView(_Reply):

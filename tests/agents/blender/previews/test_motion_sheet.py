@@ -12,7 +12,7 @@ from PIL import Image
 
 from agents.blender.tools.base import Call
 from agents.blender.tools.motion_sheet import TOOL
-from simworlds.sandbox.errors import Refusal, ToolBroke
+from simworlds.sandbox.errors import Refusal, Untrustworthy
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -265,7 +265,7 @@ def test_the_scene_is_left_as_it_was(session: LiveSession) -> None:
     before = session.run(STATE)
     session.use(TOOL, actors=["Crate"], frames=[10, 30])
     assert session.run(STATE) == before
-    assert not list(session.blender.folder.workspace.glob(".motion*"))
+    assert not list(session.blender.folder.workspace.mount.glob(".motion*"))
 
 
 def test_the_pictures_show_the_motion_in_one_fixed_frame(session: LiveSession) -> None:
@@ -396,5 +396,5 @@ def test_rejects_a_forged_reply(own_session: LiveSession) -> None:
     own_session.run(FALL)
     forged = "motion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}"
     own_session.run(f"from simworlds_worker.motion import motion_sheet\n{forged}")
-    with pytest.raises(ToolBroke, match="does not have the expected form"):
+    with pytest.raises(Untrustworthy, match="not a valid reply"):
         own_session.use(TOOL, actors=["Crate"])

@@ -27,6 +27,7 @@ from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
 from simworlds.sandbox.errors import CannotStart, Died, Interrupted, LeftBehind, Lost, Refusal, TookTooLong
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -85,7 +86,6 @@ def lost(session: LiveSession, code: str, timeout: float = 20.0) -> Lost:
         ("import os; os._exit(3)", "it was ended from inside, with exit code 3"),
         ("import os; os._exit(0)", "exit code 0, as after bpy.ops.wm.quit_blender or os._exit"),
         ("import os; os.closerange(3, 65536)", "its channel was closed from inside"),
-        ("import os; os.execv('/bin/sleep', ['sleep', '600'])", "or it became another program"),
     ],
 )
 def test_undoes_code_that_ends_blender(hardy: LiveSession, code: str, told: str) -> None:
@@ -241,7 +241,7 @@ def test_ctrl_c_ends_the_call_but_not_the_run(hardy: LiveSession) -> None:
 def test_refuses_too_large_arguments_before_sending(hardy: LiveSession) -> None:
     blender = hardy.blender.inner_pid
     with pytest.raises(Refusal, match=r"arguments of execute are too large: .*the limit is"):
-        hardy.blender.call("execute", {"code": "#" * (17 << 20)}, timeout=20)
+        hardy.blender.call("execute", {"code": "#" * (17 << 20)}, unread, timeout=20)
     assert hardy.blender.inner_pid == blender
 
 
@@ -283,6 +283,42 @@ def test_reports_changes_lost_between_calls(hardy: LiveSession) -> None:
     assert "lost" not in hardy.use(TOOL, code="1").text
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere nothing is stopped")
+def test_blender_stands_still_between_calls(hardy: LiveSession) -> None:
+    hardy.run("1")
+    tasks = Path(f"/proc/{hardy.blender.inner_pid}/task")
+    assert becomes(lambda: {(task / "stat").read_text().split()[2] for task in tasks.iterdir()} == {"T"})
+    assert hardy.run("1 + 1") == 2
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted by /proc")
+def test_a_thread_that_python_does_not_know_of_is_found(hardy: LiveSession) -> None:
+    code = (
+        "import ctypes\nlibc = ctypes.CDLL(None)\n"
+        "libc.pthread_create(ctypes.byref(ctypes.c_ulong()), None, libc.pause, 0)"
+    )
+    with pytest.raises(LeftBehind, match="1 thread of its own still running"):
+        hardy.use(TOOL, code=code)
+    assert hardy.run(NAMES) == ["Kept"]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "from simworlds_worker import execute\nexecute._run.__code__ = (lambda code: 'forged').__code__",
+        "from simworlds_worker import execute\nexecute._run = lambda code: 'forged'",
+        "from simworlds_worker import execute\nexecute.execute.__defaults__ = (None,)",
+        "import json\njson.dumps.__code__ = (lambda *_, **__: '{}').__code__",
+        "import json\njson.JSONEncoder.encode.__code__ = (lambda *_: '{}').__code__",
+    ],
+    ids=["what a function does", "a name", "defaults", "a module's function", "a method"],
+)
+def test_what_code_changes_in_the_tools_is_restored(hardy: LiveSession, change: str) -> None:
+    hardy.use(TOOL, code=change)
+    assert hardy.run("1 + 1") == 2
+    assert "restarted" not in hardy.use(TOOL, code="1").text
+
+
 def test_blender_outlives_the_thread_that_started_it(tmp_path: Path) -> None:
     made: list[LiveSession] = []
     starter = threading.Thread(target=lambda: made.append(LiveSession(tmp_path / "run")))
@@ -307,7 +343,7 @@ def test_answers_calls_of_many_threads(hardy: LiveSession) -> None:
     answers: dict[int, object] = {}
 
     def ask(number: int) -> None:
-        reply = hardy.blender.call("execute", {"code": f"print({number})\n{number} ** 2"}, timeout=60)
+        reply = hardy.blender.call("execute", {"code": f"print({number})\n{number} ** 2"}, unread, timeout=60)
         answers[number] = (reply.value["value"], reply.stdout)
 
     threads = [threading.Thread(target=ask, args=(number,)) for number in range(12)]
@@ -324,7 +360,7 @@ def test_two_runs_are_independent(make_session: Callable[[str], LiveSession]) ->
     two.run(adding("Two"))
     one.blender.kill()
     assert (one.run(NAMES), two.run(NAMES)) == (["One"], ["Two"])
-    outside = two.use(TOOL, code=f"open({str(one.blender.folder.workspace / 'scene.blend')!r})")
+    outside = two.use(TOOL, code=f"open({str(one.blender.folder.workspace.mount / 'scene.blend')!r})")
     assert outside.data["error"]["type"] in {"PermissionError", "FileNotFoundError"}
 
 
@@ -334,7 +370,7 @@ def test_two_runs_are_independent(make_session: Callable[[str], LiveSession]) ->
 def test_continues_a_run_where_it_was_left(tmp_path: Path) -> None:
     first = LiveSession(tmp_path / "run")
     first.run(adding("Kept"))
-    first.blender.call("execute", {"code": adding("Not yet written")}, timeout=20)
+    first.blender.call("execute", {"code": adding("Not yet written")}, unread, timeout=20)
     first.blender.checkpoints.changed(0.0)
     first.blender.close()
     second = LiveSession(tmp_path / "run")
@@ -365,7 +401,7 @@ def test_closing_leaves_no_process_and_no_private_folder(tmp_path: Path) -> None
 def test_refuses_a_second_supervisor_for_a_run(hardy: LiveSession) -> None:
     folder = hardy.blender.folder
     with pytest.raises(Refusal, match="in use by another"):
-        Supervisor(make_launch(folder.workspace), folder)
+        Supervisor(make_launch(folder.workspace.mount), folder)
 
 
 def test_rejects_a_wrong_executable_before_starting_it(tmp_path: Path) -> None:
@@ -406,9 +442,10 @@ sys.path[:0] = [{str(REPO / "tests" / "agents")!r}]
 from pathlib import Path
 from live_session import LiveSession
 from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.replies import unread
 session = LiveSession(Path({str(tmp_path / "run")!r}), sandbox=best_sandbox({kind!r}))
 print("ready", flush=True)
-session.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, timeout=600)
+session.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, unread, timeout=600)
 """
     process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
     try:
