@@ -81,6 +81,7 @@ def run_http(
         lifespan="on",
         backlog=limits.at_once,
         log_level="error",  # anybody can cause warnings
+        use_colors=False,
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=_GRACE_SECONDS,
