@@ -76,7 +76,7 @@ def test_this_machine_is_found_to_work(here: subprocess.CompletedProcess[str]) -
     assert found["Blender"]["data"]["version"] == installed_bpy()
     assert found["Blender"]["data"]["kind"] == "environment"
     assert 0.05 < found["Start"]["data"]["seconds"] < 60
-    assert found["Cycles"]["state"] == "good"
+    assert found["Cycles"]["state"] == "good", found["Cycles"]
     assert 0 < found["Cycles"]["data"]["seconds"] < 60
     assert found["Films"]["data"]["supported"] is True
     assert (found["Fluids"]["state"], found["Fluids"]["data"]["fault"]) == ("good", None)
@@ -229,7 +229,7 @@ def test_checks_an_installed_blender(tmp_path: Path) -> None:
     found = findings(done)
     assert found["Blender"]["data"]["kind"] == "executable"
     assert found["Start"]["state"] == found["Sandbox"]["state"] == "good"
-    assert found["Cycles"]["state"] == "good"
+    assert found["Cycles"]["state"] == "good", found["Cycles"]
     assert found["Fluids"]["state"] == "good"
 
 
