@@ -1,0 +1,135 @@
+"""Owns one live session and does what it is asked to: a server under attack, in a process of its own.
+
+Speaks JSON lines on its standard input and output. The first line says how to start (see ``main``); each further one
+calls a tool, writes lies for the program that stands in for Blender, or asks for facts.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+import time
+import traceback
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from agents.blender.launch import make_launch
+from agents.blender.run_folder import RunFolder
+from agents.blender.supervisor import Supervisor
+from agents.blender.tool_catalogue import BY_NAME
+from agents.blender.tools.base import Call, ToolContext, parse, perform
+from simworlds.sandbox.confined_command import ResourceLimits, Sandbox, best_sandbox
+from simworlds.sandbox.errors import BlenderError
+from simworlds.sandbox.program import SHARED, Program
+
+MIB = 1 << 20
+LIMITS = ResourceLimits(memory=1600 * MIB, file_size=128 * MIB, disk=64 * MIB, files=400, threads=300)
+LIAR = Program("simworlds_liar.liar", {**SHARED, "simworlds_liar": Path(__file__).parent / "inside"})
+LIES = ".lies.json"
+_KEPT = ("scene.blend",)
+
+
+def _no_docs(query: str, *, max_tokens: int = 400) -> str:
+    del query, max_tokens
+    return ""
+
+
+def _sandbox(kind: Any, without: list[str]) -> Sandbox:
+    sandbox = best_sandbox(kind, LIMITS)
+    if not without:
+        return sandbox
+    from simworlds.sandbox.walls import Wall
+
+    return replace(sandbox, without=frozenset(Wall(name) for name in without))
+
+
+class Session:
+    """A supervisor, and its Blender or the liar in its place."""
+
+    def __init__(self, wanted: dict[str, Any]) -> None:
+        folder = RunFolder.make(Path(wanted["root"]))
+        read = tuple(Path(path) for path in wanted["read"])
+        sandbox = _sandbox(wanted["kind"], wanted["without"])
+        launch = make_launch(folder.workspace, sandbox=sandbox, read=read)
+        if wanted["liar"]:
+            launch = replace(launch, program=LIAR)
+        self.blender = Supervisor(launch, folder)
+        self.blender.start()
+        self.context = ToolContext(self.blender, _no_docs)
+
+    def answer(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Does one thing."""
+        if "tool" in request:
+            return self._use(request["tool"], request["arguments"])
+        if "lies" in request:
+            path = self.blender.folder.workspace / LIES
+            path.unlink(missing_ok=True)
+            path.write_text(json.dumps(request))
+            path.chmod(0o644)
+        if "clean" in request:
+            self._clean(anew=request["clean"] == "anew")
+        return {"process": self.blender.inner_pid, "started": self.blender.pid}
+
+    def _use(self, name: str, arguments: dict[str, Any]) -> dict[str, Any]:
+        tool = BY_NAME[name]
+        started = time.monotonic()
+        try:
+            result = perform(tool, self.context, parse(tool, arguments), Call())
+            said: dict[str, Any] = {"text": result.text, "data": result.data, "failed": result.failed}
+        except BlenderError as error:
+            said = {"error": type(error).__name__, "message": str(error), "printed": getattr(error, "printed", "")}
+        except Exception as error:
+            said = {"broke": type(error).__name__, "message": traceback.format_exc()[-3000:]}
+        return {**said, "seconds": time.monotonic() - started}
+
+    def _clean(self, *, anew: bool) -> None:
+        """Empties scene and workspace."""
+        if anew:
+            self.blender.kill()
+        workspace = self.blender.folder.workspace
+        for path in workspace.iterdir():
+            if path.name in _KEPT and path.is_file() and not path.is_symlink():
+                continue
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink(missing_ok=True)
+        self.blender.call(
+            "execute",
+            {"code": "bpy.ops.wm.read_factory_settings(use_empty=True)"},
+            timeout=60,
+            changes=True,
+        )
+
+
+def main() -> None:
+    """Starts what the first line asks for: ``root``, ``kind``, ``without`` (walls), ``read`` (folders), ``liar``."""
+    lines = sys.stdin
+    out = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # nothing else may write there
+
+    def say(answer: dict[str, Any]) -> None:
+        out.write(json.dumps(answer, default=repr) + "\n")
+        out.flush()
+
+    try:
+        session = Session(json.loads(lines.readline()))
+    except BlenderError as error:
+        say({"refused": str(error)})
+        return
+    say(session.answer({}))
+    try:
+        for line in lines:
+            try:
+                say(session.answer(json.loads(line)))
+            except BlenderError as error:
+                say({"error": type(error).__name__, "message": str(error)})
+    finally:
+        session.blender.close()
+
+
+if __name__ == "__main__":
+    main()
