@@ -19,10 +19,13 @@ from dataclasses import dataclass, field
 from functools import cache
 from glob import glob
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from simworlds.sandbox import confine_self
 from simworlds.sandbox.errors import CannotStart
+
+if TYPE_CHECKING:
+    from simworlds.sandbox.walls import Wall
 
 Kind = Literal["bubblewrap", "landlock", "none"]
 
@@ -63,12 +66,16 @@ class ResourceLimits:
 
 @dataclass(frozen=True, slots=True)
 class Sandbox:
-    """A way to confine a process. ``holds`` and ``lacks`` say what it guarantees and what it leaves open."""
+    """A way to confine a process. ``holds`` and ``lacks`` say what it guarantees and what it leaves open.
+
+    ``without``: walls that are taken down, to show what each of them keeps out.
+    """
 
     kind: Kind
     holds: tuple[str, ...]
     lacks: tuple[str, ...] = ()
     limits: ResourceLimits = field(default_factory=ResourceLimits)
+    without: frozenset[Wall] = frozenset()
 
     def command(self, words: list[str], *, read: list[Path], write: list[Path]) -> list[str]:
         """The command that runs ``words`` confined: it can read ``read`` and the system's programs, write ``write``.
@@ -128,8 +135,13 @@ def _bubblewrap(read: list[str], write: list[Path]) -> list[str]:
     return [*words, "--remount-ro", "/dev", "--remount-ro", "/"]
 
 
-def best_sandbox(wanted: Kind | None = None, limits: ResourceLimits | None = None) -> Sandbox:
-    """The strongest sandbox that works here, or the ``wanted`` one, whether it works or not."""
+def best_sandbox(
+    wanted: Kind | None = None, limits: ResourceLimits | None = None, without: frozenset[Wall] = frozenset()
+) -> Sandbox:
+    """The strongest sandbox that works here, or the ``wanted`` one, whether it works or not.
+
+    ``without``: see Sandbox.
+    """
     kind = wanted or _best_kind()
     limits = limits or default_limits()
     holds = ["ends with SimWorlds, however that ends", "sees none of your environment's secrets"]
@@ -153,7 +165,7 @@ def best_sandbox(wanted: Kind | None = None, limits: ResourceLimits | None = Non
     if kind != "none" and graphics():
         lacks.append("use of the graphics card")
     holds.append(f"takes at most {', '.join(limits.in_words)}")
-    return Sandbox(kind, tuple(holds), tuple(lacks), limits)
+    return Sandbox(kind, tuple(holds), tuple(lacks), limits, without)
 
 
 def default_limits() -> ResourceLimits:
