@@ -27,7 +27,16 @@ _DENIED = {
     *("ConnectionRefusedError", "URLError", "RuntimeError", "MemoryError", "_ArrayMemoryError"),
 }
 _NUMBERS = {
-    *(errno.EPERM, errno.EACCES, errno.ENOSYS, errno.EROFS, errno.ENOENT, errno.ESRCH, errno.ENOTSUP, errno.EXDEV),
+    *(
+        errno.EPERM,
+        errno.EACCES,
+        errno.ENOSYS,
+        errno.EROFS,
+        errno.ENOENT,
+        errno.ESRCH,
+        errno.ENOTSUP,
+        errno.EXDEV,
+    ),
     *(errno.ENOTDIR, errno.ENXIO, errno.EAFNOSUPPORT, errno.EPROTONOSUPPORT, errno.ELOOP, errno.ECONNREFUSED),
     *(errno.ENETUNREACH, errno.EMFILE, errno.ENOMEM, errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EAGAIN),
 }
@@ -128,7 +137,9 @@ def _judge(way: Way, answer: dict[str, Any], outcome: Outcome) -> None:
     if error:
         number = _NUMBER.search(error["message"])
         allowed = _DENIED | {*way.denied}
-        if error["type"] not in allowed or (number and int(number[1]) not in _NUMBERS and number[1] not in allowed):
+        if error["type"] not in allowed or (
+            number and int(number[1]) not in _NUMBERS and number[1] not in allowed
+        ):
             outcome.flaws.append(f"{error['type']}: {error['message']}\n{error['traceback'][-1500:]}")
     elif "data" in answer and (value := answer["data"]["value"]) not in _NOTHING:
         outcome.evidence.append(f"it got {value[:300]}")

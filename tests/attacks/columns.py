@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 def cells(kind: Kind) -> list[object]:
     """The parameters of one sandbox's tests: (way, who)."""
     return [
-        pytest.param(way, who, id=f"{way.name}-{kind}-{who}") for way in WAYS for who in WHO if kind in way.kinds
+        pytest.param(way, who, id=f"{way.name}-{kind}-{who}")
+        for way in WAYS
+        for who in WHO
+        if kind in way.kinds
     ]
 
 
@@ -53,6 +56,9 @@ def assert_held(attackers: Attackers, way: Way, kind: Kind, who: Who) -> None:
 def said(outcome: Outcome) -> str:
     """An outcome for the reader of a failed test."""
     answers = [
-        answer.get("message") or answer.get("text") or str(answer.get("data", ""))[:600] for answer in outcome.answers
+        answer.get("message") or answer.get("text") or str(answer.get("data", ""))[:600]
+        for answer in outcome.answers
     ]
-    return "\n".join([*outcome.evidence, *outcome.flaws, "The server replied:", *(answer[:800] for answer in answers)])
+    return "\n".join(
+        [*outcome.evidence, *outcome.flaws, "The server replied:", *(answer[:800] for answer in answers)]
+    )

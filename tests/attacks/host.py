@@ -37,13 +37,8 @@ def _no_docs(query: str, *, max_tokens: int = 400) -> str:
     return ""
 
 
-def _sandbox(kind: Any, without: list[str]) -> Sandbox:
-    sandbox = best_sandbox(kind, LIMITS)
-    if not without:
-        return sandbox
-    from simworlds.sandbox.walls import Wall
-
-    return replace(sandbox, without=frozenset(Wall(name) for name in without))
+def _sandbox(kind: Any, without: list[Any]) -> Sandbox:
+    return best_sandbox(kind, LIMITS, frozenset(without))
 
 
 class Session:
@@ -80,7 +75,11 @@ class Session:
             result = perform(tool, self.context, parse(tool, arguments), Call())
             said: dict[str, Any] = {"text": result.text, "data": result.data, "failed": result.failed}
         except BlenderError as error:
-            said = {"error": type(error).__name__, "message": str(error), "printed": getattr(error, "printed", "")}
+            said = {
+                "error": type(error).__name__,
+                "message": str(error),
+                "printed": getattr(error, "printed", ""),
+            }
         except Exception as error:
             said = {"broke": type(error).__name__, "message": traceback.format_exc()[-3000:]}
         return {**said, "seconds": time.monotonic() - started}

@@ -111,7 +111,13 @@ class Outside:
         program.chmod(0o755)
 
     def _start_witness(self) -> None:
-        words = [sys.executable, "-c", _WITNESS, self.secret("the memory of a process"), self.secret("an open file")]
+        words = [
+            sys.executable,
+            "-c",
+            _WITNESS,
+            self.secret("the memory of a process"),
+            self.secret("an open file"),
+        ]
         environment = {"SECRET": self.secret("the environment of a process")}
         self._witness = subprocess.Popen(words, env=environment, stdout=subprocess.PIPE)
         assert self._witness.stdout is not None
@@ -158,6 +164,8 @@ class Outside:
             "picture": str(self.folder / "picture.png"),
             "key": str(self.home / ".ssh" / "id_ed25519"),
             "readable": str(self.readable / "file"),
+            "top": str(self.root),
+            "home": str(self.home),
             "root": str(host.root),
             "workspace": str(host.root / "workspace"),
             "private": str(host.root / "private"),
@@ -214,7 +222,13 @@ class Outside:
         now = self._state()
         for path in sorted({*self.before, *now}):
             if self.before.get(path) != now.get(path):
-                word = "changed" if path in self.before and path in now else "appeared" if path in now else "is gone"
+                word = (
+                    "changed"
+                    if path in self.before and path in now
+                    else "appeared"
+                    if path in now
+                    else "is gone"
+                )
                 yield f"{path} {word}: {self.before.get(path)} → {now.get(path)}"
         if found := [path for path in _shared_places() if self.mark in path]:
             yield f"{', '.join(found)} appeared"
@@ -235,7 +249,10 @@ class Outside:
             if number in {os.getpid(), host.pid, self._pid}:
                 continue
             try:
-                names = [(folder / "cmdline").read_bytes().split(b"\0")[0], (folder / "comm").read_bytes().strip()]
+                names = [
+                    (folder / "cmdline").read_bytes().split(b"\0")[0],
+                    (folder / "comm").read_bytes().strip(),
+                ]
                 if number == host.process or _parent(number) == host.pid:
                     names += [path.read_bytes().strip() for path in folder.glob("task/*/comm")]
             except (OSError, ValueError):
@@ -276,9 +293,7 @@ class Outside:
         state["the process"] = self._witness.poll()
         if self._witness.poll() is None:
             state |= {f"the process's {name}": value for name, value in rights_of(self._pid).items()}
-            state["the process's limits"] = [
-                resource.prlimit(self._pid, which) for which in range(16)
-            ]
+            state["the process's limits"] = [resource.prlimit(self._pid, which) for which in range(16)]
         return state
 
     def close(self) -> None:
@@ -298,7 +313,9 @@ def rights_of(process: int) -> dict[str, str]:
     """What a process may do and how it is treated: identity, capabilities, filters, limits, niceness. Empty if gone."""
     try:
         folder = Path(f"/proc/{process}")
-        lines = dict(line.split(":\t", 1) for line in (folder / "status").read_text().splitlines() if ":\t" in line)
+        lines = dict(
+            line.split(":\t", 1) for line in (folder / "status").read_text().splitlines() if ":\t" in line
+        )
         return {
             **{name: lines[name] for name in _TAKEN_FIELDS},
             "oom_score_adj": (folder / "oom_score_adj").read_text().strip(),

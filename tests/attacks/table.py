@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-from ways import reading
+from ways import kernel, limits, network, others, processes, reading, writing
 from way import Way
 
 WAYS: tuple[Way, ...] = (
     *reading.WAYS,
+    *writing.WAYS,
+    *processes.WAYS,
+    *others.WAYS,
+    *network.WAYS,
+    *kernel.WAYS,
+    *limits.WAYS,
 )
 assert len({way.name for way in WAYS}) == len(WAYS), "two ways have the same name"

@@ -4,6 +4,7 @@
 import ctypes
 import errno
 import os
+import struct
 import sys
 import threading
 import time
@@ -15,7 +16,15 @@ libc.syscall.restype = ctypes.c_long
 DENIED = {
     *(errno.EPERM, errno.EACCES, errno.ENOSYS, errno.EROFS, errno.ENOENT, errno.ESRCH, errno.ENOTSUP),
     *(errno.EXDEV, errno.ENOTDIR, errno.ENXIO, errno.EAFNOSUPPORT, errno.EPROTONOSUPPORT, errno.ELOOP),
-    *(errno.ECONNREFUSED, errno.ENETUNREACH, errno.EMFILE, errno.ENOMEM, errno.ENOSPC, errno.EFBIG, errno.EDQUOT),
+    *(
+        errno.ECONNREFUSED,
+        errno.ENETUNREACH,
+        errno.EMFILE,
+        errno.ENOMEM,
+        errno.ENOSPC,
+        errno.EFBIG,
+        errno.EDQUOT,
+    ),
 }
 
 
@@ -50,6 +59,15 @@ def worked(act, *arguments, **named):
         if error.errno not in DENIED:
             raise
         return None
+
+
+def reaches(number, *arguments):
+    """Whether a system call gets as far as the kernel's own checks of its arguments."""
+    try:
+        syscall(number, *arguments)
+    except OSError as error:
+        return error.errno not in DENIED
+    return True
 
 
 def read(path, size=4096):
