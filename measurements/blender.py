@@ -29,6 +29,7 @@ from bench.sweep.command import simworlds_command
 from measurements.echo import TOOL as ECHO
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import REPO, environment, percentile, say
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Sequence
@@ -82,7 +83,7 @@ def _worker(setting: Setting) -> ReportPart:
         with tempfile.TemporaryDirectory() as place:
             folder = RunFolder.make(Path(place))
             began = time.perf_counter()
-            with Supervisor(make_launch(folder.workspace), folder) as blender:
+            with Supervisor(make_launch(folder.workspace.mount), folder) as blender:
                 _run(blender, "1+1")
                 starts.append(time.perf_counter() - began)
                 _run(blender, _SCENE.replace("COUNT", str(_KEPT)))
@@ -103,7 +104,7 @@ def _worker(setting: Setting) -> ReportPart:
 
 
 def _run(blender: Supervisor, code: str) -> str:
-    reply = blender.call("execute", {"code": code}, timeout=60, changes=True)
+    reply = blender.call("execute", {"code": code}, unread, timeout=60, changes=True)
     if reply.value["error"] is not None:
         raise RuntimeError(reply.value["error"]["message"])
     return reply.value["value"]

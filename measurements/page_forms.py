@@ -6,9 +6,9 @@ import argparse
 import time
 from pathlib import Path
 
-from kb_build.pages.readers.compare import ReaderComparison, compare
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
+from measurements.reader_comparison import ReaderComparison, compare
 
 
 def main() -> None:

@@ -25,6 +25,7 @@ from bench.sweep.command import simworlds_command
 from measurements import verifier_scenes
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import REPO, environment, percentile, say
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -151,10 +152,10 @@ def _loose(setting: Setting, place: Path) -> ReportPart:
 def _built(place: Path, script: str, target: Path) -> dict[str, Any]:
     """Builds a scene by a script in a Blender of its own and saves it. Returns the script's last value."""
     folder = RunFolder.make(place / f"{target.stem} run")
-    with Supervisor(make_launch(folder.workspace), folder) as blender:
-        saved = folder.workspace / "scene.blend"
+    with Supervisor(make_launch(folder.workspace.mount), folder) as blender:
+        saved = folder.workspace.mount / "scene.blend"
         code = f"{script}\nbpy.ops.wm.save_as_mainfile(filepath={str(saved)!r}, copy=True)\ntold"
-        reply = blender.call("execute", {"code": code}, timeout=_SECONDS)
+        reply = blender.call("execute", {"code": code}, unread, timeout=_SECONDS)
         if reply.value["error"] is not None:
             raise _Failed(reply.value["error"]["message"])
         saved.replace(target)

@@ -15,8 +15,6 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
 
-from simworlds.sandbox.untrusted_files import take_beneath
-
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -27,7 +25,6 @@ PATIENCE = 4.0
 KEPT = 12
 KEPT_LEAST = 3
 KEPT_BYTES = 4 << 30
-WRITTEN = "checkpoint.blend"  # in the private folder, until it is taken in
 _FILE = re.compile(r"(\d{6})\.blend")
 
 
@@ -84,12 +81,17 @@ class Checkpoints:
         """Whether the changes since the last checkpoint are worth a new one."""
         return self.unkept > 0 and (self._cost <= CHEAP_SECONDS or self._worked >= PATIENCE * self._cost)
 
-    def keep(self, after: str, seconds: float) -> Checkpoint:
-        """Adds the state that Blender wrote to WRITTEN in ``seconds``. Raises Refusal."""
+    @property
+    def cost(self) -> float:
+        """Seconds that the last one took."""
+        return self._cost
+
+    def keep(self, written: str, after: str, seconds: float) -> Checkpoint:
+        """Adds the state that Blender wrote in ``seconds`` as ``written`` in the private folder. Raises Refusal."""
         started = time.monotonic()
         number = self._all[-1].number + 1 if self._all else 1
         path = self._folder.checkpoints / f"{number:06d}.blend"
-        take_beneath(self._folder.private, WRITTEN, path, durable=False)
+        self._folder.private.take(written, path, durable=False)
         self._all.append(_checkpoint(number, path, after))
         self._cost, self._worked, self.unkept = seconds + time.monotonic() - started, 0.0, 0
         self._drop_oldest()

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.errors import BlenderError, Died
+from simworlds.sandbox.replies import Claim, Name
 
 if TYPE_CHECKING:
     from simworlds.sandbox.launch import Launch
@@ -35,28 +36,38 @@ class FluidCheck:
         return f"bpy {self.version} simulates fluids; the repair is no longer needed for it."
 
 
+class _TestResult(Claim):
+    """``works``: a drop of liquid was baked; ``hooked``: the repair was needed in it."""
+
+    version: Name
+    works: bool
+    hooked: bool
+
+
 def check_fluids(launch: Launch) -> FluidCheck:
     """Bakes a drop of liquid in separate processes, with and without the repair. Raises CannotStart."""
     process = BlenderProcess(launch)
     try:
-        result: dict[str, Any] = process.call(
-            "fluid_self_test", {"remedy": True}, timeout=_TEST_SECONDS
+        result = process.call(
+            "fluid_self_test", {"remedy": True}, _TestResult.model_validate, timeout=_TEST_SECONDS
         ).value
     except BlenderError as error:
         return FluidCheck(launch.runtime.version, str(error), None)
     finally:
         process.kill()
-    if not result["works"]:
-        return FluidCheck(result["version"], "a baked drop of liquid has no surface.", None)
-    return FluidCheck(result["version"], None, _dies_without(launch) if result["hooked"] else None)
+    if not result.works:
+        return FluidCheck(result.version, "a baked drop of liquid has no surface.", None)
+    return FluidCheck(result.version, None, _dies_without(launch) if result.hooked else None)
 
 
 def _dies_without(launch: Launch) -> bool:
     process = BlenderProcess(launch)
     try:
-        reply = process.call("fluid_self_test", {"remedy": False}, timeout=_TEST_SECONDS)
+        reply = process.call(
+            "fluid_self_test", {"remedy": False}, _TestResult.model_validate, timeout=_TEST_SECONDS
+        )
     except Died:
         return True
     finally:
         process.kill()
-    return not reply.value["works"]
+    return not reply.value.works

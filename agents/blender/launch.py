@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simworlds.sandbox.confined_command import Sandbox, best_sandbox
-from simworlds.sandbox.launch import PRIVATE, Launch, find_blender
+from simworlds.sandbox.hostile_ground import HostileGround
+from simworlds.sandbox.launch import LENT, PRIVATE, Launch, find_blender
 from simworlds.sandbox.program import SHARED, Program
 from simworlds.settings import home_folder
 
@@ -40,4 +41,7 @@ def launch_in(
     """The launch of the worker in ``runtime``; the workspace is made."""
     workspace.mkdir(parents=True, exist_ok=True)
     workspace = workspace.resolve()
-    return Launch(runtime, workspace, workspace.with_name(PRIVATE), sandbox or best_sandbox(), WORKER, read)
+    ground, private = HostileGround(workspace), HostileGround(workspace.with_name(PRIVATE))
+    return Launch(
+        runtime, ground, private, sandbox or best_sandbox(), WORKER, read, workspace.with_name(LENT)
+    )

@@ -2,34 +2,27 @@
 
 from __future__ import annotations
 
-import os
 import re
-import secrets
-from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING
 
 from simworlds.sandbox.errors import Refusal
-from simworlds.sandbox.launch import PRIVATE
-from simworlds.sandbox.untrusted_files import copy_file, open_beneath, take_beneath
-from simworlds.sandbox.usage import remove
+from simworlds.sandbox.hostile_ground import HostileGround
+from simworlds.sandbox.launch import LENT, PRIVATE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _NAME = re.compile(r"[\w .()+-]{1,100}")
 SCENE_FILE = "scene.blend"  # in the workspace: the run's own file, as Blender has it open
-_RESERVED = {"workspace": "Blender", "checkpoints": "checkpoints", PRIVATE: "Blender"}
+_RESERVED = {"workspace": "Blender", "checkpoints": "checkpoints", PRIVATE: "Blender", LENT: "Blender"}
 
 
 @dataclass(frozen=True, slots=True)
 class RunFolder:
-    """``root`` holds ``workspace`` (for Blender, the base of relative paths), ``checkpoints`` and saved files.
-
-    What executed code puts into the workspace is not trusted: links in it are never followed.
-    """
+    """``root`` holds ``workspace`` (for Blender, the base of relative paths), ``checkpoints`` and saved files."""
 
     root: Path
 
@@ -37,19 +30,33 @@ class RunFolder:
     def make(cls, root: Path) -> RunFolder:
         """Makes the folders that are missing."""
         folder = cls(root.absolute())
-        for path in (folder.workspace, folder.checkpoints):
+        for path in (folder.workspace.mount, folder.checkpoints):
             path.mkdir(parents=True, exist_ok=True)
         return folder
 
     @property
-    def workspace(self) -> Path:
+    def workspace(self) -> HostileGround:
         """The folder that Blender may write to."""
-        return self.root / "workspace"
+        return HostileGround(self.root / "workspace")
 
     @property
-    def private(self) -> Path:
+    def private(self) -> HostileGround:
         """The folder of Blender's temporary files, while it runs."""
-        return self.root / PRIVATE
+        return HostileGround(self.root / PRIVATE)
+
+    @property
+    def lent(self) -> Path:
+        """The folder of files that Blender is to load and cannot change, while it runs."""
+        return self.root / LENT
+
+    @property
+    def saved(self) -> Iterator[Path]:
+        """The .blend files that were saved in this run."""
+        for path in self.root.iterdir():
+            if path.name.lower() in _RESERVED or path.name.startswith(".") or path.is_symlink():
+                continue
+            found = path.rglob("*.blend") if path.is_dir() else [path]
+            yield from (file for file in found if file.suffix == ".blend" and file.is_file())
 
     @property
     def checkpoints(self) -> Path:
@@ -78,40 +85,6 @@ class RunFolder:
         if not path.parent.resolve().is_relative_to(self.root.resolve()):
             raise Refusal(f"{name[:120]!r} leads out of the run's folder; choose a path inside it.")
         return path
-
-    def open_made(self, relative: str) -> BinaryIO:
-        """Opens a regular file that Blender made, by its path in the workspace. Raises Refusal."""
-        return open_beneath(self.workspace, relative)
-
-    def take(self, relative: str, target: Path, *, durable: bool = True) -> None:
-        """Moves a file that Blender made to ``target``, whole or not at all. Raises Refusal.
-
-        It is copied, since executed code may still have it open. ``durable`` waits for the disk.
-        """
-        take_beneath(self.workspace, relative, target, durable=durable)
-
-    def put(self, source: Path, name: str) -> Path:
-        """Copies a file to the workspace as ``name``, replacing whatever is there. Raises Refusal."""
-        target = self.workspace / name
-        part = f".{name}.{secrets.token_hex(8)}.part"
-        workspace = os.open(self.workspace, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
-            with (
-                source.open("rb") as read,
-                os.fdopen(os.open(part, flags, 0o644, dir_fd=workspace), "wb") as copy,
-            ):
-                copy_file(read, copy)
-            if target.is_dir() and not target.is_symlink():
-                remove(target)
-            os.replace(part, name, src_dir_fd=workspace, dst_dir_fd=workspace)
-        except OSError as error:
-            with suppress(OSError):
-                os.unlink(part, dir_fd=workspace)
-            raise Refusal(f"{target} cannot be written: {error.strerror or error}.") from error
-        finally:
-            os.close(workspace)
-        return target
 
 
 def roots(runs: Path) -> Iterator[Path]:

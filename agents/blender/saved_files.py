@@ -8,15 +8,15 @@ import tempfile
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
 from agents.blender.formatting import format_list
 from simworlds.sandbox.blender_process import BlenderProcess
-from simworlds.sandbox.errors import BlenderError, Refusal, ToolBroke
-from simworlds.sandbox.untrusted_files import copy_file, open_beneath
-from simworlds.sandbox.usage import remove
+from simworlds.sandbox.errors import BlenderError, NotThere, Refusal
+from simworlds.sandbox.hostile_ground import DEEPEST, HostileGround, copy_folder, copy_to
+from simworlds.sandbox.replies import Claim, Count, Name, Place
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
@@ -25,73 +25,58 @@ if TYPE_CHECKING:
     from simworlds.sandbox.launch import Launch
 
 COPY_NAME = ".saved.blend"  # in the workspace, until it is taken out
+_MOST_FILES = 500_000
+_MOST_NAMED = 20_000
 _STAGED = ".saving-"  # in the run's folder
-_LOAD_FOLDER = ".loading"  # in the workspace: a copy of what is to be opened
 _MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, zstd (since 3.0), gzip (before)
 _BLEND = re.compile(r"\.blend\d*$", re.IGNORECASE)
 _LISTED = 12
+_LARGEST = 1 << 40  # bytes of a .blend
 
 
-class _FromBlender(BaseModel):
-    """Data from Blender, which is not trusted: its shape is checked."""
-
-    model_config = ConfigDict(frozen=True)
-
-
-class CacheReport(_FromBlender):
+class CacheReport(Claim):
     """A physics cache: the frames it is for, how many it has, and how many of a bake's frames are missing."""
 
-    label: str
+    label: Name
     baked: bool
     outdated: bool
     range: list[int] = Field(min_length=2, max_length=2)
     where: Literal["memory", "disk"]
-    frames: int
-    missing: int
+    frames: Count
+    missing: Count
 
 
-class ExternalFile(_FromBlender):
+class ExternalFile(Claim):
     """A file that is used and not packed; ``missing``: Blender cannot read it."""
 
-    what: str
-    path: str
+    what: Name
+    path: Place
     missing: bool
 
 
-class FileContents(_FromBlender):
+class FileContents(Claim):
     """What an open file has."""
 
-    objects: int
-    caches: list[CacheReport]
+    objects: Count
+    caches: list[CacheReport] = Field(max_length=_MOST_NAMED)
 
 
 class SavedCopy(FileContents):
     """A file that was written; ``files`` are (path in the workspace, path in the folder beside the .blend)."""
 
-    bytes: int
-    packed: list[str]
-    rescued: list[str]
-    files: list[tuple[str, str]]
-    external: list[ExternalFile]
+    bytes: Count
+    packed: list[Name] = Field(max_length=_MOST_NAMED)
+    rescued: list[Name] = Field(max_length=_MOST_NAMED)
+    files: list[tuple[Place, Place]] = Field(max_length=_MOST_FILES)
+    external: list[ExternalFile] = Field(max_length=_MOST_NAMED)
 
 
 class LoadedFile(FileContents):
     """A file that was opened as the run's own; ``scripts``: it has scripts, which were not run."""
 
-    version: str
+    version: Name
     scripts: bool
-    external: list[ExternalFile]
-
-
-_Model = TypeVar("_Model", bound=BaseModel)
-
-
-def validated(model: type[_Model], value: Any) -> _Model:
-    """A reply of Blender as data. Raises ToolBroke if it does not fit ``model``."""
-    try:
-        return model.model_validate(value)
-    except ValidationError as error:
-        raise ToolBroke("Blender's reply does not have the expected form", str(error)[:4000]) from error
+    external: list[ExternalFile] = Field(max_length=_MOST_NAMED)
 
 
 def caches_folder(blend: Path) -> Path:
@@ -122,17 +107,10 @@ def copy_from_workspace(folder: RunFolder, files: Iterable[tuple[str, str]], tar
     count = total = 0
     for source, below in files:
         parts = PurePosixPath(below).parts
-        if not parts or ".." in parts or below.startswith("/") or "\0" in source + below:
+        if not parts or ".." in parts or len(parts) > DEEPEST or below.startswith("/") or "\0" in below:
             raise Refusal(f"{below[:120]!r} is not a valid path for a cache file.")
-        with folder.open_made(source) as file:
-            path = target.joinpath(*parts)
-            try:
-                path.parent.mkdir(parents=True, exist_ok=True)
-                with path.open("wb") as copy:
-                    copy_file(file, copy)
-                total += path.stat().st_size
-            except OSError as error:
-                raise Refusal(f"a copy of {source} cannot be written: {error.strerror or error}") from error
+        with folder.workspace.open(source) as file:
+            total += copy_to(file, target.joinpath(*parts), durable=False)
         count += 1
     return count, total
 
@@ -159,16 +137,14 @@ def open_elsewhere(launch: Launch, blend: Path, *, timeout: float) -> FileConten
     with tempfile.TemporaryDirectory(prefix="simworlds-look-", ignore_cleanup_errors=True) as folder:
         root = Path(folder).resolve()
         read = [path for path in (blend, caches_folder(blend)) if path.exists()]
-        second = replace(
-            launch, workspace=root / "workspace", private=root / "private", read=(*launch.read, *read)
-        )
-        for path in second.folders:
-            path.mkdir()
+        workspace, private = HostileGround(root / "workspace"), HostileGround(root / "private")
+        second = replace(launch, workspace=workspace, private=private, read=(*launch.read, *read), lent=None)
+        workspace.mount.mkdir()
         try:
             process = BlenderProcess(second)
             try:
-                reply = process.call("inspect", {"path": str(blend)}, timeout=timeout)
-                return validated(FileContents, reply.value)
+                request = {"path": str(blend)}
+                return process.call("inspect", request, FileContents.model_validate, timeout=timeout).value
             finally:
                 process.kill()
         except BlenderError as error:
@@ -234,11 +210,11 @@ def _check(blend_file: BlendFile, name: str, folder: RunFolder) -> None:
     path = blend_file.path
     if path.parent == folder.checkpoints:
         raise Refusal(f"{name} is a checkpoint; go back to it with checkpoint={path.stem.lstrip('0')}.")
-    if not path.exists() and not path.is_symlink():
-        raise Refusal(f"There is no {name}. {describe_saved_files(folder)}")
     try:
-        with open_beneath(blend_file.root, blend_file.relative) as file:
+        with HostileGround(blend_file.root).open(blend_file.relative, at_most=_LARGEST) as file:
             head = file.read(7)
+    except NotThere as error:
+        raise Refusal(f"There is no {name}. {describe_saved_files(folder)}") from error
     except Refusal as error:
         raise Refusal(f"{name} cannot be opened: it is a link or not a regular file.") from error
     if not head:
@@ -249,38 +225,27 @@ def _check(blend_file: BlendFile, name: str, folder: RunFolder) -> None:
 
 def describe_saved_files(folder: RunFolder) -> str:
     """A sentence that lists what was saved in the run's folder."""
-    names = sorted(
-        path.relative_to(folder.root).as_posix()
-        for path in folder.root.rglob("*.blend")
-        if path.parent not in (folder.workspace, folder.checkpoints)
-        and not any(part.startswith(".") for part in path.relative_to(folder.root).parts)
-        and folder.workspace not in path.parents
-    )
+    names = sorted(path.relative_to(folder.root).as_posix() for path in folder.saved)
     if not names:
         return "Nothing has been saved in this run."
     return f"Saved in this run: {format_list(names, _LISTED)}."
 
 
 @contextmanager
-def readable_by_blender(blend_file: BlendFile, folder: RunFolder) -> Generator[tuple[Path, bool]]:
-    """(a path that Blender can read, whether it is a temporary copy). Only the load may be called meanwhile."""
-    path = blend_file.path
-    if blend_file.root != folder.root or path.is_relative_to(folder.workspace):
-        yield path, False
+def lent_to_blender(blend_file: BlendFile, folder: RunFolder) -> Generator[str]:
+    """A path at which Blender can read the file, and its caches beside it, but not change them. Raises Refusal.
+
+    A file of the run is copied to where Blender may read; what lies in its workspace is its own anyway.
+    """
+    if blend_file.root != folder.root or blend_file.path.is_relative_to(folder.workspace.mount):
+        yield str(blend_file.path)
         return
-    load_folder = folder.workspace / _LOAD_FOLDER
-    try:
-        remove(load_folder)
-        load_folder.mkdir()
-        copy = load_folder / path.name
-        with open_beneath(blend_file.root, blend_file.relative) as source, copy.open("wb") as target:
-            copy_file(source, target)
-        if caches_folder(path).is_dir() and not caches_folder(path).is_symlink():
-            shutil.copytree(caches_folder(path), caches_folder(copy), symlinks=True)
-    except (OSError, shutil.Error) as error:
-        remove(load_folder)
-        raise Refusal(f"{path} cannot be copied into the workspace: {error}.") from error
-    try:
-        yield copy, True
-    finally:
-        remove(load_folder)
+    with tempfile.TemporaryDirectory(dir=folder.lent, ignore_cleanup_errors=True) as lent:
+        copy = Path(lent) / blend_file.path.name
+        copy.parent.chmod(0o755)
+        with HostileGround(blend_file.root).open(blend_file.relative, at_most=_LARGEST) as source:
+            copy_to(source, copy, durable=False)
+        caches = caches_folder(blend_file.path)
+        if caches.is_dir() and not caches.is_symlink():
+            copy_folder(caches, caches_folder(copy))
+        yield str(copy)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import logging
+import secrets
 import threading
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.checkpoints import WRITTEN, Checkpoint, Checkpoints
+from agents.blender.checkpoints import Checkpoint, Checkpoints
 from agents.blender.run_folder import SCENE_FILE, RunFolder
 from simworlds.folder_lock import locked
 from simworlds.sandbox.blender_process import BlenderProcess
@@ -22,7 +23,8 @@ from simworlds.sandbox.errors import (
     Refusal,
     ToolBroke,
 )
-from simworlds.sandbox.usage import remove_since
+from simworlds.sandbox.picture_decoder import PictureDecoder
+from simworlds.sandbox.replies import Reader, T, nothing
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 
 OPEN_SECONDS = 120.0
 WRITE_SECONDS = 300.0
+_WRITE_LEAST = 60.0  # seconds in which a checkpoint is written, if the last one was quick
+_WRITE_TIMES = 20.0  # as long as the last one took
 _LONGEST_NOTE = 4000
 _LOG = logging.getLogger(__name__)
 
@@ -50,6 +54,7 @@ class Supervisor:
             held.enter_context(locked(folder.root))
             self.checkpoints = Checkpoints(folder)
             self._held = held.pop_all()
+        self.pictures = PictureDecoder(launch.sandbox)
         self._process: BlenderProcess | None = None
         self._current: Checkpoint | None = None
         self._note = ""
@@ -90,6 +95,7 @@ class Supervisor:
             finally:
                 if process is not None:
                     process.close()
+                self.pictures.close()
                 self.launch.clean()
                 self._held.close()
 
@@ -119,6 +125,7 @@ class Supervisor:
         self,
         tool: str,
         arguments: dict[str, Any],
+        read: Reader[T],
         *,
         timeout: float,
         what: str = "",
@@ -127,8 +134,8 @@ class Supervisor:
         always_keep: bool = False,
         progress: Progress | None = None,
         cancelled: threading.Event | None = None,
-    ) -> WorkerReply:
-        """Runs a tool in Blender; ``what`` names it in errors.
+    ) -> WorkerReply[T]:
+        """Runs a tool in Blender; ``what`` names it in errors. ``read`` makes a value of what it returned.
 
         ``changes``: it may change the scene, so a checkpoint may be due, described by ``after``; ``always_keep``: take
         one in any case. Raises BlenderError.
@@ -136,9 +143,9 @@ class Supervisor:
         with self._lock:
             since = self.launch.usage.last_within_limits
 
-            def attempt() -> WorkerReply:
+            def attempt() -> WorkerReply[T]:
                 return self._running().call(
-                    tool, arguments, timeout=timeout, what=what, progress=progress, cancelled=cancelled
+                    tool, arguments, read, timeout=timeout, what=what, progress=progress, cancelled=cancelled
                 )
 
             try:
@@ -187,7 +194,9 @@ class Supervisor:
             return self._keep(after)
 
     def restore(self, number: int | None = None) -> Checkpoint:
-        """Goes back to a checkpoint, the last one by default. Raises Refusal if there is no such checkpoint."""
+        """Goes back to a checkpoint, the last one by default, in a new Blender: code that has run in the old one can
+        have changed that. Raises Refusal if there is no such checkpoint.
+        """
         with self._lock:
             checkpoint = self.checkpoints.last if number is None else self.checkpoints.find(number)
             if checkpoint is None:
@@ -196,11 +205,13 @@ class Supervisor:
                 )
                 which = "checkpoint" if number is None else f"checkpoint {number}"
                 raise Refusal(f"There is no {which}. Available: {kept or 'none'}.")
-            process = self._running()
+            if self._process is not None:
+                self._process.kill()
+            self._process = BlenderProcess(self.launch)
             try:
-                self._open(process, checkpoint)
+                self._open(self._process, checkpoint)
             except (Refusal, ToolBroke) as error:
-                process.kill()
+                self._process.kill()
                 self.checkpoints.changed(0.0)
                 raise Refusal(f"{checkpoint} cannot be opened: {error} {self._restart()}") from error
             except Lost as error:
@@ -216,15 +227,19 @@ class Supervisor:
     # Checkpoints
 
     def _write(self, process: BlenderProcess, after: str) -> Checkpoint:
-        arguments = {"path": str(self.launch.private / WRITTEN), "folder": str(self.folder.workspace)}
+        # By a name that code cannot know beforehand, and so cannot have occupied.
+        name = f"{secrets.token_hex(8)}.blend"
+        folder = self.folder.workspace.for_blender()
+        arguments = {"path": self.folder.private.for_blender(name), "folder": folder}
+        seconds = min(WRITE_SECONDS, max(_WRITE_LEAST, _WRITE_TIMES * self.checkpoints.cost))
         try:
             # A full disk is an error of the writing, and costs only this checkpoint.
             reply = process.call(
-                "write", arguments, timeout=WRITE_SECONDS, what="writing the scene out", limited=False
+                "write", arguments, nothing, timeout=seconds, what="writing the scene out", limited=False
             )
         except ToolBroke as error:
             raise Refusal(f"The scene cannot be written out: {error}.") from error
-        return self.checkpoints.keep(after, reply.seconds)
+        return self.checkpoints.keep(name, after, reply.seconds)
 
     def _keep(self, after: str) -> Checkpoint:
         assert self._process is not None
@@ -297,14 +312,19 @@ class Supervisor:
             raise
 
     def _open(self, process: BlenderProcess, checkpoint: Checkpoint | None) -> None:
-        """Opens a checkpoint at the path of the run's own file, so that files beside that are found."""
-        arguments: dict[str, Any] = {"path": None, "folder": str(self.folder.workspace)}
-        if checkpoint is not None:
-            arguments["path"] = str(self.folder.put(checkpoint.path, SCENE_FILE))
-        what = f"opening {checkpoint or 'an empty scene'}"
-        process.call("open", arguments, timeout=OPEN_SECONDS, what=what, limited=False)
+        """Opens a checkpoint at the path of the run's own file, so that files beside that are found.
 
-    def _check_left(self, reply: WorkerReply, what: str) -> None:
+        ``process`` is a new one: no code has run in it that could put another file in that place.
+        """
+        workspace = self.folder.workspace
+        arguments: dict[str, Any] = {"path": None, "folder": workspace.for_blender()}
+        if checkpoint is not None:
+            workspace.put(checkpoint.path, SCENE_FILE)
+            arguments["path"] = workspace.for_blender(SCENE_FILE)
+        what = f"opening {checkpoint or 'an empty scene'}"
+        process.call("open", arguments, nothing, timeout=OPEN_SECONDS, what=what, limited=False)
+
+    def _check_left(self, reply: WorkerReply[Any], what: str) -> None:
         """Raises LeftBehind for a call that returned, but not whole."""
         if reply.left:
             assert self._process is not None
@@ -323,7 +343,7 @@ class Supervisor:
         undone = ""
         if isinstance(error, LimitExceeded) and since is not None:
             for folder in self.launch.folders:
-                remove_since(folder, since)
+                folder.remove_since(since)
             undone = " The files that it wrote were removed."
         return type(error)(f"{error}.{undone} {self._restart()}", error.printed, error.ending)
 

@@ -23,6 +23,7 @@ from simworlds.sandbox import confine_self
 from simworlds.sandbox.confined_command import GIB, best_sandbox, bubblewrap_fault
 from simworlds.sandbox.errors import BlenderError, CannotStart
 from simworlds.sandbox.launch import find_blender
+from simworlds.sandbox.replies import mapping
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -109,7 +110,7 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
         started: list[Supervisor] = []
         if runtimes:
             folder = RunFolder.make(scratch / "run")
-            launch = launch_in(folder.workspace, runtimes[0], sandbox=sandbox)
+            launch = launch_in(folder.workspace.mount, runtimes[0], sandbox=sandbox)
             yield "starting Blender", lambda: _start(launch, folder, held, started)
         if started:
             blender = started[0]
@@ -121,7 +122,7 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
             yield "rendering with Cycles", lambda: _tried(blender, "Cycles", "check_cycles", _cycles)
             yield "checking for video", lambda: _tried(blender, "Films", "check_video", _films)
             other = RunFolder.make(scratch / "fluids")
-            alone = launch_in(other.workspace, runtimes[0], sandbox=sandbox)
+            alone = launch_in(other.workspace.mount, runtimes[0], sandbox=sandbox)
             yield "baking a drop of liquid", lambda: _fluids(alone)
         yield (
             "looking for the knowledge base",
@@ -213,7 +214,9 @@ def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Doc
         file.touch()
         request = {"file": str(file), "folder": outside, "variable": _VARIABLE}
         try:
-            tried: dict[str, Any] = blender.call("check_escapes", request, timeout=_TRY_SECONDS).value
+            tried: dict[str, Any] = blender.call(
+                "check_escapes", request, mapping, timeout=_TRY_SECONDS
+            ).value
         except BlenderError as error:
             return DoctorResult("Sandbox", "bad", str(error), data=data)
     escapes = [text for name, text in _ESCAPES.items() if tried.get(name)]
@@ -257,8 +260,8 @@ def _tried(
     blender: Supervisor, name: str, key: str, describe: Callable[[dict[str, Any]], DoctorResult]
 ) -> DoctorResult:
     try:
-        return describe(blender.call(key, {}, timeout=_TRY_SECONDS).value)
-    except (LookupError, TypeError, BlenderError) as error:
+        return blender.call(key, {}, describe, timeout=_TRY_SECONDS).value
+    except BlenderError as error:
         return DoctorResult(name, "poor", f"does not work: {error}".partition(" A new Blender")[0])
 
 

@@ -121,7 +121,7 @@ def _run(
 ) -> tuple[Report, VerificationScope]:
     """Checks the scene, and draws the image if one is wanted. Raises _CannotCheckError and BlenderError."""
     from agents.blender.tools.base import Call  # noqa: PLC0415 - not for --help
-    from agents.blender.verification import verify_scene  # noqa: PLC0415
+    from agents.blender.verification import ScenePosition, verify_scene  # noqa: PLC0415
     from agents.protocol.report.summary import VerificationScope  # noqa: PLC0415
 
     with _StatusLine() as status:
@@ -130,7 +130,11 @@ def _run(
         with _opened(scene, choices, call) as blender:
             status.show("Going to the frame")
             position = blender.call(
-                "go_to_frame", {"frame": choices["frame"]}, timeout=_STAND_SECONDS, progress=call.progress
+                "go_to_frame",
+                {"frame": choices["frame"]},
+                ScenePosition.model_validate,
+                timeout=_STAND_SECONDS,
+                progress=call.progress,
             ).value
             process = blender.inner_pid
             status.show("Measuring")
@@ -141,8 +145,8 @@ def _run(
             checked = VerificationScope(
                 rules,
                 file=str(scene),
-                scene=str(position["scene"]),
-                frame=int(position["frame"]),
+                scene=position.scene,
+                frame=position.frame,
                 blender=blender.launch.runtime.version,
                 plan=plan.title if plan else "",
             )
@@ -158,7 +162,7 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
     """A Blender with the file open, in a temporary run folder. Raises _CannotCheckError and BlenderError."""
     from agents.blender.launch import make_launch  # noqa: PLC0415 - not for --help
     from agents.blender.run_folder import RunFolder  # noqa: PLC0415
-    from agents.blender.saved_files import LoadedFile, caches_folder, find_blend_file, validated  # noqa: PLC0415
+    from agents.blender.saved_files import LoadedFile, caches_folder, find_blend_file  # noqa: PLC0415
     from agents.blender.supervisor import Supervisor  # noqa: PLC0415
 
     real = scene.expanduser().resolve()
@@ -168,23 +172,21 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
             raise _CannotCheckError(f"There is no file {scene}.")
         find_blend_file(str(real), folder, (real.parent,))
         launch = make_launch(
-            folder.workspace,
+            folder.workspace.mount,
             version=choices["blender"],
             blender_exe=choices["blender_exe"],
             # Blender may read the file and the caches beside it, but nothing else in that folder.
             read=(*choices["read"], *(path for path in (real, caches_folder(real)) if path.exists())),
         )
         with Supervisor(launch, folder) as blender:
-            loaded = validated(
-                LoadedFile,
-                blender.call(
-                    "load",
-                    {"path": str(real), "workspace": str(folder.workspace), "lent": False},
-                    timeout=_LOAD_SECONDS,
-                    what=f"opening {scene.name}",
-                    progress=call.progress,
-                ).value,
-            )
+            loaded = blender.call(
+                "load",
+                {"path": str(real), "workspace": folder.workspace.for_blender()},
+                LoadedFile.model_validate,
+                timeout=_LOAD_SECONDS,
+                what=f"opening {scene.name}",
+                progress=call.progress,
+            ).value
             for file in loaded.external:
                 if file.missing and file.what.startswith("library"):
                     raise _CannotCheckError(

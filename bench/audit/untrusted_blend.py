@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import tempfile
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bench.audit.inside import LARGEST_REPLY
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confined_command import GIB, ResourceLimits, best_sandbox
 from simworlds.sandbox.errors import (
@@ -24,8 +26,10 @@ from simworlds.sandbox.errors import (
     ToolBroke,
     Untrustworthy,
 )
+from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.launch import Launch, find_blender
 from simworlds.sandbox.program import SHARED, Program
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -33,7 +37,7 @@ if TYPE_CHECKING:
     from simworlds.sandbox.runtime import Runtime
 
 INSIDE = Path(__file__).parent / "inside"
-AUDITOR = Program("bench.audit.inside.serve", {**SHARED, "bench.audit.inside": INSIDE})
+AUDITOR = Program("bench.audit.inside.serve", {**SHARED, "bench.audit.inside": INSIDE}, LARGEST_REPLY)
 _LONGEST_REASON = 600
 _MARKS = (b"BLENDER", b"\x1f\x8b", b"\x28\xb5\x2f\xfd")  # plain, gzip (before 3.0), Zstandard
 
@@ -87,9 +91,9 @@ class UntrustedBlend:
         self._deadline = time.monotonic() + self._means.seconds
 
     def __enter__(self) -> UntrustedBlend:
-        self._place = tempfile.TemporaryDirectory(prefix="simworlds-audit-", ignore_cleanup_errors=True)
+        self._place = HostileGround(Path(tempfile.mkdtemp(prefix="simworlds-audit-")).resolve())
         try:
-            self._process = BlenderProcess(self._launch(Path(self._place.name).resolve()))
+            self._process = BlenderProcess(self._launch(self._place.mount))
             self.ask("open", path=str(self._path), doing="opening it")
         except BaseException:
             self._end()
@@ -114,7 +118,7 @@ class UntrustedBlend:
         """
         left = max(0.0, self._deadline - time.monotonic())
         try:
-            return self._process.call(job, arguments, timeout=left, what=doing).value
+            return self._process.call(job, arguments, unread, timeout=left, what=doing).value
         except MissingModule as error:
             raise CannotStart(str(error)) from error
         except Refusal as error:
@@ -135,8 +139,8 @@ class UntrustedBlend:
         workspace.mkdir(exist_ok=True)
         return Launch(
             self._means.runtime(),
-            workspace,
-            place / "private",
+            HostileGround(workspace),
+            HostileGround(place / "private"),
             best_sandbox(limits=ResourceLimits(memory=self._means.memory, file_size=GIB)),
             self._program,
             (*readable_paths(self._path), *self._means.read),
@@ -147,7 +151,9 @@ class UntrustedBlend:
         process: BlenderProcess | None = getattr(self, "_process", None)
         if process is not None:
             process.close()
-        self._place.cleanup()
+        self._place.empty()
+        with suppress(OSError):
+            self._place.mount.rmdir()
 
 
 def resolve_blend(blend: Path) -> Path:

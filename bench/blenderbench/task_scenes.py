@@ -22,10 +22,10 @@ from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox, default_limits
 from simworlds.sandbox.errors import BlenderError, CannotStart
+from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.launch import PRIVATE, Launch, find_blender
 from simworlds.sandbox.program import Program
-from simworlds.sandbox.untrusted_files import take_beneath
-from simworlds.sandbox.usage import empty_folder
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -37,6 +37,7 @@ SAMPLES = 512
 _WORKER = Program(
     "bench.blenderbench.inside.task_worker",
     {**AUDITOR.packages, "bench.blenderbench.inside": Path(__file__).parent / "inside"},
+    AUDITOR.largest_reply,
 )
 _SAVED, _RENDERED = "start.blend", "render.png"
 _SCRATCH = ".blender-"
@@ -104,7 +105,7 @@ class _Scene:
 
     def ask(self, job: str, doing: str, **arguments: Any) -> Any:
         """The answer of ``bench/blenderbench/inside/task_worker.py``. Raises BlenderError."""
-        return self._process.call(job, arguments, timeout=self._seconds, what=doing).value
+        return self._process.call(job, arguments, unread, timeout=self._seconds, what=doing).value
 
     def execute(self, code: str, name: str) -> None:
         """Runs the task's code. Raises TaskFailed where that fails, with the line."""
@@ -116,16 +117,18 @@ class _Scene:
 
     def save(self, target: Path) -> tuple[str, ...]:
         """Saves the scene with all that can be packed; returns, in words, what it still needs from elsewhere."""
-        outside = [str(item) for item in self.ask("save", "saving it", path=str(self._workspace / _SAVED))]
-        take_beneath(self._workspace, _SAVED, target)
+        outside = [
+            str(item) for item in self.ask("save", "saving it", path=self._workspace.for_blender(_SAVED))
+        ]
+        self._workspace.take(_SAVED, target)
         more = [f"and {len(outside) - _LISTED} more"] if len(outside) > _LISTED else []
         return tuple(f"not in the scene to be edited: {item}" for item in (*outside[:_LISTED], *more))
 
     def render(self, target: Path, size: tuple[int, int], samples: int) -> Rendered:
         """Renders the current frame through the scene's camera."""
-        path, (width, height) = str(self._workspace / _RENDERED), size
+        path, (width, height) = self._workspace.for_blender(_RENDERED), size
         answer = self.ask("render", "rendering it", path=path, width=width, height=height, samples=samples)
-        take_beneath(self._workspace, _RENDERED, target)
+        self._workspace.take(_RENDERED, target)
         read_picture(target)
         camera, device = str(answer["camera"]), str(answer["device"])
         return Rendered(blender=self._blender, camera=camera, device=device, samples=samples)
@@ -147,7 +150,8 @@ def _opened(
         workspace.mkdir()
         runtime = find_blender(settings.version, settings.blender_exe)
         sandbox = best_sandbox(limits=settings.limits)
-        launch = Launch(runtime, workspace, place / PRIVATE, sandbox, _WORKER, read)
+        ground, private = HostileGround(workspace), HostileGround(place / PRIVATE)
+        launch = Launch(runtime, ground, private, sandbox, _WORKER, read)
         process = BlenderProcess(launch)
         try:
             scene = _Scene(process, launch, settings.seconds)
@@ -167,6 +171,6 @@ def _opened(
 
 def _remove(place: Path) -> None:
     """Removes a folder, whatever code has made of it."""
-    empty_folder(place)
+    HostileGround(place).empty()
     with suppress(OSError):
         place.rmdir()

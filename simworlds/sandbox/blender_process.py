@@ -3,8 +3,8 @@
 How far the channel can be trusted. Printed output never reaches it, and bytes that code writes to it by accident lack a
 signature: the process is then killed and its replies are ignored. But hostile code runs in the same process as the
 worker and can find the key in its memory, so it can reply in the worker's name. It gains little. Tickets are random, so
-it cannot answer later calls; what it leaves running ends with the call; and the supervisor treats every reply as
-untrusted data, checks its shape, and never takes a path or a permission from it.
+it cannot answer later calls; between calls the process is stopped; and every reply is a claim that is read by a model
+with bounds before anything is done by it (see replies.py). A reply that breaks them ends the process.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import subprocess
 import time
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic
 
 from simworlds.processes import kill_group, signal_name, spawn
 from simworlds.sandbox.captured_output import CapturedOutput
@@ -38,6 +38,16 @@ from simworlds.sandbox.errors import (
     Untrustworthy,
 )
 from simworlds.sandbox.inside import channel
+from simworlds.sandbox.pausing import PausableProcess
+from simworlds.sandbox.replies import (
+    AnswerMessage,
+    Malformed,
+    ProgressMessage,
+    Reader,
+    T,
+    parse_message,
+    parse_value,
+)
 from simworlds.sandbox.usage import innermost_process
 
 if TYPE_CHECKING:
@@ -55,7 +65,6 @@ _CHECK_SECONDS = 0.25  # between two checks whether the call was cancelled or a 
 _END_SECONDS = 5.0
 _EXIT_SECONDS = 1.0  # in which a process that has closed its channel is expected to end
 _CHUNK = 1 << 18
-_LONGEST_TEXT = 20_000
 _NO_MEMORY = (
     "bad_alloc",
     "returns null",
@@ -67,13 +76,13 @@ _NO_MEMORY = (
 
 
 @dataclass(frozen=True, slots=True)
-class WorkerReply:
-    """What a tool returned, what was printed meanwhile, and how many seconds it ran.
+class WorkerReply(Generic[T]):
+    """What a tool returned, as its reader made it, what was printed meanwhile, and how many seconds it ran.
 
     ``left``: what it left behind and cannot be undone, in words.
     """
 
-    value: Any
+    value: T
     stdout: str
     stderr: str
     seconds: float
@@ -89,6 +98,7 @@ class BlenderProcess:
         self._closed = False
         self._stdout, self._stderr = CapturedOutput(), CapturedOutput()
         self._usage = launch.usage
+        self._pausable = PausableProcess(0)
         ours, theirs = socket.socketpair()
         try:
             self._process = spawn(
@@ -96,7 +106,7 @@ class BlenderProcess:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 env=launch.environment,
-                cwd=launch.workspace,
+                cwd=launch.workspace.mount,
                 pass_fds=(theirs.fileno(),),
             )
         except OSError as error:
@@ -110,7 +120,7 @@ class BlenderProcess:
         self._socket = ours
         key = secrets.token_bytes(channel.KEY_BYTES)
         self._encode = channel.Encoder(key, channel.SUPERVISOR)
-        self._decode = channel.Decoder(key, channel.WORKER)
+        self._decode = channel.Decoder(key, channel.WORKER, launch.program.largest_reply)
         self._arrived: deque[dict[str, Any]] = deque()
         self._selector = selectors.DefaultSelector()
         self._selector.register(ours, selectors.EVENT_READ, None)
@@ -121,7 +131,7 @@ class BlenderProcess:
             self._selector.register(source, selectors.EVENT_READ, printed)
         try:
             ours.sendall(key)
-            next(self._messages("its start", START_SECONDS, limited=False))
+            self._await_start()
         except (Lost, OSError) as error:
             why = self._ending() if isinstance(error, Died) else error
             self.kill()
@@ -131,7 +141,9 @@ class BlenderProcess:
             self.kill()
             raise
         self.inner = innermost_process(self._process.pid)
+        self._pausable = PausableProcess(self.inner)
         self._usage.watch(self.inner)
+        self._pausable.pause()
 
     @property
     def started(self) -> int:
@@ -147,15 +159,17 @@ class BlenderProcess:
         self,
         tool: str,
         arguments: dict[str, Any],
+        read: Reader[T],
         *,
         timeout: float,
         what: str = "",
         limited: bool = True,
         progress: Progress | None = None,
         cancelled: threading.Event | None = None,
-    ) -> WorkerReply:
+    ) -> WorkerReply[T]:
         """Runs one tool; ``timeout`` in seconds, ``what`` names it in errors. ``progress`` gets (done, total, text).
 
+        ``read`` makes a value of what the tool returned; what it cannot read is a breach, which ends the process.
         ``limited``: Blender is killed if it exceeds the limits of disk, memory and threads.
 
         Raises Refusal and ToolBroke, after which Blender still runs, and Lost, after which it has been killed, as after
@@ -173,42 +187,66 @@ class BlenderProcess:
         except channel.TooLarge as error:
             raise Refusal(f"The arguments of {what} are too large: {error}.") from error
         try:
+            self._pausable.mark()
+            self._pausable.go_on()
             self._send(request, what, timeout)
-            for message in self._messages(what, timeout, cancelled, limited=limited):
-                try:
-                    if message["ticket"] != ticket:
-                        # Code has answered the call before in the worker's name, and the real answer came late.
-                        raise NeverBegan(
-                            f"Code had sent a false reply before {what} began; it is ignored, and Blender was stopped"
-                        )
-                    if "progress" not in message:
-                        self._drain()
-                        return self._reply(message)
-                    done, total, text = message["progress"]
-                    report = (float(done), None if total is None else float(total), str(text)[:_LONGEST_TEXT])
-                except (LookupError, TypeError, ValueError) as error:
-                    raise self._untrustworthy(what, error) from error
-                if progress is not None:
-                    progress(*report)
+            answer = self._answer(ticket, what, timeout, progress, cancelled, limited=limited)
+            self._drain()
+            return self._reply(answer, read)
         except (Refusal, ToolBroke):
             raise
+        except Malformed as error:
+            fault = self._untrustworthy(what, error)
+            self.kill()
+            raise fault from error
         except BaseException:
             self.kill()
             raise
+
+    def _answer(  # noqa: PLR0913 - as of a call
+        self,
+        ticket: str,
+        what: str,
+        timeout: float,
+        progress: Progress | None,
+        cancelled: threading.Event | None,
+        *,
+        limited: bool,
+    ) -> AnswerMessage:
+        """Reports progress until the answer has come, then stops the process. Raises Lost, Malformed."""
+        for message in self._messages(what, timeout, cancelled, limited=limited):
+            claim = parse_message(message)
+            if claim.ticket != ticket:
+                # Code has answered the call before in the worker's name, and the real answer came late.
+                raise NeverBegan(
+                    f"Code had sent a false reply before {what} began; it is ignored, and Blender was stopped"
+                )
+            if isinstance(claim, ProgressMessage):
+                if progress is not None:
+                    progress(*claim.progress)
+                continue
+            threads = self._pausable.threads_left()
+            self._pausable.pause()
+            if threads and not claim.left:
+                claim = claim.model_copy(update={"left": [_of_its_own(threads)]})
+            return claim
         raise AssertionError("messages end with an exception")
 
-    def _reply(self, message: dict[str, Any]) -> WorkerReply:
-        """Raises Refusal, ToolBroke, and LookupError, TypeError or ValueError for a malformed reply."""
-        if "missing" in message:
-            raise MissingModule(str(message["missing"])[:_LONGEST_TEXT])
-        if "refused" in message:
-            raise Refusal(str(message["refused"])[:_LONGEST_TEXT])
-        if "failed" in message:
-            raise ToolBroke(str(message["failed"])[:_LONGEST_TEXT], str(message["traceback"])[:_LONGEST_TEXT])
-        left = tuple(str(item)[:_LONGEST_TEXT] for item in message["left"])
-        return WorkerReply(
-            message["value"], self._stdout.text, self._stderr.text, float(message["seconds"]), left
-        )
+    def _reply(self, answer: AnswerMessage, read: Reader[T]) -> WorkerReply[T]:
+        """Raises Refusal, ToolBroke, and Malformed."""
+        if answer.missing is not None:
+            raise MissingModule(answer.missing)
+        if answer.refused is not None:
+            raise Refusal(answer.refused)
+        if answer.failed is not None:
+            raise ToolBroke(answer.failed, answer.traceback)
+        value = parse_value(read, answer.value)
+        return WorkerReply(value, self._stdout.text, self._stderr.text, answer.seconds, tuple(answer.left))
+
+    def _await_start(self) -> None:
+        """Raises Lost."""
+        if next(self._messages("its start", START_SECONDS, limited=False)) != {"ready": True}:
+            raise self._untrustworthy("its start", Malformed("it is not ready"))
 
     def _send(self, request: bytes, what: str, timeout: float) -> None:
         try:
@@ -347,6 +385,7 @@ class BlenderProcess:
             return
         self.stop()
         self._closed = True
+        self._pausable.close()
         try:
             self._process.wait(_END_SECONDS)
         except subprocess.TimeoutExpired:
@@ -362,6 +401,7 @@ class BlenderProcess:
     def close(self) -> None:
         """Lets Blender end by itself, or kills it."""
         if not self._closed:
+            self._pausable.go_on()
             with contextlib.suppress(OSError):
                 self._socket.shutdown(socket.SHUT_RDWR)
             with contextlib.suppress(subprocess.TimeoutExpired):
@@ -375,6 +415,10 @@ class BlenderProcess:
         while self._selector.get_map() and (left := deadline - time.monotonic()) > 0:
             for key, _ in self._selector.select(left):
                 self._read_printed(key)
+
+
+def _of_its_own(threads: int) -> str:
+    return f"{threads} thread{'s' if threads > 1 else ''} of its own still running"
 
 
 def _capital(words: str) -> str:

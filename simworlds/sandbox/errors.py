@@ -5,7 +5,8 @@ BlenderError
 ├── ProgramFailed      a program that ran in Blender did not finish
 ├── CannotStart        there is no Blender, or it does not start
 ├── Refusal            the tool cannot do this; Blender still runs
-│   └── MissingModule  this Blender's Python lacks a module that the tool needs
+│   ├── MissingModule  this Blender's Python lacks a module that the tool needs
+│   └── NotThere       there is no such file
 ├── ToolBroke          the tool itself failed; Blender still runs
 └── Lost               this Blender is gone, and its state with it
     ├── Died           it crashed, or code ended it
@@ -51,6 +52,10 @@ class MissingModule(Refusal):
             f"This tool needs the Python module {module}, which this Blender lacks. Blenders from blender.org have it; "
             f"for the system's Blender, install the system's {module} (Debian: apt-get install python3-{module})."
         )
+
+
+class NotThere(Refusal):
+    """There is no such file."""
 
 
 class ToolBroke(BlenderError):  # noqa: N818

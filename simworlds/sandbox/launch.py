@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simworlds.sandbox.errors import CannotStart, RuntimeMissing
+from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
-from simworlds.sandbox.usage import UsageMonitor, empty_folder, remove, remove_named
+from simworlds.sandbox.usage import UsageMonitor
 from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from simworlds.sandbox.confined_command import Sandbox
 
 PRIVATE = "private"  # the name of a folder for temporary files, beside the workspace
+LENT = "lent"  # the name of a folder of files that Blender is to load, beside the workspace
 HALF_WRITTEN = ".blend@"  # the end of a file's name while Blender writes it
 
 
@@ -28,32 +31,36 @@ class Launch:
     """Starts ``runtime`` in ``workspace``, the only folder besides ``private`` that it may write to.
 
     ``private`` is for temporary files; it is emptied at each start, and removed by ``clean``. ``read`` are further
-    folders that it may read (assets). ``program`` runs in it, and gets the number of a descriptor.
+    folders that it may read (assets). ``lent`` is one of ours for files that it is to load, which it cannot change;
+    it comes and goes as ``private`` does. ``program`` runs in it, and gets the number of a descriptor.
     """
 
     runtime: Runtime
-    workspace: Path
-    private: Path
+    workspace: HostileGround
+    private: HostileGround
     sandbox: Sandbox
     program: Program
     read: tuple[Path, ...] = field(default=())
+    lent: Path | None = None
 
     def command(self, channel: int) -> list[str]:
         """The command's words; ``channel`` is the descriptor of the program's socket."""
         words = self.runtime.command(BOOT, self.program.arguments(str(channel)))
         readable = [*self.program.folders, *_folders_of(self.runtime), *self.read]
-        return self.sandbox.command(words, read=readable, write=[self.workspace, self.private])
+        if self.lent is not None:
+            readable.append(self.lent)
+        return self.sandbox.command(words, read=readable, write=[self.workspace.mount, self.private.mount])
 
     @cached_property
     def environment(self) -> dict[str, str]:
         """Without the user's secrets and Blender settings; temporary files go to ``private``."""
-        private = str(self.private)
+        private = self.private.for_blender()
         names = ("HOME", "TMPDIR", "TEMP", "TMP", "XDG_CACHE_HOME", "XDG_RUNTIME_DIR")
         own = dict.fromkeys(names, private)
-        return clean_environment(self.private) | own | {"PYTHONDONTWRITEBYTECODE": "1"}
+        return clean_environment(self.private.mount) | own | {"PYTHONDONTWRITEBYTECODE": "1"}
 
     @property
-    def folders(self) -> tuple[Path, Path]:
+    def folders(self) -> tuple[HostileGround, HostileGround]:
         """The folders that it may write to."""
         return self.workspace, self.private
 
@@ -62,22 +69,31 @@ class Launch:
         """The check of what it uses, against the sandbox's limits."""
         return UsageMonitor(self.folders, self.sandbox.limits)
 
+    @property
+    def _passing(self) -> tuple[Path, ...]:
+        """The folders that come and go with the process."""
+        return (self.private.mount, *([self.lent] if self.lent is not None else []))
+
     def prepare(self) -> None:
-        """Makes the private folder, empty, and removes files that an earlier Blender left half written.
+        """Makes the private and the lent folder, empty, and removes files that an earlier Blender left half written.
 
         Raises CannotStart.
         """
-        try:
-            self.private.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise CannotStart(f"{self.private} cannot be made: {error.strerror or error}") from error
-        empty_folder(self.private)
-        remove_named(self.workspace, HALF_WRITTEN)
+        for folder in self._passing:
+            try:
+                folder.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise CannotStart(f"{folder} cannot be made: {error.strerror or error}") from error
+            HostileGround(folder).empty()
+        self.workspace.remove_named(HALF_WRITTEN)
 
     def clean(self) -> None:
-        """Removes the private folder and half-written files."""
-        remove(self.private)
-        remove_named(self.workspace, HALF_WRITTEN)
+        """Removes the private and the lent folder, and half-written files."""
+        for folder in self._passing:
+            HostileGround(folder).empty()
+            with suppress(OSError):
+                folder.rmdir()
+        self.workspace.remove_named(HALF_WRITTEN)
 
 
 def find_blender(version: str | None = None, blender_exe: Path | None = None) -> Runtime:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simworlds.sandbox.inside.channel import LARGEST_BODY
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -19,11 +21,13 @@ SHARED = {"simworlds.sandbox.inside": INSIDE}
 class Program:
     """``module`` (dotted) has a function ``main`` that takes a list of arguments; ``packages``: name → folder.
 
-    Modules import each other by these names in Blender, whatever their folders are called here.
+    Modules import each other by these names in Blender, whatever their folders are called here. ``largest_reply``:
+    bytes of its longest reply.
     """
 
     module: str
     packages: Mapping[str, Path]
+    largest_reply: int = LARGEST_BODY
 
     @property
     def folders(self) -> tuple[Path, ...]:

@@ -1,217 +1,34 @@
-"""What a Blender uses of disk, memory and threads, measured from outside, and the removal of what it left behind.
-
-Code that runs in Blender may write to these folders meanwhile, with bad intent. So they are walked by descriptor, links
-are not followed, and no depth or number of folders can keep the walk from ending.
-"""
+"""What a Blender uses of disk, memory and threads, measured from outside."""
 
 from __future__ import annotations
 
 import os
-import stat
-import tempfile
 import time
-from contextlib import suppress
-from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
+
+from simworlds.sandbox.hostile_ground import DEEPEST, DiskUsage, HostileGround
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from simworlds.sandbox.confined_command import ResourceLimits
 
-DEEPEST = 64  # folders in folders
 _LEAST_FREE = (
     1 << 30
 )  # bytes that stay free on the disk for others; half of what is free at the start, if less
-_OPEN_FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
-_BLOCK = 4096
 _MOST_COUNTED = 2_000_000
 _CHECK_SECONDS = 0.25  # between two checks
 _PAUSE = 10.0  # after a slow check, in its durations
 _QUICK_SECONDS = 0.005
-_numbers = count()
-
-
-class DiskUsage(NamedTuple):
-    """Bytes on disk, the number of files and folders, and the depth of the deepest one, up to DEEPEST."""
-
-    bytes: int
-    files: int
-    deepest: int = 0
-
-
-class WalkedEntry(NamedTuple):
-    """A file, link or folder: ``name`` in the open folder ``parent``, ``depth`` folders below the first."""
-
-    parent: int
-    name: str
-    depth: int
-    status: os.stat_result
-
-    @property
-    def is_folder(self) -> bool:
-        """Whether it is a folder, not a link to one."""
-        return stat.S_ISDIR(self.status.st_mode)
-
-
-def walk(folder: Path) -> Iterator[WalkedEntry]:
-    """Everything below ``folder``, contents before their folder; what vanishes meanwhile is left out.
-
-    Folders at DEEPEST are not entered.
-    """
-    stack: list[tuple[int, Any, WalkedEntry | None]] = []
-
-    def enter(number: int, entry: WalkedEntry | None) -> None:
-        stack.append((number, os.scandir(number), entry))
-
-    def leave() -> WalkedEntry | None:
-        number, entries, entry = stack.pop()
-        entries.close()
-        os.close(number)
-        return entry
-
-    try:
-        with suppress(OSError):
-            enter(os.open(folder, _OPEN_FOLDER), None)
-        while stack:
-            number, entries, _ = stack[-1]
-            item = next(entries, None)
-            if item is None:
-                if (own := leave()) is not None:
-                    yield own
-                continue
-            try:
-                entry = WalkedEntry(number, item.name, len(stack), item.stat(follow_symlinks=False))
-                if entry.is_folder and entry.depth < DEEPEST:
-                    enter(os.open(entry.name, _OPEN_FOLDER, dir_fd=number), entry)
-                    continue
-            except OSError:
-                continue
-            yield entry
-    finally:
-        while stack:
-            leave()
-
-
-def measure(folder: Path, at_most: int = 0) -> DiskUsage:
-    """The disk usage below ``folder``, down to DEEPEST; counting ends at ``at_most`` files."""
-    size = files = deepest = 0
-    for entry in walk(folder):
-        size += max(entry.status.st_blocks * 512, _BLOCK)
-        files += 1
-        deepest = max(deepest, entry.depth)
-        if 0 < at_most < files:
-            break
-    return DiskUsage(size, files, deepest)
-
-
-def empty_folder(folder: Path) -> None:
-    """Removes everything below ``folder``, however deep; the folder itself stays."""
-    with suppress(OSError):
-        _empty(os.open(folder, _OPEN_FOLDER))
-
-
-def _empty(top: int) -> None:
-    """Removes everything in an open folder, and closes it.
-
-    Deeper folders are first moved up, so that this needs neither long paths nor many descriptors.
-    """
-    before: list[str] = []
-    try:
-        # Ends when nothing is left, or nothing more can be removed.
-        while (names := sorted(os.listdir(top))) and names != before:
-            before = names
-            for name in names:
-                with suppress(OSError):
-                    _flatten(top, name)
-    finally:
-        os.close(top)
-
-
-def _flatten(top: int, name: str) -> None:
-    """Removes an entry. A folder's own folders are moved to ``top``, everything else in it is removed."""
-    if not stat.S_ISDIR(os.stat(name, dir_fd=top, follow_symlinks=False).st_mode):
-        os.unlink(name, dir_fd=top)
-        return
-    os.chmod(name, 0o700, dir_fd=top)
-    inner = os.open(name, _OPEN_FOLDER, dir_fd=top)
-    try:
-        with os.scandir(inner) as entries:
-            for entry in list(entries):
-                with suppress(OSError):
-                    if entry.is_dir(follow_symlinks=False):
-                        os.chmod(entry.name, 0o700, dir_fd=inner)
-                        os.rename(entry.name, _unused_name(), src_dir_fd=inner, dst_dir_fd=top)
-                    else:
-                        os.unlink(entry.name, dir_fd=inner)
-    finally:
-        os.close(inner)
-    os.rmdir(name, dir_fd=top)
-
-
-def _unused_name() -> str:
-    return f"swept-{os.getpid()}-{time.monotonic_ns()}-{next(_numbers)}"
-
-
-def remove(path: Path) -> None:
-    """Removes a file, a link or a folder, however deep. What is not there or cannot be removed is no error."""
-    with suppress(OSError):
-        if stat.S_ISDIR(path.lstat().st_mode):
-            empty_folder(path)
-            path.rmdir()
-        else:
-            path.unlink()
-
-
-def remove_since(folder: Path, moment: int) -> None:
-    """Removes files below ``folder`` created or changed since ``moment`` (see now), and folders that become empty.
-
-    Folders at DEEPEST are removed whole.
-    """
-    for entry in walk(folder):
-        with suppress(OSError):
-            if entry.is_folder and entry.depth >= DEEPEST:
-                _empty(os.open(entry.name, _OPEN_FOLDER, dir_fd=entry.parent))
-            if entry.status.st_ctime_ns < moment:
-                continue
-            if entry.is_folder:
-                os.rmdir(entry.name, dir_fd=entry.parent)
-            else:
-                os.unlink(entry.name, dir_fd=entry.parent)
-
-
-def remove_named(folder: Path, ending: str) -> None:
-    """Removes the files below ``folder`` whose names end with ``ending``."""
-    for entry in walk(folder):
-        if entry.name.endswith(ending) and stat.S_ISREG(entry.status.st_mode):
-            with suppress(OSError):
-                os.unlink(entry.name, dir_fd=entry.parent)
-
-
-def now(folder: Path) -> int:
-    """A time later than all changes to files so far, in nanoseconds of the clock of ``folder``'s file system.
-
-    That clock may stand still for milliseconds, so changes right after may seem to come before.
-    """
-    try:
-        with tempfile.TemporaryFile(dir=folder, buffering=0) as file:
-            first = os.fstat(file.fileno()).st_ctime_ns
-            file.write(b"x")  # newer kernels do not give the same time twice once it was read
-            second = os.fstat(file.fileno()).st_ctime_ns
-    except OSError:
-        return time.time_ns()
-    return second if second > first else first + 1
 
 
 class UsageMonitor:
     """Checks now and then whether a process is over its limits. It may write to ``folders``.
 
-    What lies there at the start does not count as excess. ``last_within_limits`` is the last time (see now) at which
-    no limit was exceeded.
+    What lies there at the start does not count as excess. ``last_within_limits`` is the last time at which no limit was
+    exceeded, as HostileGround.now tells it.
     """
 
-    def __init__(self, folders: tuple[Path, ...], limits: ResourceLimits) -> None:
+    def __init__(self, folders: tuple[HostileGround, ...], limits: ResourceLimits) -> None:
         self._folders = folders
         self._limits = limits
         self._process = 0
@@ -219,7 +36,7 @@ class UsageMonitor:
         self._least_free = min(_LEAST_FREE, _free(folders[0]) // 2)
         present = self._disk_usage(_MOST_COUNTED)
         self._most = DiskUsage(max(limits.disk, present.bytes), max(limits.files, present.files))
-        self.last_within_limits = now(folders[-1])
+        self.last_within_limits = folders[-1].now()
 
     def watch(self, process: int) -> None:
         """Also checks this process (by its number outside the sandbox) from here on."""
@@ -233,7 +50,7 @@ class UsageMonitor:
         started = time.monotonic()
         if started < (self._next_at_end if at_end else self._next):
             return None
-        moment = now(self._folders[-1])
+        moment = self._folders[-1].now()
         excess = self._excess_of_process() or self._excess_on_disk()
         if excess is None:
             self.last_within_limits = moment
@@ -266,7 +83,7 @@ class UsageMonitor:
         return None
 
     def _disk_usage(self, at_most: int) -> DiskUsage:
-        usages = [measure(folder, at_most) for folder in self._folders]
+        usages = [folder.measure(at_most) for folder in self._folders]
         size, files = sum(usage.bytes for usage in usages), sum(usage.files for usage in usages)
         return DiskUsage(size, files, max(usage.deepest for usage in usages))
 
@@ -275,9 +92,9 @@ def _size(amount: int) -> str:
     return f"{amount / 1e9:,.1f} GB" if amount >= 1e9 else f"{amount / 1e6:,.0f} MB"
 
 
-def _free(folder: Path) -> int:
+def _free(folder: HostileGround) -> int:
     try:
-        disk = os.statvfs(folder)
+        disk = os.statvfs(folder.mount)
     except OSError:
         return 1 << 62
     return disk.f_bavail * disk.f_frsize

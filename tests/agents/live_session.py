@@ -9,6 +9,7 @@ from agents.blender.launch import make_launch
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from agents.blender.tools.base import BlenderTool, Call, Result, ToolContext, parse, perform
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,7 +30,7 @@ class LiveSession:
         self, root: Path, *, sandbox: Sandbox | None = None, blender_exe: Path | None = None
     ) -> None:
         folder = RunFolder.make(root)
-        launch = make_launch(folder.workspace, sandbox=sandbox, blender_exe=blender_exe)
+        launch = make_launch(folder.workspace.mount, sandbox=sandbox, blender_exe=blender_exe)
         self.blender = Supervisor(launch, folder)
         self.blender.start()
         self.context = ToolContext(self.blender, no_docs)
@@ -40,7 +41,7 @@ class LiveSession:
 
     def run(self, code: str, timeout: float = 120.0) -> Any:
         """Runs code that must not fail; returns the value of its final expression as Python sees it."""
-        reply = self.blender.call("execute", {"code": code}, timeout=timeout, changes=True)
+        reply = self.blender.call("execute", {"code": code}, unread, timeout=timeout, changes=True)
         assert reply.value["error"] is None, reply.value["error"]["traceback"]
         value = reply.value["value"]
         try:

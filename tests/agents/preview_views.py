@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image
 
+from simworlds.sandbox.replies import unread
+
 if TYPE_CHECKING:
     from live_session import LiveSession
 
@@ -49,15 +51,15 @@ class Views:
     def __init__(self, session: LiveSession, kind: str, name: str | None = None, **more: Any) -> None:
         folder = session.blender.folder
         given = {"kind": kind, "name": name, "frame": None, "everything": False, "size": SIZE}
-        given |= {"folder": str(folder.workspace), **more}
-        self.data: dict[str, Any] = session.blender.call("preview", given, timeout=120).value
+        given |= {"folder": str(folder.workspace.mount), **more}
+        self.data: dict[str, Any] = session.blender.call("preview", given, unread, timeout=120).value
         self.by_name: dict[str, dict[str, Any]] = {}
         self.pictures: dict[str, Image.Image] = {}
         for view in self.data["views"]:
             self.by_name[view["name"]] = view
-            with folder.open_made(view["file"]) as file:
+            with folder.workspace.open(view["file"]) as file:
                 self.pictures[view["name"]] = Image.open(file).convert("RGBA")
-            (folder.workspace / view["file"]).unlink()
+            (folder.workspace.mount / view["file"]).unlink()
 
     @property
     def extent(self) -> list[float]:

@@ -64,7 +64,7 @@ def inspect(arguments, report):
 def load(arguments, report):
     """Opens ``path`` with the caches beside it and makes it the run's own file in ``workspace``; no script runs.
 
-    Files outside the workspace are copied, ``lent`` ones are moved. Returns ``objects``, ``version``, ``scripts``
+    Files outside the workspace are copied. Returns ``objects``, ``version``, ``scripts``
     (whether it has scripts, which were not run), ``external`` and ``caches``. Raises Refused; the file that was open
     before may be lost then.
     """
@@ -82,7 +82,7 @@ def load(arguments, report):
     make_own(workspace)
     _bring_points(path, workspace)
     for folder in folders:
-        _bring_folder(folder, workspace, lent=arguments["lent"])
+        _bring_folder(folder, workspace)
     return {
         "objects": len(bpy.data.objects),
         "version": ".".join(str(part) for part in version[:2]),
@@ -229,17 +229,17 @@ def _redirect(undo, beside, workspace):
                 ]
 
 
-def _bring_folder(folder, workspace, *, lent):
+def _bring_folder(folder, workspace):
     """Brings a folder of caches into the workspace, where it can be baked again."""
     inside = _relative_to(folder.real, workspace)
-    if inside is not None and not lent:
+    if inside is not None:
         folder.path = f"//{inside}"
         return
     own = os.path.join(workspace, _CACHES)
     name = _unused_name(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
     if os.path.isdir(folder.real):
         os.makedirs(own, exist_ok=True)
-        (shutil.move if lent else shutil.copytree)(folder.real, os.path.join(own, name))
+        shutil.copytree(folder.real, os.path.join(own, name))
     folder.path = f"//{_CACHES}/{name}"
 
 

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import secrets
-import shutil
 import tempfile
 import time
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from agents.blender.render.replies import RenderPlan, VideoFacts
 from simworlds.sandbox.errors import BlenderError, Died, Interrupted, Lost, Refusal
+from simworlds.sandbox.hostile_ground import copy_to
+from simworlds.sandbox.replies import Reader, T, nothing
 
 if TYPE_CHECKING:
     import threading
     from collections.abc import Sequence
 
+    from agents.blender.render.replies import Shot, UnbakedCache
     from agents.blender.supervisor import Supervisor
     from agents.blender.tools.base import Call
+    from simworlds.sandbox.picture_decoder import PictureDecoder
 
 _STEP_SECONDS = 20.0  # of stepping through a simulation in one call
 _SHARE = 0.95  # of a frame's progress that its own rendering makes up
@@ -44,8 +49,8 @@ class FrameRenderer:
         self.notes: list[str] = []
         blender.keep("before rendering")
         self._plan = self._make_plan()
-        self.notes += self._plan["notes"]
-        starts = [int(cache["start"]) for cache in self.unbaked]
+        self.notes += self._plan.notes
+        starts = [cache.start for cache in self.unbaked]
         self._start = min(starts) if starts else None
 
     def __enter__(self) -> FrameRenderer:
@@ -55,27 +60,28 @@ class FrameRenderer:
         if self._blender.pid != self._moved:
             return  # a new Blender stands where this one was before
         with suppress(BlenderError):
-            back = {"frame": self._plan["current"], "subframe": self._plan["subframe"], "first": self._next}
-            self._blender.call("render_put_back", back, timeout=self._timeout)
+            back = {"frame": self._plan.current, "subframe": self._plan.subframe, "first": self._next}
+            self._blender.call("render_put_back", back, nothing, timeout=self._timeout)
 
     @property
-    def shot(self) -> dict[str, Any]:
-        """What is rendered: engine, device, samples, denoise, width, height, camera."""
-        return self._plan["shot"]
+    def shot(self) -> Shot:
+        """What is rendered."""
+        return self._plan.shot
 
     @property
-    def scene(self) -> dict[str, str]:
-        """A digest for every data-block that the images depend on."""
-        return self._plan["scene"]
+    def pictures(self) -> PictureDecoder:
+        """What reads the rendered pictures."""
+        return self._blender.pictures
 
     @property
-    def unbaked(self) -> list[dict[str, Any]]:
-        """Unbaked simulations, because of which frames are stepped: ``label``, and ``start``, their first frame."""
-        return self._plan["unbaked"]
+    def plan(self) -> RenderPlan:
+        """What Blender has said of the scene."""
+        return self._plan
 
-    def scene_value(self, name: str) -> Any:
-        """A value of the scene: ``current``, ``frame_start``, ``frame_end``, ``fps`` or ``fps_base``."""
-        return self._plan[name]
+    @property
+    def unbaked(self) -> list[UnbakedCache]:
+        """Unbaked simulations, because of which frames are stepped."""
+        return self._plan.unbaked
 
     def render(self, frame: int, samples: int | None, target: Path, done: float, total: float) -> float:
         """Renders a frame into ``target``; returns the seconds it took. Progress counts from ``done`` of ``total``.
@@ -94,30 +100,34 @@ class FrameRenderer:
         self._plan_again()
         return self._render(frame, samples, target)
 
-    def make_video(self, frames: Sequence[Path], target: Path) -> dict[str, Any]:
+    def make_video(self, frames: Sequence[Path], target: Path) -> VideoFacts:
         """Makes ``target`` (MP4) of images, one a frame; returns what is read back from it."""
         self._what, self._pid = "the video", None  # any Blender can make it
         workspace = self._blender.folder.workspace
-        folder = Path(tempfile.mkdtemp(prefix=".film-", dir=workspace))
-        video = f"{folder.name}/film.mp4"
+        video = f".film-{secrets.token_hex(6)}.mp4"
         try:
-            for path in {*frames}:
-                shutil.copyfile(path, folder / path.name)
-            arguments: dict[str, Any] = {
-                "folder": str(folder),
-                "pictures": [path.name for path in frames],
-                "path": str(workspace / video),
-                "width": self.shot["width"],
-                "height": self.shot["height"],
-                "fps": self._plan["fps"],
-                "fps_base": self._plan["fps_base"],
-            }
-            facts = self._ask("render_video", arguments, extra=len(frames))
-            self._blender.folder.take(video, target)
+            with tempfile.TemporaryDirectory(
+                dir=self._blender.folder.lent, ignore_cleanup_errors=True
+            ) as lent:
+                Path(lent).chmod(0o755)
+                for path in {*frames}:
+                    with path.open("rb") as file:
+                        copy_to(file, Path(lent) / path.name, durable=False)
+                arguments: dict[str, Any] = {
+                    "folder": lent,
+                    "pictures": [path.name for path in frames],
+                    "path": workspace.for_blender(video),
+                    "width": self.shot.width,
+                    "height": self.shot.height,
+                    "fps": self._plan.fps,
+                    "fps_base": self._plan.fps_base,
+                }
+                facts = self._ask("render_video", arguments, VideoFacts.model_validate, extra=len(frames))
+            workspace.take(video, target)
         finally:
-            shutil.rmtree(folder, ignore_errors=True)
-        wanted = (len(frames), self.shot["width"], self.shot["height"])
-        if (facts["frames"], facts["width"], facts["height"]) != wanted:
+            workspace.remove(video)
+        wanted = (len(frames), self.shot.width, self.shot.height)
+        if (facts.frames, facts.width, facts.height) != wanted:
             raise Refusal(f"The video does not match its frames: it has {facts}, expected {wanted}.")
         return facts
 
@@ -130,9 +140,9 @@ class FrameRenderer:
 
     # In Blender
 
-    def _make_plan(self) -> dict[str, Any]:
+    def _make_plan(self) -> RenderPlan:
         self._what, self._patient, self._pid = "the scene", True, None
-        plan = self._ask("render_plan", self._wanted)
+        plan = self._ask("render_plan", self._wanted, RenderPlan.model_validate)
         self._patient, self._pid = False, self._blender.pid
         self._moved = self._pid
         return plan
@@ -140,8 +150,7 @@ class FrameRenderer:
     def _plan_again(self) -> None:
         """After Blender was lost: the scene must be the one that rendering began with."""
         self._at = None
-        before = self.scene
-        if self._make_plan()["scene"] != before:
+        if self._make_plan().scene != self._plan.scene:
             raise Refusal(
                 "The scene is no longer the one that rendering began with, since Blender was restarted from a "
                 "checkpoint. Call again to render the scene as it is now."
@@ -150,16 +159,16 @@ class FrameRenderer:
     def _render(self, frame: int, samples: int | None, target: Path) -> float:
         self._what = f"frame {frame}"
         self._step_to(frame)
-        name = f".frame-{secrets.token_hex(6)}.png"
-        path = self._blender.folder.workspace / name
-        arguments = {"shot": self.shot, "frame": frame, "samples": samples, "path": str(path)}
+        workspace, name = self._blender.folder.workspace, f".frame-{secrets.token_hex(6)}.png"
+        shot, path = self.shot.settings, workspace.for_blender(name)
         started = time.monotonic()
         try:
-            self._ask("render_frame", arguments)
-            self._blender.folder.take(name, target)
+            self._ask(
+                "render_frame", {"shot": shot, "frame": frame, "samples": samples, "path": path}, nothing
+            )
+            workspace.take(name, target)
         finally:
-            with suppress(OSError):
-                path.unlink(missing_ok=True)
+            workspace.remove(name)
         self._at = frame
         seconds = time.monotonic() - started
         self._patient = seconds < _PATIENCE
@@ -172,12 +181,12 @@ class FrameRenderer:
             return
         while at < frame:
             steps = {"first": at, "last": frame - 1, "seconds": _STEP_SECONDS}
-            at = 1 + int(self._ask("render_step", steps))
+            at = 1 + self._ask("render_step", steps, partial(_reached, at, frame - 1))
             self._at = at - 1
             if self._call.cancelled.is_set():
                 raise Interrupted("Rendering was cancelled while the simulation was stepped through")
 
-    def _ask(self, key: str, arguments: dict[str, Any], *, extra: float = 0.0) -> Any:
+    def _ask(self, key: str, arguments: dict[str, Any], read: Reader[T], *, extra: float = 0.0) -> T:
         """Calls Blender; ``extra`` seconds are added to the deadline. Its progress is reported as part of a frame."""
 
         def report(done: float, total: float | None, text: str) -> None:
@@ -188,6 +197,7 @@ class FrameRenderer:
         reply = self._blender.call(
             key,
             arguments,
+            read,
             timeout=self._timeout + extra,
             what=f"rendering {self._what}",
             progress=report,
@@ -201,3 +211,10 @@ class FrameRenderer:
     def _cancelled(self) -> threading.Event | None:
         """Killing Blender over a frame that is nearly done would take longer than the frame."""
         return None if self._patient else self._call.cancelled
+
+
+def _reached(first: int, last: int, value: Any) -> int:
+    """The frame that a simulation was stepped to, in this range: each call gets at least one frame on."""
+    if not isinstance(value, int) or not first <= value <= last:
+        raise ValueError(f"it was to be stepped through frames {first} to {last}")
+    return value

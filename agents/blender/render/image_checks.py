@@ -1,52 +1,49 @@
-"""Checks of rendered images, and the smaller copies that models are shown."""
+"""Rendered pictures as models are shown them, and what makes them useless."""
 
 from __future__ import annotations
 
-import io
-from typing import TYPE_CHECKING, cast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from PIL import Image, ImageChops
+from agents.blender.sheets.contact_sheet import to_png
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from simworlds.sandbox.picture_decoder import PictureDecoder
 
 LARGEST_PREVIEW = 768  # pixels a side
 _DARK = 6  # of 255
 
 
-def preview_png(path: Path) -> bytes:
-    """A PNG's bytes, shrunk if the image is larger than LARGEST_PREVIEW."""
-    with Image.open(path) as image:
-        if max(image.size) <= LARGEST_PREVIEW:
-            return path.read_bytes()
-        smaller = image.copy()
-    smaller.thumbnail((LARGEST_PREVIEW, LARGEST_PREVIEW), Image.Resampling.LANCZOS)
-    file = io.BytesIO()
-    smaller.save(file, "PNG")
-    return file.getvalue()
+@dataclass(frozen=True, slots=True)
+class RenderedPicture:
+    """A picture at ``path``; ``png``: a copy of at most LARGEST_PREVIEW a side; lowest and highest value of its
+    channels (0 to 255); a ``digest`` of its pixels."""
+
+    path: Path
+    png: bytes
+    ranges: tuple[tuple[int, int], ...]
+    digest: str
 
 
-def image_faults(paths: list[Path]) -> list[str]:
-    """Sentences on what makes images useless: black, of one colour, or all frames alike."""
-    images = [_read_rgb(path) for path in paths]
+def look_at(decoder: PictureDecoder, path: Path) -> RenderedPicture:
+    """A picture that Blender has rendered. Raises Refusal for what is no PNG."""
+    with path.open("rb") as file:
+        picture = decoder.decode(file, path.name, longest=LARGEST_PREVIEW)
+    return RenderedPicture(path, to_png(picture.image), picture.ranges, picture.digest)
+
+
+def image_faults(pictures: list[RenderedPicture]) -> list[str]:
+    """Sentences on what makes pictures useless: black, of one colour, or all frames alike."""
     faults: list[str] = []
-    for path, image in zip(paths, images, strict=True):
-        ranges = cast("tuple[tuple[int, int], ...]", image.getextrema())
-        if max(high for _, high in ranges) <= _DARK:
-            faults.append(f"{path.name} is black: there is no light, or something blocks the camera.")
-        elif all(high - low <= 1 for low, high in ranges):
+    for picture in pictures:
+        if max(high for _, high in picture.ranges) <= _DARK:
+            faults.append(f"{picture.path.name} is black: there is no light, or something blocks the camera.")
+        elif all(high - low <= 1 for low, high in picture.ranges):
             faults.append(
-                f"{path.name} is one colour: nothing is in view, or the camera is inside an object."
+                f"{picture.path.name} is one colour: nothing is in view, or the camera is inside an object."
             )
-    if not faults and len(images) > 1 and all(_same(images[0], image) for image in images[1:]):
+    if not faults and len(pictures) > 1 and len({picture.digest for picture in pictures}) == 1:
         faults.append("The first, middle and last frame are identical: nothing moves in view.")
     return faults
-
-
-def _read_rgb(path: Path) -> Image.Image:
-    with Image.open(path) as image:
-        return image.convert("RGB")
-
-
-def _same(first: Image.Image, second: Image.Image) -> bool:
-    return first.size == second.size and ImageChops.difference(first, second).getbbox() is None

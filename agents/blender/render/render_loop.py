@@ -72,7 +72,7 @@ def render_frames(
     budget: RenderBudget | None,
 ) -> RenderOutcome:
     """Renders those of ``frames`` that are not in ``store``. Raises BlenderError when there is not a single one."""
-    wanted: int | None = renderer.shot["samples"]
+    wanted: int | None = renderer.shot.samples
     outcome, todo = RenderOutcome(), list[int]()
     for number in frames:
         reusable = _is_reusable(store.get(number), wanted, budget is not None)

@@ -23,11 +23,9 @@ from agents.blender.sheets.text_layout import (
     text_width,
     wrapped,
 )
-from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import BinaryIO
 
 Colour = tuple[int, int, int]
 Rectangle = tuple[float, float, float, float]  # left, top, right, bottom
@@ -43,7 +41,6 @@ Y_GREEN: Colour = (62, 135, 20)
 Z_BLUE: Colour = (40, 100, 215)
 
 MARGIN, GAP = 12, 8
-_LARGEST_SIDE = 8192  # pixels of an image that is read
 _BAR_SHARE = 0.3  # of an image's width, for the scale bar
 _GIZMO_REACH = 28
 
@@ -77,23 +74,6 @@ class Panel:
     caption: str = ""
     side_note: str = ""
     border: Colour = FRAME
-
-
-def read_png(file: BinaryIO, under: Colour = PAPER) -> Image.Image:
-    """A PNG as an RGB image, with ``under`` behind transparent pixels. Raises Refusal for anything else."""
-    try:
-        picture = Image.open(file, formats=["PNG"])
-        if max(picture.size) > _LARGEST_SIDE:
-            raise Refusal(
-                f"The image has {picture.width} × {picture.height} pixels; the limit is {_LARGEST_SIDE} a side."
-            )
-        picture.load()
-    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise Refusal(f"The image cannot be read: {error}.") from error
-    if "A" not in picture.getbands() and "transparency" not in picture.info:
-        return picture.convert("RGB")
-    background = Image.new("RGBA", picture.size, (*under, 255))
-    return Image.alpha_composite(background, picture.convert("RGBA")).convert("RGB")
 
 
 def to_png(picture: Image.Image) -> bytes:

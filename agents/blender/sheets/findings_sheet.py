@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,13 +9,15 @@ from PIL import Image, ImageDraw
 
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import text_width
+from agents.blender.sheets.view_reply import FindingsReply
+from agents.blender.sheets.worker_pictures import taken_picture
 from agents.protocol.report.grouping import group_findings
 from agents.protocol.report.summary import short_label, verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.sheets.view_reply import CloseUp, DrawnView
     from agents.blender.supervisor import Supervisor
     from agents.blender.tools.base import Call
     from agents.protocol.findings import Finding, Report
@@ -91,25 +92,24 @@ def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -
     left_out = {id(finding) for row in vague for finding in row.findings}
     shown = marked | left_out
     drawn += [finding for finding in report.findings if id(finding) not in shown and finding.objects]
-    folder = blender.folder
     reply = blender.call(
         "findings_image",
         {
             "findings": [_request(finding, id(finding) in marked) for finding in drawn],
-            "folder": str(folder.workspace),
+            "folder": blender.folder.workspace.for_blender(),
             "size": PANEL,
             "close": _CLOSE,
         },
+        FindingsReply.model_validate,
         timeout=_SECONDS,
         progress=call.progress,
         cancelled=call.cancelled,
     )
-    data: dict[str, Any] = reply.value
-    blocks = [contact_sheet.grid([panel_of(folder, view, marks) for view in data["views"]], 2)]
-    if data["close"]:
-        blocks.append(
-            contact_sheet.grid([_close_up(folder, view, marks) for view in data["close"]], _CLOSE_COLUMNS)
-        )
+    drawing = reply.value
+    blocks = [contact_sheet.grid([panel_of(blender, view, marks) for view in drawing.views], 2)]
+    close_ups = [_close_up(blender, view, marks) for view in drawing.close if view.mark < len(marks)]
+    if close_ups:
+        blocks.append(contact_sheet.grid(close_ups, _CLOSE_COLUMNS))
     if marks:
         lines = [
             contact_sheet.paragraph(mark.line, blocks[0].width, contact_sheet.Style(_LEGEND, mark.colour))
@@ -122,9 +122,9 @@ def draw_findings(blender: Supervisor, report: Report, call: Call, title: str) -
         subtitle=verdict(report),
         remarks=[
             *(f"Not coloured, since it is everywhere: {row.worst.rule}, {row.message}" for row in vague),
-            *_unmarked(report, marks, data["frame"]),
+            *_unmarked(report, marks, drawing.frame),
         ],
-        notes=data["notes"],
+        notes=drawing.notes,
     )
     return contact_sheet.to_png(sheet)
 
@@ -147,38 +147,33 @@ def linear(colour: contact_sheet.Colour) -> list[float]:
     return [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
 
 
-def _take_image(folder: RunFolder, file: str, size: int) -> Image.Image:
-    """Reads an image that Blender left in the workspace, and removes it."""
-    with folder.open_made(file) as image:
-        picture = contact_sheet.read_png(image, _BACKGROUND)
-    with contextlib.suppress(OSError):
-        (folder.workspace / file).unlink()
-    return picture.resize((size, size), Image.Resampling.LANCZOS)
+def _take_image(blender: Supervisor, file: str, size: int) -> Image.Image:
+    return taken_picture(blender, file, _BACKGROUND).resize((size, size), Image.Resampling.LANCZOS)
 
 
-def panel_of(folder: RunFolder, view: dict[str, Any], marks: Sequence[FindingMark]) -> contact_sheet.Panel:
+def panel_of(blender: Supervisor, view: DrawnView, marks: Sequence[FindingMark]) -> contact_sheet.Panel:
     """The panel of a view that Blender rendered, with scale, axes and ``marks``. Raises Refusal."""
-    picture = _take_image(folder, view["file"], view["size"][0])
-    if view["ground"] is not None:
-        contact_sheet.draw_level(picture, view["ground"], "z = 0")
-    contact_sheet.draw_scale_bar(picture, view["metres_per_pixel"])
-    contact_sheet.draw_axes(picture, view["axes"])
-    placed = [(mark, (place[0], place[1])) for mark, place in zip(marks, view["marks"], strict=True) if place]
-    _draw_marks(picture, placed)
-    return contact_sheet.Panel(picture, view["name"])
+    picture = _take_image(blender, view.file, view.size[0])
+    if view.ground is not None:
+        contact_sheet.draw_level(picture, view.ground, "z = 0")
+    if view.metres_per_pixel is not None:
+        contact_sheet.draw_scale_bar(picture, view.metres_per_pixel)
+    contact_sheet.draw_axes(picture, view.axes)
+    _draw_marks(picture, [(mark, place) for mark, place in zip(marks, view.marks, strict=False) if place])
+    return contact_sheet.Panel(picture, view.name)
 
 
-def _close_up(folder: RunFolder, view: dict[str, Any], marks: Sequence[FindingMark]) -> contact_sheet.Panel:
-    picture = _take_image(folder, view["file"], _CLOSE)
-    contact_sheet.draw_scale_bar(picture, view["metres_per_pixel"])
-    mark, draw, middle = marks[view["mark"]], ImageDraw.Draw(picture), _CLOSE // 2
+def _close_up(blender: Supervisor, view: CloseUp, marks: Sequence[FindingMark]) -> contact_sheet.Panel:
+    picture = _take_image(blender, view.file, _CLOSE)
+    contact_sheet.draw_scale_bar(picture, view.metres_per_pixel)
+    mark, draw, middle = marks[view.mark], ImageDraw.Draw(picture), _CLOSE // 2
     for start, end in (
         (0, _TICK),
         (_CLOSE - _TICK, _CLOSE),
     ):  # lines that point to the fault and do not hide it
         draw.line((start, middle, end, middle), fill=mark.colour, width=2)
         draw.line((middle, start, middle, end), fill=mark.colour, width=2)
-    return contact_sheet.Panel(picture, mark.label, view["name"], border=mark.colour)
+    return contact_sheet.Panel(picture, mark.label, view.name, border=mark.colour)
 
 
 def _draw_marks(picture: Image.Image, marks: Sequence[tuple[FindingMark, tuple[float, float]]]) -> None:

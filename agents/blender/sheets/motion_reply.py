@@ -1,23 +1,20 @@
-"""Blender's reply about motion. It is not trusted, so its shape is checked."""
+"""Blender's reply about motion."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-Frame = Annotated[int, Field(ge=-1_048_574, le=1_048_574)]
+from simworlds.sandbox.replies import Claim, Frame
+
 Text = Annotated[str, Field(max_length=1000)]
 Vector = tuple[float, float, float]
 Side = Annotated[int, Field(ge=16, le=2048)]
 _MOST_ACTORS, _MOST_PICTURES, _MOST_FRAMES = 8, 12, 1500
 
 
-class _Reply(BaseModel):
-    model_config = ConfigDict(allow_inf_nan=False, extra="ignore", protected_namespaces=())
-
-
-class ShotView(_Reply):
+class ShotView(Claim):
     """An orthographic view: unit vectors to the right, up and towards the viewer; the centre; the scale."""
 
     axes: tuple[Vector, Vector, Vector]
@@ -33,21 +30,21 @@ class ShotView(_Reply):
         return width / 2 + right / self.metres_per_pixel, height / 2 - up / self.metres_per_pixel
 
 
-class Shot(_Reply):
+class Shot(Claim):
     """One image; ``view`` is None if the actor is absent at that frame."""
 
     frame: Frame
     view: ShotView | None
 
 
-class Strip(_Reply):
+class Strip(Claim):
     """The images of one kind of view: ``path`` (the whole path) or ``close``."""
 
     kind: Annotated[str, Field(pattern="^(path|close)$")]
     pictures: list[Shot] = Field(max_length=_MOST_PICTURES)
 
 
-class CacheState(_Reply):
+class CacheState(Claim):
     """A physics cache that moves the actor: ``state`` in words, and the frames it covers."""
 
     label: Text
@@ -57,7 +54,7 @@ class CacheState(_Reply):
     on: bool
 
 
-class Contact(_Reply):
+class Contact(Claim):
     """A contact: (first, last) frame of each period, and the ``gap`` in metres at the first."""
 
     partner: Text = Field(alias="with")
@@ -71,7 +68,7 @@ class Contact(_Reply):
         return ", ".join(periods) + (" …" if len(self.frames) > 3 else "")
 
 
-class PhaseMotion(_Reply):
+class PhaseMotion(Claim):
     """The motion of one actor over one phase. Metres, m/s, degrees."""
 
     phase: Text
@@ -91,7 +88,7 @@ class PhaseMotion(_Reply):
     contacts: list[Contact] = Field(default_factory=list[Contact], max_length=2000)
 
 
-class ActorMotion(_Reply):
+class ActorMotion(Claim):
     """The motion of one actor, measured at ``frames``."""
 
     name: Text
@@ -113,7 +110,7 @@ class ActorMotion(_Reply):
     views: list[Strip] = Field(max_length=2)
 
 
-class MotionReply(_Reply):
+class MotionReply(Claim):
     """The whole reply. ``stepped_from``: the frame from which all frames were stepped; None if they were played."""
 
     start: Frame

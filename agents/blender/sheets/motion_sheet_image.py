@@ -16,7 +16,6 @@ from agents.blender.sheets.contact_sheet import (
     draw_scale_bar,
     grid,
     paragraph,
-    read_png,
     sheet,
     stack,
     to_png,
@@ -35,7 +34,6 @@ from agents.blender.sheets.text_layout import text_width
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import BinaryIO
 
     from agents.blender.sheets.motion_reply import (
         ActorMotion,
@@ -54,15 +52,15 @@ _MOST_ROWS, _APART = 6, 28
 _SPEEDS = {"vertices": "vertex speed, m/s", "particles": "particle speed, m/s"}
 
 
-def draw_sheets(motion: MotionReply, open_tile: Callable[[str], BinaryIO]) -> list[bytes]:
-    """The sheets as PNGs, each with as many actors as stay readable. ``open_tile`` opens an image by its name.
+def draw_sheets(motion: MotionReply, take_tile: Callable[[str], Image.Image]) -> list[bytes]:
+    """The sheets as PNGs, each with as many actors as stay readable. ``take_tile`` gives an image by its name.
 
     Raises Refusal for an image that is missing or cannot be read.
     """
 
     def tile(number: int, strip: Strip, shot: Shot, view: ShotView) -> Image.Image:
-        with open_tile(f"{number}-{strip.kind}-{shot.frame}.png") as file:
-            return read_png(file).resize(view.size, Image.Resampling.BOX)
+        picture = take_tile(f"{number}-{strip.kind}-{shot.frame}.png")
+        return picture.resize(view.size, Image.Resampling.BOX)
 
     blocks: list[Image.Image] = []
     for number, actor in enumerate(motion.actors):

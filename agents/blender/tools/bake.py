@@ -45,7 +45,8 @@ def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:
     blender = context.blender
     reply = blender.call(
         "bake",
-        {**arguments.model_dump(exclude={"timeout"}), "folder": str(blender.folder.workspace)},
+        {**arguments.model_dump(exclude={"timeout"}), "folder": blender.folder.workspace.for_blender()},
+        _read,
         timeout=arguments.timeout,
         changes=True,
         always_keep=True,
@@ -53,7 +54,11 @@ def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:
         progress=call.progress,
         cancelled=call.cancelled,
     )
-    data: dict[str, Any] = reply.value
+    return reply.value
+
+
+def _read(data: dict[str, Any]) -> Result:
+    """Blender's reply as text. Raises LookupError, TypeError or ValueError for a malformed one."""
     caches = data["caches"]
     baked = sum(not cache["fault"] for cache in caches)
     first, last = data["range"]

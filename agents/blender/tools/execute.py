@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
 from agents.blender.formatting import format_count
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
-from simworlds.sandbox.errors import Untrustworthy
+from simworlds.sandbox.replies import Claim, Text
 
 if TYPE_CHECKING:
     from agents.blender.checkpoints import Checkpoint
@@ -41,30 +41,26 @@ below the current folder. Code that runs past `timeout` (seconds) or ends Blende
 restarted from the last checkpoint, which is taken after every call."""
 
 
-class _Fault(BaseModel):
+class _Fault(Claim):
     """An exception of executed code, as the worker reports it."""
 
-    model_config = ConfigDict(extra="forbid")
-
-    type: str
-    message: str
+    type: Text
+    message: Text
     line: int | None
-    source: str
-    traceback: str
-    ask: str
-    there: list[str]
+    source: Text
+    traceback: Text
+    ask: Text
+    there: list[Text] = Field(max_length=100)
 
 
-class _Outcome(BaseModel):
-    """The worker's report on executed code, which is not trusted: the code could have changed the worker."""
+class _Outcome(Claim):
+    """The worker's report on executed code."""
 
-    model_config = ConfigDict(extra="forbid")
-
-    value: str | None
+    value: Text | None
     error: _Fault | None
-    changed: dict[str, dict[str, list[str]]]
-    mode: str
-    unwatched: str = ""
+    changed: dict[Text, dict[Text, list[Text]]]
+    mode: Text
+    unwatched: Text = ""
 
 
 def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result:
@@ -77,6 +73,7 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
     reply = blender.call(
         "execute",
         {"code": arguments.code},
+        _Outcome.model_validate,
         timeout=arguments.timeout,
         what=f"the code {title!r}",
         changes=True,
@@ -84,7 +81,7 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
         progress=call.progress,
         cancelled=call.cancelled,
     )
-    data = _outcome(context, reply, title, before)
+    data = reply.value.model_dump()
     data.update(stdout=reply.stdout, stderr=reply.stderr, seconds=round(reply.seconds, 4))
     error = data["error"]
     if error is None:
@@ -104,20 +101,6 @@ def _title(code: str) -> str:
     return first if len(lines) < 2 and len(first) <= _LONGEST_TITLE else f"{first[:_LONGEST_TITLE]} …"
 
 
-def _outcome(
-    context: ToolContext, reply: WorkerReply, title: str, before: Checkpoint | None
-) -> dict[str, Any]:
-    """The worker's report; the scene is restored if it is malformed, since its state is unknown."""
-    try:
-        return _Outcome.model_validate(reply.value, strict=True).model_dump()
-    except ValidationError as error:
-        raise Untrustworthy(
-            f"The reply to the code {title!r} is malformed and was ignored. The scene was restored from "
-            f"{context.blender.restore(before.number if before else None)}.",
-            (reply.stdout + reply.stderr)[-2000:],
-        ) from error
-
-
 def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     if before is None:
         return ""
@@ -125,7 +108,7 @@ def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     return f" To undo it{calls}: blender_load(checkpoint={before.number})."
 
 
-def _text(data: dict[str, Any], reply: WorkerReply) -> str:
+def _text(data: dict[str, Any], reply: WorkerReply[_Outcome]) -> str:
     parts: list[str] = []
     if error := data["error"]:
         parts.append(f"**{error['type']}**: {error['message']}")

@@ -20,15 +20,13 @@ from agents.blender.saved_files import (
     copy_from_workspace,
     describe_saved_files,
     find_blend_file,
+    lent_to_blender,
     open_elsewhere,
     put_in_place,
-    readable_by_blender,
     staging,
-    validated,
 )
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.sandbox.errors import Refusal, ToolBroke
-from simworlds.sandbox.usage import remove
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -142,27 +140,28 @@ def _write(context: ToolContext, arguments: SaveArguments, call: Call, staged: P
     """Lets Blender write the copy, and moves it out of the workspace to ``staged``."""
     blender = context.blender
     workspace = blender.folder.workspace
-    remove(workspace / COPY_NAME)
+    workspace.remove(COPY_NAME)
     try:
         reply = blender.call(
             "save",
             {
-                "path": str(workspace / COPY_NAME),
+                "path": workspace.for_blender(COPY_NAME),
                 "beside": caches_folder(staged).name,
-                "workspace": str(workspace),
+                "workspace": workspace.for_blender(),
                 "pack": arguments.pack,
             },
+            SavedCopy.model_validate,
             timeout=arguments.timeout,
             changes=True,
             after=f"after saving {staged.name}",
             progress=call.progress,
             cancelled=call.cancelled,
         )
-        blender.folder.take(COPY_NAME, staged)
+        workspace.take(COPY_NAME, staged)
     finally:
         for name in (COPY_NAME, f"{COPY_NAME}@"):
-            remove(workspace / name)
-    return validated(SavedCopy, reply.value)
+            workspace.remove(name)
+    return reply.value
 
 
 def _checkpoint(context: ToolContext) -> Result:
@@ -201,7 +200,7 @@ def _go_back(context: ToolContext, number: int) -> Result:
         if [checkpoint.number for checkpoint in blender.checkpoints.newest_first()[-1:]] != [number]:
             blender.keep("before going back")
         restored = blender.restore(number)
-        now = validated(FileContents, blender.call("kept_caches", {}, timeout=_OPEN_SECONDS).value)
+        now = blender.call("kept_caches", {}, FileContents.model_validate, timeout=_OPEN_SECONDS).value
     lines = [f"The scene is back at {restored}."]
     if on_disk := [cache for cache in now.caches if cache.where == "disk"]:
         lines.append("Caches on disk are not part of a checkpoint; these are as they were last baked:")
@@ -216,10 +215,11 @@ def _open(context: ToolContext, arguments: LoadArguments, name: str, call: Call)
     with blender.alone():
         before = blender.keep("before loading")
         try:
-            with readable_by_blender(blend_file, blender.folder) as (path, is_copy):
+            with lent_to_blender(blend_file, blender.folder) as path:
                 reply = blender.call(
                     "load",
-                    {"path": str(path), "workspace": str(blender.folder.workspace), "lent": is_copy},
+                    {"path": path, "workspace": blender.folder.workspace.for_blender()},
+                    LoadedFile.model_validate,
                     timeout=arguments.timeout,
                     changes=True,
                     always_keep=True,
@@ -227,7 +227,7 @@ def _open(context: ToolContext, arguments: LoadArguments, name: str, call: Call)
                     progress=call.progress,
                     cancelled=call.cancelled,
                 )
-            loaded = validated(LoadedFile, reply.value)
+            loaded = reply.value
         except (Refusal, ToolBroke) as error:
             blender.restore(before.number)
             raise Refusal(f"{str(error).rstrip('.')}. The scene is unchanged, at {before}.") from error

@@ -89,13 +89,18 @@ def run(context: ToolContext, arguments: GroupArguments, call: Call) -> Result:
     reply = context.blender.call(
         "group",
         {"groups": [group.for_worker() for group in arguments.groups]},
+        _read,
         timeout=_SECONDS,
         changes=True,
         after="after grouping",
         progress=call.progress,
         cancelled=call.cancelled,
     )
-    data: dict[str, Any] = reply.value
+    return reply.value
+
+
+def _read(data: dict[str, Any]) -> Result:
+    """Blender's reply as text. Raises LookupError, TypeError or ValueError for a malformed one."""
     lines = [_line(group) for group in data["groups"]]
     if data["warnings"]:
         lines += ["", "The protocol still requires:", *(f"- {warning}" for warning in data["warnings"])]

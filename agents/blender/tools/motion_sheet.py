@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from agents.blender.saved_files import validated
 from agents.blender.sheets.contact_sheet import GAP
-from agents.blender.sheets.motion_reply import ActorMotion, Frame, MotionReply, PhaseMotion
+from agents.blender.sheets.motion_reply import ActorMotion, MotionReply, PhaseMotion
 from agents.blender.sheets.motion_sheet_image import WIDTH, draw_sheets
+from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.preview_files import FOLDER
-from simworlds.sandbox.usage import remove
+from simworlds.sandbox.replies import Frame
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -94,29 +94,29 @@ changed and stays at its frame."""
 
 def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Result:
     """Measures and draws. Raises BlenderError."""
-    folder = context.blender.folder
+    blender, folder = context.blender, context.blender.folder
     tiles = f".motion-{secrets.token_hex(4)}"
-    tiles_folder = folder.workspace / tiles
-    tiles_folder.mkdir()
+    folder.workspace.make_folder(tiles)
     try:
-        reply = context.blender.call(
+        reply = blender.call(
             "motion_sheet",
             {
                 "actors": arguments.actors,
                 "phases": [phase.model_dump() for phase in arguments.phases],
                 "frames": arguments.frames,
-                "folder": str(tiles_folder),
+                "folder": folder.workspace.for_blender(tiles),
                 "width": WIDTH,
                 "gap": GAP,
             },
+            MotionReply.model_validate,
             timeout=arguments.timeout,
             progress=call.progress,
             cancelled=call.cancelled,
         )
-        motion = validated(MotionReply, reply.value)
-        sheets = draw_sheets(motion, lambda name: folder.open_made(f"{tiles}/{name}"))
+        motion = reply.value
+        sheets = draw_sheets(motion, lambda name: taken_picture(blender, f"{tiles}/{name}"))
     finally:
-        remove(tiles_folder)
+        folder.workspace.remove(tiles)
     pictures = tuple(SavedImage(png, _save(folder.root / FOLDER, png)) for png in sheets)
     data = _data(motion)
     data["pictures"] = [str(picture.path.relative_to(folder.root)) for picture in pictures]

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from PIL import Image
 from pydantic import Field
@@ -12,11 +11,16 @@ from pydantic import Field
 from agents.blender.formatting import format_count
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import format_length
+from agents.blender.sheets.view_reply import PreviewReply
+from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.preview_files import new_preview
 
 if TYPE_CHECKING:
-    from agents.blender.run_folder import RunFolder
+    from collections.abc import Sequence
+
+    from agents.blender.sheets.view_reply import DrawnView
+    from agents.blender.supervisor import Supervisor
 
 PANEL = 384  # pixels a side
 _BACKGROUND: contact_sheet.Colour = (198, 202, 208)
@@ -101,87 +105,81 @@ def run_scene_layout(context: ToolContext, arguments: SceneLayoutArguments, call
 def _preview(
     context: ToolContext, kind: str, name: str | None, arguments: PreviewArguments, call: Call
 ) -> Result:
-    folder = context.blender.folder
+    blender, folder = context.blender, context.blender.folder
     request = {
         "kind": kind,
         "name": name,
         "frame": arguments.frame,
         "everything": isinstance(arguments, LayoutArguments) and arguments.everything,
-        "folder": str(folder.workspace),
+        "folder": folder.workspace.for_blender(),
         "size": PANEL,
     }
-    reply = context.blender.call(
-        "preview", request, timeout=arguments.timeout, progress=call.progress, cancelled=call.cancelled
+    read = PreviewReply.model_validate
+    reply = blender.call(
+        "preview", request, read, timeout=arguments.timeout, progress=call.progress, cancelled=call.cancelled
     )
-    data: dict[str, Any] = reply.value
-    size = [high - low for low, high in zip(data["low"], data["high"], strict=True)]
-    panels = [_panel(folder, view, size) for view in data["views"]]
-    title = re.sub(r"\W+", "-", data["title"]).strip("-")[:40] or "unnamed"
-    png = contact_sheet.to_png(_sheet(kind, data, panels))
-    image = new_preview(folder, f"{kind}-{title}-frame-{data['frame']}", png)
-    for view in data["views"]:
-        del view["file"]
+    preview = reply.value
+    panels = [_panel(blender, view, preview) for view in preview.views]
+    title = re.sub(r"\W+", "-", preview.title).strip("-")[:40] or "unnamed"
+    png = contact_sheet.to_png(_sheet(kind, preview, panels))
+    image = new_preview(folder, f"{kind}-{title}-frame-{preview.frame}", png)
+    data = preview.model_dump(exclude={"views": {"__all__": {"file", "marks"}}})
     data |= {"file": str(image.path.relative_to(folder.root)), "seconds": round(reply.seconds, 3)}
-    return Result(_text(kind, data), data, (image,))
+    return Result(_text(kind, preview, data["file"]), data, (image,))
 
 
 # The sheet
 
 
-def _panel(folder: RunFolder, view: dict[str, Any], size: list[float]) -> contact_sheet.Panel:
+def _panel(blender: Supervisor, view: DrawnView, preview: PreviewReply) -> contact_sheet.Panel:
     """The panel of a view; the image that Blender left in the workspace is removed."""
-    with folder.open_made(view["file"]) as file:
-        picture = contact_sheet.read_png(file, _BACKGROUND)
-    with contextlib.suppress(OSError):
-        (folder.workspace / view["file"]).unlink()
-    picture = picture.resize(tuple(view["size"]), Image.Resampling.LANCZOS)
-    if view["ground"] is not None:
-        contact_sheet.draw_level(picture, view["ground"], "z = 0")
-    if view["metres_per_pixel"]:
-        contact_sheet.draw_scale_bar(picture, view["metres_per_pixel"])
-    contact_sheet.draw_labels(picture, view["labels"])
-    contact_sheet.draw_axes(picture, view["axes"])
-    return contact_sheet.Panel(picture, view["name"], view.get("lens") or _across(view["name"], size))
+    picture = taken_picture(blender, view.file, _BACKGROUND).resize(view.size, Image.Resampling.LANCZOS)
+    if view.ground is not None:
+        contact_sheet.draw_level(picture, view.ground, "z = 0")
+    if view.metres_per_pixel:
+        contact_sheet.draw_scale_bar(picture, view.metres_per_pixel)
+    contact_sheet.draw_labels(picture, view.labels)
+    contact_sheet.draw_axes(picture, view.axes)
+    return contact_sheet.Panel(picture, view.name, view.lens or _across(view.name, preview.size))
 
 
-def _across(view: str, size: list[float]) -> str:
+def _across(view: str, size: Sequence[float]) -> str:
     """The extent of the framed geometry along the axes that a view shows without foreshortening."""
     axes = {"front": "XZ", "right": "YZ", "top": "XY"}.get(view, "")
     return " · ".join(f"{letter} {format_length(size['XYZ'.index(letter)])}" for letter in axes)
 
 
-def _sheet(kind: str, data: dict[str, Any], panels: list[contact_sheet.Panel]) -> Image.Image:
+def _sheet(kind: str, preview: PreviewReply, panels: list[contact_sheet.Panel]) -> Image.Image:
     blocks = [contact_sheet.grid(panels[:4], 2)]
     if len(panels) > 4:
         blocks = [contact_sheet.grid(panels[:3], 3), contact_sheet.grid(panels[3:], 2)]
     return contact_sheet.sheet(
-        f"{kind.capitalize()}: {data['title']}",
+        f"{kind.capitalize()}: {preview.title}",
         blocks,
-        subtitle=f"frame {data['frame']} · {_size_of(data)} · {format_count(data['objects'], 'object')}",
-        remarks=_cut_away(data),
-        notes=data["notes"],
+        subtitle=f"frame {preview.frame} · {_size_of(preview)} · {format_count(preview.objects, 'object')}",
+        remarks=_cut_away(preview),
+        notes=preview.notes,
     )
 
 
-def _size_of(data: dict[str, Any]) -> str:
-    edges = (high - low for low, high in zip(data["low"], data["high"], strict=True))
-    return " × ".join(format_length(edge) for edge in edges)
+def _size_of(preview: PreviewReply) -> str:
+    return " × ".join(format_length(edge) for edge in preview.size)
 
 
-def _cut_away(data: dict[str, Any]) -> list[str]:
+def _cut_away(preview: PreviewReply) -> list[str]:
     """A line on what was cut away in which view; none if nothing was."""
-    views = [f"{view['name']}: {', '.join(view['cut_away'])}" for view in data["views"] if view["cut_away"]]
+    views = [f"{view.name}: {', '.join(view.cut_away)}" for view in preview.views if view.cut_away]
     return [f"Cut away to see inside – {'; '.join(views)}."] if views else []
 
 
-def _text(kind: str, data: dict[str, Any]) -> str:
-    low, high = (", ".join(f"{part:.4g}" for part in data[name]) for name in ("low", "high"))
+def _text(kind: str, preview: PreviewReply, file: str) -> str:
+    low, high = (", ".join(f"{part:.4g}" for part in corner) for corner in (preview.low, preview.high))
     lines = [
-        f"{data['title']} ({kind}), frame {data['frame']}: {format_count(data['objects'], 'object')}, "
-        f"{_size_of(data)} (x × y × z), from ({low}) to ({high}).",
-        *_cut_away(data),
-        *(f"- {note}" for note in data["notes"]),
-        f"Saved as {data['file']}.",
+        f"{preview.title} ({kind}), frame {preview.frame}: {format_count(preview.objects, 'object')}, "
+        f"{_size_of(preview)} (x × y × z), from ({low}) to ({high}).",
+        *_cut_away(preview),
+        *(f"- {note}" for note in preview.notes),
+        f"Saved as {file}.",
     ]
     return "\n".join(lines)
 

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from agents.blender.formatting import format_count, format_list
 from agents.blender.render.frame_cache import FrameCache
 from agents.blender.render.frame_renderer import FrameRenderer
-from agents.blender.render.image_checks import image_faults, preview_png
+from agents.blender.render.image_checks import RenderedPicture, image_faults, look_at
 from agents.blender.render.render_budget import RenderBudget
 from agents.blender.render.render_loop import RenderOutcome, StillStore, render_frames
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
@@ -104,7 +104,7 @@ def run(context: ToolContext, arguments: RenderArguments, call: Call) -> Result:
 
 
 def _still(renderer: FrameRenderer, arguments: RenderArguments, call: Call, path: Path) -> Result:
-    frame = renderer.scene_value("current") if arguments.frame is None else arguments.frame
+    frame = renderer.plan.current if arguments.frame is None else arguments.frame
     store = StillStore(path)
     outcome = render_frames(renderer, store, [frame], call, _budget(renderer, arguments))
     if not outcome.made:
@@ -112,8 +112,9 @@ def _still(renderer: FrameRenderer, arguments: RenderArguments, call: Call, path
     rendered = store.get(frame)
     data = _data(renderer, arguments, outcome, rendered.samples if rendered else None)
     data.update(path=str(path), frame=frame)
-    data["warnings"] = image_faults([path])
-    return Result(_text(renderer, data, outcome), data, (SavedImage(preview_png(path), path),))
+    pictures = [look_at(renderer.pictures, path)]
+    data["warnings"] = image_faults(pictures)
+    return Result(_text(renderer, data, outcome), data, _shown(pictures))
 
 
 def _animation(
@@ -121,7 +122,7 @@ def _animation(
 ) -> Result:
     first, last = _range(renderer, arguments)
     budget = _budget(renderer, arguments)
-    cache = FrameCache(folder, renderer.scene, renderer.shot)
+    cache = FrameCache(folder, renderer.plan.scene, renderer.shot.settings)
     frames = list(range(first, last + 1, arguments.step))
     outcome = render_frames(renderer, cache, frames, call, budget)
     rendered = [frame for number in outcome.available if (frame := cache.get(number))]
@@ -134,22 +135,25 @@ def _animation(
             data["video"] = _video(renderer, cache, outcome, range(first, last + 1), video)
         except BlenderError as error:
             outcome.stopped = f"the video could not be made: {error}"
-    samples = [cache.path(number) for number in _sampled(outcome.available)]
-    data["warnings"] = image_faults(samples)
+    pictures = [look_at(renderer.pictures, cache.path(number)) for number in _sampled(outcome.available)]
+    data["warnings"] = image_faults(pictures)
     data["complete"] = not outcome.stopped
-    images = tuple(SavedImage(preview_png(path), path) for path in samples)
-    return Result(_text(renderer, data, outcome), data, images, failed=bool(outcome.stopped))
+    return Result(_text(renderer, data, outcome), data, _shown(pictures), failed=bool(outcome.stopped))
+
+
+def _shown(pictures: list[RenderedPicture]) -> tuple[SavedImage, ...]:
+    return tuple(SavedImage(picture.png, picture.path) for picture in pictures)
 
 
 def _budget(renderer: FrameRenderer, arguments: RenderArguments) -> RenderBudget | None:
     if arguments.time_budget is None:
         return None
-    return RenderBudget(arguments.time_budget, renderer.shot["samples"])
+    return RenderBudget(arguments.time_budget, renderer.shot.samples)
 
 
 def _range(renderer: FrameRenderer, arguments: RenderArguments) -> tuple[int, int]:
-    first = renderer.scene_value("frame_start") if arguments.frame_start is None else arguments.frame_start
-    last = renderer.scene_value("frame_end") if arguments.frame_end is None else arguments.frame_end
+    first = renderer.plan.frame_start if arguments.frame_start is None else arguments.frame_start
+    last = renderer.plan.frame_end if arguments.frame_end is None else arguments.frame_end
     if last < first:
         raise Refusal(f"frame_end ({last}) must not be smaller than frame_start ({first}).")
     if last - first >= _MOST_FRAMES:
@@ -167,7 +171,7 @@ def _video(
     for frame in frames:
         shown = frame if frame in available else shown
         images.append(cache.path(shown))
-    return {"path": str(target), **renderer.make_video(images, target)}
+    return {"path": str(target), **renderer.make_video(images, target).model_dump()}
 
 
 def _sampled(frames: list[int]) -> list[int]:
@@ -184,9 +188,9 @@ def _data(
     shot, frame_seconds = renderer.shot, outcome.frame_seconds
     return {
         "kind": arguments.kind,
-        **{key: shot[key] for key in ("camera", "engine", "device", "width", "height", "denoise")},
+        **shot.model_dump(include={"camera", "engine", "device", "width", "height", "denoise"}),
         "samples": samples,
-        "samples_asked": shot["samples"],
+        "samples_asked": shot.samples,
         "made": len(outcome.made),
         "kept": len(outcome.kept),
         "dropped": outcome.dropped[:_LISTED],
@@ -194,7 +198,7 @@ def _data(
         "missing_count": len(outcome.missing),
         "seconds": round(outcome.seconds, 2),
         "seconds_per_frame": round(frame_seconds, 2) if frame_seconds is not None else None,
-        "unbaked": [cache["label"] for cache in renderer.unbaked],
+        "unbaked": [cache.label for cache in renderer.unbaked],
         "notes": renderer.notes,
         "stopped": outcome.stopped,
     }

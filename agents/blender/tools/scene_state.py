@@ -80,11 +80,12 @@ def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Res
     reply = context.blender.call(
         "scene_state",
         {"detail": arguments.detail, "objects": arguments.objects, "sections": names},
+        lambda facts: readout(facts, arguments),
         timeout=TIMEOUT,
         progress=call.progress,
         cancelled=call.cancelled,
     )
-    return readout(reply.value, arguments)
+    return reply.value
 
 
 def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:

@@ -101,15 +101,17 @@ def run(context: ToolContext, arguments: TagArguments, call: Call) -> Result:
             "objects": [tags.for_worker() for tags in arguments.objects],
             "scene": scene,
         },
+        _read,
         timeout=_SECONDS,
         changes=True,
         after="after tagging",
         cancelled=call.cancelled,
     )
-    return Result(_text(reply.value), dict(reply.value))
+    return reply.value
 
 
-def _text(data: dict[str, Any]) -> str:
+def _read(data: dict[str, Any]) -> Result:
+    """Blender's reply as text. Raises LookupError, TypeError or ValueError for a malformed one."""
     lines = [f"- collection {_line(name, tags)}" for name, tags in data["collections"].items()]
     lines += [f"- object {_line(name, tags)}" for name, tags in data["objects"].items()]
     if data["scene"]:
@@ -117,7 +119,7 @@ def _text(data: dict[str, Any]) -> str:
     lines = ["Tags now:", *lines] if lines else ["The scene has no tags now."]
     if data["warnings"]:
         lines += ["", "The protocol still requires:", *(f"- {warning}" for warning in data["warnings"])]
-    return "\n".join(lines)
+    return Result("\n".join(lines), data)
 
 
 def _line(name: str, tags: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ from pydantic import Field
 from agents.blender.sheets.findings_sheet import draw_findings
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.preview_files import new_preview
-from agents.blender.verification import verify_scene
+from agents.blender.verification import ScenePosition, verify_scene
 from agents.protocol.report.json_report import as_json
 from agents.protocol.report.markdown import as_text
 from agents.protocol.report.summary import VerificationScope
@@ -60,13 +60,17 @@ def run(context: ToolContext, arguments: VerifyArguments, call: Call) -> Result:
     blender = context.blender
     with blender.alone():
         position = blender.call(
-            "go_to_frame", {"frame": None}, timeout=_SECONDS, cancelled=call.cancelled
+            "go_to_frame",
+            {"frame": None},
+            ScenePosition.model_validate,
+            timeout=_SECONDS,
+            cancelled=call.cancelled,
         ).value
         report = verify_scene(blender, rules, plan, call)
         checked = VerificationScope(
             rules,
-            scene=str(position["scene"]),
-            frame=int(position["frame"]),
+            scene=position.scene,
+            frame=position.frame,
             blender=blender.launch.runtime.version,
             plan=plan.title if plan else "",
         )

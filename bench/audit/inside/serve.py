@@ -4,6 +4,8 @@
 from simworlds.sandbox.inside import mantaflow, service
 from simworlds.sandbox.inside.refusal import Refused
 
+from . import LARGEST_REPLY
+
 # Job → the module and function that do it; they get the arguments of the call.
 JOBS = {
     "open": ("opening", "open_file"),
@@ -11,7 +13,6 @@ JOBS = {
     "measure": ("measure", "measure"),
     "frames": ("frames", "render"),
 }
-_LARGEST = 256 << 20  # bytes of an answer: the facts of a large scene, or frames of it
 
 
 def main(arguments):
@@ -29,4 +30,4 @@ def serve(descriptor, jobs):
             raise Refused("it needs more memory than its limit") from None
 
     mantaflow.mend()
-    service.serve(descriptor, answer, largest=_LARGEST)
+    service.serve(descriptor, answer, largest=LARGEST_REPLY)

@@ -13,6 +13,9 @@ import struct
 
 KEY_BYTES = 32
 LARGEST_BODY = 16 * 1024 * 1024
+_BYTES_A_PART = (
+    8  # of a body, at least, on average: a short one can hold many values, which take far more memory
+)
 SUPERVISOR, WORKER = b"supervisor", b"worker"
 CHANNEL_LOST = 97  # the worker's exit code when its end of the socket was taken from it
 _LENGTH = struct.Struct(">I")
@@ -44,6 +47,8 @@ class Encoder:
         body = body.encode("utf-8", "replace")
         if len(body) > self._largest:
             raise TooLarge(f"{len(body):,} bytes; the limit is {self._largest:,}")
+        if (parts := _parts(body)) > self._largest // _BYTES_A_PART:
+            raise TooLarge(f"{parts:,} values; the limit is {self._largest // _BYTES_A_PART:,}")
         length = _LENGTH.pack(len(body))
         tag = _sign(self._key, self._sender, self._number, b"head", length)[:_TAG_BYTES]
         signature = _sign(self._key, self._sender, self._number, b"body", body)
@@ -54,9 +59,10 @@ class Encoder:
 class Decoder:
     """Turns the frames of one side into messages."""
 
-    def __init__(self, key, sender):
+    def __init__(self, key, sender, largest=LARGEST_BODY):
         self._key = key
         self._sender = sender
+        self._largest = largest
         self._number = 0
         self._buffer = bytearray()
 
@@ -67,13 +73,18 @@ class Decoder:
         while len(self._buffer) >= _TAGGED:
             length = bytes(self._buffer[: _LENGTH.size])
             self._check(b"head", length, self._buffer[_LENGTH.size : _TAGGED])
-            end = _HEAD + _LENGTH.unpack(length)[0]
+            size = _LENGTH.unpack(length)[0]
+            if size > self._largest:
+                raise ForgedFrame(f"a frame has {size:,} bytes; the limit is {self._largest:,}")
+            end = _HEAD + size
             if len(self._buffer) < end:
                 break
             body = bytes(self._buffer[_HEAD:end])
             self._check(b"body", body, self._buffer[_TAGGED:_HEAD])
             del self._buffer[:end]
             self._number += 1
+            if _parts(body) > self._largest // _BYTES_A_PART:
+                raise ForgedFrame("a frame holds too many values")
             messages.append(_message(body))
         return messages
 
@@ -81,6 +92,11 @@ class Decoder:
         signature = _sign(self._key, self._sender, self._number, part, data)
         if not hmac.compare_digest(bytes(tag), signature[: len(tag)]):
             raise ForgedFrame(f"the {part.decode()} of a frame does not carry the right signature")
+
+
+def _parts(body):
+    """At least the number of values in a body."""
+    return sum(map(body.count, (b",", b"[", b"{")))
 
 
 def _message(body):

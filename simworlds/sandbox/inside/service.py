@@ -17,6 +17,7 @@ from .refusal import Refused
 # Numbers of our descriptors: code that closes "all" low-numbered ones misses these.
 HIGH = 200
 _CHUNK = 1 << 16
+_LONGEST = 20_000  # characters of a text that the supervisor reads
 
 
 class Tools:
@@ -59,7 +60,7 @@ def serve(descriptor, answer, guard=None, largest=channel.LARGEST_BODY):
             try:
                 reply = _reply(request, wire, answer, guard)
             except BaseException as error:
-                reply = {"failed": f"{type(error).__name__}: {error}", "traceback": "", "seconds": 0.0}
+                reply = {"failed": _words(error), "traceback": "", "seconds": 0.0}
             _send(wire, {**reply, "left": _after(guard), "ticket": request["ticket"]})
     except EOFError:
         code = 0
@@ -103,18 +104,18 @@ def _reply(request, wire, answer, guard):
     ticket = request["ticket"]
 
     def report(done, total, text=""):
-        wire.send({"ticket": ticket, "progress": [done, total, str(text)]})
+        wire.send({"ticket": ticket, "progress": [done, total, str(text)[:_LONGEST]]})
 
     started = time.perf_counter()
     try:
         guard.before()
         reply = {"value": answer(request["tool"], request["arguments"], report)}
     except Refused as error:
-        reply = {"refused": str(error)}
+        reply = {"refused": str(error)[:_LONGEST]}
     except ModuleNotFoundError as error:
         reply = {"missing": str(error.name)}
     except BaseException as error:
-        reply = {"failed": f"{type(error).__name__}: {error}", "traceback": traceback.format_exc()[-8000:]}
+        reply = {"failed": _words(error), "traceback": traceback.format_exc()[-8000:]}
     reply["seconds"] = time.perf_counter() - started
     return reply
 
@@ -126,7 +127,11 @@ def _after(guard):
             return guard.after()
         except Exception as error:
             fault = error
-    return [f"an interpreter that cannot be restored ({type(fault).__name__}: {fault})"]
+    return [f"an interpreter that cannot be restored ({_words(fault)[:1000]})"]
+
+
+def _words(error):
+    return f"{type(error).__name__}: {error}"[:_LONGEST]
 
 
 def _send(wire, reply):

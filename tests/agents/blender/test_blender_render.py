@@ -111,7 +111,7 @@ def stopped_after(frames: int) -> Call:
 @pytest.mark.parametrize("engine", ["cycles", "workbench"])
 def test_a_still_shows_what_the_camera_sees(session: LiveSession, engine: str) -> None:
     session.run(SCENE + "cube.location = (1, 0, -2)")
-    workspace = session.blender.folder.workspace
+    workspace = session.blender.folder.workspace.mount
     before = {one.name for one in workspace.iterdir()}
     found = session.use(TOOL, None, **{**SMALL, "engine": engine}, name=engine)
     path = session.blender.folder.root / "renders" / f"{engine}.png"
@@ -262,7 +262,7 @@ def test_video_moves_and_can_be_read_back(session: LiveSession) -> None:
     data = film.read_bytes()
     assert data[4:8] == b"ftyp"
     assert b"avc1" in data
-    shutil.copyfile(film, session.blender.folder.workspace / "look.mp4")
+    shutil.copyfile(film, session.blender.folder.workspace.mount / "look.mp4")
     colour = session.run(
         "import os\nimage = bpy.data.images.load(os.path.abspath('look.mp4'))\n"
         "p = list(image.pixels)\nbpy.data.images.remove(image)\nos.remove('look.mp4')\n"

@@ -23,9 +23,12 @@ from rule_cases import CASES, Case, judge  # noqa: E402
 from agents.blender.sheets import contact_sheet  # noqa: E402
 from agents.blender.sheets.findings_sheet import FindingMark, linear, panel_of  # noqa: E402
 from agents.blender.sheets.text_layout import round_length, shortened, text_width  # noqa: E402
+from agents.blender.sheets.view_reply import FindingsReply  # noqa: E402
+from agents.blender.sheets.worker_pictures import taken_picture  # noqa: E402
 from agents.protocol.facts import SceneFacts  # noqa: E402
 from agents.protocol.report.grouping import group_findings  # noqa: E402
 from agents.protocol.structure import is_mesh  # noqa: E402
+from simworlds.sandbox.replies import unread  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -97,7 +100,7 @@ def take(
 ) -> Shot:
     """The open scene as the case is to be looked at."""
     if case.look == "tree":
-        told = session.blender.call("scene_facts", {}, timeout=60).value
+        told = session.blender.call("scene_facts", {}, unread, timeout=60).value
         return Shot(tree(SceneFacts.model_validate(told), names if finding else (), case.baked))
     if case.look == "camera":
         return Shot(rendered(session))
@@ -153,10 +156,18 @@ def view(
     folder = session.blender.folder
     reply = session.blender.call(
         "findings_image",
-        {"findings": [asked], "folder": str(folder.workspace), "size": WIDTH, "close": 16, "whole": True},
+        {
+            "findings": [asked],
+            "folder": str(folder.workspace.mount),
+            "size": WIDTH,
+            "close": 16,
+            "whole": True,
+        },
+        unread,
         timeout=120,
     ).value
-    panels = {one["name"]: panel_of(folder, one, marks) for one in reply["views"]}
+    views = FindingsReply.model_validate(reply).views
+    panels = {view.name: panel_of(session.blender, view, marks) for view in views}
     return panels[name].picture
 
 
@@ -165,11 +176,10 @@ def rendered(session: LiveSession) -> Image.Image:
         "scene = bpy.context.scene\n"
         "scene.render.engine, scene.cycles.samples, scene.cycles.device = 'CYCLES', 32, 'CPU'\n"
         f"scene.render.resolution_x, scene.render.resolution_y = {WIDTH}, {HEIGHT}\n"
-        f"scene.render.filepath = {str(session.blender.folder.workspace / 'seen.png')!r}\n"
+        f"scene.render.filepath = {str(session.blender.folder.workspace.mount / 'seen.png')!r}\n"
         "bpy.ops.render.render(write_still=True)"
     )
-    with session.blender.folder.open_made("seen.png") as file:
-        return contact_sheet.read_png(file)
+    return taken_picture(session.blender, "seen.png")
 
 
 # Trees of collections

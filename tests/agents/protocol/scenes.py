@@ -12,6 +12,7 @@ from agents.blender.verification import verify_scene
 from agents.plan.scene import ScenePlan
 from agents.protocol.measures.requests import measure
 from agents.protocol.rules.catalogue import select_rules
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -219,7 +220,7 @@ def measures(session: LiveSession, *requests: Request[Any]) -> Measures:
     """What Blender measures in the open scene, in one batch."""
 
     def ask(requests: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        return session.blender.call("measure", {"requests": requests}, timeout=60).value
+        return session.blender.call("measure", {"requests": requests}, unread, timeout=60).value
 
     return measure(requests, ask)
 

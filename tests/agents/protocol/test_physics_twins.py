@@ -133,7 +133,7 @@ for frame in {SHOWN}:
     scene.render.filepath = f"//{name} {{frame}}.png"
     bpy.ops.render.render(write_still=True)
 """)
-    folder = session.blender.folder.workspace
+    folder = session.blender.folder.workspace.mount
     return [np.asarray(Image.open(folder / f"{name} {frame}.png").convert("RGB"), float) for frame in SHOWN]
 
 

@@ -17,6 +17,7 @@ from agents.protocol.measures.geometry import (
     SurfaceRequest,
 )
 from agents.protocol.measures.requests import Unmeasured
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -323,7 +324,7 @@ def test_what_is_seen_is_measured_and_told_in_the_facts(session: LiveSession, sc
     assert gap(session) == pytest.approx(0.01, abs=2e-4)
     high = measured(session, ExtentsRequest(("B",))).high
     assert high[2] == pytest.approx(0.5, abs=2e-4)
-    told = session.blender.call("scene_facts", {}, timeout=60).value["objects"]
+    told = session.blender.call("scene_facts", {}, unread, timeout=60).value["objects"]
     facts = next(one for one in told if one["name"] == "B")
     assert facts["surface"]
     assert facts["polygons"] > 0
@@ -356,7 +357,7 @@ def test_what_has_no_faces_has_no_surface(session: LiveSession, script: str) -> 
     with pytest.raises(Unmeasured, match="'B' has no surface"):
         gap(session)
     assert measured(session, CrossingsRequest(("A", "B"))).pairs == ()
-    told = session.blender.call("scene_facts", {}, timeout=60).value["objects"]
+    told = session.blender.call("scene_facts", {}, unread, timeout=60).value["objects"]
     assert not next(one for one in told if one["name"] == "B")["surface"]
 
 
@@ -386,7 +387,7 @@ def test_what_is_hidden_is_told_apart(
     script += "scene.collection.children.link(kept)\nkept.objects.link(cube)\n"
     script += 'layer = bpy.context.view_layer.layer_collection.children["Kept"]\n'
     made(session, CUBE + script + hide)
-    told = session.blender.call("scene_facts", {}, timeout=60).value["objects"]
+    told = session.blender.call("scene_facts", {}, unread, timeout=60).value["objects"]
     facts = next(one for one in told if one["name"] == "Cube")
     assert (facts["rendered"], facts["evaluated"]) == (rendered, evaluated)
     assert facts["surface"]

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.pages.readers.compare import ReaderComparison, compare
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
+from measurements.reader_comparison import ReaderComparison, compare
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,9 +11,9 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import docutils_namespace, patch_docutils
 
 from kb_build.errors import SourceError
-from kb_build.pages.readers.compare import compare
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
+from measurements.reader_comparison import compare
 
 if TYPE_CHECKING:
     from pathlib import Path

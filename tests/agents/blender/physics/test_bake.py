@@ -294,7 +294,7 @@ def test_fluids_lie_in_the_workspace_wherever_they_were_to_lie(session: LiveSess
     assert not found.failed, found.text
     folders = {cache["folder"] for cache in found.data["caches"]}
     assert len(folders) == 2
-    workspace = str(session.blender.folder.workspace)
+    workspace = str(session.blender.folder.workspace.mount)
     assert all(folder.startswith(f"{workspace}/cache/fluid/") for folder in folders)
     assert session.run(
         "[o.modifiers[0].domain_settings.cache_directory[:2] for o in bpy.data.objects "
@@ -306,7 +306,7 @@ def test_old_bakes_are_removed(session: LiveSession) -> None:
     session.run(f"{PARTS}\ntank('Vat')")
     for _ in range(5):
         session.use(TOOL, frame_end=2)
-    place = session.blender.folder.workspace / "cache" / "fluid" / "Vat"
+    place = session.blender.folder.workspace.mount / "cache" / "fluid" / "Vat"
     assert sorted(folder.name for folder in place.iterdir()) == ["0003", "0004", "0005"]
 
 

@@ -9,6 +9,7 @@ import pytest
 from agents.blender.fluid_support import FluidCheck, check_fluids
 from agents.blender.launch import make_launch
 from simworlds.sandbox.blender_process import BlenderProcess
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -67,7 +68,7 @@ def test_the_self_test_tells_that_fluids_work_and_what_this_version_needs(tmp_pa
 def test_a_process_that_has_run_a_fluid_ends_in_peace(tmp_path: Path) -> None:
     launch = make_launch(tmp_path)
     process = BlenderProcess(launch)
-    process.call("fluid_self_test", {"remedy": True}, timeout=60)
+    process.call("fluid_self_test", {"remedy": True}, unread, timeout=60)
     process.close()
     launch.clean()
     assert process._process.returncode == 0

@@ -265,7 +265,7 @@ def test_the_scene_is_left_as_it_was(session: LiveSession) -> None:
     before = session.run(STATE)
     session.use(TOOL, actors=["Crate"], frames=[10, 30])
     assert session.run(STATE) == before
-    assert not list(session.blender.folder.workspace.glob(".motion*"))
+    assert not list(session.blender.folder.workspace.mount.glob(".motion*"))
 
 
 def test_the_pictures_show_the_motion_in_one_fixed_frame(session: LiveSession) -> None:

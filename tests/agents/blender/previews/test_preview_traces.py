@@ -65,7 +65,7 @@ bpy.app.handlers.depsgraph_update_post.remove(spoil)
 
 def census(session: LiveSession) -> dict[str, Any]:
     session.run(CENSUS)
-    return json.loads((session.blender.folder.workspace / "census.json").read_text())
+    return json.loads((session.blender.folder.workspace.mount / "census.json").read_text())
 
 
 def test_no_preview_leaves_a_trace(session: LiveSession) -> None:
@@ -81,7 +81,7 @@ def test_no_preview_leaves_a_trace(session: LiveSession) -> None:
 
 def test_a_preview_that_fails_half_way_leaves_no_trace_either(session: LiveSession) -> None:
     build(session, LIVED_IN)
-    obstacle = session.blender.folder.workspace / ".preview-2.png"
+    obstacle = session.blender.folder.workspace.mount / ".preview-2.png"
     session.run("import os; os.makedirs('.preview-2.png/x')")
     before = census(session)
     try:
@@ -105,7 +105,7 @@ def test_a_render_of_the_scenes_own_is_kept(session: LiveSession) -> None:
     session.use(previews.SCENE_LAYOUT)
     session.run("bpy.data.images['Render Result'].save_render(__import__('os').path.abspath('after.png'))")
     pictures = [
-        (session.blender.folder.workspace / f"{name}.png").read_bytes() for name in ("before", "after")
+        (session.blender.folder.workspace.mount / f"{name}.png").read_bytes() for name in ("before", "after")
     ]
     assert pictures[0] == pictures[1]
 

@@ -30,7 +30,7 @@ def test_a_preview_is_a_picture_and_the_same_as_a_file(session: LiveSession) -> 
         assert image.width == 2 * (previews.PANEL + 2) + contact_sheet.GAP + 2 * contact_sheet.MARGIN
         assert image.height > image.width
     assert "1 m × 2 m × 3 m" in found.text
-    assert not list(session.blender.folder.workspace.glob(".preview*"))
+    assert not list(session.blender.folder.workspace.mount.glob(".preview*"))
 
 
 def test_files_of_several_previews_stay_beside_each_other(session: LiveSession) -> None:

@@ -14,6 +14,7 @@ from agents.blender.tools.base import Result, parse
 from agents.blender.tools.scene_fit import tokens
 from agents.blender.tools.scene_state import TOOL, SceneStateArguments, readout
 from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -667,7 +668,9 @@ def test_no_readout_is_longer_than_asked_for(session: LiveSession) -> None:
     for detail in ("summary", "normal", "full"):
         for objects in (None, ["Wall", "Flag", "Ball"]):
             given = {"detail": detail, "objects": objects}
-            facts = session.blender.call("scene_state", {**given, "sections": SECTIONS}, timeout=60).value
+            facts = session.blender.call(
+                "scene_state", {**given, "sections": SECTIONS}, unread, timeout=60
+            ).value
             for room in (500, 1000, 4000, 12_000):
                 found = readout(facts, SceneStateArguments(**given, max_tokens=room))
                 assert tokens(found.text) <= room

@@ -15,6 +15,7 @@ from agents.blender.checkpoints import KEPT, Checkpoint
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox
 from simworlds.sandbox.errors import Died, Refusal
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -68,7 +69,7 @@ def test_keeps_a_small_scene_after_every_changing_call(kept: LiveSession) -> Non
     before = numbers(kept)[0]
     kept.run(adding("One"))
     kept.run(adding("Two"))
-    kept.blender.call("execute", {"code": "1"}, timeout=20)
+    kept.blender.call("execute", {"code": "1"}, unread, timeout=20)
     assert numbers(kept)[0] == before + 2
     last = kept.blender.checkpoints.last
     assert last is not None
@@ -212,11 +213,11 @@ def test_relative_paths_survive_saving_elsewhere(kept: LiveSession) -> None:
         "image = bpy.data.images.new('i', 8, 8)\nimage.use_fake_user = True\n"
         "image.filepath_raw = '//i.png'\nimage.file_format = 'PNG'\nimage.save()"
     )
-    assert (kept.blender.folder.workspace / "sub" / "i.png").is_file()
+    assert (kept.blender.folder.workspace.mount / "sub" / "i.png").is_file()
     kept.blender.keep("elsewhere")
     kept.blender.kill()
     assert kept.run("import os\nos.path.isfile(bpy.path.abspath(bpy.data.images['i'].filepath))") is True
-    assert kept.run("bpy.data.filepath") == str(kept.blender.folder.workspace / "scene.blend")
+    assert kept.run("bpy.data.filepath") == str(kept.blender.folder.workspace.mount / "scene.blend")
 
 
 # When it fails

@@ -57,7 +57,7 @@ def _confined(
 def confined(_confined: LiveSession) -> LiveSession:
     """A Blender in a narrow sandbox, with an empty scene and an empty workspace."""
     _confined.empty()
-    for path in _confined.blender.folder.workspace.iterdir():
+    for path in _confined.blender.folder.workspace.mount.iterdir():
         if path.name == "scene.blend" and path.is_file() and not path.is_symlink():
             continue
         shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
@@ -249,8 +249,8 @@ def test_links_lead_neither_code_nor_blender_nor_the_host_out(confined: LiveSess
     key = home / ".ssh" / "id_ed25519"
     folder = confined.blender.folder
     # Planted by the host, so that they are there whatever the sandbox does about making them.
-    (folder.workspace / "link").symlink_to(key)
-    (folder.workspace / "folder").symlink_to(home)
+    (folder.workspace.mount / "link").symlink_to(key)
+    (folder.workspace.mount / "folder").symlink_to(home)
     for code in (
         "open('link').read()",
         "open('link', 'w').write('x')",
@@ -261,9 +261,9 @@ def test_links_lead_neither_code_nor_blender_nor_the_host_out(confined: LiveSess
     tried(confined, "bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//folder/planted.blend'))")
     for relative in ("link", "folder/.ssh/id_ed25519"):
         with pytest.raises(Refusal):
-            folder.open_made(relative)
+            folder.workspace.open(relative)
         with pytest.raises(Refusal):
-            folder.take(relative, folder.root / "taken")
+            folder.workspace.take(relative, folder.root / "taken")
     assert key.read_text() == SECRET
     assert sorted(path.name for path in home.iterdir()) == [".ssh"]
 
@@ -279,8 +279,8 @@ def test_links_at_the_runs_own_file_are_not_followed(confined: LiveSession, home
     confined.blender.kill()
     assert confined.run("[o.name for o in bpy.data.objects]") == ["Kept"]
     assert key.read_text() == SECRET
-    assert (confined.blender.folder.workspace / "scene.blend").is_file()
-    assert not (confined.blender.folder.workspace / "scene.blend").is_symlink()
+    assert (confined.blender.folder.workspace.mount / "scene.blend").is_file()
+    assert not (confined.blender.folder.workspace.mount / "scene.blend").is_symlink()
 
 
 # The network
@@ -293,7 +293,7 @@ def test_no_server_is_reached(confined: LiveSession) -> None:
         socket.socket(socket.AF_UNIX) as unix,
     ):
         udp.bind(("127.0.0.1", 0))
-        place = confined.blender.folder.workspace / "s"
+        place = confined.blender.folder.workspace.mount / "s"
         here = os.open(place.parent, os.O_RDONLY)
         unix.bind(f"/proc/self/fd/{here}/s")
         os.close(here)
@@ -348,7 +348,7 @@ def test_no_process_can_be_started(confined: LiveSession) -> None:
     assert tried(confined, "__import__('os').system('touch planted')")[1] != "0"
     calls = "[libc.fork(), libc.vfork(), libc.syscall(56, 17, 0, 0, 0, 0), libc.syscall(435, None, 0)]"
     assert tried(confined, LIBC + calls) == ("", "[-1, -1, -1, -1]")
-    assert not (confined.blender.folder.workspace / "planted").exists()
+    assert not (confined.blender.folder.workspace.mount / "planted").exists()
 
 
 def test_threads_without_end_are_stopped(confined: LiveSession) -> None:
@@ -408,7 +408,7 @@ def test_nothing_can_be_mounted_or_made_root(confined: LiveSession) -> None:
 
 def test_one_file_grows_to_its_limit_and_no_further(confined: LiveSession) -> None:
     assert tried(confined, "open('big', 'wb').write(bytes(40 << 20))")[0] == "OSError"
-    assert (confined.blender.folder.workspace / "big").stat().st_size <= LIMITS.file_size
+    assert (confined.blender.folder.workspace.mount / "big").stat().st_size <= LIMITS.file_size
     kind, _ = tried(
         confined,
         "mesh = bpy.data.meshes.new('large')\nmesh.use_fake_user = True\nmesh.vertices.add(2_000_000)\n"
@@ -438,7 +438,7 @@ def test_a_disk_cannot_be_filled(confined: LiveSession, code: str, told: str) ->
     confined.run("open('kept', 'w').write('from before')")
     with pytest.raises(LimitExceeded, match=told):
         confined.use(TOOL, code=f"{code}\nimport time; time.sleep(20)", timeout=30)
-    workspace = confined.blender.folder.workspace
+    workspace = confined.blender.folder.workspace.mount
     assert {path.name for path in workspace.iterdir()} <= {"kept", "scene.blend"}
     assert (workspace / "kept").read_text() == "from before"
     assert confined.run("import time; time.sleep(0.6); open('kept').read()") == "from before"
@@ -517,7 +517,7 @@ bpy.context.view_layer.update()
 
 
 def test_no_temporary_file_outlives_the_process(confined: LiveSession) -> None:
-    private = confined.blender.folder.private
+    private = confined.blender.folder.private.mount
     confined.run("import os\nopen(os.path.join(os.environ['TMPDIR'], 'left'), 'w').write('x')")
     assert (private / "left").exists()
     confined.blender.kill()

@@ -24,6 +24,7 @@ from agents.blender.tools.files import LOAD, SAVE
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confined_command import best_sandbox, default_limits
 from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -102,7 +103,7 @@ def session_for(root: Path, **launch: Any) -> Iterator[LiveSession]:
     """A run whose Blender is started otherwise."""
     folder = RunFolder.make(root)
     made = LiveSession.__new__(LiveSession)
-    made.blender = Supervisor(make_launch(folder.workspace, **launch), folder)
+    made.blender = Supervisor(make_launch(folder.workspace.mount, **launch), folder)
     made.context = ToolContext(made.blender, no_docs)
     made.blender.start()
     yield made
@@ -124,8 +125,8 @@ def elsewhere(path: Path, room: Path, code: str) -> Any:
     launch = make_launch(room)
     process = BlenderProcess(launch)
     try:
-        process.call("inspect", {"path": str(room / path.name)}, timeout=60)
-        found = process.call("execute", {"code": code}, timeout=60).value
+        process.call("inspect", {"path": str(room / path.name)}, unread, timeout=60)
+        found = process.call("execute", {"code": code}, unread, timeout=60).value
         assert found["error"] is None, found["error"]["traceback"]
         return ast.literal_eval(found["value"])
     finally:
@@ -160,10 +161,10 @@ def test_a_baked_cache_opens_elsewhere_and_here_again(
     assert path == session.blender.folder.root / "saves" / "tower.blend"
 
     session.run("bpy.ops.wm.read_homefile(use_empty=True)")
-    shutil.rmtree(session.blender.folder.workspace / "caches", ignore_errors=True)
+    shutil.rmtree(session.blender.folder.workspace.mount / "caches", ignore_errors=True)
     session.use(LOAD, path="saves/tower")
     assert session.run(MEASURE) == before
-    assert not (session.blender.folder.workspace / ".loading").exists()
+    assert not (session.blender.folder.workspace.mount / ".loading").exists()
 
     assert elsewhere(path, tmp_path / "elsewhere", MEASURE) == before
     assert before[0] > 100
@@ -182,7 +183,7 @@ def test_packs_images_only_into_the_copy(session: LiveSession, tmp_path: Path) -
 def test_saves_paths_of_unpacked_images(session: LiveSession) -> None:
     session.run(PICTURE)
     found = session.use(SAVE, name="saves/tower", verify=False, pack=False)
-    lies = str(session.blender.folder.workspace / "textures" / "wood.png")
+    lies = str(session.blender.folder.workspace.mount / "textures" / "wood.png")
     assert [(one["path"], one["missing"]) for one in found.data["external"]] == [(lies, False)]
     assert lies in found.text
     session.run("bpy.ops.wm.read_homefile(use_empty=True)")
@@ -355,7 +356,7 @@ os.symlink({str(victim)!r}, ".loading")
 
 @pytest.mark.parametrize("below", ["../out", "/tmp/out", "", "a/../../out", "a\0b"])
 def test_reply_cannot_name_a_path_outside(session: LiveSession, tmp_path: Path, below: str) -> None:
-    (session.blender.folder.workspace / "made").write_text("made")
+    (session.blender.folder.workspace.mount / "made").write_text("made")
     with pytest.raises(Refusal, match="not a valid path for a cache file"):
         copy_from_workspace(session.blender.folder, [("made", below)], tmp_path / "caches")
     assert not list(tmp_path.iterdir())
@@ -391,7 +392,7 @@ def test_a_torn_or_newer_file_is_refused_and_the_scene_stays(session: LiveSessio
     session.run(
         "bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//plain.blend'), copy=True, compress=False)"
     )
-    whole = (session.blender.folder.workspace / "plain.blend").read_bytes()
+    whole = (session.blender.folder.workspace.mount / "plain.blend").read_bytes()
     root = session.blender.folder.root
     (root / "torn.blend").write_bytes(whole[: len(whole) // 2])
     version = whole[12:17]
@@ -436,7 +437,7 @@ def test_a_file_too_large_for_the_sandbox_leaves_the_old_one_whole(tmp_path: Pat
             "image.pixels.foreach_set([random.random() for _ in range(4 * 1024 * 1024)])\n"
             "image.use_fake_user = True"
         )
-        assert small.blender.call("execute", {"code": code}, timeout=60).value["error"] is None
+        assert small.blender.call("execute", {"code": code}, unread, timeout=60).value["error"] is None
         told = refusal(small, SAVE, name="tower")
         assert "tower.blend was not saved" in told
         assert "The older file of that name is unchanged" in told

@@ -27,6 +27,7 @@ from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
 from simworlds.sandbox.errors import CannotStart, Died, Interrupted, LeftBehind, Lost, Refusal, TookTooLong
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -241,7 +242,7 @@ def test_ctrl_c_ends_the_call_but_not_the_run(hardy: LiveSession) -> None:
 def test_refuses_too_large_arguments_before_sending(hardy: LiveSession) -> None:
     blender = hardy.blender.inner_pid
     with pytest.raises(Refusal, match=r"arguments of execute are too large: .*the limit is"):
-        hardy.blender.call("execute", {"code": "#" * (17 << 20)}, timeout=20)
+        hardy.blender.call("execute", {"code": "#" * (17 << 20)}, unread, timeout=20)
     assert hardy.blender.inner_pid == blender
 
 
@@ -307,7 +308,7 @@ def test_answers_calls_of_many_threads(hardy: LiveSession) -> None:
     answers: dict[int, object] = {}
 
     def ask(number: int) -> None:
-        reply = hardy.blender.call("execute", {"code": f"print({number})\n{number} ** 2"}, timeout=60)
+        reply = hardy.blender.call("execute", {"code": f"print({number})\n{number} ** 2"}, unread, timeout=60)
         answers[number] = (reply.value["value"], reply.stdout)
 
     threads = [threading.Thread(target=ask, args=(number,)) for number in range(12)]
@@ -324,7 +325,7 @@ def test_two_runs_are_independent(make_session: Callable[[str], LiveSession]) ->
     two.run(adding("Two"))
     one.blender.kill()
     assert (one.run(NAMES), two.run(NAMES)) == (["One"], ["Two"])
-    outside = two.use(TOOL, code=f"open({str(one.blender.folder.workspace / 'scene.blend')!r})")
+    outside = two.use(TOOL, code=f"open({str(one.blender.folder.workspace.mount / 'scene.blend')!r})")
     assert outside.data["error"]["type"] in {"PermissionError", "FileNotFoundError"}
 
 
@@ -334,7 +335,7 @@ def test_two_runs_are_independent(make_session: Callable[[str], LiveSession]) ->
 def test_continues_a_run_where_it_was_left(tmp_path: Path) -> None:
     first = LiveSession(tmp_path / "run")
     first.run(adding("Kept"))
-    first.blender.call("execute", {"code": adding("Not yet written")}, timeout=20)
+    first.blender.call("execute", {"code": adding("Not yet written")}, unread, timeout=20)
     first.blender.checkpoints.changed(0.0)
     first.blender.close()
     second = LiveSession(tmp_path / "run")
@@ -365,7 +366,7 @@ def test_closing_leaves_no_process_and_no_private_folder(tmp_path: Path) -> None
 def test_refuses_a_second_supervisor_for_a_run(hardy: LiveSession) -> None:
     folder = hardy.blender.folder
     with pytest.raises(Refusal, match="in use by another"):
-        Supervisor(make_launch(folder.workspace), folder)
+        Supervisor(make_launch(folder.workspace.mount), folder)
 
 
 def test_rejects_a_wrong_executable_before_starting_it(tmp_path: Path) -> None:
@@ -406,9 +407,10 @@ sys.path[:0] = [{str(REPO / "tests" / "agents")!r}]
 from pathlib import Path
 from live_session import LiveSession
 from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.replies import unread
 session = LiveSession(Path({str(tmp_path / "run")!r}), sandbox=best_sandbox({kind!r}))
 print("ready", flush=True)
-session.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, timeout=600)
+session.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, unread, timeout=600)
 """
     process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
     try:

@@ -51,7 +51,7 @@ def saved(session: LiveSession, script: str, path: Path, **options: Any) -> Path
     build(session, script)
     more = "".join(f", {name}={value!r}" for name, value in options.items())
     session.run(f"bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//made.blend'), copy=True{more})")
-    (session.blender.folder.workspace / "made.blend").replace(path)
+    (session.blender.folder.workspace.mount / "made.blend").replace(path)
     return path
 
 
@@ -229,7 +229,7 @@ def test_what_links_files_that_cannot_be_read_is_not_judged_by_halves(
     (tmp_path / "lib").mkdir()
     saved(session, SOUND, tmp_path / "lib" / "parts.blend")
     session.empty()
-    (session.blender.folder.workspace / "parts.blend").write_bytes(
+    (session.blender.folder.workspace.mount / "parts.blend").write_bytes(
         (tmp_path / "lib/parts.blend").read_bytes()
     )
     session.run(
@@ -241,7 +241,7 @@ def test_what_links_files_that_cannot_be_read_is_not_judged_by_halves(
         "bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//made.blend'), copy=True, "
         "relative_remap=False)"
     )
-    (session.blender.folder.workspace / "made.blend").replace(tmp_path / "linking.blend")
+    (session.blender.folder.workspace.mount / "made.blend").replace(tmp_path / "linking.blend")
     done = verify(tmp_path, "linking.blend", "--rules", "C")
     assert done.returncode == 2
     assert "parts.blend, which cannot be read: give its folder with --read" in done.stderr

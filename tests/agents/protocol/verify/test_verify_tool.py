@@ -12,6 +12,7 @@ from scenes import build
 
 from agents.blender.tools.verify import TOOL as VERIFY
 from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -112,7 +113,7 @@ def test_the_picture_shows_what_is_at_fault_in_red_and_names_it(session: LiveSes
     assert plain.pictures  # that a camera is absent has no place, but its own line
     assert redness(plain.pictures[0].png, (0, 60, width, 400)) < 500  # axes, and no more
     assert len(picture.png) < 400_000
-    left = list(session.blender.folder.workspace.glob(".*.png"))
+    left = list(session.blender.folder.workspace.mount.glob(".*.png"))
     assert left == []
 
 
@@ -142,10 +143,11 @@ def test_places_in_the_picture_are_those_of_the_world(session: LiveSession) -> N
                     "marked": True,
                 }
             ],
-            "folder": str(session.blender.folder.workspace),
+            "folder": str(session.blender.folder.workspace.mount),
             "size": 200,
             "close": 100,
         },
+        unread,
         timeout=60,
     ).value
     front, right, top, _ = reply["views"]
@@ -160,7 +162,7 @@ def test_places_in_the_picture_are_those_of_the_world(session: LiveSession) -> N
     assert right["marks"][1] == pytest.approx(right["marks"][0], abs=1e-3)
     assert top["marks"][2] == pytest.approx(top["marks"][0], abs=1e-3)
     for view in reply["views"]:
-        (session.blender.folder.workspace / view["file"]).unlink()
+        (session.blender.folder.workspace.mount / view["file"]).unlink()
 
 
 def test_a_close_up_shows_the_gap_as_wide_as_it_is(session: LiveSession) -> None:
@@ -178,21 +180,22 @@ def test_a_close_up_shows_the_gap_as_wide_as_it_is(session: LiveSession) -> None
                     "marked": True,
                 }
             ],
-            "folder": str(session.blender.folder.workspace),
+            "folder": str(session.blender.folder.workspace.mount),
             "size": 200,
             "close": 240,
         },
+        unread,
         timeout=60,
     ).value
     (close,) = reply["close"]
     assert close["name"] == "front"
     assert close["metres_per_pixel"] * 240 == pytest.approx(12 * 0.012)
-    file = session.blender.folder.workspace / close["file"]
+    file = session.blender.folder.workspace.mount / close["file"]
     column = np.asarray(Image.open(file).convert("RGBA").resize((240, 240)))[:, 120, 3] > 40
     (edges,) = np.nonzero(np.diff(column.astype(int)))
     assert edges[1] - edges[0] == pytest.approx(20, abs=3)  # the gap, from the leg's end to the floor
     for view in (*reply["views"], close):
-        (session.blender.folder.workspace / view["file"]).unlink()
+        (session.blender.folder.workspace.mount / view["file"]).unlink()
 
 
 @pytest.mark.parametrize(

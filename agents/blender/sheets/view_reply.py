@@ -1,0 +1,75 @@
+"""Blender's replies about drawn views: previews and marked findings. Metres; pixels from the upper left."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from simworlds.sandbox.replies import Claim, Count, Frame, Name, Text
+
+_LARGEST = 2048  # pixels a side
+_FARTHEST = 1e38
+_File = Annotated[str, Field(pattern=r"^\.(preview|close-up)-\d{1,3}\.png$")]
+Metres = Annotated[float, Field(ge=-_FARTHEST, le=_FARTHEST)]
+Pixel = Annotated[float, Field(ge=-1e15, le=1e15)]
+Side = Annotated[int, Field(ge=16, le=_LARGEST)]
+Scale = Annotated[float, Field(gt=0, le=_FARTHEST)]
+Place = tuple[Pixel, Pixel]
+Corner = tuple[Metres, Metres, Metres]
+Share = Annotated[float, Field(ge=-2, le=2)]
+Axis = tuple[Literal["X", "Y", "Z"], Share, Share, Share]
+"""A world axis: its letter, and where it points in the picture: right, up, towards the viewer."""
+
+
+class DrawnView(Claim):
+    """One picture. ``file``: its name in the workspace; ``ground``: the height of z = 0 in it, if that is seen."""
+
+    name: Name
+    file: _File
+    size: tuple[Side, Side]
+    metres_per_pixel: Scale | None
+    axes: list[Axis] = Field(max_length=3)
+    cut_away: list[Name] = Field(max_length=10_000)
+    labels: list[tuple[Name, Pixel, Pixel]] = Field(max_length=100)
+    ground: Pixel | None
+    lens: Name = ""
+    marks: list[Place | None] = Field(default_factory=list[Place | None], max_length=200)
+
+
+class CloseUp(Claim):
+    """A picture of one finding; ``mark``: the number of the finding, from 0."""
+
+    mark: int = Field(ge=0, le=200)
+    name: Name
+    file: _File
+    metres_per_pixel: Scale
+
+
+class PreviewReply(Claim):
+    """A preview: ``low`` and ``high`` are the corners of what is framed."""
+
+    title: Name
+    frame: Frame
+    objects: Count
+    low: Corner
+    high: Corner
+    views: list[DrawnView] = Field(min_length=1, max_length=6)
+    notes: list[Text] = Field(max_length=1000)
+    engine: Name
+
+    @property
+    def size(self) -> Corner:
+        """The framed extent along the axes."""
+        (x, y, z), (right, back, top) = self.low, self.high
+        return right - x, back - y, top - z
+
+
+class FindingsReply(Claim):
+    """The pictures of marked findings."""
+
+    title: Name
+    frame: Frame
+    views: list[DrawnView] = Field(min_length=1, max_length=6)
+    close: list[CloseUp] = Field(max_length=200)
+    notes: list[Text] = Field(max_length=1000)
