@@ -61,7 +61,7 @@ class Attackers:
         self._folder = folder
         self._outside = outside
         self._hosts: dict[object, Host] = {}
-        self._spoilt: set[int] = set()
+        self._how: dict[int, str] = {}  # a host's number → how it is to be cleaned
         self._count = 0
 
     def host(self, kind: Kind, who: Who, without: tuple[str, ...] = (), *, liar: bool = False) -> Host:
@@ -90,8 +90,7 @@ class Attackers:
         outside = self._outside
         with ExitStack() as at_end:
             at_end.callback(self._put_right, way, host, outcome)
-            host.clean(anew=id(host) in self._spoilt)
-            self._spoilt.discard(id(host))
+            host.clean(self._how.pop(id(host), "folder"))
             forget_peak(host.pid)
             before, process = rights_of(host.process), host.process
             try:
@@ -123,7 +122,9 @@ class Attackers:
         if outcome.evidence:
             self._outside.restore()
         if way.spoils or outcome.evidence:
-            self._spoilt.add(id(host))
+            self._how[id(host)] = "anew"
+        elif any("bpy." in step for step in way.steps if isinstance(step, str)):
+            self._how[id(host)] = "scene"
 
     def close(self) -> None:
         """Ends all hosts."""

@@ -46,9 +46,10 @@ class Session:
 
     def __init__(self, wanted: dict[str, Any]) -> None:
         folder = RunFolder.make(Path(wanted["root"]))
+        self.workspace = Path(wanted["root"], "workspace")
         read = tuple(Path(path) for path in wanted["read"])
         sandbox = _sandbox(wanted["kind"], wanted["without"])
-        launch = make_launch(folder.workspace, sandbox=sandbox, read=read)
+        launch = make_launch(self.workspace, sandbox=sandbox, read=read)
         if wanted["liar"]:
             launch = replace(launch, program=LIAR)
         self.blender = Supervisor(launch, folder)
@@ -60,12 +61,12 @@ class Session:
         if "tool" in request:
             return self._use(request["tool"], request["arguments"])
         if "lies" in request:
-            path = self.blender.folder.workspace / LIES
+            path = self.workspace / LIES
             path.unlink(missing_ok=True)
             path.write_text(json.dumps(request))
             path.chmod(0o644)
         if "clean" in request:
-            self._clean(anew=request["clean"] == "anew")
+            self._clean(request["clean"])
         return {"process": self.blender.inner_pid, "started": self.blender.pid}
 
     def _use(self, name: str, arguments: dict[str, Any]) -> dict[str, Any]:
@@ -84,24 +85,20 @@ class Session:
             said = {"broke": type(error).__name__, "message": traceback.format_exc()[-3000:]}
         return {**said, "seconds": time.monotonic() - started}
 
-    def _clean(self, *, anew: bool) -> None:
-        """Empties scene and workspace."""
-        if anew:
+    def _clean(self, how: str) -> None:
+        """Empties the workspace, and the scene as well if that is wanted."""
+        if how == "anew":
             self.blender.kill()
-        workspace = self.blender.folder.workspace
-        for path in workspace.iterdir():
+        for path in self.workspace.iterdir():
             if path.name in _KEPT and path.is_file() and not path.is_symlink():
                 continue
             if path.is_dir() and not path.is_symlink():
                 shutil.rmtree(path, ignore_errors=True)
             else:
                 path.unlink(missing_ok=True)
-        self.blender.call(
-            "execute",
-            {"code": "bpy.ops.wm.read_factory_settings(use_empty=True)"},
-            timeout=60,
-            changes=True,
-        )
+        if how != "folder":
+            code = "bpy.ops.wm.read_factory_settings(use_empty=True)"
+            self.blender.call("execute", {"code": code}, timeout=60, changes=True)
 
 
 def main() -> None:

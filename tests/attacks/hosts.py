@@ -102,9 +102,9 @@ class Host:
         """What the program in Blender's place answers from here on."""
         self._ask({"source": source, "lies": lies, "truth": truth}, 60)
 
-    def clean(self, *, anew: bool) -> None:
-        """Empties the scene and the workspace; ``anew``: in a new Blender."""
-        answer = self._ask({"clean": "anew" if anew else "scene"}, 180)
+    def clean(self, how: str) -> None:
+        """Empties the workspace (``folder``), the scene too (``scene``), in a new Blender (``anew``)."""
+        answer = self._ask({"clean": how}, 180)
         if "error" in answer:
             raise HostLost(f"the session is lost: {answer['message']}")
         self.process = answer["process"] or 0

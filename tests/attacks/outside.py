@@ -53,9 +53,8 @@ class Outside:
         self.root = Path(tempfile.mkdtemp(prefix="simworlds-attacked-"))
         self.root.chmod(0o755)
         self.home = Path(tempfile.mkdtemp(prefix=".simworlds-attacked-", dir=Path.home()))
-        self.folder, self.readable, self.programs = (
-            self.root / name for name in ("outside", "readable", "programs")
-        )
+        self.readable = Path(tempfile.mkdtemp(prefix="simworlds-readable-"))
+        self.folder, self.programs = self.root / "outside", self.root / "programs"
         self.sockets = self.root / "sockets"
         for folder in (self.sockets, self.programs):
             folder.mkdir()
@@ -74,8 +73,9 @@ class Outside:
     def restore(self) -> None:
         """Puts everything back as it was at the start."""
         for folder in (self.folder, self.readable):
-            shutil.rmtree(folder, ignore_errors=True)
-            folder.mkdir()
+            folder.mkdir(exist_ok=True)
+            for path in folder.iterdir():
+                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
             folder.chmod(0o777)
         self._write(self.folder / "file", self.secret("the content of a file"))
         self._write(self.folder / "deep" / "file", self.secret("the content of a deeper file"))
@@ -305,7 +305,7 @@ class Outside:
             self._witness.stdout.close()
         for listener in self._listeners.values():
             listener.close()
-        for folder in (self.root, self.home):
+        for folder in (self.root, self.readable, self.home):
             shutil.rmtree(folder, ignore_errors=True)
 
 

@@ -102,7 +102,6 @@ WAYS = (
         "with bpy.data.libraries.load(target.file) as (source, _): names = list(source.objects)\nnames",
         denied=("OSError",),
     ),
-    way("as-a-script-of-blender", "files", "bpy.utils.execfile(target.file)", denied=("SyntaxError",)),
     way(
         "as-a-strip-of-blender",
         "files",
