@@ -42,7 +42,6 @@ _NUMBERS = {
 }
 _NUMBER = re.compile(r"\[Errno (\d+)\]")
 _CRASH = re.compile(r"crashed \((?!SIGSYS)\w+\)")
-_TRUTH: dict[str, Any] = {}
 
 
 @dataclass(slots=True)
@@ -95,7 +94,7 @@ class Attackers:
             before, process = rights_of(host.process), host.process
             try:
                 if way.lies:
-                    host.lie(outside.helpers(host), dict(way.lies), _TRUTH)
+                    host.lie(outside.helpers(host), dict(way.lies))
                 for step in way.steps:
                     self._take(step, way, host, outcome)
             except HostLost as fault:
@@ -103,6 +102,8 @@ class Attackers:
                 host.close()
             if host.process != process:
                 before.pop("control group", None)
+            if way.must_fail and outcome.answers and "error" not in outcome.answers[-1]:
+                outcome.evidence.append("the server accepted it")
             outcome.evidence += outside.evidence(host, outcome.answers, before)
         return outcome
 
@@ -117,6 +118,8 @@ class Attackers:
         outcome.answers.append(answer)
         if isinstance(step, str):
             _judge(way, answer, outcome)
+        else:
+            _judge_tool(way, answer, outcome, self._outside.mark)
 
     def _put_right(self, way: Way, host: Host, outcome: Outcome) -> None:
         if outcome.evidence:
@@ -146,6 +149,18 @@ def _judge(way: Way, answer: dict[str, Any], outcome: Outcome) -> None:
         outcome.evidence.append(f"it got {value[:300]}")
     elif _CRASH.search(answer.get("message", "")) and answer["error"] not in way.denied:
         outcome.flaws.append(f"{answer['message']} {answer.get('printed', '')[-500:]}")
+
+
+def _judge_tool(way: Way, answer: dict[str, Any], outcome: Outcome, mark: str) -> None:
+    """What a tool says afterwards: whether the attack speaks in its place, or has broken it."""
+    text = answer.get("text", "") + answer.get("message", "")
+    if "THE LIE FAILED" in text:
+        outcome.flaws.append(text)
+    if "interpreter" in way.attacks:
+        if mark in text:
+            outcome.evidence.append(f"it answers in the tool's place: {text[:300]}")
+        if answer.get("error") in {"ToolBroke", "MissingModule", "Refusal"}:
+            outcome.evidence.append(f"the tool is broken: {text[:300]}")
 
 
 def _filled(value: Any, facts: dict[str, Any]) -> Any:

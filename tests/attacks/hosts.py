@@ -98,9 +98,9 @@ class Host:
         """``process``: Blender's number, None when none runs."""
         return self._ask({}, 60)
 
-    def lie(self, source: str, lies: dict[str, str], truth: dict[str, Any]) -> None:
+    def lie(self, source: str, lies: dict[str, str]) -> None:
         """What the program in Blender's place answers from here on."""
-        self._ask({"source": source, "lies": lies, "truth": truth}, 60)
+        self._ask({"source": source, "lies": lies}, 60)
 
     def clean(self, how: str) -> None:
         """Empties the workspace (``folder``), the scene too (``scene``), in a new Blender (``anew``)."""

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from ways import kernel, limits, network, others, processes, reading, writing
+from ways import (
+    channel,
+    ground,
+    kernel,
+    limits,
+    network,
+    others,
+    pictures,
+    processes,
+    reading,
+    replies,
+    writing,
+)
 from way import Way
 
 WAYS: tuple[Way, ...] = (
@@ -13,5 +25,10 @@ WAYS: tuple[Way, ...] = (
     *network.WAYS,
     *kernel.WAYS,
     *limits.WAYS,
+    *channel.WAYS,
+    *channel.INTERPRETER,
+    *ground.WAYS,
+    *pictures.WAYS,
+    *replies.WAYS,
 )
 assert len({way.name for way in WAYS}) == len(WAYS), "two ways have the same name"

@@ -37,6 +37,8 @@ class Way:
     ``denied``: further types of errors that mean that the attack was denied. An error of any other type means that it
     was not carried out, so that nothing is proven.
 
+    ``must_fail``: the last step may not be answered as if all were well. ``once``: who runs it makes no difference.
+
     ``seconds``: within which the server must have answered each step. ``spoils``: Blender is started anew afterwards.
     """
 
@@ -49,10 +51,15 @@ class Way:
     seconds: float = 60.0
     timeout: float = 20.0
     spoils: bool = False
+    must_fail: bool = False
+    once: bool = False
     machine: str = ""
     ready: Callable[[], bool] | None = None
 
 
 def way(name: str, attacks: str, *steps: str | Tool, **more: Any) -> Way:
     """A way; ``attacks`` holds the names of walls, separated by blanks."""
-    return Way(name, tuple(attacks.split()), steps, **more)
+    aims = tuple(attacks.split())
+    if "deadline" in aims:
+        more["once"] = True
+    return Way(name, aims, steps, **more)

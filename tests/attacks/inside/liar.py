@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Answers the supervisor instead of the worker: what it is told to answer, or else what a Blender might."""
+"""Answers the supervisor instead of the worker: what it is told to answer, or else what an honest worker might."""
 
 import json
-import os
-import sys
+import traceback
 
 from simworlds.sandbox.inside import service
 
-LIES = ".lies.json"  # in the current folder: {"source": code that comes first, "lies": {tool: code}, "truth": {tool: value}}
+from . import honest
+
+LIES = ".lies.json"  # in the current folder: {"source": code that comes first, "lies": {tool: code}}
 
 
 def main(arguments):
@@ -20,23 +21,19 @@ def answer(tool, arguments, report):
     told = _told()
     source = told.get("lies", {}).get(tool)
     if source is None:
-        return truth(tool, arguments, told)
-    namespace = {"truth": lambda: truth(tool, arguments, told)}
-    exec(told.get("source", ""), namespace)
+        return _truth(tool, arguments)
+    names = {"truth": lambda: _truth(tool, arguments), "png": honest.png, "chunk": honest.chunk}
+    exec(told["source"], names)
     body = "\n".join("    " + line for line in source.splitlines())
-    exec("def lie(arguments, report):\n" + body, namespace)
-    return namespace["lie"](arguments, report)
+    try:
+        exec("def lie(arguments, report):\n" + body, names)
+        return names["lie"](arguments, report)
+    except Exception:
+        raise RuntimeError(f"THE LIE FAILED: {traceback.format_exc()[-2000:]}") from None
 
 
-def truth(tool, arguments, told):
-    """What an honest worker with an empty scene would do."""
-    if tool == "write":
-        with open(arguments["path"], "wb") as file:
-            file.write(b"BLENDER-v501RENDH")
-        return {"seconds": 0.001, "bytes": 17}
-    if tool == "open":
-        return {"objects": 0}
-    return told.get("truth", {}).get(tool)
+def _truth(tool, arguments):
+    return getattr(honest, f"on_{tool}")(arguments)
 
 
 def _told():

@@ -24,12 +24,13 @@ def _lower(name: str) -> Way:
         f"lower-the-limit-of-{name.lower()}",
         "limits",
         f"{_OWN.format(name)}resource.setrlimit(which, (3, 3)) or True",
+        denied=("ValueError",),
     )
 
 
 def _disk(name: str, code: str, **more: object) -> Way:
     """A way to fill the disk. The limit is 64 MB and 400 files; at most 200 MB may pass beyond it."""
-    return way(name, "disk", code, timeout=30.0, **more)
+    return way(name, "disk", code, **{"timeout": 30.0, "once": True, **more})
 
 
 _MIB = "1 << 20"
