@@ -29,7 +29,8 @@ MIB = 1 << 20
 LIMITS = ResourceLimits(memory=1600 * MIB, file_size=128 * MIB, disk=64 * MIB, files=400, threads=300)
 LIAR = Program("simworlds_liar.liar", {**SHARED, "simworlds_liar": Path(__file__).parent / "inside"})
 LIES = ".lies.json"
-_KEPT = ("scene.blend",)
+_OWN_FILE = ("scene.blend",)
+_OWN_FOLDERS = ("workspace", "private", "checkpoints", "lent")
 
 
 def _no_docs(query: str, *, max_tokens: int = 400) -> str:
@@ -39,6 +40,17 @@ def _no_docs(query: str, *, max_tokens: int = 400) -> str:
 
 def _sandbox(kind: Any, without: list[Any]) -> Sandbox:
     return best_sandbox(kind, LIMITS, frozenset(without))
+
+
+def _open_up(remove: Any, path: str, error: BaseException) -> None:
+    """Removes what may not be entered by letting itself in."""
+    del error
+    Path(path).parent.chmod(0o700)
+    Path(path).chmod(0o700)
+    if Path(path).is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        remove(path)
 
 
 class Session:
@@ -86,19 +98,19 @@ class Session:
         return {**said, "seconds": time.monotonic() - started}
 
     def _clean(self, how: str) -> None:
-        """Empties the workspace, and the scene as well if that is wanted."""
+        """Removes what calls have made, in the scene as well if that is wanted."""
         if how == "anew":
             self.blender.kill()
-        for path in self.workspace.iterdir():
-            if path.name in _KEPT and path.is_file() and not path.is_symlink():
-                continue
-            if path.is_dir() and not path.is_symlink():
-                shutil.rmtree(path, ignore_errors=True)
-            else:
-                path.unlink(missing_ok=True)
+        for folder, kept in ((self.workspace, _OWN_FILE), (self.workspace.parent, _OWN_FOLDERS)):
+            for path in folder.iterdir():
+                if path.name in kept and not path.is_symlink() and path.is_dir() == (kept is _OWN_FOLDERS):
+                    continue
+                if path.is_dir() and not path.is_symlink():
+                    shutil.rmtree(path, onexc=_open_up)
+                elif path.name != ".lock":
+                    path.unlink(missing_ok=True)
         if how != "folder":
-            code = "bpy.ops.wm.read_factory_settings(use_empty=True)"
-            self.blender.call("execute", {"code": code}, timeout=60, changes=True)
+            self._use("blender_execute", {"code": "bpy.ops.wm.read_factory_settings(use_empty=True)"})
 
 
 def main() -> None:

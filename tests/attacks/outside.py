@@ -265,7 +265,7 @@ class Outside:
 
     def _left(self, host: Host) -> Iterator[str]:
         """Files of the attack beside the workspace, and programs with somebody else's rights in it."""
-        for folder, folders, files in os.walk(host.root):
+        for folder, folders, files in os.walk(host.root.parent):
             for name in (*folders, *files):
                 path = Path(folder, name)
                 with suppress(OSError):
@@ -274,7 +274,8 @@ class Outside:
                         yield f"{path} is a program that runs as its owner"
                     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
                         yield f"{path} is a device"
-                if self.mark in name and not _is_below(path, host.root / "workspace", host.root / "private"):
+                own = (host.root / place for place in ("workspace", "private", "previews"))
+                if self.mark in name and not _is_below(path, *own):
                     yield f"{path} was made"
 
     @property

@@ -170,7 +170,7 @@ INTERPRETER = (
     _tool("replace-the-table-of-tools", "worker('worker').TOOLS['scene_state'] = ('tag', 'tag')\nNone"),
     _tool(
         "replace-builtins",
-        "import builtins\nfor name in ('len', 'sorted', 'print', 'open', 'isinstance', 'dict'): setattr(builtins, name, None)\nNone",
+        "import builtins\nfor name in ('len', 'sorted', 'print', 'open', 'dict'): setattr(builtins, name, None)\nNone",
     ),
     _tool(
         "replace-what-writes-json",

@@ -85,7 +85,7 @@ WAYS = (
     _lie(
         "links-where-a-file-is-lent",
         {
-            "execute": "os.makedirs('.loading', exist_ok=True)\nrace(['.loading/kept.blend', '.loading', 'kept.blend'], target.folder)\nreturn truth()",
+            "execute": "worked(os.makedirs, '.loading/x') if not os.path.lexists('.loading') else None\nrace(['.loading/kept.blend', '.loading', 'kept.blend'], target.folder)\nreturn truth()",
             "kept_caches": "return truth()",
             "save": "race(['.loading'], target.folder)\nreturn truth()",
         },
@@ -303,7 +303,7 @@ WAYS = (
     _lie(
         "one-cache-many-times",
         {
-            "save": "with open('x', 'wb') as file: file.write(bytes(60 << 20))\nreturn {**truth(), 'files': [['x', f'{n}.bphys'] for n in range(400)]}"
+            "save": "with open('x', 'wb') as file: file.write(bytes(60 << 20))\nreturn {**truth(), 'files': [['x', f'{n}.bphys'] for n in range(10)]}"
         },
         _SAVE_QUICKLY,
         seconds=120.0,
@@ -389,7 +389,7 @@ WAYS = (
         way(
             f"threads-left-behind-while-{what}",
             "ground",
-            f"{_RACE}bpy.ops.mesh.primitive_cube_add()\nblind()\nimport glob\nos.makedirs('.loading', exist_ok=True)\n"
+            f"{_RACE}bpy.ops.mesh.primitive_cube_add()\nblind()\nimport glob\nworked(os.makedirs, '.loading/x') if not os.path.lexists('.loading') else None\n"
             "race(lambda: [*glob.glob('.*'), *glob.glob('.*/*'), 'kept.blend', '.saved.blend', '.loading/kept.blend', '.loading'], target.victim, 4)\nNone",
             *tools,
             spoils=True,
