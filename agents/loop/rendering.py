@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import shutil
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.render.image_checks import preview_png
+from agents.blender.render.image_checks import look_at
 from agents.loop.errors import RunError
 from agents.loop.events import FinalReviewed, SceneRendered
 from agents.loop.judging import note_verdict, verify
@@ -18,6 +19,8 @@ from agents.roles.coder import Coder
 from agents.roles.final_reviewer import final_review
 from simworlds.llm.errors import Declined, Misfit
 from simworlds.llm.messages import Picture, Text
+from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,17 +70,24 @@ def render(run: Run, plan: RenderSettings | None, number: int) -> RenderResult:
             frames=len(frames),
             samples=data.get("samples"),
             seconds=data.get("seconds"),
-            pictures=tuple(run.keep(Picture(preview_png(path))) for path in _spread(frames)),
+            pictures=tuple(run.keep(picture) for picture in _pictures(_spread(frames))),
         )
     )
     return RenderResult(result, frames, outcome.text)
 
 
+def _pictures(paths: Sequence[Path]) -> list[Picture]:
+    """Rendered pictures as models see them; Blender has written the files."""
+    with closing(PictureDecoder(best_sandbox())) as decoder:
+        return [Picture(look_at(decoder, path).png) for path in paths]
+
+
 def review(run: Run, task: RunTask, rendering: RenderResult, number: int) -> FinalReview:
     """The final reviewer's verdict. A reviewer that declines counts as accepting, and the summary says so."""
     content: list[Block | str] = [Text(rendering.text)]
-    for place, path in enumerate(_spread(rendering.frames)):
-        content += [Text(f"Frame {path.stem} ({25 * place} %):"), Picture(preview_png(path))]
+    shown = _spread(rendering.frames)
+    for place, (path, picture) in enumerate(zip(shown, _pictures(shown), strict=True)):
+        content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
     try:
         review = final_review(run.context, task.plan_text, content, edit=task.edit)
     except (Declined, Misfit) as error:

@@ -10,17 +10,18 @@ from __future__ import annotations
 import base64
 import binascii
 import io
-import math
-import warnings
+from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from PIL import Image
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from bench.audit.untrusted_blend import BlenderOptions, NotScored, UntrustedBlend
 from bench.frames import video
 from simworlds.files import write_whole
+from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -149,7 +150,8 @@ def _decoded(rendered: _Rendered) -> list[bytes]:
 
 def _write_pictures(folder: Path, shares: Sequence[float], contents: Sequence[bytes]) -> list[Path]:
     """Writes the pictures, named after their per cent of the clip, and deletes older ones. Raises NotScored."""
-    pictures = [_reencoded(content) for content in contents]
+    with closing(PictureDecoder(best_sandbox())) as decoder:
+        pictures = [_reencoded(decoder, content) for content in contents]
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{round(100 * share):03}.png" for share in shares]
     for path in {*folder.glob("*.png")} - {*paths}:
@@ -159,21 +161,14 @@ def _write_pictures(folder: Path, shares: Sequence[float], contents: Sequence[by
     return paths
 
 
-def _reencoded(content: bytes) -> bytes:
+def _reencoded(decoder: PictureDecoder, content: bytes) -> bytes:
     """A PNG of the same pixels and nothing else, shrunk to the size that is judged. Raises NotScored."""
     try:
-        with (
-            warnings.catch_warnings(action="error"),
-            Image.open(io.BytesIO(content), formats=("PNG",)) as image,
-        ):
-            if math.prod(image.size) > _MOST_PIXELS:
-                raise NotScored(f"a frame of {image.width} by {image.height} pixels is too large")
-            plain = image.convert("RGB")
-    except NotScored:
-        raise
-    except Exception:  # a broken file can raise anything
-        raise NotScored("a frame is not a picture") from None
-    plain.thumbnail((_LONGEST_SIDE, _LONGEST_SIDE))
+        picture = decoder.decode(
+            io.BytesIO(content), "of a frame", longest=_LONGEST_SIDE, most_pixels=_MOST_PIXELS
+        )
+    except Refusal as error:
+        raise NotScored(f"a frame is not a picture: {error}") from None
     png = io.BytesIO()
-    plain.save(png, "PNG")
+    picture.image.save(png, "PNG")
     return png.getvalue()

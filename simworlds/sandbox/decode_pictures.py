@@ -1,4 +1,4 @@
-"""Decodes PNG pictures that nobody vouches for. Runs confined, in a process of its own, until its input ends.
+"""Decodes pictures that nobody vouches for. Runs confined, in a process of its own, until its input ends.
 
 A request on standard input: ``REQUEST`` and the bytes of the picture. The answer on standard output: ``FAULT`` and its
 text, or ``PICTURE`` and the RGB pixels.
@@ -15,8 +15,10 @@ from typing import cast
 
 from PIL import Image, UnidentifiedImageError
 
-# Longest side of the answer in pixels (0: as it is), most pixels, background colour, bytes that follow.
-REQUEST = struct.Struct(">II3BQ")
+FORMATS = ("PNG", "JPEG", "WEBP", "GIF")
+# Longest side of the answer in pixels (0: as it is), most pixels, background colour, which of FORMATS (a bit each),
+# bytes that follow.
+REQUEST = struct.Struct(">II3BBQ")
 # 1, bytes of the text that follows.
 FAULT = struct.Struct(">BI")
 # 0, size before and after shrinking, lowest and highest value of each channel, SHA-256 of the unshrunk pixels.
@@ -27,20 +29,21 @@ LONGEST_FAULT = 300
 def main() -> None:
     """Answers requests, one by one."""
     while head := _read(REQUEST.size):
-        longest, most, red, green, blue, size = REQUEST.unpack(head)
+        longest, most, red, green, blue, kinds, size = REQUEST.unpack(head)
+        formats = [name for bit, name in enumerate(FORMATS) if kinds >> bit & 1]
         try:
-            answer = _decode(_read(size), longest, most, (red, green, blue))
+            answer = _decode(_read(size), formats, longest, most, (red, green, blue))
         except Exception as error:  # whatever a picture does to the decoder
             text = (str(error) or type(error).__name__).encode("utf-8", "replace")[:LONGEST_FAULT]
             answer = FAULT.pack(1, len(text)) + text
         _write(answer)
 
 
-def _decode(data: bytes, longest: int, most: int, under: tuple[int, int, int]) -> bytes:
+def _decode(data: bytes, formats: list[str], longest: int, most: int, under: tuple[int, int, int]) -> bytes:
     try:
-        picture = Image.open(io.BytesIO(data), formats=["PNG"])
+        picture = Image.open(io.BytesIO(data), formats=formats)
     except UnidentifiedImageError:
-        raise ValueError("it is not a PNG") from None
+        raise ValueError(f"it is no {' or '.join(formats)}") from None
     before = picture.size
     if before[0] * before[1] > most:
         raise ValueError(f"it has {before[0]} × {before[1]} pixels; the limit is {most:,} in all")
@@ -72,5 +75,5 @@ def _write(data: bytes) -> None:
 
 if __name__ == "__main__":
     Image.MAX_IMAGE_PIXELS = None  # each request has a limit of its own
-    Image.preinit()
+    Image.init()
     sys.exit(main())

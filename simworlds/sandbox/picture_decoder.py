@@ -16,7 +16,7 @@ from PIL import Image
 from simworlds.processes import end_group, spawn
 from simworlds.sandbox import decode_pictures
 from simworlds.sandbox.confined_command import GIB, ResourceLimits, own_python
-from simworlds.sandbox.decode_pictures import FAULT, LONGEST_FAULT, PICTURE, REQUEST
+from simworlds.sandbox.decode_pictures import FAULT, FORMATS, LONGEST_FAULT, PICTURE, REQUEST
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.runtime import clean_environment
 
@@ -51,7 +51,7 @@ class PictureDecoder:
         self._process: subprocess.Popen[bytes] | None = None
         self._socket: socket.socket | None = None
 
-    def decode(
+    def decode(  # noqa: PLR0913 - what a caller may want of a picture
         self,
         file: BinaryIO,
         name: str,
@@ -59,24 +59,27 @@ class PictureDecoder:
         longest: int = 0,
         most_pixels: int = MOST_PIXELS,
         under: Colour = (255, 255, 255),
+        formats: tuple[str, ...] = FORMATS[:1],
     ) -> DecodedPicture:
-        """Decodes a PNG of at most ``most_pixels``, ``under`` behind what is transparent.
+        """Decodes a picture of at most ``most_pixels`` in one of ``formats``, ``under`` behind what is transparent.
 
         ``longest``: its side is at most that long afterwards (0: as it is). Raises Refusal, which calls it ``name``.
         """
         data = file.read(LARGEST_FILE + 1)
         if len(data) > LARGEST_FILE:
             raise Refusal(f"The picture {name} has more than {LARGEST_FILE:,} bytes.")
+        kinds = sum(1 << FORMATS.index(kind) for kind in formats)
         deadline = time.monotonic() + _SECONDS
         try:
             wire = self._running()
-            self._send(wire, REQUEST.pack(longest, most_pixels, *under, len(data)) + data, deadline)
+            self._send(wire, REQUEST.pack(longest, most_pixels, *under, kinds, len(data)) + data, deadline)
             return self._answer(wire, longest or most_pixels, most_pixels, name, deadline)
         except Refusal:
             raise
         except (OSError, ValueError) as error:
             self.close()
-            raise Refusal(f"The picture {name} cannot be read: its decoder was stopped ({error}).") from error
+            why = "it ended" if isinstance(error, ConnectionError) else error
+            raise Refusal(f"The picture {name} cannot be read: its decoder was stopped ({why}).") from error
         except BaseException:
             self.close()
             raise

@@ -33,7 +33,7 @@ class UnbakedCache(Claim):
     """A simulation that is not baked; ``start``: its first frame."""
 
     kind: Name
-    object: Name
+    object: Name | None
     label: Name
     start: Frame
 

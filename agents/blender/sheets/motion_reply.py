@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from simworlds.sandbox.replies import Claim, Frame
 
@@ -14,7 +14,13 @@ Side = Annotated[int, Field(ge=16, le=2048)]
 _MOST_ACTORS, _MOST_PICTURES, _MOST_FRAMES = 8, 12, 1500
 
 
-class ShotView(Claim):
+class _Reply(Claim):
+    """Base of its parts; Blender tells more than is drawn."""
+
+    model_config = ConfigDict(extra="ignore")
+
+
+class ShotView(_Reply):
     """An orthographic view: unit vectors to the right, up and towards the viewer; the centre; the scale."""
 
     axes: tuple[Vector, Vector, Vector]
@@ -30,21 +36,21 @@ class ShotView(Claim):
         return width / 2 + right / self.metres_per_pixel, height / 2 - up / self.metres_per_pixel
 
 
-class Shot(Claim):
+class Shot(_Reply):
     """One image; ``view`` is None if the actor is absent at that frame."""
 
     frame: Frame
     view: ShotView | None
 
 
-class Strip(Claim):
+class Strip(_Reply):
     """The images of one kind of view: ``path`` (the whole path) or ``close``."""
 
     kind: Annotated[str, Field(pattern="^(path|close)$")]
     pictures: list[Shot] = Field(max_length=_MOST_PICTURES)
 
 
-class CacheState(Claim):
+class CacheState(_Reply):
     """A physics cache that moves the actor: ``state`` in words, and the frames it covers."""
 
     label: Text
@@ -54,7 +60,7 @@ class CacheState(Claim):
     on: bool
 
 
-class Contact(Claim):
+class Contact(_Reply):
     """A contact: (first, last) frame of each period, and the ``gap`` in metres at the first."""
 
     partner: Text = Field(alias="with")
@@ -68,7 +74,7 @@ class Contact(Claim):
         return ", ".join(periods) + (" …" if len(self.frames) > 3 else "")
 
 
-class PhaseMotion(Claim):
+class PhaseMotion(_Reply):
     """The motion of one actor over one phase. Metres, m/s, degrees."""
 
     phase: Text
@@ -88,7 +94,7 @@ class PhaseMotion(Claim):
     contacts: list[Contact] = Field(default_factory=list[Contact], max_length=2000)
 
 
-class ActorMotion(Claim):
+class ActorMotion(_Reply):
     """The motion of one actor, measured at ``frames``."""
 
     name: Text
@@ -110,7 +116,7 @@ class ActorMotion(Claim):
     views: list[Strip] = Field(max_length=2)
 
 
-class MotionReply(Claim):
+class MotionReply(_Reply):
     """The whole reply. ``stepped_from``: the frame from which all frames were stepped; None if they were played."""
 
     start: Frame

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import base64
 import io
-import math
-import warnings
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from PIL import Image
+from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.decode_pictures import FORMATS
+from simworlds.sandbox.errors import BlenderError
+from simworlds.sandbox.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,7 +26,6 @@ LARGEST_PAGE = 40 * 1024 * 1024  # bytes of pictures that are
 _SIDE = 1280  # pixels
 _QUALITY = 82
 _MOST_PIXELS = 60_000_000
-_FORMATS = ("PNG", "JPEG", "WEBP", "GIF")
 _VIDEOS: Mapping[str, str] = {".mp4": "video/mp4", ".webm": "video/webm"}
 
 
@@ -46,6 +46,11 @@ class Media:
         self._run = run
         self._known: dict[str, MediaItem | None] = {}
         self._used = 0
+        self._decoder = PictureDecoder(best_sandbox())
+
+    def close(self) -> None:
+        """Ends what reads pictures."""
+        self._decoder.close()
 
     def picture(self, name: str) -> MediaItem | None:
         """The picture, scaled down where it is large; None where there is none."""
@@ -85,20 +90,18 @@ class Media:
 
     def _made(self, name: str, path: Path) -> MediaItem | None:
         try:
-            with warnings.catch_warnings(action="error"), Image.open(path, formats=_FORMATS) as image:
-                if math.prod(image.size) > _MOST_PIXELS:
-                    return None
-                width, height = image.size
-                small = image.convert("RGBA" if "A" in image.getbands() else "RGB")
-                small.thumbnail((_SIDE, _SIDE))
-                made = io.BytesIO()
-                small.save(made, "WEBP", quality=_QUALITY, method=4)
-        except Exception:  # a file that is no picture fails in any way
+            with path.open("rb") as file:
+                picture = self._decoder.decode(
+                    file, name, longest=_SIDE, most_pixels=_MOST_PIXELS, formats=FORMATS
+                )
+        except (OSError, BlenderError):
             return None
+        made = io.BytesIO()
+        picture.image.save(made, "WEBP", quality=_QUALITY, method=4)
         self._used += made.tell()
         if self._used > LARGEST_PAGE:
-            return MediaItem(_link(name), _link(name), width, height)
-        return MediaItem(_data("image/webp", made.getvalue()), _link(name), small.width, small.height)
+            return MediaItem(_link(name), _link(name), *picture.size)
+        return MediaItem(_data("image/webp", made.getvalue()), _link(name), *picture.image.size)
 
 
 def _data(kind: str, content: bytes) -> str:

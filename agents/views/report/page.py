@@ -6,6 +6,7 @@ import base64
 import hashlib
 import json
 import re
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -111,7 +112,11 @@ def write_report(run: Path) -> Path:
 
 def make_report(run_state: RunState, run: Path) -> str:
     """The page as HTML. ``run`` is the folder that its links start from, and has the pictures."""
-    media = Media(run)
+    with closing(Media(run)) as media:
+        return _render_page(run_state, run, media)
+
+
+def _render_page(run_state: RunState, run: Path, media: Media) -> str:
     gallery = _Gallery(media)
     script = _own("script.js")
     page = _environment().get_template("page.html.jinja")

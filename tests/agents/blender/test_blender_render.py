@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import io
 import os
 import shutil
 import signal
 import threading
-from contextlib import suppress
+from contextlib import closing, suppress
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from PIL import Image
 
-from agents.blender.render.image_checks import LARGEST_PREVIEW, image_faults, preview_png
+from agents.blender.render.image_checks import LARGEST_PREVIEW, image_faults, look_at
 from agents.blender.render.render_budget import LEAST, RenderBudget
 from agents.blender.tools.base import Call, Result
 from agents.blender.tools.render import TOOL
+from simworlds.sandbox.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from live_session import LiveSession
@@ -524,23 +528,33 @@ def test_one_frame_is_made_however_short_the_time(session: LiveSession) -> None:
 # Pictures for a model
 
 
-def test_large_pictures_are_shown_smaller_and_small_ones_as_they_are(tmp_path: Path) -> None:
-    large, small = tmp_path / "large.png", tmp_path / "small.png"
-    Image.new("RGB", (1600, 400), (10, 90, 30)).save(large)
-    Image.new("RGB", (160, 40)).save(small)
-    shrunk = tmp_path / "shown.png"
-    shrunk.write_bytes(preview_png(large))
-    with Image.open(shrunk) as picture:
-        assert picture.size == (LARGEST_PREVIEW, LARGEST_PREVIEW // 4)
-    assert preview_png(small) == small.read_bytes()
+@pytest.fixture(scope="module")
+def decoder() -> Iterator[PictureDecoder]:
+    with closing(PictureDecoder(best_sandbox())) as opened:
+        yield opened
 
 
-def test_reports_empty_or_unchanging_images(tmp_path: Path) -> None:
-    paths = {name: tmp_path / f"{name}.png" for name in ("plain", "scene", "again")}
-    Image.new("RGB", (20, 20), (90, 90, 90)).save(paths["plain"])
+def test_large_pictures_are_shown_smaller(tmp_path: Path, decoder: PictureDecoder) -> None:
+    for width, shown in ((1600, LARGEST_PREVIEW), (160, 160)):
+        Image.new("RGB", (width, width // 4), (10, 90, 30)).save(tmp_path / "made.png")
+        with Image.open(io.BytesIO(look_at(decoder, tmp_path / "made.png").png)) as picture:
+            assert picture.size == (shown, shown // 4)
+            assert picture.getpixel((5, 5)) == (10, 90, 30)
+
+
+def test_reports_empty_or_unchanging_images(tmp_path: Path, decoder: PictureDecoder) -> None:
     scene = Image.linear_gradient("L")
-    scene.save(paths["scene"])
-    scene.save(paths["again"])
-    assert "is one colour" in image_faults([paths["plain"]])[0]
-    assert "identical" in image_faults([paths["scene"], paths["again"]])[0]
-    assert image_faults([paths["scene"]]) == []
+    for name, picture in (
+        ("plain", Image.new("RGB", (20, 20), (90, 90, 90))),
+        ("dark", Image.new("RGB", (20, 20), (3, 6, 0))),
+        ("scene", scene),
+        ("again", scene),
+        ("other", scene.rotate(90)),
+    ):
+        picture.save(tmp_path / f"{name}.png")
+    seen = {path.stem: look_at(decoder, path) for path in tmp_path.glob("*.png")}
+    assert "plain.png is one colour" in image_faults([seen["plain"]])[0]
+    assert "dark.png is black" in image_faults([seen["dark"]])[0]
+    assert "identical" in image_faults([seen["scene"], seen["again"]])[0]
+    assert image_faults([seen["scene"], seen["again"], seen["other"]]) == []
+    assert image_faults([seen["scene"]]) == []

@@ -12,7 +12,7 @@ from PIL import Image
 
 from agents.blender.tools.base import Call
 from agents.blender.tools.motion_sheet import TOOL
-from simworlds.sandbox.errors import Refusal, ToolBroke
+from simworlds.sandbox.errors import Refusal, Untrustworthy
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -396,5 +396,5 @@ def test_rejects_a_forged_reply(own_session: LiveSession) -> None:
     own_session.run(FALL)
     forged = "motion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}"
     own_session.run(f"from simworlds_worker.motion import motion_sheet\n{forged}")
-    with pytest.raises(ToolBroke, match="does not have the expected form"):
+    with pytest.raises(Untrustworthy, match="not a valid reply"):
         own_session.use(TOOL, actors=["Crate"])

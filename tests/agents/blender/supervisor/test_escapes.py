@@ -129,7 +129,7 @@ def test_what_blender_does_not_need_cannot_be_read(confined: LiveSession, path: 
     code = f"import os\nos.listdir({path!r}) if os.path.isdir({path!r}) else open({path!r}).read()"
     kind, value = tried(confined, code)
     # Behind bubblewrap there are folders on the way to what may be read, with nothing else in them.
-    names = {part for folder in confined.blender.launch.folders for part in folder.parts}
+    names = {part for folder in confined.blender.launch.folders for part in folder.mount.parts}
     names |= {
         "ssh",
         *Path(os.sys.prefix).parts,
@@ -216,9 +216,11 @@ def test_the_run_can_be_written_to_in_its_workspace_alone(confined: LiveSession)
         f"__import__('os').rename({str(root / 'workspace')!r}, {str(root / 'moved')!r})",
         f"__import__('os').rename({str(root / 'private')!r}, {str(root / 'workspace' / 'x')!r})",
         f"__import__('os').unlink({str(root / '.lock')!r})",
+        f"open({str(root / 'lent' / 'planted')!r}, 'w')",
     ):
         assert_denied(confined, code)
-    assert sorted(path.name for path in root.iterdir()) == [".lock", "checkpoints", "private", "workspace"]
+    names = [".lock", "checkpoints", "lent", "private", "workspace"]
+    assert sorted(path.name for path in root.iterdir()) == names
     assert tried(confined, "open('mine', 'w').write('x'); open('mine').read()") == ("", "'x'")
     assert tried(confined, "import shutil; shutil.copy2('mine', 'copy'); open('copy').read()") == ("", "'x'")
 

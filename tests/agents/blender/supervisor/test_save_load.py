@@ -88,7 +88,15 @@ def session(_run: LiveSession) -> LiveSession:
     """A run whose scene is empty, and in which nothing but that was saved."""
     root = _run.blender.folder.root
     for made in (*root.iterdir(), *(root / "workspace").iterdir()):
-        if made.name in {"empty.blend", ".lock", "workspace", "checkpoints", "private", "scene.blend"}:
+        if made.name in {
+            "empty.blend",
+            ".lock",
+            "workspace",
+            "checkpoints",
+            "private",
+            "lent",
+            "scene.blend",
+        }:
             continue
         if made.is_dir() and not made.is_symlink():
             shutil.rmtree(made)
