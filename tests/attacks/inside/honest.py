@@ -36,6 +36,29 @@ def on_execute(arguments):
     return {"value": None, "error": None, "changed": {}, "mode": "OBJECT"}
 
 
+def changed(value, changes):
+    """A value with hostile parts. Each change: the way to a part, as numbers of children, and what happens there."""
+    for way, act, other in changes:
+        value = _changed(value, list(way), act, other)
+    return value
+
+
+def _changed(value, way, act, other):
+    if way and isinstance(value, (dict, list)) and value:
+        keys = sorted(value) if isinstance(value, dict) else list(range(len(value)))
+        key = keys[way[0] % len(keys)]
+        if act == "remove" and len(way) == 1:
+            del value[key]
+        else:
+            value[key] = _changed(value[key], way[1:], act, other)
+        return value
+    if act == "repeat" and isinstance(value, (list, str)):
+        return value * other
+    if act == "wrap":
+        return [value]
+    return other
+
+
 def view(folder, number, name):
     """A view of a preview, and its picture."""
     file = f".preview-{number}.png"

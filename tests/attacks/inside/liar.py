@@ -22,7 +22,8 @@ def answer(tool, arguments, report):
     source = told.get("lies", {}).get(tool)
     if source is None:
         return _truth(tool, arguments)
-    names = {"truth": lambda: _truth(tool, arguments), "png": honest.png, "chunk": honest.chunk}
+    names = {"truth": lambda: _truth(tool, arguments), "changed": honest.changed, "png": honest.png}
+    names["chunk"] = honest.chunk
     exec(told["source"], names)
     body = "\n".join("    " + line for line in source.splitlines())
     try:
