@@ -16,6 +16,7 @@ import secrets
 import shutil
 import signal
 import socket
+import sqlite3
 import stat
 import struct
 import subprocess
@@ -36,6 +37,8 @@ _FLAGS = 0x80086601  # FS_IOC_GETFLAGS
 _WITNESS = """
 import ctypes, os, sys, tempfile, time
 kept = ctypes.create_string_buffer(sys.argv[1].encode())
+libc = ctypes.CDLL(None)
+libc.capset(bytes([0x22, 0x05, 0x08, 0x20]) + bytes(4), bytes(24))  # it is no better than what attacks it
 file = tempfile.TemporaryFile()
 file.write(sys.argv[2].encode()); file.flush()
 print(ctypes.addressof(kept), file.fileno(), flush=True)
@@ -83,6 +86,10 @@ class Outside:
         self._write(self.folder / "victim", "nobody may overwrite this")
         self._write(self.readable / "file", "this may be read, not changed")
         self._write(self.home / ".ssh" / "id_ed25519", self.secret("a key in the home folder"))
+        self._write(self.folder / "file.py", f"note = {self.secret('the value of a module')!r}")
+        with sqlite3.connect(self.folder / "file.db") as base:
+            base.execute(f'create table "{self.secret("a table of a database")}" (a)')
+        base.close()
         (self.folder / "link").symlink_to(f"/nowhere/{self.secret('the target of a link')}")
         with suppress(OSError):
             os.setxattr(self.folder / "file", "user.note", self.secret("an attribute of a file").encode())
@@ -111,6 +118,7 @@ class Outside:
         program.chmod(0o755)
 
     def _start_witness(self) -> None:
+        self._end_witness()
         words = [
             sys.executable,
             "-c",
@@ -122,6 +130,13 @@ class Outside:
         self._witness = subprocess.Popen(words, env=environment, stdout=subprocess.PIPE)
         assert self._witness.stdout is not None
         self.address, self.descriptor = map(int, self._witness.stdout.readline().split())
+
+    def _end_witness(self) -> None:
+        if self._witness is not None:
+            self._witness.kill()
+            self._witness.wait()
+            assert self._witness.stdout is not None
+            self._witness.stdout.close()
 
     def _listen(self) -> None:
         self.abstract = f"{self.mark}-abstract"
@@ -249,6 +264,8 @@ class Outside:
             if number in {os.getpid(), host.pid, self._pid}:
                 continue
             try:
+                if (folder / "stat").read_text().rpartition(")")[2].split()[0] in "XZ":
+                    continue
                 names = [
                     (folder / "cmdline").read_bytes().split(b"\0")[0],
                     (folder / "comm").read_bytes().strip(),
@@ -299,11 +316,7 @@ class Outside:
 
     def close(self) -> None:
         """Ends and removes all of it."""
-        if self._witness is not None:
-            self._witness.kill()
-            self._witness.wait()
-            assert self._witness.stdout is not None
-            self._witness.stdout.close()
+        self._end_witness()
         for listener in self._listeners.values():
             listener.close()
         for folder in (self.root, self.readable, self.home):

@@ -17,7 +17,7 @@ def _reach(name: str, attacks: str, number: int, arguments: str = "0, 0, 0, 0, 0
     return _call(name, attacks, f"reaches({number}, {arguments})")
 
 
-def _setting(path: str, attacks: str = "proc files") -> Way:
+def _setting(path: str, attacks: str = "proc files uid") -> Way:
     """A file of the kernel, written over with what it holds."""
     name = path.strip("/").replace("/", "-").replace("_", "-")
     there = path.replace("/proc/self/", f"/proc/{os.getpid()}/")
@@ -89,7 +89,7 @@ WAYS = (
     ),
     way(
         "be-told-when-a-control-group-empties",
-        "files capabilities",
+        "files capabilities uid",
         "[path for path in ['/sys/fs/cgroup/memory/release_agent', '/sys/fs/cgroup/cpu/release_agent'] if os.path.exists(path) and worked(rewrite, path)]",
     ),
     # Calls.
@@ -106,49 +106,58 @@ WAYS = (
     _call("add-a-key", "kernel", "syscall(248, b'user', target.mark.encode(), b'payload', 7, -2)"),
     _call("ask-for-a-key", "kernel", "syscall(249, b'user', target.mark.encode(), 0, -2)", denied=("126",)),
     _call("read-a-key", "kernel", "syscall(250, 0, -4, 1)"),
-    _reach("a-file-system-of-its-own", "kernel capabilities", 430, "b'tmpfs', 0"),
-    _call("a-mount-of-its-own", "kernel capabilities", "c('mount', b'none', b'.', b'tmpfs', 0, None) == 0"),
-    _call("a-mount-of-everything", "kernel capabilities", "c('mount', b'/', b'.', None, 4096, None) == 0"),
+    _reach("a-file-system-of-its-own", "kernel capabilities uid", 430, "b'tmpfs', 0"),
     _call(
-        "a-mount-made-writable", "kernel capabilities", "c('mount', None, b'/', None, 32 | 4096, None) == 0"
+        "a-mount-of-its-own", "kernel capabilities uid", "c('mount', b'none', b'.', b'tmpfs', 0, None) == 0"
+    ),
+    _call(
+        "a-mount-of-everything", "kernel capabilities uid", "c('mount', b'/', b'.', None, 4096, None) == 0"
+    ),
+    _call(
+        "a-mount-made-writable",
+        "kernel capabilities uid",
+        "c('mount', None, b'/', None, 32 | 4096, None) == 0",
     ),
     _call(
         "a-mount-made-writable-by-attributes",
-        "kernel capabilities",
+        "kernel capabilities uid",
         "syscall(442, -100, b'/', 0, struct.pack('QQQQ', 0, 1, 0, 0), 32) == 0",
     ),
-    _call("a-copy-of-a-mount", "kernel capabilities", "syscall(428, -100, b'/', 1)"),
-    _reach("move-a-mount", "kernel capabilities", 429, "-1, b'', -100, b'.', 4"),
-    _call("uncover-what-lies-below-a-mount", "kernel capabilities", "c('umount2', b'/proc', 2) == 0"),
-    _call("another-root", "kernel capabilities", "c('chroot', b'.') == 0"),
+    _call("a-copy-of-a-mount", "kernel capabilities uid", "syscall(428, -100, b'/', 1)"),
+    _reach("move-a-mount", "kernel capabilities uid", 429, "-1, b'', -100, b'.', 4"),
+    _call("uncover-what-lies-below-a-mount", "kernel capabilities uid", "c('umount2', b'/proc', 2) == 0"),
+    _call("another-root", "kernel capabilities uid", "c('chroot', b'.') == 0"),
     _call(
-        "exchange-the-root", "kernel capabilities", "c('pivot_root', b'.', b'.') == 0", denied=("16", "22")
+        "exchange-the-root",
+        "kernel capabilities uid",
+        "c('pivot_root', b'.', b'.') == 0",
+        denied=("16", "22"),
     ),
     _call("a-user-namespace", "processes namespaces kernel", "c('unshare', 0x10000000) == 0"),
-    _call("a-mount-namespace", "processes capabilities kernel", "c('unshare', 0x20000) == 0"),
-    _call("a-network-namespace", "processes capabilities kernel", "c('unshare', 0x40000000) == 0"),
-    _call("a-time-namespace", "processes capabilities kernel", "c('unshare', 0x80) == 0"),
+    _call("a-mount-namespace", "processes capabilities kernel uid", "c('unshare', 0x20000) == 0"),
+    _call("a-network-namespace", "processes capabilities kernel uid", "c('unshare', 0x40000000) == 0"),
+    _call("a-time-namespace", "processes capabilities kernel uid", "c('unshare', 0x80) == 0"),
     _call(
         "a-user-namespace-for-a-thread",
         "processes namespaces kernel",
         "syscall(56, 0x10000000 | 17, 0, 0, 0, 0) >= 0",
     ),
-    _reach("load-a-module", "kernel capabilities", 175, "b'', 0, b''"),
-    _reach("load-a-module-by-descriptor", "kernel capabilities", 313, "-1, b'', 0"),
-    _reach("another-kernel", "kernel capabilities", 246, "0, 0, 0, 0x10000"),
-    _reach("another-kernel-by-descriptor", "kernel capabilities", 320, "-1, -1, 0, b'', 0"),
-    _reach("restart-the-machine", "kernel capabilities", 169, "0xfee1dead, 672274793, 0x5357, 0"),
-    _reach("swap", "kernel capabilities", 167, "b'/proc/self/exe', 0"),
-    _reach("account", "kernel capabilities", 163, "b'/proc/self'"),
+    _reach("load-a-module", "kernel capabilities uid", 175, "b'', 0, b''"),
+    _reach("load-a-module-by-descriptor", "kernel capabilities uid", 313, "-1, b'', 0"),
+    _reach("another-kernel", "kernel capabilities uid", 246, "0, 0, 0, 0x10000"),
+    _reach("another-kernel-by-descriptor", "kernel capabilities uid", 320, "-1, -1, 0, b'', 0"),
+    _reach("restart-the-machine", "kernel capabilities uid", 169, "0xfee1dead, 672274793, 0x5357, 0"),
+    _reach("swap", "kernel capabilities uid", 167, "b'/proc/self/exe', 0"),
+    _reach("account", "kernel capabilities uid", 163, "b'/proc/self'"),
     _reach("quotas", "kernel", 179, "0x800001 << 8, 0, 0, 0"),
-    _reach("hang-up-the-terminal", "kernel capabilities", 153),
-    _reach("name-the-machine", "kernel capabilities", 170, "b'blender', 7"),
-    _reach("name-the-domain", "kernel capabilities", 171, "b'(none)', 6"),
-    _reach("set-the-time-zone", "kernel capabilities", 164, "0, bytes(8)"),
-    _reach("set-a-clock", "kernel capabilities", 227, "0, struct.pack('qq', -1, -1)"),
-    _reach("adjust-the-clock", "kernel capabilities", 159, "struct.pack('I', 0x4000) + bytes(204)"),
-    _call("use-the-ports-of-the-machine", "kernel capabilities", "syscall(172, 3) == 0"),
-    _call("use-a-port-of-the-machine", "kernel capabilities", "syscall(173, 0x80, 1, 1) == 0"),
+    _reach("hang-up-the-terminal", "kernel capabilities uid", 153),
+    _reach("name-the-machine", "kernel capabilities uid", 170, "b'blender', 7"),
+    _reach("name-the-domain", "kernel capabilities uid", 171, "b'(none)', 6"),
+    _reach("set-the-time-zone", "kernel capabilities uid", 164, "0, bytes(8)"),
+    _reach("set-a-clock", "kernel capabilities uid", 227, "0, struct.pack('qq', int(time.time()), 0)"),
+    _reach("adjust-the-clock", "kernel capabilities uid", 159, "struct.pack('I', 0x4000) + bytes(204)"),
+    _call("use-the-ports-of-the-machine", "kernel capabilities uid", "syscall(172, 3) == 0"),
+    _call("use-a-port-of-the-machine", "kernel capabilities uid", "syscall(173, 0x80, 1, 1) == 0"),
     _call("another-personality", "kernel", "syscall(135, 0x40000) >= 0"),
     _call("a-table-of-segments", "kernel", "syscall(154, 0, ctypes.create_string_buffer(64), 64) >= 0"),
     _call("a-file-in-memory", "memfd", "number = os.memfd_create('x')\nos.write(number, b'x')"),
@@ -159,11 +168,11 @@ WAYS = (
         "handle = ctypes.create_string_buffer(struct.pack('Ii', 128, 0) + bytes(128))\n"
         "syscall(303, -100, b'.', handle, ctypes.byref(ctypes.c_int()), 0) == 0",
     ),
-    _reach("watch-files-of-all", "kernel capabilities", 300, "4, 0"),
+    _reach("watch-files-of-all", "kernel capabilities uid", 300, "4, 0"),
     # Rights.
     _call(
         "become-somebody-else",
-        "capabilities",
+        "capabilities uid",
         "c('setresuid', 12345, 12345, 12345) == 0",
         spoils=True,
         denied=("22",),
@@ -171,28 +180,30 @@ WAYS = (
     _call("become-root", "capabilities uid", "os.getuid() and c('setresuid', 0, 0, 0) == 0", denied=("22",)),
     _call(
         "become-another-group",
-        "capabilities",
+        "capabilities uid",
         "c('setresgid', 12345, 12345, 12345) == 0",
         spoils=True,
         denied=("22",),
     ),
-    _call("join-groups", "capabilities", "os.setgroups([0, 4, 6, 27]) or True", spoils=True, denied=("22",)),
+    _call(
+        "join-groups", "capabilities uid", "os.setgroups([0, 4, 6, 27]) or True", spoils=True, denied=("22",)
+    ),
     _call(
         "read-files-as-somebody-else",
-        "capabilities",
+        "capabilities uid",
         "c('setfsuid', 12345)\nlibc.setfsuid(-1) == 12345",
         spoils=True,
     ),
     _call(
         "raise-its-capabilities",
-        "capabilities",
+        "capabilities uid",
         "every = (1 << 32) - 1\nsyscall(126, struct.pack('Ii', 0x20080522, 0), struct.pack('6I', *[every] * 6)) == 0",
     ),
-    _call("keep-capabilities", "capabilities", "c('prctl', 47, 2, 21, 0, 0) == 0"),
-    _call("set-secure-bits", "capabilities", "c('prctl', 28, 0, 0, 0, 0) == 0"),
+    _call("keep-capabilities", "capabilities uid", "c('prctl', 47, 2, 21, 0, 0) == 0"),
+    _call("set-secure-bits", "capabilities uid", "c('prctl', 28, 0, 0, 0, 0) == 0"),
     _call(
         "have-any-capability",
-        "capabilities",
+        "capabilities uid",
         "[line for line in read('/proc/self/status').decode().splitlines() if line[:3] == 'Cap' and int(line.split()[1], 16)]",
     ),
     _call(
@@ -223,10 +234,14 @@ WAYS = (
     ),
     _call(
         "run-before-all-others",
-        "capabilities signals",
+        "capabilities signals uid",
         "c('sched_setscheduler', 0, 1, struct.pack('i', 50)) == 0",
     ),
-    way("be-served-before-others", "capabilities signals", "os.setpriority(os.PRIO_PROCESS, 0, -10) or True"),
+    way(
+        "be-served-before-others",
+        "capabilities signals uid",
+        "os.setpriority(os.PRIO_PROCESS, 0, -10) or True",
+    ),
     *(
         way(
             f"open-{device.strip('/').replace('/', '-')}",

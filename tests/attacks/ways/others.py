@@ -77,63 +77,67 @@ WAYS = (
         "os.sched_setscheduler(target.pid, os.SCHED_IDLE, os.sched_param(0)) or True",
     ),
     _call("starve-its-disk", "signals namespaces", "syscall(251, 1, target.pid, (3 << 13)) == 0"),
-    way("trace-it", "signals namespaces", "c('ptrace', 16, target.pid, 0, 0) == 0"),
-    way("seize-it", "signals namespaces", "c('ptrace', 0x4206, target.pid, 0, 0) == 0"),
+    way("trace-it", "signals namespaces uid", "c('ptrace', 16, target.pid, 0, 0) == 0"),
+    way("seize-it", "signals namespaces uid", "c('ptrace', 0x4206, target.pid, 0, 0) == 0"),
     _call(
         "read-its-memory",
-        "signals namespaces",
+        "signals namespaces uid",
         f"{_VECTOR}syscall(310, target.pid, mine, 1, theirs, 1, 0)\nbuffer.raw",
     ),
     _call(
-        "write-its-memory", "signals namespaces", f"{_VECTOR}syscall(311, target.pid, mine, 1, theirs, 1, 0)"
+        "write-its-memory",
+        "signals namespaces uid",
+        f"{_VECTOR}syscall(311, target.pid, mine, 1, theirs, 1, 0)",
     ),
     way(
         "read-its-memory-as-a-file",
-        "signals namespaces files",
+        "signals namespaces files uid",
         "file = open(f'/proc/{target.pid}/mem', 'rb', 0)\nfile.seek(target.address)\nfile.read(target.size)",
     ),
-    way("read-its-maps", "signals namespaces files", "read(f'/proc/{target.pid}/maps')"),
-    way("read-its-environment", "signals namespaces files", "read(f'/proc/{target.pid}/environ')"),
+    way("read-its-maps", "signals namespaces files uid", "read(f'/proc/{target.pid}/maps')"),
+    way("read-its-environment", "signals namespaces files uid", "read(f'/proc/{target.pid}/environ')"),
     _call(
         "take-its-file",
-        "signals namespaces",
+        "signals namespaces uid",
         "number = syscall(438, os.pidfd_open(target.pid), target.descriptor, 0)\nos.pread(number, 99, 0)",
     ),
     _call(
         "advise-its-memory",
-        "signals namespaces",
+        "signals namespaces uid",
         f"{_VECTOR}syscall(440, os.pidfd_open(target.pid), theirs, 1, 20, 0)",
     ),
-    _call("compare-its-files", "signals namespaces", "syscall(312, target.pid, os.getpid(), 0, 1, 1) >= 0"),
+    _call(
+        "compare-its-files", "signals namespaces uid", "syscall(312, target.pid, os.getpid(), 0, 1, 1) >= 0"
+    ),
     _call(
         "move-its-pages",
-        "signals namespaces",
+        "signals namespaces uid",
         "syscall(279, target.pid, 1, struct.pack('Q', target.address & ~4095), None, ctypes.create_string_buffer(8), 0) == 0",
     ),
     _call(
         "migrate-its-pages",
-        "signals namespaces",
+        "signals namespaces uid",
         "syscall(256, target.pid, 64, ctypes.byref(ctypes.c_ulong(1)), ctypes.byref(ctypes.c_ulong(1))) >= 0",
     ),
     _call(
         "watch-it",
-        "signals kernel namespaces",
+        "signals kernel namespaces uid",
         "syscall(298, struct.pack('IIQ', 1, 112, 1) + bytes(96), target.pid, -1, -1, 0)",
         denied=("95",),
     ),
     _call(
         "find-its-locks",
-        "signals namespaces",
+        "signals namespaces uid",
         "where, size = ctypes.c_ulong(), ctypes.c_ulong()\nsyscall(274, target.pid, ctypes.byref(where), ctypes.byref(size)) == 0",
     ),
     way(
         "enter-its-namespaces",
-        "processes capabilities files",
+        "processes capabilities files uid signals",
         "c('setns', os.open(f'/proc/{target.pid}/ns/mnt', 0), 0) == 0",
     ),
     _call(
         "enter-its-namespaces-by-descriptor",
-        "processes capabilities namespaces",
+        "processes capabilities namespaces uid signals",
         "syscall(308, os.pidfd_open(target.pid), 0x20000000) == 0",
     ),
     _call(

@@ -49,8 +49,16 @@ WAYS = (
     ),
     way("through-proc-self-root", "files", "read('/proc/self/root' + target.file)"),
     way("through-proc-self-cwd", "files", "read('/proc/self/cwd' + '/..' * 20 + target.file)"),
-    way("through-the-root-of-another-process", "files", "read(f'/proc/{target.pid}/root{target.file}')"),
-    way("through-the-root-of-the-first-process", "files", "read('/proc/1/root' + target.file)"),
+    way(
+        "through-the-root-of-another-process",
+        "files signals namespaces uid",
+        "read(f'/proc/{target.pid}/root{target.file}')",
+    ),
+    way(
+        "through-the-root-of-the-first-process",
+        "files signals namespaces uid capabilities",
+        "read('/proc/1/root' + target.file)",
+    ),
     way("through-a-link", "files", "os.symlink(target.file, 'link')\nread('link')"),
     way("through-a-linked-folder", "files", "os.symlink(target.folder, 'link')\nread('link/deep/file')"),
     way("through-a-hard-link", "files", "os.link(target.file, 'hard')\nread('hard')"),
@@ -88,7 +96,7 @@ WAYS = (
     ),
     _call(
         "by-file-handle",
-        "files capabilities kernel",
+        "files kernel uid capabilities",
         "handle = ctypes.create_string_buffer(struct.pack('Ii', 128, 0) + bytes(128))\nmount = ctypes.c_int()\n"
         "syscall(303, -100, target.file.encode(), handle, ctypes.byref(mount), 0)\n"
         "os.read(syscall(304, os.open('.', os.O_RDONLY), handle, 0), 99)",
@@ -96,12 +104,6 @@ WAYS = (
     way("as-a-text-of-blender", "files", "bpy.data.texts.load(target.file).as_string()"),
     way("as-an-image-of-blender", "files", "tuple(bpy.data.images.load(target.picture).size) == (37, 53)"),
     way("as-a-film-of-blender", "files", "tuple(bpy.data.movieclips.load(target.picture).size) == (37, 53)"),
-    way(
-        "as-a-library-of-blender",
-        "files",
-        "with bpy.data.libraries.load(target.file) as (source, _): names = list(source.objects)\nnames",
-        denied=("OSError",),
-    ),
     way(
         "as-a-strip-of-blender",
         "files",
@@ -113,7 +115,7 @@ WAYS = (
     way(
         "as-a-database",
         "files",
-        "import sqlite3\nsqlite3.connect(f'file:{target.file}?mode=ro', uri=True).execute('select 1 from sqlite_master').fetchall()",
+        "import sqlite3\nsqlite3.connect(f'file:{target.folder}/file.db?mode=ro', uri=True).execute('select name from sqlite_master').fetchall()",
         denied=("OperationalError",),
     ),
     way(
@@ -124,7 +126,7 @@ WAYS = (
     way(
         "as-a-module",
         "files",
-        "import importlib.util as u\nspec = u.spec_from_file_location('m', target.folder + '/file.py')\nspec.loader.exec_module(u.module_from_spec(spec))",
+        "import importlib.util as u\nspec = u.spec_from_file_location('m', target.folder + '/file.py')\nmodule = u.module_from_spec(spec)\nspec.loader.exec_module(module)\nmodule.note",
     ),
     way(
         "by-copying-in-the-kernel",
@@ -142,7 +144,7 @@ WAYS = (
     ),
     _call(
         "names-by-fanotify",
-        "files kernel capabilities",
+        "files kernel uid capabilities",
         "number = syscall(300, 0x200 | 0xC00 | 2, 0)\n"  # FAN_REPORT_FID | FAN_REPORT_DFID_NAME | nonblocking
         "syscall(301, number, 1, 0x100 | 0x200 | 0x20 | 0x10 | 0x40000000 | 0x8000000, -100, target.names.encode())\nTrue",
     ),
@@ -153,46 +155,46 @@ WAYS = (
     ),
     way(
         "names-of-sockets",
-        "files namespaces",
+        "files namespaces sockets",
         "text = read('/proc/self/net/unix', 1 << 20).decode()\n[line for line in text.splitlines() if target.abstract in line]",
     ),
     way(
         "connections-of-others",
-        "files namespaces",
+        "files namespaces sockets",
         "text = read('/proc/self/net/tcp', 1 << 20).decode()\n'%04X' % target.tcp in text",
     ),
     way("locks-of-others", "files namespaces", "read('/proc/locks')"),
     way("keys-of-others", "files proc", "len(read('/proc/keys')) > 0"),
     way(
         "a-raw-disk",
-        "files",
+        "files uid capabilities",
         "[read('/dev/' + name) for name in ('vda', 'sda', 'nvme0n1', 'mem', 'port') if os.path.exists('/dev/' + name)]",
         denied=("IsADirectoryError",),
     ),
     way(
         "a-raw-disk-of-its-own-making",
-        "files capabilities",
+        "files uid capabilities",
         "import stat\nos.mknod('disk', stat.S_IFBLK | 0o600, os.stat(os.path.realpath('.')).st_dev)\nread('disk')",
     ),
     way(
         "a-zero-device-of-its-own-making",
-        "files capabilities",
+        "files uid capabilities",
         "import stat\nos.mknod('zero', stat.S_IFCHR | 0o600, os.makedev(1, 9))\nread('zero')",
     ),
     way(
         "the-log-of-the-kernel",
-        "kernel capabilities",
+        "kernel uid capabilities",
         "buffer = ctypes.create_string_buffer(999)\nc('klogctl', 3, buffer, 999)\nbuffer.value",
     ),
     way(
         "the-log-of-the-kernel-as-a-device",
-        "files",
+        "files uid capabilities",
         "os.read(os.open('/dev/kmsg', os.O_RDONLY | os.O_NONBLOCK), 999)",
     ),
-    way("the-memory-of-the-kernel", "files proc capabilities", "read('/proc/kcore')"),
+    way("the-memory-of-the-kernel", "files proc uid capabilities", "read('/proc/kcore')"),
     way(
         "symbols-of-the-kernel",
-        "files proc capabilities",
+        "files proc uid capabilities",
         "any(int(line.split()[0], 16) for line in read('/proc/kallsyms', 9999).splitlines()[:-1])",
     ),
     way(
@@ -202,19 +204,23 @@ WAYS = (
     ),
     way(
         "the-environment-of-any-process",
-        "files namespaces signals environment",
+        "files namespaces signals environment uid",
         "import glob\nfound = []\nfor path in glob.glob('/proc/[0-9]*/environ'):\n"
         "    text = worked(read, path, 1 << 20)\n    found += [path] if text not in (None, True) and b'sw-secret' in text else []\nfound",
     ),
     way("the-command-line-of-another-process", "files namespaces", "read(f'/proc/{target.pid}/cmdline')"),
     way(
         "an-open-file-of-another-process",
-        "files namespaces signals",
+        "files namespaces signals uid",
         "read(f'/proc/{target.pid}/fd/{target.descriptor}')",
     ),
     way("the-lock-of-the-run", "files", "read(target.root + '/.lock') or True"),
     way("checkpoints", "files", "os.listdir(target.root + '/checkpoints')"),
-    way("a-checkpoint", "files", "read(target.root + '/checkpoints/000001.blend', 9)"),
+    way(
+        "a-checkpoint",
+        "files",
+        "folder = target.root + '/checkpoints/'\nread(folder + os.listdir(folder)[0], 9)",
+    ),
     way("the-folder-of-runs", "files", "set(os.listdir(os.path.dirname(target.root))) - {'run'}"),
     *map(_there, _FILES),
 )

@@ -29,7 +29,7 @@ WAYS = (
     way("make-a-nameless-file", "files", "os.open(target.folder, os.O_TMPFILE | os.O_RDWR)"),
     way("remove-a-folder", "files", "import shutil\nshutil.rmtree(target.folder + '/deep')"),
     way("change-a-mode", "files uid", "os.chmod(target.victim, 0o600)"),
-    way("change-an-owner", "files capabilities", "os.chown(target.victim, 12345, 12345)"),
+    way("change-an-owner", "files uid capabilities", "os.chown(target.victim, 12345, 12345)"),
     way("change-times", "files uid", "os.utime(target.victim, (1, 1))"),
     way("set-an-attribute", "files", "os.setxattr(target.victim, 'user.planted', b'x')"),
     way("remove-an-attribute", "files", "os.removexattr(target.file, 'user.note')"),
@@ -82,7 +82,7 @@ WAYS = (
     way("link-what-may-be-read", "files", "os.link(target.readable, 'mine')"),
     way(
         "lease-what-may-be-read",
-        "files",
+        "files signals",
         "import fcntl\nnumber = os.open(target.readable, os.O_RDONLY)\nfcntl.fcntl(number, 1024, 0)\n"
         "fcntl.fcntl(number, 1025) == 0",
         denied=("22",),
@@ -90,7 +90,7 @@ WAYS = (
     way(
         "watch-what-may-be-read",
         "signals",
-        "import fcntl\nnumber = os.open(os.path.dirname(target.readable), os.O_RDONLY)\nfcntl.fcntl(number, 1026, 0x80000002)",
+        "import fcntl\nnumber = os.open(os.path.dirname(target.readable), os.O_RDONLY)\nfcntl.fcntl(number, 1026, 0x80000002) == 0",
     ),
     # What Blender itself writes.
     way("save-a-scene", "files", "bpy.ops.wm.save_as_mainfile(filepath=target.folder + '/planted.blend')"),
@@ -141,11 +141,11 @@ WAYS = (
         "files",
         "os.rename(target.workspace, target.workspace + target.mark)\nos.symlink(target.folder, target.workspace)",
     ),
-    way("take-the-lock", "files", "os.unlink(target.root + '/.lock')"),
+    way("take-the-lock", "files", "os.unlink(target.root + '/.lock') or True"),
     way(
         "swap-private-and-workspace",
         "files",
-        "syscall(316, -100, target.private.encode(), -100, target.workspace.encode(), 2)",
+        "syscall(316, -100, target.private.encode(), -100, target.workspace.encode(), 2) == 0",
         machine="x86_64",
         denied=("16",),
     ),
@@ -160,7 +160,7 @@ WAYS = (
     ),
     way(
         "a-program-with-capabilities",
-        "capabilities files",
+        "files uid capabilities",
         "write('program')\nos.setxattr('program', 'security.capability', struct.pack('<IIIII', 0x2000001, 1 << 21, 0, 0, 0))\nTrue",
         denied=("22",),
     ),
