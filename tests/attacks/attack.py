@@ -59,7 +59,7 @@ class Attackers:
     def __init__(self, folder: Path, outside: Outside) -> None:
         self._folder = folder
         self._outside = outside
-        self._hosts: dict[object, Host] = {}
+        self._hosts: dict[tuple[Kind, Who, tuple[str, ...], bool], Host] = {}
         self._how: dict[int, str] = {}  # a host's number → how it is to be cleaned
         self._count = 0
 
@@ -68,6 +68,8 @@ class Attackers:
         key = (kind, who, without, liar)
         host = self._hosts.get(key)
         if host is None or not (host.alive or host.refused):
+            if without:
+                self._close_those_without_walls()
             self._count += 1
             folder = self._folder / f"{self._count}-{kind}-{who}"
             folder.mkdir()
@@ -82,6 +84,11 @@ class Attackers:
                 liar=liar,
             )
         return host
+
+    def _close_those_without_walls(self) -> None:
+        """A few at a time: each is a Blender."""
+        for key in [key for key in self._hosts if key[2]]:
+            self._hosts.pop(key).close()
 
     def carry_out(self, way: Way, host: Host) -> Outcome:
         """Does it, and looks at what came of it."""

@@ -34,14 +34,19 @@ def _anybody(kind: Kind) -> tuple[Who, ...]:
     return ("root",) if kind == "bubblewrap" and os.geteuid() == 0 else ("user",)
 
 
-def host_for(attackers: Attackers, way: Way, kind: Kind, who: Who, without: tuple[str, ...] = ()) -> Host:
-    """The host that a way is tried on; skips the test where there can be none."""
+def skip_unless_it_works(kind: Kind) -> None:
+    """Skips the test where that sandbox does not work."""
     if kind == "bubblewrap" and (fault := bubblewrap_fault()):
         pytest.skip(f"bubblewrap does not work here: {fault}")
     if kind == "landlock" and not confine_self.landlock_abi():
         pytest.skip("this kernel has no Landlock")
     if not confine_self.has_seccomp():
         pytest.skip("system calls cannot be closed on this machine")
+
+
+def host_for(attackers: Attackers, way: Way, kind: Kind, who: Who, without: tuple[str, ...] = ()) -> Host:
+    """The host that a way is tried on; skips the test where there can be none."""
+    skip_unless_it_works(kind)
     if way.machine and platform.machine() != way.machine:
         pytest.skip(f"it is written for {way.machine}")
     if way.ready is not None and not way.ready():

@@ -39,7 +39,10 @@ def _no_docs(query: str, *, max_tokens: int = 400) -> str:
 
 
 def _sandbox(kind: Any, without: list[Any]) -> Sandbox:
-    return best_sandbox(kind, LIMITS, frozenset(without))
+    limits = replace(LIMITS, memory=0) if "memory" in without else LIMITS
+    if "disk" in without:
+        limits = replace(limits, disk=0, files=0, file_size=0)
+    return best_sandbox(kind, limits, frozenset(without))
 
 
 def _open_up(remove: Any, path: str, error: BaseException) -> None:

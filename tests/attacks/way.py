@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 Kind = Literal["bubblewrap", "landlock"]
+Server = Literal["ground", "replies", "decoder", "channel", "interpreter", "deadline"]
+"""What of the server, rather than of the sandbox, an attack is aimed at."""
 KINDS: tuple[Kind, ...] = ("bubblewrap", "landlock")
 
 
@@ -24,8 +26,8 @@ class Tool:
 class Way:
     """One attack.
 
-    ``attacks``: the wall (or walls) that stops it, or what of the server it attacks: ``ground`` (files that it takes
-    from the worker), ``replies``, ``decoder``, ``channel``, ``interpreter``.
+    ``attacks``: the walls that stop it, each by itself; or what of the server it is aimed at: ``ground`` (files that
+    it takes from the worker), ``replies``, ``decoder``, ``channel``, ``interpreter`` (Blender's Python), ``deadline``.
 
     ``steps``: code for blender_execute, or tools to call. Code has the names of inside/helpers.py, ``target`` above
     all. The value of its last expression is what it got, as far as it can tell itself: anything but None, False,

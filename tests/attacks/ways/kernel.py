@@ -213,7 +213,7 @@ WAYS = (
     ),
     _call(
         "a-filter-of-its-own",
-        "limits",
+        "signals",
         "steps = ctypes.create_string_buffer(struct.pack('HBBI', 6, 0, 0, 0x7fff0000))\n"
         "c('prctl', 22, 2, struct.pack('HxxxxxxQ', 1, ctypes.addressof(steps)), 0, 0) == 0",
         spoils=True,

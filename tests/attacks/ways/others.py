@@ -153,7 +153,7 @@ WAYS = (
         "os.path.exists(f'/proc/{target.pid}/stat')",
         kinds=("bubblewrap",),
     ),
-    way("outlive-the-server", "limits", "c('prctl', 1, 0, 0, 0, 0) == 0"),
-    way("be-traced-by-others", "limits", "c('prctl', 4, 0, 0, 0, 0) == 0"),
-    way("be-traced-by-anybody", "signals limits", "c('prctl', 0x59616d61, -1, 0, 0, 0) == 0", denied=("22",)),
+    way("outlive-the-server", "signals", "c('prctl', 1, 0, 0, 0, 0) == 0"),
+    way("be-traced-by-others", "signals", "c('prctl', 4, 0, 0, 0, 0) == 0"),
+    way("be-traced-by-anybody", "signals", "c('prctl', 0x59616d61, -1, 0, 0, 0) == 0", denied=("22",)),
 )
