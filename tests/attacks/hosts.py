@@ -25,7 +25,7 @@ _HOST = Path(__file__).with_name("host.py")
 # A process that root starts as somebody else, without any capability; it may still read what root may.
 _AS_USER = ("unshare", "--user", "--map-user=1000", "--map-group=1000")
 _START_SECONDS = 120.0
-SECRET_VARIABLE = "ANTHROPIC_API_KEY"  # noqa: S105 - the name of one
+SECRET_VARIABLE = "ANTHROPIC_API_KEY"
 
 
 class HostLost(Exception):  # noqa: N818 - reads as the state it names
@@ -35,7 +35,7 @@ class HostLost(Exception):  # noqa: N818 - reads as the state it names
 class Host:
     """A running host. Raises HostLost if it does not answer, pytest.skip.Exception if it cannot run here."""
 
-    def __init__(  # noqa: PLR0913 - what a host may differ in
+    def __init__(
         self,
         root: Path,
         kind: Kind,

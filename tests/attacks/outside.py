@@ -398,9 +398,9 @@ def _contents(root: Path) -> Iterator[bytes]:
 
 def _shared_places() -> Iterator[str]:
     """What lies directly in places to which everybody may write."""
-    for place in ("/tmp", "/var/tmp", "/dev/shm", "/dev/mqueue", "/run", "/", "/etc", "/dev", "/usr"):  # noqa: S108
+    for place in ("/tmp", "/var/tmp", "/dev/shm", "/dev/mqueue", "/run", "/", "/etc", "/dev", "/usr"):
         with suppress(OSError):
-            yield from (f"{place}/{name}" for name in os.listdir(place))
+            yield from (str(path) for path in Path(place).iterdir())
 
 
 def _parent(process: int) -> int:

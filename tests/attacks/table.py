@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ways import (
     channel,
     ground,
@@ -15,7 +17,9 @@ from ways import (
     replies,
     writing,
 )
-from way import Way
+
+if TYPE_CHECKING:
+    from way import Way
 
 WAYS: tuple[Way, ...] = (
     *reading.WAYS,

@@ -72,7 +72,11 @@ try: wire.send(changed(message, {changes!r}))
 except Exception: pass
 return truth()
 """
-_SIMULATED = "value = truth()\nvalue['unbaked'] = [{'kind': 'cloth', 'object': 'c', 'label': 'c', 'start': 1}]\nreturn value"
+_SIMULATED = (
+    "value = truth()\n"
+    "value['unbaked'] = [{'kind': 'cloth', 'object': 'c', 'label': 'c', 'start': 1}]\n"
+    "return value"
+)
 
 
 def _lying(tool: str, lie: str) -> Way:

@@ -19,7 +19,8 @@ pytestmark = pytest.mark.blender
 # Some of each wall, in one sandbox or the other.
 _BUBBLEWRAP = """
     open overwrite make-a-link save-a-scene a-checkpoint-of-its-own overwrite-what-may-be-read
-    set-proc-sys-kernel-core-pattern set-the-place-among-the-killed be-root have-any-capability see-that-it-is-there names-of-sockets kill-by-tkill connect
+    set-proc-sys-kernel-core-pattern set-the-place-among-the-killed be-root
+    have-any-capability see-that-it-is-there names-of-sockets kill-by-tkill connect
     share-memory-by-key fork spawn start-a-program a-file-in-memory handle-its-own-faults another-personality
     outlive-the-server take-memory many-files
 """

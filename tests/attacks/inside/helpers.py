@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the code of every attack begins with: system calls that raise, threads that last, and races."""
 
+import contextlib
 import ctypes
 import errno
 import os
-import struct
 import sys
 import threading
-import time
 from types import SimpleNamespace
 
+target = SimpleNamespace()  # what is attacked; filled in by what sends the code
 libc = ctypes.CDLL(None, use_errno=True)
 libc.syscall.restype = ctypes.c_long
 # What a wall answers. Any other error means that the attack itself is wrong.
@@ -105,10 +105,8 @@ def in_background(act):
     def run():
         name_thread()
         while True:
-            try:
+            with contextlib.suppress(Exception):
                 act()
-            except Exception:
-                pass
 
     threading.Thread(target=run, daemon=True).start()
 
@@ -121,7 +119,10 @@ def worker(name):
 def blind():
     """Replaces what counts the threads that a call leaves behind."""
     state = worker("interpreter_state")
-    zero = lambda *_: 0
+
+    def zero(*_):
+        return 0
+
     for name in ("_left_threads", "_running", "_let_threads_start"):
         if hasattr(state.InterpreterState, name):
             getattr(state.InterpreterState, name).__code__ = zero.__code__

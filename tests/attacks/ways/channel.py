@@ -22,7 +22,8 @@ WAYS = (
     way(
         "write-to-every-descriptor",
         "channel",
-        "for number in range(3, 400):\n    try: os.write(number, b'{\"value\": 1}' * 9)\n    except OSError: pass",
+        "for number in range(3, 400):\n    try: os.write(number, b'{\"value\": 1}' * 9)\n"
+        "    except OSError: pass",
         _AFTER,
         timeout=5.0,
     ),
@@ -30,7 +31,8 @@ WAYS = (
     way(
         "lead-the-channel-elsewhere",
         "channel",
-        "null = os.open('/dev/null', os.O_RDWR)\nfor number in range(200, 400):\n    try: os.dup2(null, number)\n    except OSError: pass",
+        "null = os.open('/dev/null', os.O_RDWR)\nfor number in range(200, 400):\n"
+        "    try: os.dup2(null, number)\n    except OSError: pass",
         _AFTER,
         timeout=5.0,
         denied=("Died",),
@@ -63,7 +65,8 @@ WAYS = (
         "reply-to-the-next-call",
         "forged = {'value': \"'forged'\", 'error': None, 'changed': {}, 'mode': 'OBJECT'}\n"
         "honest = {**forged, 'value': None}\n"
-        "for value in (honest, forged, forged): wire.send({'ticket': ticket, 'value': value, 'seconds': 0.1, 'left': []})\nNone",
+        "for value in (honest, forged, forged): wire.send({'ticket': ticket, 'value': value, "
+        "'seconds': 0.1, 'left': []})\nNone",
     ),
     _send(
         "reply-in-the-supervisors-place",
@@ -78,12 +81,14 @@ WAYS = (
         "reply-with-a-frame-of-four-gigabytes",
         "import hmac, hashlib\nlength = struct.pack('>I', (1 << 32) - 1)\nencode = wire._encode\n"
         "key = b'/'.join((encode._sender, b'head', encode._number.to_bytes(8, 'big'), b''))\n"
-        "tag = hmac.new(encode._key, key + length, hashlib.sha256).digest()[:16]\nos.write(wire._fd, length + tag + bytes(32))\n"
+        "tag = hmac.new(encode._key, key + length, hashlib.sha256).digest()[:16]\n"
+        "os.write(wire._fd, length + tag + bytes(32))\n"
         "for _ in range(3000): os.write(wire._fd, bytes(1 << 20))",
     ),
     _send(
         "reply-with-a-deep-frame",
-        "import json\ndumps = json.dumps\njson.dumps = lambda *a, **k: '{\"ticket\":' + '[' * 100_000 + ']' * 100_000 + '}'\n"
+        "import json\ndumps = json.dumps\n"
+        "json.dumps = lambda *a, **k: '{\"ticket\":' + '[' * 100_000 + ']' * 100_000 + '}'\n"
         "try: wire.send({})\nfinally: json.dumps = dumps\ntime.sleep(10)",
     ),
     _send(
@@ -119,7 +124,9 @@ WAYS = (
     way(
         "answer-only-with-progress",
         "channel deadline",
-        f"{_WIRE}send = wire.send\nwire.send = lambda message: [time.sleep(0.01) or send({{'ticket': message['ticket'], 'progress': [0, 1, '']}}) for _ in iter(int, 1)]\nNone",
+        f"{_WIRE}send = wire.send\n"
+        f"wire.send = lambda message: [time.sleep(0.01) or send({{'ticket': message['ticket'], "
+        f"'progress': [0, 1, '']}}) for _ in iter(int, 1)]\nNone",
         timeout=1.5,
         spoils=True,
         once=True,
@@ -134,14 +141,18 @@ def _tool(name: str, code: str, tool: Tool = _TOOL, **more: object) -> Way:
     return way(name, "interpreter", code, tool, spoils=True, once=True, **more)
 
 
-_NAMES = "('tag', 'video', 'stage', 'rooms', 'changes', 'worker', 'execute', 'readout', 'state', 'blend', 'json', 'simworlds', 'simworlds_worker')"
+_NAMES = (
+    "('tag', 'video', 'stage', 'rooms', 'changes', 'worker', 'execute', 'readout', 'state', "
+    "'blend', 'json', 'simworlds', 'simworlds_worker')"
+)
 
 INTERPRETER = (
     _tool(
         "name-a-file-as-a-module-of-the-worker",
         f"for name in {_NAMES}: write(name + '.py', b'raise ValueError(1)')\n"
         "sys.path.insert(0, os.getcwd())\nimport importlib\nimportlib.invalidate_caches()\n"
-        "for name in ('tag', 'video', 'stage', 'rooms'):\n    try: __import__(name)\n    except ValueError: pass\nNone",
+        "for name in ('tag', 'video', 'stage', 'rooms'):\n    try: __import__(name)\n"
+        "    except ValueError: pass\nNone",
     ),
     _tool(
         "name-a-module-as-one-of-the-worker",
@@ -149,28 +160,38 @@ INTERPRETER = (
     ),
     _tool(
         "replace-the-workers-modules",
-        "import types\nfor name in list(sys.modules):\n    if 'worker.' in name and not name.endswith(('worker', 'execute', 'interpreter_state')): sys.modules[name] = types.ModuleType(name)\nNone",
+        "import types\nfor name in list(sys.modules):\n"
+        "    if 'worker.' in name and not name.endswith(('worker', 'execute', "
+        "'interpreter_state')): sys.modules[name] = types.ModuleType(name)\nNone",
     ),
     _tool(
         "replace-a-function-of-a-tool",
-        "import importlib\nmodule = importlib.import_module(worker('worker').__package__ + '.state.readout')\n"
+        "import importlib\n"
+        "module = importlib.import_module(worker('worker').__package__ + '.state.readout')\n"
         "module.scene_state = lambda arguments, report: {'scene': {'name': target.mark}}\nNone",
     ),
     _tool(
         "replace-the-code-of-a-tool",
-        "replies_of('state.readout', 'scene_state', \"from simworlds.sandbox.inside.refusal import Refused\\nraise Refused(target.mark)\")\nNone",
+        "replies_of('state.readout', 'scene_state', \"from simworlds.sandbox.inside.refusal "
+        'import Refused\\nraise Refused(target.mark)")\nNone',
     ),
     _tool(
         "replace-the-code-of-what-finds-tools",
         "from simworlds.sandbox.inside import service, refusal\nrefusal.mark = target.mark\n"
-        "def find(self, name):\n    import sys\n    refusal = sys.modules['simworlds.sandbox.inside.refusal']\n"
-        "    def forged(arguments, report): raise refusal.Refused(refusal.mark)\n    return forged if name == 'scene_state' else getattr(__import__('importlib').import_module(self._package + '.' + self._table[name][0]), self._table[name][1])\n"
+        "def find(self, name):\n    import sys\n"
+        "    refusal = sys.modules['simworlds.sandbox.inside.refusal']\n"
+        "    def forged(arguments, report): raise refusal.Refused(refusal.mark)\n"
+        "    return forged if name == 'scene_state' else "
+        "getattr(__import__('importlib').import_module(self._package + '.' + "
+        "self._table[name][0]), self._table[name][1])\n"
         "service.Tools.find.__code__ = find.__code__\nNone",
     ),
     _tool("replace-the-table-of-tools", "worker('worker').TOOLS['scene_state'] = ('tag', 'tag')\nNone"),
     _tool(
         "replace-builtins",
-        "import builtins\nfor name in ('len', 'sorted', 'print', 'open', 'dict'): setattr(builtins, name, None)\nNone",
+        "import builtins\n"
+        "for name in ('len', 'sorted', 'print', 'open', 'dict'): setattr(builtins, name, None)\n"
+        "None",
     ),
     _tool(
         "replace-what-writes-json",
@@ -178,11 +199,13 @@ INTERPRETER = (
     ),
     _tool(
         "replace-what-finds-modules",
-        "sys.meta_path.clear()\nsys.path.clear()\nsys.path_hooks.clear()\nsys.modules.pop('simworlds_worker.tag', None)\nNone",
+        "sys.meta_path.clear()\nsys.path.clear()\nsys.path_hooks.clear()\n"
+        "sys.modules.pop('simworlds_worker.tag', None)\nNone",
     ),
     _tool(
         "replace-types-of-blender",
-        "for name in ('objects', 'frame_current', 'collection', 'name', 'render'):\n    setattr(bpy.types.Scene, name, property(lambda self: 1 / 0))\nNone",
+        "for name in ('objects', 'frame_current', 'collection', 'name', 'render'):\n"
+        "    setattr(bpy.types.Scene, name, property(lambda self: 1 / 0))\nNone",
     ),
     _tool(
         "trace-all-that-follows",
@@ -191,12 +214,14 @@ INTERPRETER = (
     ),
     _tool(
         "ring-an-alarm-later",
-        "import signal\nsignal.signal(signal.SIGALRM, lambda *_: 1 / 0)\nsignal.setitimer(signal.ITIMER_REAL, 0.05, 0.05)\nNone",
+        "import signal\nsignal.signal(signal.SIGALRM, lambda *_: 1 / 0)\n"
+        "signal.setitimer(signal.ITIMER_REAL, 0.05, 0.05)\nNone",
     ),
     _tool("forbid-recursion", "sys.setrecursionlimit(60)\nNone"),
     _tool(
         "leave-an-audit-hook",
-        "def hook(event, _):\n    if event in ('open', 'import'): raise ValueError(event)\nsys.addaudithook(hook)\nNone",
+        "def hook(event, _):\n    if event in ('open', 'import'): raise ValueError(event)\n"
+        "sys.addaudithook(hook)\nNone",
     ),
     _tool("leave-another-folder", "os.mkdir('gone')\nos.chdir('gone')\nos.rmdir('../gone')\nNone"),
     _tool("close-the-output", "sys.stdout.close()\nsys.stderr.close()\nos.close(1)\nos.close(2)\nNone"),
@@ -204,14 +229,20 @@ INTERPRETER = (
         "leave-what-runs-in-the-next-blender",
         "interpreter",
         "body = 'import builtins; builtins.planted_by_attack = True'\n"
-        "bpy.app.handlers.load_post.append(lambda *_: exec(body))\ntext = bpy.data.texts.new('planted.py')\ntext.write(body)\ntext.use_module = True\n"
+        "bpy.app.handlers.load_post.append(lambda *_: exec(body))\n"
+        "text = bpy.data.texts.new('planted.py')\ntext.write(body)\ntext.use_module = True\n"
         "bpy.context.preferences.filepaths.use_scripts_auto_execute = True\n"
-        "for save in (bpy.ops.wm.save_userpref, bpy.ops.wm.save_homefile):\n    try: save()\n    except RuntimeError: pass\n"
+        "for save in (bpy.ops.wm.save_userpref, bpy.ops.wm.save_homefile):\n    try: save()\n"
+        "    except RuntimeError: pass\n"
         "home, version = os.environ['HOME'], f'python{sys.version_info[0]}.{sys.version_info[1]}'\n"
-        "for folder in ('startup', 'scripts/startup', 'addons', f'.local/lib/{version}/site-packages', 'modules', '.'):\n"
-        "    for place in (home, os.getcwd()):\n        os.makedirs(os.path.join(place, folder), exist_ok=True)\n"
-        "        for name in ('planted.py', 'usercustomize.py', 'sitecustomize.py', 'json.py', 'ctypes.py', 'os.py', 'changes.py', 'boot.py'):\n"
-        "            open(os.path.join(place, folder, name), 'w').write(body + '\\ndef register(): pass')\nNone",
+        "for folder in ('startup', 'scripts/startup', 'addons', "
+        "f'.local/lib/{version}/site-packages', 'modules', '.'):\n"
+        "    for place in (home, os.getcwd()):\n"
+        "        os.makedirs(os.path.join(place, folder), exist_ok=True)\n"
+        "        for name in ('planted.py', 'usercustomize.py', 'sitecustomize.py', 'json.py', "
+        "'ctypes.py', 'os.py', 'changes.py', 'boot.py'):\n"
+        "            open(os.path.join(place, folder, name), 'w').write(body + '\\ndef "
+        "register(): pass')\nNone",
         "os._exit(0)",
         "import builtins\nhasattr(builtins, 'planted_by_attack')",
         denied=("Died",),

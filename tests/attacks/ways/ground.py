@@ -3,9 +3,12 @@ Blender, so that everything happens while the server works on a call, whatever t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from way import Tool, Way, way
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 _RENDER = Tool("blender_render")
 _FILM = Tool("blender_render", {"kind": "animation"})
@@ -26,7 +29,8 @@ def race(names, place=None, seconds=8):
         while time.monotonic() < until:
             for name in names() if callable(names) else names:
                 try:
-                    link = place + '/' + os.path.basename(name) if place and os.path.isdir(place) else place or target.victim
+                    inside = place and os.path.isdir(place)
+                    link = place + '/' + os.path.basename(name) if inside else place or target.victim
                     os.symlink(link, name + '.swap')
                     os.rename(name + '.swap', name)
                 except OSError:
@@ -85,7 +89,8 @@ WAYS = (
     _lie(
         "links-where-a-file-is-lent",
         {
-            "execute": "worked(os.makedirs, '.loading/x') if not os.path.lexists('.loading') else None\nrace(['.loading/kept.blend', '.loading', 'kept.blend'], target.folder)\nreturn truth()",
+            "execute": "worked(os.makedirs, '.loading/x') if not os.path.lexists('.loading') else None\n"
+            "race(['.loading/kept.blend', '.loading', 'kept.blend'], target.folder)\nreturn truth()",
             "kept_caches": "return truth()",
             "save": "race(['.loading'], target.folder)\nreturn truth()",
         },
@@ -97,7 +102,8 @@ WAYS = (
         "links-where-a-film-is-made",
         {
             "render_frame": "value = truth()\nimport glob\nos.makedirs('.film', exist_ok=True)\n"
-            "race(lambda: [name + '/' + frame for name in glob.glob('.film*') for frame in ('0001.png', '0002.png', '0003.png')], target.victim, 4)\nreturn value",
+            "race(lambda: [name + '/' + frame for name in glob.glob('.film*') for frame in "
+            "('0001.png', '0002.png', '0003.png')], target.victim, 4)\nreturn value",
             "render_video": "time.sleep(0.5)\nreturn truth()",
         },
         _FILM,
@@ -105,8 +111,11 @@ WAYS = (
     _lie(
         "a-folder-of-a-film-exchanged-for-a-link",
         {
-            "render_frame": "value = truth()\nimport glob\nos.symlink(target.folder, '.l') if not os.path.islink('.l') else None\n"
-            "def run():\n    until = time.monotonic() + 4\n    while time.monotonic() < until:\n        for name in glob.glob('.film-*'): libc.syscall(*raw(316, -100, name.encode(), -100, b'.l', 2))\n"
+            "render_frame": "value = truth()\nimport glob\n"
+            "os.symlink(target.folder, '.l') if not os.path.islink('.l') else None\n"
+            "def run():\n    until = time.monotonic() + 4\n    while time.monotonic() < until:\n"
+            "        for name in glob.glob('.film-*'): libc.syscall(*raw(316, -100, name.encode(), "
+            "-100, b'.l', 2))\n"
             "threading.Thread(target=run, daemon=True).start()\nreturn value"
         },
         _FILM,
@@ -114,7 +123,8 @@ WAYS = (
     _lie(
         "the-runs-own-file-as-a-link",
         {
-            "execute": "os.unlink('scene.blend') if os.path.exists('scene.blend') else None\nos.symlink(target.victim, 'scene.blend')\nos._exit(0)"
+            "execute": "os.unlink('scene.blend') if os.path.exists('scene.blend') else None\n"
+            "os.symlink(target.victim, 'scene.blend')\nos._exit(0)"
         },
         _RUN,
         _RUN,
@@ -122,7 +132,8 @@ WAYS = (
     _lie(
         "the-runs-own-file-as-a-folder",
         {
-            "execute": "os.unlink('scene.blend') if os.path.isfile('scene.blend') else None\nos.makedirs('scene.blend/deep/er', exist_ok=True)\nos._exit(0)"
+            "execute": "os.unlink('scene.blend') if os.path.isfile('scene.blend') else None\n"
+            "os.makedirs('scene.blend/deep/er', exist_ok=True)\nos._exit(0)"
         },
         _RUN,
         _RUN,
@@ -130,7 +141,8 @@ WAYS = (
     _lie(
         "the-runs-own-file-as-a-folder-of-links",
         {
-            "execute": "os.unlink('scene.blend') if os.path.isfile('scene.blend') else None\nos.makedirs('scene.blend', exist_ok=True)\n"
+            "execute": "os.unlink('scene.blend') if os.path.isfile('scene.blend') else None\n"
+            "os.makedirs('scene.blend', exist_ok=True)\n"
             "worked(os.symlink, target.folder, 'scene.blend/link')\nos._exit(0)"
         },
         _RUN,
@@ -139,7 +151,8 @@ WAYS = (
     _lie(
         "a-link-that-is-half-written",
         {
-            "execute": "worked(os.symlink, target.victim, 'x.blend@')\nworked(os.symlink, target.folder, 'y.blend@')\nos._exit(0)"
+            "execute": "worked(os.symlink, target.victim, 'x.blend@')\n"
+            "worked(os.symlink, target.folder, 'y.blend@')\nos._exit(0)"
         },
         _RUN,
     ),
@@ -147,7 +160,8 @@ WAYS = (
         "a-view-in-a-folder-that-becomes-a-link",
         {
             "preview": "value = truth()\nos.makedirs('d', exist_ok=True)\nos.symlink(target.folder, 'e')\n"
-            "with open('d/victim', 'wb') as file: file.write(png(32, 32))\nexchange('d', 'e')\nvalue['views'][0]['file'] = 'd/victim'\nreturn value"
+            "with open('d/victim', 'wb') as file: file.write(png(32, 32))\nexchange('d', 'e')\n"
+            "value['views'][0]['file'] = 'd/victim'\nreturn value"
         },
         _PREVIEW,
     ),
@@ -174,36 +188,44 @@ WAYS = (
     _lie(
         "the-folder-of-tiles-as-a-link",
         {
-            "motion_sheet": "value = truth()\nfolder = arguments['folder']\nos.rename(folder, folder + '2')\nos.symlink(target.folder, folder)\nreturn value"
+            "motion_sheet": "value = truth()\nfolder = arguments['folder']\nos.rename(folder, folder + '2')\n"
+            "os.symlink(target.folder, folder)\nreturn value"
         },
         _MOTION,
     ),
     _lie(
         "the-folder-of-tiles-exchanged-for-a-link",
         {
-            "motion_sheet": "value = truth()\nos.symlink(target.folder, 'e')\nexchange(arguments['folder'], 'e')\nreturn value"
+            "motion_sheet": "value = truth()\nos.symlink(target.folder, 'e')\nexchange(arguments['folder'], 'e')\n"
+            "return value"
         },
         _MOTION,
     ),
     _lie(
         "tiles-in-folders-without-end",
         {
-            "motion_sheet": "value = truth()\nhere = os.getcwd()\nos.chdir(arguments['folder'])\nfor _ in range(50): os.mkdir('d'); os.chdir('d')\nos.chdir(here)\nreturn value"
+            "motion_sheet": "value = truth()\nhere = os.getcwd()\nos.chdir(arguments['folder'])\n"
+            "for _ in range(50): os.mkdir('d'); os.chdir('d')\nos.chdir(here)\nreturn value"
         },
         _MOTION,
     ),
     _lie(
         "folders-that-nobody-may-enter",
         {
-            "motion_sheet": "value = truth()\nos.makedirs(arguments['folder'] + '/a/b')\nos.chmod(arguments['folder'] + '/a', 0)\nreturn value"
+            "motion_sheet": "value = truth()\nos.makedirs(arguments['folder'] + '/a/b')\n"
+            "os.chmod(arguments['folder'] + '/a', 0)\nreturn value"
         },
         _MOTION,
     ),
     _lie(
         "modes-of-folders-that-become-links",
         {
-            "motion_sheet": "value = truth()\nfor n in range(40): os.makedirs(arguments['folder'] + f'/f{n}/g')\nos.symlink(target.folder, 'e')\n"
-            "import glob\ndef run():\n    until = time.monotonic() + 4\n    while time.monotonic() < until:\n        for n in range(40): libc.syscall(*raw(316, -100, (arguments['folder'] + f'/f{n}').encode(), -100, b'e', 2))\n"
+            "motion_sheet": "value = truth()\nfor n in range(40): os.makedirs(arguments['folder'] + f'/f{n}/g')\n"
+            "os.symlink(target.folder, 'e')\n"
+            "import glob\ndef run():\n    until = time.monotonic() + 4\n"
+            "    while time.monotonic() < until:\n"
+            "        for n in range(40): libc.syscall(*raw(316, -100, (arguments['folder'] + "
+            "f'/f{n}').encode(), -100, b'e', 2))\n"
             "threading.Thread(target=run, daemon=True).start()\nreturn value"
         },
         _MOTION,
@@ -211,7 +233,8 @@ WAYS = (
     _lie(
         "a-saved-file-exchanged-for-a-link",
         {
-            "save": "value = truth()\nos.symlink(target.file, 'e')\nexchange(arguments['path'], 'e')\nreturn value"
+            "save": "value = truth()\nos.symlink(target.file, 'e')\nexchange(arguments['path'], 'e')\n"
+            "return value"
         },
         _SAVE_QUICKLY,
         _LOAD,
@@ -219,7 +242,8 @@ WAYS = (
     _lie(
         "a-checkpoint-exchanged-for-a-link",
         {
-            "write": "value = truth()\nworked(os.unlink, 'e')\nworked(os.symlink, target.file, 'e')\nexchange(arguments['path'], 'e', 2)\nreturn value"
+            "write": "value = truth()\nworked(os.unlink, 'e')\nworked(os.symlink, target.file, 'e')\n"
+            "exchange(arguments['path'], 'e', 2)\nreturn value"
         },
         _RUN,
         _CHECKPOINT,
@@ -227,21 +251,27 @@ WAYS = (
     _lie(
         "a-frame-exchanged-for-a-link",
         {
-            "render_frame": "value = truth()\nworked(os.unlink, 'e')\nos.symlink(target.picture, 'e')\nexchange(arguments['path'], 'e', 2)\nreturn value"
+            "render_frame": "value = truth()\nworked(os.unlink, 'e')\nos.symlink(target.picture, 'e')\n"
+            "exchange(arguments['path'], 'e', 2)\nreturn value"
         },
         _RENDER,
     ),
     _lie(
         "a-frame-that-grows",
         {
-            "render_frame": "value = truth()\npath = arguments['path']\ndef run():\n    with open(path, 'ab') as file:\n        for _ in range(100): worked(file.write, bytes(1 << 20))\nthreading.Thread(target=run, daemon=True).start()\nreturn value"
+            "render_frame": "value = truth()\npath = arguments['path']\ndef run():\n"
+            "    with open(path, 'ab') as file:\n"
+            "        for _ in range(100): worked(file.write, bytes(1 << 20))\n"
+            "threading.Thread(target=run, daemon=True).start()\nreturn value"
         },
         _RENDER,
     ),
     _lie(
         "a-frame-that-shrinks",
         {
-            "render_frame": "value = truth()\npath = arguments['path']\ndef run():\n    for n in range(3000): worked(os.truncate, path, n % 99)\nthreading.Thread(target=run, daemon=True).start()\nreturn value"
+            "render_frame": "value = truth()\npath = arguments['path']\ndef run():\n"
+            "    for n in range(3000): worked(os.truncate, path, n % 99)\n"
+            "threading.Thread(target=run, daemon=True).start()\nreturn value"
         },
         _RENDER,
     ),
@@ -303,7 +333,8 @@ WAYS = (
     _lie(
         "one-cache-many-times",
         {
-            "save": "with open('x', 'wb') as file: file.write(bytes(60 << 20))\nreturn {**truth(), 'files': [['x', f'{n}.bphys'] for n in range(10)]}"
+            "save": "with open('x', 'wb') as file: file.write(bytes(60 << 20))\n"
+            "return {**truth(), 'files': [['x', f'{n}.bphys'] for n in range(10)]}"
         },
         _SAVE_QUICKLY,
         seconds=120.0,
@@ -312,7 +343,8 @@ WAYS = (
     _lie(
         "a-cache-in-a-folder-that-becomes-a-link",
         {
-            "save": "os.mkdir('d')\nwrite('d/file')\nos.symlink(target.folder, 'e')\nexchange('d', 'e')\nreturn {**truth(), 'files': [['d/file', f'{n}.bphys'] for n in range(300)]}"
+            "save": "os.mkdir('d')\nwrite('d/file')\nos.symlink(target.folder, 'e')\nexchange('d', 'e')\n"
+            "return {**truth(), 'files': [['d/file', f'{n}.bphys'] for n in range(300)]}"
         },
         _SAVE_QUICKLY,
     ),
@@ -326,7 +358,8 @@ WAYS = (
     _lie(
         "a-scene-that-is-listed-but-is-a-link",
         {
-            "execute": "worked(os.symlink, target.file, 'x.blend')\nworked(os.mkdir, 'd.blend')\nworked(os.symlink, '..', 'up')\nreturn truth()"
+            "execute": "worked(os.symlink, target.file, 'x.blend')\nworked(os.mkdir, 'd.blend')\n"
+            "worked(os.symlink, '..', 'up')\nreturn truth()"
         },
         _RUN,
         Tool("blender_load"),
@@ -355,7 +388,8 @@ WAYS = (
     _lie(
         "load-a-scene-that-is-exchanged-for-a-link",
         {
-            "execute": "write('x.blend', b'BLENDER-v501RENDH')\nworked(os.symlink, target.file, 'e')\nexchange('x.blend', 'e', 3)\nreturn truth()"
+            "execute": "write('x.blend', b'BLENDER-v501RENDH')\nworked(os.symlink, target.file, 'e')\n"
+            "exchange('x.blend', 'e', 3)\nreturn truth()"
         },
         _RUN,
         Tool("blender_load", {"path": "workspace/x.blend"}),
@@ -363,7 +397,8 @@ WAYS = (
     _lie(
         "load-caches-through-a-link",
         {
-            "execute": "write('x.blend', b'BLENDER-v501RENDH')\nworked(os.symlink, target.folder, 'blendcache_x')\nreturn truth()"
+            "execute": "write('x.blend', b'BLENDER-v501RENDH')\n"
+            "worked(os.symlink, target.folder, 'blendcache_x')\nreturn truth()"
         },
         _RUN,
         Tool("blender_load", {"path": "workspace/x.blend"}),
@@ -371,7 +406,9 @@ WAYS = (
     _lie(
         "load-caches-with-links-and-pipes",
         {
-            "execute": "write('x.blend', b'BLENDER-v501RENDH')\nos.makedirs('blendcache_x', exist_ok=True)\nworked(os.symlink, target.file, 'blendcache_x/a')\nworked(os.mkfifo, 'blendcache_x/b')\nreturn truth()"
+            "execute": "write('x.blend', b'BLENDER-v501RENDH')\nos.makedirs('blendcache_x', exist_ok=True)\n"
+            "worked(os.symlink, target.file, 'blendcache_x/a')\nworked(os.mkfifo, 'blendcache_x/b')\n"
+            "return truth()"
         },
         _RUN,
         Tool("blender_load", {"path": "workspace/x.blend"}),
@@ -379,7 +416,8 @@ WAYS = (
     _lie(
         "a-checkpoint-in-the-place-of-a-log",
         {
-            "write": "value = truth()\nos.symlink('/proc/self/environ', arguments['path'] + '1')\nos.rename(arguments['path'] + '1', arguments['path'])\nreturn value"
+            "write": "value = truth()\nos.symlink('/proc/self/environ', arguments['path'] + '1')\n"
+            "os.rename(arguments['path'] + '1', arguments['path'])\nreturn value"
         },
         _RUN,
         _CHECKPOINT,
@@ -389,8 +427,10 @@ WAYS = (
         way(
             f"threads-left-behind-while-{what}",
             "ground",
-            f"{_RACE}bpy.ops.mesh.primitive_cube_add()\nblind()\nimport glob\nworked(os.makedirs, '.loading/x') if not os.path.lexists('.loading') else None\n"
-            "race(lambda: [*glob.glob('.*'), *glob.glob('.*/*'), 'kept.blend', '.saved.blend', '.loading/kept.blend', '.loading'], target.victim, 4)\nNone",
+            f"{_RACE}bpy.ops.mesh.primitive_cube_add()\nblind()\nimport glob\n"
+            f"worked(os.makedirs, '.loading/x') if not os.path.lexists('.loading') else None\n"
+            "race(lambda: [*glob.glob('.*'), *glob.glob('.*/*'), 'kept.blend', '.saved.blend', "
+            "'.loading/kept.blend', '.loading'], target.victim, 4)\nNone",
             *tools,
             spoils=True,
             once=True,

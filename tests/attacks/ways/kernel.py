@@ -70,13 +70,16 @@ WAYS = (
     way(
         "move-an-interrupt",
         "proc files",
-        "import glob\n[worked(rewrite, path) for path in glob.glob('/proc/irq/*/smp_affinity')[:1] if worked(rewrite, path)]",
+        "import glob\n"
+        "[worked(rewrite, path) for path in glob.glob('/proc/irq/*/smp_affinity')[:1] if "
+        "worked(rewrite, path)]",
         denied=("5",),
     ),
     way(
         "leave-its-control-group",
         "files memory",
-        "import glob\n[path for path in [*glob.glob('/sys/fs/cgroup/*/cgroup.procs'), '/sys/fs/cgroup/cgroup.procs']\n"
+        "import glob\n[path for path in [*glob.glob('/sys/fs/cgroup/*/cgroup.procs'), "
+        "'/sys/fs/cgroup/cgroup.procs']\n"
         " if os.path.exists(path) and worked(lambda: open(path, 'a').write(str(os.getpid())))]",
         denied=("22", "16"),
     ),
@@ -84,20 +87,23 @@ WAYS = (
         "loosen-its-control-group",
         "files memory",
         "import glob\n[path for path in glob.glob('/sys/fs/cgroup/**/memory.max', recursive=True)[:5]\n"
-        " + glob.glob('/sys/fs/cgroup/**/memory.limit_in_bytes', recursive=True)[:5] if worked(rewrite, path)]",
+        " + glob.glob('/sys/fs/cgroup/**/memory.limit_in_bytes', recursive=True)[:5] if "
+        "worked(rewrite, path)]",
         denied=("22", "16"),
     ),
     way(
         "be-told-when-a-control-group-empties",
         "files capabilities uid",
-        "[path for path in ['/sys/fs/cgroup/memory/release_agent', '/sys/fs/cgroup/cpu/release_agent'] if os.path.exists(path) and worked(rewrite, path)]",
+        "[path for path in ['/sys/fs/cgroup/memory/release_agent', "
+        "'/sys/fs/cgroup/cpu/release_agent'] if os.path.exists(path) and worked(rewrite, path)]",
     ),
     # Calls.
     _reach("load-a-program-into-the-kernel", "kernel", 321, "0, bytes(128), 128"),
     _call(
         "count-events",
         "kernel",
-        "syscall(298, struct.pack('IIQ', 1, 112, 1) + bytes(24) + struct.pack('Q', 0x61) + bytes(64), 0, -1, -1, 0)",
+        "syscall(298, struct.pack('IIQ', 1, 112, 1) + bytes(24) + struct.pack('Q', 0x61) + "
+        "bytes(64), 0, -1, -1, 0)",
     ),
     _call("handle-its-own-faults", "kernel", "syscall(323, 1)"),
     _call("ring-the-kernel", "kernel", "syscall(425, 8, ctypes.create_string_buffer(120))"),
@@ -197,14 +203,16 @@ WAYS = (
     _call(
         "raise-its-capabilities",
         "capabilities uid",
-        "every = (1 << 32) - 1\nsyscall(126, struct.pack('Ii', 0x20080522, 0), struct.pack('6I', *[every] * 6)) == 0",
+        "every = (1 << 32) - 1\n"
+        "syscall(126, struct.pack('Ii', 0x20080522, 0), struct.pack('6I', *[every] * 6)) == 0",
     ),
     _call("keep-capabilities", "capabilities uid", "c('prctl', 47, 2, 21, 0, 0) == 0"),
     _call("set-secure-bits", "capabilities uid", "c('prctl', 28, 0, 0, 0, 0) == 0"),
     _call(
         "have-any-capability",
         "capabilities uid",
-        "[line for line in read('/proc/self/status').decode().splitlines() if line[:3] == 'Cap' and int(line.split()[1], 16)]",
+        "[line for line in read('/proc/self/status').decode().splitlines() if line[:3] == 'Cap' "
+        "and int(line.split()[1], 16)]",
     ),
     _call(
         "be-root",

@@ -1,4 +1,4 @@
-"""Ways to take more than is allowed: memory, disk, files, threads, time, output. Each succeeds if it gets to its end."""
+"""Ways to take more than is allowed: memory, disk, files, threads, time, output. Each succeeds at its end."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ def _raise(name: str) -> Way:
     return way(
         f"raise-the-limit-of-{name.lower()}",
         "limits",
-        f"{_OWN.format(name)}resource.setrlimit(which, (resource.RLIM_INFINITY, resource.RLIM_INFINITY)) or True",
+        f"{_OWN.format(name)}resource.setrlimit(which, (resource.RLIM_INFINITY, "
+        f"resource.RLIM_INFINITY)) or True",
         denied=("ValueError",),
     )
 
@@ -74,31 +75,36 @@ WAYS = (
     way(
         "take-shared-memory",
         "memory",
-        "import mmap\nshared = mmap.mmap(-1, 3 << 30)\nfor at in range(0, 3 << 30, 4096): shared[at] = 1\ntime.sleep(2)\nTrue",
+        "import mmap\nshared = mmap.mmap(-1, 3 << 30)\n"
+        "for at in range(0, 3 << 30, 4096): shared[at] = 1\ntime.sleep(2)\nTrue",
         timeout=40.0,
     ),
     way(
         "take-memory-as-a-file",
         "memory memfd",
-        "number = os.memfd_create('x')\nfor _ in range(3 << 10): os.write(number, bytes(1 << 20))\ntime.sleep(2)\nTrue",
+        "number = os.memfd_create('x')\nfor _ in range(3 << 10): os.write(number, bytes(1 << 20))\n"
+        "time.sleep(2)\nTrue",
         timeout=40.0,
     ),
     way(
         "take-memory-as-files",
         "memory memfd",
         "numbers = [os.memfd_create('x') for _ in range(48)]\n"
-        "for number in numbers:\n    for _ in range(64): os.write(number, bytes(1 << 20))\ntime.sleep(2)\nTrue",
+        "for number in numbers:\n    for _ in range(64): os.write(number, bytes(1 << 20))\n"
+        "time.sleep(2)\nTrue",
         timeout=40.0,
     ),
     way(
         "take-memory-as-a-shared-file",
         "memory files",
-        "number = os.open('/dev/shm/' + target.mark, os.O_CREAT | os.O_RDWR)\nos.write(number, bytes(1 << 20))",
+        "number = os.open('/dev/shm/' + target.mark, os.O_CREAT | os.O_RDWR)\n"
+        "os.write(number, bytes(1 << 20))",
     ),
     way(
         "take-memory-as-pipes",
         "memory",
-        "import fcntl\npipes = [os.pipe() for _ in range(400)]\nfor _, end in pipes:\n    worked(fcntl.fcntl, end, 1031, 1 << 20)\n"
+        "import fcntl\npipes = [os.pipe() for _ in range(400)]\nfor _, end in pipes:\n"
+        "    worked(fcntl.fcntl, end, 1031, 1 << 20)\n"
         "    os.set_blocking(end, False)\n    while worked(os.write, end, bytes(1 << 16)): pass\n"
         "sum(fcntl.fcntl(end, 1032) for _, end in pipes) > 600 << 20",
         timeout=40.0,
@@ -108,7 +114,8 @@ WAYS = (
     way(
         "be-the-last-to-be-killed",
         "proc files memory",
-        "worked(lambda: open('/proc/self/oom_score_adj', 'w').write('-1000'))\nint(open('/proc/self/oom_score_adj').read()) < 1000",
+        "worked(lambda: open('/proc/self/oom_score_adj', 'w').write('-1000'))\n"
+        "int(open('/proc/self/oom_score_adj').read()) < 1000",
     ),
     # Disk.
     _disk("one-large-file", "open('big', 'wb').write(bytes(300 << 20))"),
@@ -126,34 +133,43 @@ WAYS = (
     ),
     _disk(
         "many-files-in-folders-in-folders",
-        "os.makedirs('/'.join('d' * 60))\nfor number in range(30_000): open('/'.join('d' * 60) + f'/{number}', 'w').close()\nTrue",
+        "os.makedirs('/'.join('d' * 60))\n"
+        "for number in range(30_000): open('/'.join('d' * 60) + f'/{number}', 'w').close()\nTrue",
     ),
     _disk("folders-without-end", "for number in range(10_000): os.mkdir('d'); os.chdir('d')\nTrue"),
     _disk("many-bytes", "for number in range(60): open(f'b{number}', 'wb').write(bytes(10 << 20))\nTrue"),
     _disk(
         "many-bytes-in-the-temporary-folder",
-        "for number in range(60): open(os.environ['TMPDIR'] + f'/b{number}', 'wb').write(bytes(10 << 20))\nTrue",
+        "for number in range(60): open(os.environ['TMPDIR'] + f'/b{number}', "
+        "'wb').write(bytes(10 << 20))\nTrue",
     ),
     _disk(
         "many-bytes-in-nameless-files",
-        "kept = []\nfor number in range(60):\n    kept.append(open('b', 'wb', 0))\n    kept[-1].write(bytes(10 << 20))\n    os.unlink('b')\ntime.sleep(3)\nTrue",
+        "kept = []\nfor number in range(60):\n    kept.append(open('b', 'wb', 0))\n"
+        "    kept[-1].write(bytes(10 << 20))\n    os.unlink('b')\ntime.sleep(3)\nTrue",
     ),
     _disk(
         "many-bytes-in-files-without-any-name",
-        "kept = [os.open('.', os.O_TMPFILE | os.O_RDWR) for _ in range(60)]\nfor number in kept: os.write(number, bytes(10 << 20))\ntime.sleep(3)\nTrue",
+        "kept = [os.open('.', os.O_TMPFILE | os.O_RDWR) for _ in range(60)]\n"
+        "for number in kept: os.write(number, bytes(10 << 20))\ntime.sleep(3)\nTrue",
     ),
     _disk(
         "many-bytes-in-a-file-that-is-only-mapped",
-        "import mmap\nkept = []\nfor number in range(6):\n    file = open('b', 'w+b', 0)\n    file.truncate(100 << 20)\n"
-        "    kept.append(mmap.mmap(file.fileno(), 100 << 20))\n    kept[-1].write(bytes(range(256)) * (100 << 12))\n    file.close()\n    os.unlink('b')\ntime.sleep(3)\nTrue",
+        "import mmap\nkept = []\nfor number in range(6):\n    file = open('b', 'w+b', 0)\n"
+        "    file.truncate(100 << 20)\n"
+        "    kept.append(mmap.mmap(file.fileno(), 100 << 20))\n"
+        "    kept[-1].write(bytes(range(256)) * (100 << 12))\n    file.close()\n"
+        "    os.unlink('b')\ntime.sleep(3)\nTrue",
     ),
     _disk(
         "many-bytes-behind-many-files",
-        "for number in range(390): open(f'f{number}', 'w').close()\nfor number in range(60): open('f1' + str(number % 9), 'ab').write(bytes(10 << 20))\nTrue",
+        "for number in range(390): open(f'f{number}', 'w').close()\n"
+        "for number in range(60): open('f1' + str(number % 9), 'ab').write(bytes(10 << 20))\nTrue",
     ),
     _disk(
         "many-bytes-by-reservation",
-        "for number in range(9): os.posix_fallocate(os.open(f'b{number}', os.O_CREAT | os.O_WRONLY), 0, 100 << 20)\ntime.sleep(3)\nTrue",
+        "for number in range(9): os.posix_fallocate(os.open(f'b{number}', os.O_CREAT | "
+        "os.O_WRONLY), 0, 100 << 20)\ntime.sleep(3)\nTrue",
     ),
     _disk(
         "many-bytes-in-attributes",
@@ -163,14 +179,18 @@ WAYS = (
     ),
     _disk(
         "bytes-after-a-change-of-mode",
-        "os.mkdir('d')\nfor number in range(60): open(f'd/b{number}', 'wb').write(bytes(10 << 20)) if number else os.chmod('d', 0o300)\nTrue",
+        "os.mkdir('d')\n"
+        "for number in range(60): open(f'd/b{number}', 'wb').write(bytes(10 << 20)) if number "
+        "else os.chmod('d', 0o300)\nTrue",
     ),
     way("a-core-dump", "limits", "os.abort()", denied=("Died",), spoils=True),
     # Threads and time.
     way(
         "many-threads",
         "limits processes",
-        "threading.stack_size(65536)\nfor _ in range(2000): threading.Thread(target=time.sleep, args=(9,), daemon=True).start()\nTrue",
+        "threading.stack_size(65536)\n"
+        "for _ in range(2000): threading.Thread(target=time.sleep, args=(9,), "
+        "daemon=True).start()\nTrue",
         spoils=True,
         timeout=30.0,
     ),

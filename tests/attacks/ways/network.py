@@ -39,7 +39,8 @@ WAYS = (
     way(
         "send-a-datagram",
         "sockets namespaces",
-        "import socket\nsocket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(b'x', ('127.0.0.1', target.udp))",
+        "import socket\n"
+        "socket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(b'x', ('127.0.0.1', target.udp))",
     ),
     way(
         "ask-for-a-name",
@@ -61,23 +62,30 @@ WAYS = (
     way(
         "connect-a-pair-to-a-path",
         "sockets files",
-        "import socket\nsocket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].connect(target.sockets + '/datagram')\nTrue",
+        "import socket\n"
+        "socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].connect(target.sockets + "
+        "'/datagram')\nTrue",
     ),
     way(
         "send-from-a-pair-to-a-path",
         "sockets files",
-        "import socket\nsocket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendto(b'x', target.sockets + '/datagram')",
+        "import socket\n"
+        "socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendto(b'x', target.sockets + "
+        "'/datagram')",
     ),
     way(
         "send-from-a-pair-to-an-abstract-name",
         "sockets namespaces",
-        "import socket\nsocket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendto(b'x', '\\0' + target.abstract + '-datagram')",
+        "import socket\n"
+        "socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendto(b'x', '\\0' + "
+        "target.abstract + '-datagram')",
     ),
     way(
         "send-a-descriptor-from-a-pair",
         "sockets files",
         "import array, socket\nright = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array('i', [0]))]\n"
-        "socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendmsg([b'x'], right, 0, target.sockets + '/datagram')",
+        "socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendmsg([b'x'], right, 0, "
+        "target.sockets + '/datagram')",
     ),
     _call(
         "send-many-from-a-pair",
@@ -86,20 +94,23 @@ WAYS = (
         "name = struct.pack('H', 1) + (target.sockets + '/datagram').encode() + b'\\0'\n"
         "name_buffer, data = ctypes.create_string_buffer(name), ctypes.create_string_buffer(b'x')\n"
         "vector = ctypes.create_string_buffer(struct.pack('QQ', ctypes.addressof(data), 1))\n"
-        "message = struct.pack('QIxxxxQQQQiI', ctypes.addressof(name_buffer), len(name), ctypes.addressof(vector), 1, 0, 0, 0, 0)\n"
+        "message = struct.pack('QIxxxxQQQQiI', ctypes.addressof(name_buffer), len(name), "
+        "ctypes.addressof(vector), 1, 0, 0, 0, 0)\n"
         "syscall(307, pair[0].fileno(), message + bytes(8), 1, 0)",
     ),
     way(
         "send-through-a-socket-in-the-workspace",
         "sockets",
-        "import socket\nos.symlink(target.sockets + '/datagram', 'd')\nsocket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendto(b'x', 'd')",
+        "import socket\nos.symlink(target.sockets + '/datagram', 'd')\n"
+        "socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendto(b'x', 'd')",
     ),
     way("make-a-pair", "sockets", "import socket\nsocket.socketpair()\nTrue"),
     way(
         "send-descriptors-on-the-channel",
         "sockets",
         "import array, socket\nfor number in range(3, 400):\n"
-        "    if worked(os.readlink, f'/proc/self/fd/{number}') and os.readlink(f'/proc/self/fd/{number}').startswith('socket'):\n"
+        "    if worked(os.readlink, f'/proc/self/fd/{number}') and "
+        "os.readlink(f'/proc/self/fd/{number}').startswith('socket'):\n"
         "        socket.socket(fileno=os.dup(number)).sendmsg([], [(1, 1, array.array('i', [0]))])\n"
         "None",
         denied=("22",),
@@ -123,7 +134,8 @@ WAYS = (
     way(
         "make-a-queue-of-messages",
         "sockets namespaces",
-        "libc.mq_open.restype = ctypes.c_int\nc('mq_open', b'/' + target.mark.encode(), 0o102, 0o600, None) >= 0",
+        "libc.mq_open.restype = ctypes.c_int\n"
+        "c('mq_open', b'/' + target.mark.encode(), 0o102, 0o600, None) >= 0",
     ),
     way("share-memory-by-key", "sockets namespaces", "c('shmget', 0x5357, 4096, 0o1666) >= 0"),
     way("share-a-semaphore-by-key", "sockets namespaces", "c('semget', 0x5357, 1, 0o1666) >= 0"),

@@ -48,14 +48,18 @@ WAYS = (
     way(
         "kill-by-the-extended-owner-of-a-pipe",
         "signals namespaces",
-        "import fcntl\nr, w = os.pipe()\nfcntl.fcntl(r, 15, struct.pack('ii', 1, target.pid))\nfcntl.fcntl(r, 10, 15)\n"
+        "import fcntl\nr, w = os.pipe()\nfcntl.fcntl(r, 15, struct.pack('ii', 1, target.pid))\n"
+        "fcntl.fcntl(r, 10, 15)\n"
         "fcntl.fcntl(r, fcntl.F_SETFL, os.O_ASYNC | os.O_NONBLOCK)\nos.write(w, b'x')\nTrue",
     ),
     way(
         "kill-by-the-owner-of-a-socket",
         "signals namespaces",
-        "import fcntl\nnumbers = [int(n) for n in os.listdir('/proc/self/fd') if worked(os.readlink, f'/proc/self/fd/{n}') and 'socket' in os.readlink(f'/proc/self/fd/{n}')]\n"
-        "[fcntl.ioctl(n, 0x8901, struct.pack('i', target.pid)) for n in numbers] or [fcntl.fcntl(n, 8, target.pid) for n in numbers]",
+        "import fcntl\n"
+        "numbers = [int(n) for n in os.listdir('/proc/self/fd') if worked(os.readlink, "
+        "f'/proc/self/fd/{n}') and 'socket' in os.readlink(f'/proc/self/fd/{n}')]\n"
+        "[fcntl.ioctl(n, 0x8901, struct.pack('i', target.pid)) for n in numbers] or "
+        "[fcntl.fcntl(n, 8, target.pid) for n in numbers]",
         denied=("22",),
     ),
     way(
@@ -112,7 +116,8 @@ WAYS = (
     _call(
         "move-its-pages",
         "signals namespaces uid",
-        "syscall(279, target.pid, 1, struct.pack('Q', target.address & ~4095), None, ctypes.create_string_buffer(8), 0) == 0",
+        "syscall(279, target.pid, 1, struct.pack('Q', target.address & ~4095), None, "
+        "ctypes.create_string_buffer(8), 0) == 0",
     ),
     _call(
         "migrate-its-pages",
@@ -128,7 +133,8 @@ WAYS = (
     _call(
         "find-its-locks",
         "signals namespaces uid",
-        "where, size = ctypes.c_ulong(), ctypes.c_ulong()\nsyscall(274, target.pid, ctypes.byref(where), ctypes.byref(size)) == 0",
+        "where, size = ctypes.c_ulong(), ctypes.c_ulong()\n"
+        "syscall(274, target.pid, ctypes.byref(where), ctypes.byref(size)) == 0",
     ),
     way(
         "enter-its-namespaces",

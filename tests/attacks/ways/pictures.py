@@ -16,27 +16,44 @@ _EPS = (
 _IMAGE = "import io, PIL.Image\n"
 _FORMATS = {
     "eps": _EPS,
-    "eps-in-a-dos-shell": "struct.pack('<IIIIIIIH', 0xC6D3D0C5, 30, {size}, 0, 0, 0, 0, 0xFFFF) + {eps}".format(
-        size=200, eps=_EPS
-    ),
-    "bmp": "b'BM' + struct.pack('<IHHIIiiHHIIiiII', 54 + 768, 0, 0, 54, 40, 16, 16, 1, 24, 0, 768, 0, 0, 0, 0) + bytes(768)",
-    "gif": "b'GIF89a' + struct.pack('<HHBBB', 16, 16, 0x80, 0, 0) + bytes(6) + b',' + struct.pack('<HHHHB', 0, 0, 16, 16, 0) + b'\\x02\\x16\\x84\\x8f\\xa9\\xcb\\xed\\x0f\\xa3\\x9c\\xb4\\xda\\x8b\\xb3\\xde\\xbc\\xfb\\x0f\\x86\\xe2\\x48\\x96\\xe5\\x00\\x3b'",
-    "tiff": "b'II*\\0' + struct.pack('<I', 8) + struct.pack('<H', 9) + b''.join(struct.pack('<HHII', *entry) for entry in "
-    "((256, 4, 1, 16), (257, 4, 1, 16), (258, 3, 1, 8), (259, 3, 1, 1), (262, 3, 1, 1), (273, 4, 1, 122), (277, 3, 1, 1), (278, 4, 1, 16), (279, 4, 1, 256))) + bytes(4) + bytes(256)",
+    "eps-in-a-dos-shell": f"struct.pack('<IIIIIIIH', 0xC6D3D0C5, 30, {200}, 0, 0, 0, 0, 0xFFFF) + {_EPS}",
+    "bmp": "b'BM' + struct.pack('<IHHIIiiHHIIiiII', 54 + 768, 0, 0, 54, 40, 16, 16, 1, 24, 0, 768, "
+    "0, 0, 0, 0) + bytes(768)",
+    "gif": "b'GIF89a' + struct.pack('<HHBBB', 16, 16, 0x80, 0, 0) + bytes(6) + b',' + "
+    "struct.pack('<HHHHB', 0, 0, 16, 16, 0) + "
+    "b'\\x02\\x16\\x84\\x8f\\xa9\\xcb\\xed\\x0f\\xa3\\x9c\\xb4\\xda\\x8b\\xb3\\xde\\xbc\\xfb\\x0f\\x86\\xe2\\x48\\x96\\xe5\\x00\\x3b'",
+    "tiff": "b'II*\\0' + struct.pack('<I', 8) + struct.pack('<H', 9) + b''.join(struct.pack('<HHII', "
+    "*entry) for entry in "
+    "((256, 4, 1, 16), (257, 4, 1, 16), (258, 3, 1, 8), (259, 3, 1, 1), (262, 3, 1, 1), "
+    "(273, 4, 1, 122), (277, 3, 1, 1), (278, 4, 1, 16), (279, 4, 1, 256))) + bytes(4) + "
+    "bytes(256)",
     "ppm": "b'P6 16 16 255\\n' + bytes(768)",
-    "pcx": "b'\\x0a\\x05\\x01\\x08' + struct.pack('<HHHHHH', 0, 0, 15, 15, 72, 72) + bytes(48) + b'\\0\\x03' + struct.pack('<H', 16) + bytes(58) + b'\\xc0' * 768",
+    "pcx": "b'\\x0a\\x05\\x01\\x08' + struct.pack('<HHHHHH', 0, 0, 15, 15, 72, 72) + bytes(48) + "
+    "b'\\0\\x03' + struct.pack('<H', 16) + bytes(58) + b'\\xc0' * 768",
     "tga": "struct.pack('<BBBHHBHHHHBB', 0, 0, 2, 0, 0, 0, 0, 0, 16, 16, 24, 0) + bytes(768)",
     "xpm": 'b\'/* XPM */ static char *x[] = {\\n"1 1 1 1",\\n"a c #000000",\\n"a"};\\n\'',
     "sgi": "struct.pack('>hBBHHHHII', 474, 0, 1, 3, 16, 16, 3, 0, 255) + bytes(84 + 404) + bytes(768)",
-    "im": "b'Image type: RGB image\\r\\nFile size (no of images): 1\\r\\nImage size (x*y): 16*16\\r\\n\\x1a' + bytes(600) + bytes(768)",
-    "fits": "b'SIMPLE  =                    T'.ljust(80) + b'BITPIX  =                    8'.ljust(80) + b'NAXIS   =                    2'.ljust(80) + b'NAXIS1  =                   16'.ljust(80) + b'NAXIS2  =                   16'.ljust(80) + b'END'.ljust(2480) + bytes(2880)",
-    "svg": "b'<svg xmlns=\"http://www.w3.org/2000/svg\"><image href=\"file://' + target.file.encode() + b'\"/></svg>'",
+    "im": "b'Image type: RGB image\\r\\nFile size (no of images): 1\\r\\nImage size (x*y): "
+    "16*16\\r\\n\\x1a' + bytes(600) + bytes(768)",
+    "fits": "b'SIMPLE  =                    T'.ljust(80) + b'BITPIX  =                    "
+    "8'.ljust(80) + b'NAXIS   =                    2'.ljust(80) + b'NAXIS1  =                "
+    "   16'.ljust(80) + b'NAXIS2  =                   16'.ljust(80) + b'END'.ljust(2480) + "
+    "bytes(2880)",
+    "svg": 'b\'<svg xmlns="http://www.w3.org/2000/svg"><image href="file://\' + '
+    "target.file.encode() + b'\"/></svg>'",
     "text": "b'hello'",
     "nothing": "b''",
 }
 # A picture of few bytes that has very many pixels, and others that are broken or overfull.
-_WIDE = "b'\\x89PNG\\r\\n\\x1a\\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', {width}, {height}, 8, 6, 0, 0, 0)) + chunk(b'IDAT', b''.join(pack() for _ in range(1))) + chunk(b'IEND', b'')"
-_PACK = "import zlib\ndef pack():\n    z = zlib.compressobj(9)\n    part = z.compress(bytes(1 << 20))\n    return part + b''.join(z.compress(bytes(1 << 20)) for _ in range({mib})) + z.flush()\n"
+_WIDE = (
+    "b'\\x89PNG\\r\\n\\x1a\\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', {width}, {height}, "
+    "8, 6, 0, 0, 0)) + chunk(b'IDAT', b''.join(pack() for _ in range(1))) + chunk(b'IEND', b'')"
+)
+_PACK = (
+    "import zlib\ndef pack():\n    z = zlib.compressobj(9)\n"
+    "    part = z.compress(bytes(1 << 20))\n"
+    "    return part + b''.join(z.compress(bytes(1 << 20)) for _ in range({mib})) + z.flush()\n"
+)
 _BOMBS = {
     "many-pixels": (_PACK.format(mib=600), _WIDE.format(width=12000, height=12000)),
     "a-claim-of-many-pixels": (_PACK.format(mib=1), _WIDE.format(width=60000, height=60000)),
@@ -45,7 +62,8 @@ _BOMBS = {
     "no-pixels": (_PACK.format(mib=1), _WIDE.format(width=0, height=0)),
     "a-text-that-swells": (
         "import zlib\n",
-        "png(16, 16, extra=b''.join(chunk(b'zTXt', b'n%d\\0\\0' % n + zlib.compress(bytes(60 << 20), 9)) for n in range(40)))",
+        "png(16, 16, extra=b''.join(chunk(b'zTXt', b'n%d\\0\\0' % n + zlib.compress(bytes(60 << "
+        "20), 9)) for n in range(40)))",
     ),
     "a-profile-that-swells": (
         "import zlib\n",
@@ -72,7 +90,10 @@ def _frame(name: str, code: str, before: str = "", **more: object) -> Way:
 
 def _view(name: str, code: str, before: str = "", **more: object) -> Way:
     """A way that hands over such a view."""
-    lie = f"{before}value = truth()\nwrite(os.path.join(arguments['folder'], value['views'][0]['file']), {code})\nreturn value"
+    lie = (
+        f"{before}value = truth()\n"
+        f"write(os.path.join(arguments['folder'], value['views'][0]['file']), {code})\nreturn value"
+    )
     return way(
         f"a-view-of-{name}", "decoder", _PREVIEW, lies={"preview": lie}, once=True, seconds=120.0, **more
     )
@@ -103,7 +124,8 @@ WAYS = (
         once=True,
         seconds=120.0,
         lies={
-            "motion_sheet": f"{_BOMBS['many-pixels'][0]}value = truth()\nwrite(arguments['folder'] + '/0-path-1.png', {_BOMBS['many-pixels'][1]})\nreturn value"
+            "motion_sheet": f"{_BOMBS['many-pixels'][0]}value = truth()\n"
+            f"write(arguments['folder'] + '/0-path-1.png', {_BOMBS['many-pixels'][1]})\nreturn value"
         },
     ),
     way(
@@ -128,7 +150,9 @@ WAYS = (
         _FILM,
         once=True,
         lies={
-            "render_video": "value = truth()\nwrite(arguments['path'], b'#EXTM3U\\n#EXTINF:1,\\nfile://' + target.file.encode())\nreturn value"
+            "render_video": "value = truth()\n"
+            "write(arguments['path'], b'#EXTM3U\\n#EXTINF:1,\\nfile://' + target.file.encode())\n"
+            "return value"
         },
     ),
     way(
@@ -146,7 +170,8 @@ WAYS = (
         once=True,
         seconds=120.0,
         lies={
-            "render_frame": f"{_BOMBS['many-pixels'][0]}write(arguments['path'], {_BOMBS['many-pixels'][1]})\nreturn 0.01"
+            "render_frame": f"{_BOMBS['many-pixels'][0]}write(arguments['path'], {_BOMBS['many-pixels'][1]})\n"
+            f"return 0.01"
         },
     ),
 )

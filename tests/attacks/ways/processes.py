@@ -50,18 +50,22 @@ WAYS = (
     way(
         "start-by-multiprocessing",
         "processes",
-        "import multiprocessing\nmultiprocessing.get_context('fork').Process(target=time.sleep, args=(30,)).start()\nTrue",
+        "import multiprocessing\n"
+        "multiprocessing.get_context('fork').Process(target=time.sleep, args=(30,)).start()\nTrue",
     ),
     way(
         "open-a-page",
         "processes",
-        "import webbrowser\nwebbrowser.register('x', None, webbrowser.GenericBrowser(['/bin/true', '%s']))\nwebbrowser.get('x').open('http://127.0.0.1')",
+        "import webbrowser\n"
+        "webbrowser.register('x', None, webbrowser.GenericBrowser(['/bin/true', '%s']))\n"
+        "webbrowser.get('x').open('http://127.0.0.1')",
     ),
     way("become-another-program", "processes", "os.execv('/bin/sleep', [target.mark, '30'])"),
     way(
         "become-a-nameless-program",
         "processes memfd",
-        "number = os.memfd_create('program')\nos.write(number, read('/bin/sleep', 1 << 20))\nos.execve(number, [target.mark, '30'], {})",
+        "number = os.memfd_create('program')\nos.write(number, read('/bin/sleep', 1 << 20))\n"
+        "os.execve(number, [target.mark, '30'], {})",
     ),
     _call(
         "become-another-program-by-execveat",
@@ -72,7 +76,8 @@ WAYS = (
     way(
         "become-a-program-of-its-own",
         "processes files",
-        "number = os.open('own', os.O_CREAT | os.O_WRONLY, 0o755)\nos.write(number, read('/bin/sleep', 1 << 20))\nos.close(number)\n"
+        "number = os.open('own', os.O_CREAT | os.O_WRONLY, 0o755)\n"
+        "os.write(number, read('/bin/sleep', 1 << 20))\nos.close(number)\n"
         "os.execv('./own', [target.mark, '30'])",
     ),
     # Threads. What is left of them is seen in the process after the call.
@@ -94,7 +99,8 @@ WAYS = (
         "ground",
         "number = ctypes.c_ulong()\nbefore = set(os.listdir('/proc/self/task'))\n"
         "libc.pthread_create(ctypes.byref(number), None, ctypes.cast(libc.pause, ctypes.c_void_p), None)\n"
-        "for task in set(os.listdir('/proc/self/task')) - before: open(f'/proc/self/task/{task}/comm', 'w').write(target.mark)\nNone",
+        "for task in set(os.listdir('/proc/self/task')) - before: "
+        "open(f'/proc/self/task/{task}/comm', 'w').write(target.mark)\nNone",
         spoils=True,
     ),
     way(
@@ -102,13 +108,15 @@ WAYS = (
         "ground",
         "blind()\nnumber = ctypes.c_ulong()\nbefore = set(os.listdir('/proc/self/task'))\n"
         "libc.pthread_create(ctypes.byref(number), None, ctypes.cast(libc.pause, ctypes.c_void_p), None)\n"
-        "for task in set(os.listdir('/proc/self/task')) - before: open(f'/proc/self/task/{task}/comm', 'w').write(target.mark)\nNone",
+        "for task in set(os.listdir('/proc/self/task')) - before: "
+        "open(f'/proc/self/task/{task}/comm', 'w').write(target.mark)\nNone",
         spoils=True,
     ),
     way(
         "leave-a-thread-of-low-priority",
         "ground",
-        "def run():\n    name_thread()\n    os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 19)\n    time.sleep(60)\n"
+        "def run():\n    name_thread()\n"
+        "    os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 19)\n    time.sleep(60)\n"
         "blind()\nthreading.Thread(target=run, daemon=True).start()\ntime.sleep(0.1)\nNone",
         spoils=True,
     ),
@@ -123,9 +131,12 @@ WAYS = (
         "leave-a-timer-that-notifies-by-a-thread",
         "ground",
         "called = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(lambda _: (name_thread(), time.sleep(60)))\n"
-        "bpy.kept_by_attack = called\nevent = struct.pack('QiiQQ', 0, 0, 2, ctypes.cast(called, ctypes.c_void_p).value, 0) + bytes(40)\n"
+        "bpy.kept_by_attack = called\n"
+        "event = struct.pack('QiiQQ', 0, 0, 2, ctypes.cast(called, ctypes.c_void_p).value, 0) + "
+        "bytes(40)\n"
         "number = ctypes.c_void_p()\nlibc.timer_create(1, event, ctypes.byref(number))\n"
-        "libc.timer_settime(number, 0, struct.pack('qqqq', 0, 100_000_000, 0, 100_000_000), None)\ntime.sleep(0.3)\nNone",
+        "libc.timer_settime(number, 0, struct.pack('qqqq', 0, 100_000_000, 0, 100_000_000), None)\n"
+        "time.sleep(0.3)\nNone",
         spoils=True,
     ),
 )

@@ -92,12 +92,14 @@ WAYS = (
     _call(
         "by-openat2",
         "files",
-        "how = struct.pack('QQQ', 0, 0, 0)\nnumber = syscall(437, -100, target.file.encode(), how, 24)\nos.read(number, 99)",
+        "how = struct.pack('QQQ', 0, 0, 0)\n"
+        "number = syscall(437, -100, target.file.encode(), how, 24)\nos.read(number, 99)",
     ),
     _call(
         "by-file-handle",
         "files kernel uid capabilities",
-        "handle = ctypes.create_string_buffer(struct.pack('Ii', 128, 0) + bytes(128))\nmount = ctypes.c_int()\n"
+        "handle = ctypes.create_string_buffer(struct.pack('Ii', 128, 0) + bytes(128))\n"
+        "mount = ctypes.c_int()\n"
         "syscall(303, -100, target.file.encode(), handle, ctypes.byref(mount), 0)\n"
         "os.read(syscall(304, os.open('.', os.O_RDONLY), handle, 0), 99)",
     ),
@@ -115,23 +117,30 @@ WAYS = (
     way(
         "as-a-database",
         "files",
-        "import sqlite3\nsqlite3.connect(f'file:{target.folder}/file.db?mode=ro', uri=True).execute('select name from sqlite_master').fetchall()",
+        "import sqlite3\n"
+        "sqlite3.connect(f'file:{target.folder}/file.db?mode=ro', uri=True).execute('select name "
+        "from sqlite_master').fetchall()",
         denied=("OperationalError",),
     ),
     way(
         "as-an-archive",
         "files",
-        "import tarfile, io\ntar = tarfile.open('t.tar', 'w')\ntar.add(target.file)\ntar.close()\nread('t.tar', 99999)",
+        "import tarfile, io\ntar = tarfile.open('t.tar', 'w')\ntar.add(target.file)\ntar.close()\n"
+        "read('t.tar', 99999)",
     ),
     way(
         "as-a-module",
         "files",
-        "import importlib.util as u\nspec = u.spec_from_file_location('m', target.folder + '/file.py')\nmodule = u.module_from_spec(spec)\nspec.loader.exec_module(module)\nmodule.note",
+        "import importlib.util as u\n"
+        "spec = u.spec_from_file_location('m', target.folder + '/file.py')\n"
+        "module = u.module_from_spec(spec)\nspec.loader.exec_module(module)\nmodule.note",
     ),
     way(
         "by-copying-in-the-kernel",
         "files",
-        "source = os.open(target.file, os.O_RDONLY)\nmine = os.open('copy', os.O_RDWR | os.O_CREAT)\nos.copy_file_range(source, mine, 99)\nread('copy')",
+        "source = os.open(target.file, os.O_RDONLY)\n"
+        "mine = os.open('copy', os.O_RDWR | os.O_CREAT)\nos.copy_file_range(source, mine, 99)\n"
+        "read('copy')",
     ),
     way("the-target-of-a-link", "files attributes", "os.readlink(target.link)"),
     way("an-attribute", "files attributes", "os.getxattr(target.file, 'user.note')"),
@@ -139,24 +148,28 @@ WAYS = (
     _call(
         "an-attribute-by-getxattrat",
         "files attributes",
-        "value = ctypes.create_string_buffer(99)\narguments = struct.pack('QII', ctypes.addressof(value), 99, 0)\n"
+        "value = ctypes.create_string_buffer(99)\n"
+        "arguments = struct.pack('QII', ctypes.addressof(value), 99, 0)\n"
         "syscall(464, -100, target.file.encode(), 0, b'user.note', arguments, 16)\nvalue.value",
     ),
     _call(
         "names-by-fanotify",
         "files kernel uid capabilities",
         "number = syscall(300, 0x200 | 0xC00 | 2, 0)\n"  # FAN_REPORT_FID | FAN_REPORT_DFID_NAME | nonblocking
-        "syscall(301, number, 1, 0x100 | 0x200 | 0x20 | 0x10 | 0x40000000 | 0x8000000, -100, target.names.encode())\nTrue",
+        "syscall(301, number, 1, 0x100 | 0x200 | 0x20 | 0x10 | 0x40000000 | 0x8000000, -100, "
+        "target.names.encode())\nTrue",
     ),
     _call(
         "names-by-inotify",
         "files signals",
-        "number = c('inotify_init1', os.O_NONBLOCK)\nc('inotify_add_watch', number, target.folder.encode(), 0x20)\nTrue",
+        "number = c('inotify_init1', os.O_NONBLOCK)\n"
+        "c('inotify_add_watch', number, target.folder.encode(), 0x20)\nTrue",
     ),
     way(
         "names-of-sockets",
         "files namespaces sockets",
-        "text = read('/proc/self/net/unix', 1 << 20).decode()\n[line for line in text.splitlines() if target.abstract in line]",
+        "text = read('/proc/self/net/unix', 1 << 20).decode()\n"
+        "[line for line in text.splitlines() if target.abstract in line]",
     ),
     way(
         "connections-of-others",
@@ -168,13 +181,16 @@ WAYS = (
     way(
         "a-raw-disk",
         "files uid capabilities",
-        "[read('/dev/' + name) for name in ('vda', 'sda', 'nvme0n1', 'mem', 'port') if os.path.exists('/dev/' + name)]",
+        "[read('/dev/' + name) for name in ('vda', 'sda', 'nvme0n1', 'mem', 'port') if "
+        "os.path.exists('/dev/' + name)]",
         denied=("IsADirectoryError",),
     ),
     way(
         "a-raw-disk-of-its-own-making",
         "files uid capabilities",
-        "import stat\nos.mknod('disk', stat.S_IFBLK | 0o600, os.stat(os.path.realpath('.')).st_dev)\nread('disk')",
+        "import stat\n"
+        "os.mknod('disk', stat.S_IFBLK | 0o600, os.stat(os.path.realpath('.')).st_dev)\n"
+        "read('disk')",
     ),
     way(
         "a-zero-device-of-its-own-making",
@@ -206,7 +222,8 @@ WAYS = (
         "the-environment-of-any-process",
         "files namespaces signals environment uid",
         "import glob\nfound = []\nfor path in glob.glob('/proc/[0-9]*/environ'):\n"
-        "    text = worked(read, path, 1 << 20)\n    found += [path] if text not in (None, True) and b'sw-secret' in text else []\nfound",
+        "    text = worked(read, path, 1 << 20)\n"
+        "    found += [path] if text not in (None, True) and b'sw-secret' in text else []\nfound",
     ),
     way("the-command-line-of-another-process", "files namespaces", "read(f'/proc/{target.pid}/cmdline')"),
     way(

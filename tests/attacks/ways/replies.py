@@ -174,7 +174,8 @@ WAYS = (
     _lie(
         "a-motion-of-endless-range",
         "motion_sheet",
-        "value['actors'][0]['displacements'] = [1e308, -1e308]\nvalue['actors'][0]['speeds'] = [1e308, 5e-324]",
+        "value['actors'][0]['displacements'] = [1e308, -1e308]\n"
+        "value['actors'][0]['speeds'] = [1e308, 5e-324]",
         _MOTION,
     ),
     _lie(
@@ -196,7 +197,8 @@ WAYS = (
     _lie(
         "a-motion-of-many-contacts",
         "motion_sheet",
-        "value['actors'][0]['phases'][0]['contacts'] = [{'with': 'x' * 900, 'frames': [[1, 2]] * 50, 'gap': 0.0}] * 1900",
+        "value['actors'][0]['phases'][0]['contacts'] = [{'with': 'x' * 900, 'frames': [[1, 2]] * "
+        "50, 'gap': 0.0}] * 1900",
         _MOTION,
     ),
     _lie(
@@ -232,7 +234,8 @@ WAYS = (
     _lie(
         "a-save-with-a-cache-of-endless-range",
         "save",
-        "value['caches'] = [{'label': 'c', 'baked': True, 'outdated': False, 'range': [-10 ** 30, 10 ** 30], 'where': 'disk', 'frames': 10 ** 30, 'missing': 0}]",
+        "value['caches'] = [{'label': 'c', 'baked': True, 'outdated': False, 'range': [-10 ** "
+        "30, 10 ** 30], 'where': 'disk', 'frames': 10 ** 30, 'missing': 0}]",
         _SAVE,
     ),
     _lie("a-load-with-a-long-version", "load", "value['version'] = '5.' * 3_000_000", _SAVE, _LOAD),
@@ -258,7 +261,8 @@ WAYS = (
     _lie(
         "an-execution-with-a-long-query",
         "execute",
-        "value['error'] = {'type': 'E', 'message': 'm', 'line': 10 ** 300, 'source': '', 'traceback': '', 'ask': 'a.' * 9000, 'there': ['x' * 9000] * 90}",
+        "value['error'] = {'type': 'E', 'message': 'm', 'line': 10 ** 300, 'source': '', "
+        "'traceback': '', 'ask': 'a.' * 9000, 'there': ['x' * 9000] * 90}",
         _RUN,
     ),
     _lie("a-state-of-many-objects", "scene_state", "value['objects'] *= 60_000", _STATE, seconds=120.0),
@@ -309,8 +313,11 @@ WAYS = (
     _lie(
         "facts-of-many-objects",
         "scene_facts",
-        "value['objects'] = [{'name': f'o{n}', 'type': 'EMPTY', 'data': None, 'collections': ['Scene Collection'], 'parent': None, 'is_root': False, 'contact_with': [],"
-        " 'modifiers': [], 'constraints': [], 'rigid_body': None, 'keys': {}, 'animated_shape_keys': False, 'drivers': 0, 'driven': [], 'evaluated': True, 'rendered': True,"
+        "value['objects'] = [{'name': f'o{n}', 'type': 'EMPTY', 'data': None, 'collections': "
+        "['Scene Collection'], 'parent': None, 'is_root': False, 'contact_with': [],"
+        " 'modifiers': [], 'constraints': [], 'rigid_body': None, 'keys': {}, "
+        "'animated_shape_keys': False, 'drivers': 0, 'driven': [], 'evaluated': True, "
+        "'rendered': True,"
         " 'scale': [1.0] * 3, 'matrix': [1.0] * 16, 'polygons': 0, 'surface': False} for n in range(9000)]",
         _VERIFY,
         seconds=150.0,
@@ -318,8 +325,11 @@ WAYS = (
     _lie(
         "facts-of-a-family-without-end",
         "scene_facts",
-        "value['objects'] = [{'name': f'o{n}', 'type': 'EMPTY', 'data': None, 'collections': ['Scene Collection'], 'parent': f'o{(n + 1) % 50}', 'is_root': False, 'contact_with': [],"
-        " 'modifiers': [], 'constraints': [], 'rigid_body': None, 'keys': {}, 'animated_shape_keys': False, 'drivers': 0, 'driven': [], 'evaluated': True, 'rendered': True,"
+        "value['objects'] = [{'name': f'o{n}', 'type': 'EMPTY', 'data': None, 'collections': "
+        "['Scene Collection'], 'parent': f'o{(n + 1) % 50}', 'is_root': False, 'contact_with': [],"
+        " 'modifiers': [], 'constraints': [], 'rigid_body': None, 'keys': {}, "
+        "'animated_shape_keys': False, 'drivers': 0, 'driven': [], 'evaluated': True, "
+        "'rendered': True,"
         " 'scale': [1.0] * 3, 'matrix': [1.0] * 16, 'polygons': 0, 'surface': False} for n in range(50)]",
         _VERIFY,
     ),

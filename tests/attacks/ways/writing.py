@@ -59,7 +59,8 @@ WAYS = (
     way(
         "set-an-attribute-by-setxattrat",
         "files",
-        "value = ctypes.create_string_buffer(b'x')\narguments = struct.pack('QII', ctypes.addressof(value), 1, 0)\n"
+        "value = ctypes.create_string_buffer(b'x')\n"
+        "arguments = struct.pack('QII', ctypes.addressof(value), 1, 0)\n"
         "syscall(463, -100, target.readable.encode(), 0, b'user.planted', arguments, 16)",
         machine="x86_64",
     ),
@@ -90,7 +91,8 @@ WAYS = (
     way(
         "watch-what-may-be-read",
         "signals",
-        "import fcntl\nnumber = os.open(os.path.dirname(target.readable), os.O_RDONLY)\nfcntl.fcntl(number, 1026, 0x80000002) == 0",
+        "import fcntl\nnumber = os.open(os.path.dirname(target.readable), os.O_RDONLY)\n"
+        "fcntl.fcntl(number, 1026, 0x80000002) == 0",
     ),
     # What Blender itself writes.
     way("save-a-scene", "files", "bpy.ops.wm.save_as_mainfile(filepath=target.folder + '/planted.blend')"),
@@ -98,14 +100,17 @@ WAYS = (
     way(
         "save-a-text",
         "files",
-        "text = bpy.data.texts.new('t')\ntext.write('x')\ntext.filepath = target.victim\nwith bpy.context.temp_override(edit_text=text): bpy.ops.text.save()",
+        "text = bpy.data.texts.new('t')\ntext.write('x')\ntext.filepath = target.victim\n"
+        "with bpy.context.temp_override(edit_text=text): bpy.ops.text.save()",
     ),
     way(
         "render-a-picture",
         "files",
         "scene = bpy.context.scene\nscene.camera = bpy.data.objects.new('C', bpy.data.cameras.new('C'))\n"
-        "scene.collection.objects.link(scene.camera)\nscene.render.engine = 'CYCLES'\nscene.cycles.samples = 1\n"
-        "scene.render.resolution_x = scene.render.resolution_y = 8\nscene.render.filepath = target.folder + '/planted'\n"
+        "scene.collection.objects.link(scene.camera)\nscene.render.engine = 'CYCLES'\n"
+        "scene.cycles.samples = 1\n"
+        "scene.render.resolution_x = scene.render.resolution_y = 8\n"
+        "scene.render.filepath = target.folder + '/planted'\n"
         "bpy.ops.render.render(write_still=True)",
     ),
     way(
@@ -121,9 +126,12 @@ WAYS = (
     way(
         "bake-into-a-folder",
         "files",
-        "bpy.ops.mesh.primitive_cube_add()\nbody = bpy.context.object\nfluid = body.modifiers.new('F', 'FLUID')\n"
-        "fluid.fluid_type = 'DOMAIN'\ndomain = fluid.domain_settings\ndomain.cache_directory = target.folder + '/planted'\n"
-        "domain.resolution_max = 6\ndomain.cache_type = 'ALL'\ndomain.cache_frame_end = 2\nbpy.ops.fluid.bake_all()",
+        "bpy.ops.mesh.primitive_cube_add()\nbody = bpy.context.object\n"
+        "fluid = body.modifiers.new('F', 'FLUID')\n"
+        "fluid.fluid_type = 'DOMAIN'\ndomain = fluid.domain_settings\n"
+        "domain.cache_directory = target.folder + '/planted'\n"
+        "domain.resolution_max = 6\ndomain.cache_type = 'ALL'\ndomain.cache_frame_end = 2\n"
+        "bpy.ops.fluid.bake_all()",
     ),
     way(
         "write-a-library",
@@ -139,7 +147,8 @@ WAYS = (
     way(
         "replace-the-workspace-by-a-link",
         "files",
-        "os.rename(target.workspace, target.workspace + target.mark)\nos.symlink(target.folder, target.workspace)",
+        "os.rename(target.workspace, target.workspace + target.mark)\n"
+        "os.symlink(target.folder, target.workspace)",
     ),
     way("take-the-lock", "files", "os.unlink(target.root + '/.lock') or True"),
     way(
@@ -161,7 +170,9 @@ WAYS = (
     way(
         "a-program-with-capabilities",
         "files uid capabilities",
-        "write('program')\nos.setxattr('program', 'security.capability', struct.pack('<IIIII', 0x2000001, 1 << 21, 0, 0, 0))\nTrue",
+        "write('program')\n"
+        "os.setxattr('program', 'security.capability', struct.pack('<IIIII', 0x2000001, 1 << 21, "
+        "0, 0, 0))\nTrue",
         denied=("22",),
     ),
     *map(
