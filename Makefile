@@ -72,7 +72,7 @@ lock: $(UV) ## Pin the newest dependencies in requirements.lock
 	  --output-file requirements.lock
 
 clean: ## Remove what was made here (knowledge bases live elsewhere and stay)
-	rm -rf .venv .tools build dist .pytest_cache .ruff_cache
+	rm -rf .venv .tools build dist .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The stamp is written last: a set-up that was interrupted is done again.

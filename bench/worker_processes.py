@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from simworlds.end_with_parent import end_with_parent
 from simworlds.processes import signal_name
+from simworlds.terminal.streams import guard_streams
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
@@ -120,6 +121,7 @@ def _end(workers: list[_Worker]) -> None:
 
 
 def _work(function: Callable[..., Any], task: Any, pipe: Connection, parent: int) -> None:
+    guard_streams()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
     signal.signal(signal.SIGTERM, _interrupt)

@@ -5,13 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from simworlds.files import write_whole
+from simworlds.folder_files import read_file
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from simworlds.folder_files import FolderFiles
 
 
 class Digests:
@@ -31,21 +34,22 @@ class Digests:
 
         return self._recall(path, _signature(path.stat()), compute)
 
-    def of_folder(self, folder: Path, relevant: Callable[[PurePosixPath], bool]) -> str:
-        """SHA-256 over the names and contents of the ``relevant`` files below a folder. Raises OSError."""
-        files = sorted((name, path) for name, path in _files(folder) if relevant(PurePosixPath(name)))
+    def of_files(self, files: FolderFiles) -> str:
+        """SHA-256 over the names and contents of files beneath a folder. Raises OSError."""
         listing = hashlib.sha256()
-        for name, path in files:
-            listing.update(f"{name}\0{_signature(path.stat())}\n".encode(errors="surrogateescape"))
+        for file in files.files:
+            line = f"{file.name}\0{file.size}:{file.changed}:{file.inode}\n"
+            listing.update(line.encode(errors="surrogateescape"))
 
         def compute() -> str:
             digest = hashlib.sha256()
-            for name, path in files:
-                content = hashlib.sha256(path.read_bytes()).hexdigest()
-                digest.update(f"{name}\0{content}\n".encode(errors="surrogateescape"))
+            for file in files.files:
+                content = read_file(files.folder, file.name, most=file.size, cut=True)
+                line = f"{file.name}\0{hashlib.sha256(content).hexdigest()}\n"
+                digest.update(line.encode(errors="surrogateescape"))
             return digest.hexdigest()
 
-        return self._recall(folder, listing.hexdigest(), compute)
+        return self._recall(files.folder, listing.hexdigest(), compute)
 
     def save(self) -> None:
         """Writes the cache; a cache that cannot be written is computed again next time."""
@@ -70,13 +74,6 @@ class Digests:
 
 def _signature(status: os.stat_result) -> str:
     return f"{status.st_size}:{status.st_mtime_ns}:{status.st_ino}"
-
-
-def _files(folder: Path) -> Iterator[tuple[str, Path]]:
-    for place, _, names in os.walk(folder):
-        for name in names:
-            path = Path(place, name)
-            yield path.relative_to(folder).as_posix(), path
 
 
 def _read(memory: Path) -> dict[str, tuple[str, str]]:

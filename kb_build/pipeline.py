@@ -163,6 +163,10 @@ def _find_sources(work: _Build) -> None:
         work.warnings.append(missing.reason)
     minor = minor_of(work.runtime.version)
     for source in work.sources:
+        if source.passed_over:
+            work.warnings.append(
+                f"the {source.role} at {source.origin} was read without {source.passed_over}"
+            )
         if source.version != minor:
             work.warnings.append(
                 f"the {source.role} at {source.origin} is of Blender {source.version}, not {minor}: answers "

@@ -75,10 +75,11 @@ def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
 
         click.echo(json.dumps(asdict(answer), ensure_ascii=False, indent=2))
     elif sys.stdout.isatty():
-        from rich.console import Console  # noqa: PLC0415 - loading it takes as long as the query
-        from rich.markdown import Markdown  # noqa: PLC0415
+        from rich.markdown import Markdown  # noqa: PLC0415 - loading it takes as long as the query
 
-        Console().print(Markdown(answer.text))
+        from simworlds.terminal.console import Console  # noqa: PLC0415
+
+        Console(sys.stdout).print(Markdown(answer.text, hyperlinks=False))
     else:
         click.echo(answer.text)
     return answer.kind != "none"

@@ -3,7 +3,7 @@
 KBServeError
 ├── BaseMissing      there is no knowledge base for this version
 ├── BaseUnreadable   the file is corrupt, truncated, of something else, or newer than this program
-└── BadQuery         the query cannot be answered (empty, part out of range)
+└── BadQuery         the query cannot be answered (empty, too much work, part out of range)
 """
 
 from __future__ import annotations

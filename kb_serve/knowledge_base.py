@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from kb_build.records import Page, Symbol
 
 
+# Look-ups and rows of a query. The labelled queries take up to 11,000, and the first one loads 20,000 names more.
+_MOST_WORK = 150_000
+
+
 class KnowledgeBase:
     """One Blender version's knowledge base, read-only. Safe to share between threads."""
 
@@ -40,9 +44,9 @@ class KnowledgeBase:
         """Answers a query in any form: a name, an expression, an error message, a question, a topic.
 
         ``limit`` bounds the hits, ``max_tokens`` the text; what does not fit is in the further parts, counted
-        from 1. Raises BadQuery for an empty query or a wrong limit or part.
+        from 1. Raises BadQuery for an empty query, one that takes too much work, or a wrong limit or part.
         """
-        with self._lock:
+        with self._lock, self._reader.bounded(_MOST_WORK):
             return self._composer.answer(text, limit, max_tokens, part)
 
     def symbol(self, path: str) -> Symbol | None:

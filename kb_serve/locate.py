@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from kb_serve.errors import BaseMissing
+from simworlds.errors import UserError
+from simworlds.releases import minor_of
 from simworlds.settings import base_path, built_bases, home_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-_VERSION = re.compile(r"(\d+)\.(\d+)(?:\.\d+)?")
+_LONGEST_QUOTE = 40
 
 
 def find_base(version: str | None, home: Path | None = None) -> Path:
@@ -24,16 +25,17 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
                 f"There is no knowledge base in {folder}. Build one first: simworlds kb build 5.1"
             )
         return list(built.values())[-1]
-    match = _VERSION.fullmatch(version.strip().removeprefix("v"))
-    if not match:
+    try:
+        wanted = minor_of(version.strip().removeprefix("v"))
+    except UserError:
         raise BaseMissing(
-            f"{version!r} is not a Blender version. Write it as 5.1. Built are: {_names(built)}."
-        )
-    path = base_path(folder, f"{match[1]}.{match[2]}")
+            f"{version[:_LONGEST_QUOTE]!r} is not a Blender version. Write it as 5.1. Built are: {_names(built)}."
+        ) from None
+    path = base_path(folder, wanted)
     if not path.is_file():
         raise BaseMissing(
-            f"There is no knowledge base for Blender {match[1]}.{match[2]}. Built are: {_names(built)}. "
-            f"Build it: simworlds kb build {match[1]}.{match[2]}"
+            f"There is no knowledge base for Blender {wanted}. Built are: {_names(built)}. "
+            f"Build it: simworlds kb build {wanted}"
         )
     return path
 

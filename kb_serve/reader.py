@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import sqlite3
 import zlib
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
-from kb_serve.errors import BaseMissing, BaseUnreadable
+from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator
+    from collections.abc import Callable, Collection, Generator, Iterator
     from pathlib import Path
 
 _Record = TypeVar("_Record")
@@ -21,6 +22,7 @@ _Record = TypeVar("_Record")
 TYPES = "bpy.types."
 STRUCT = "bpy.types.bpy_struct"
 COLLECTION = "bpy.types.bpy_prop_collection"
+_UNLIMITED = float("inf")
 _REBUILD = "Rebuild it: simworlds kb build --force"
 
 
@@ -80,25 +82,44 @@ class BaseReader:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._connection = open_file(path)
-        # A symbol's or page's row, or None; the members of a class or module by name; the classes right below one.
+        self._work_left = _UNLIMITED
+        # A symbol's or page's row, or None; the members of a class or module by name; the classes right below one;
+        # the symbols whose last part is a name.
         # An entry takes nearly a kilobyte, and a class has fifty members.
         self.entry = lru_cache(maxsize=2_000)(self._entry)
         self.members = lru_cache(maxsize=64)(self._members)
         self.subclasses = lru_cache(maxsize=64)(self._subclasses)
         self.page_entry = lru_cache(maxsize=500)(self._page_entry)
+        # A thousand symbols share a name, and resolving asks for the same few again and again.
+        self.by_name = lru_cache(maxsize=8)(self._by_name)
 
     def close(self) -> None:
         """Closes the file."""
         self._connection.close()
 
     def rows(self, sql: str, *values: object) -> list[Any]:
-        """Runs one SQL query. Raises BaseUnreadable for a damaged file."""
+        """Runs one SQL query. Raises BaseUnreadable for a damaged file, and BadQuery (see ``bounded``)."""
         try:
-            return self._connection.execute(sql, values).fetchall()
+            rows = self._connection.execute(sql, values).fetchall()
         except UnicodeEncodeError:
             return []  # a lone surrogate is in no base
         except sqlite3.DatabaseError as error:
             raise self.damaged(error) from error
+        self._work_left -= 1 + len(rows)
+        if self._work_left < 0:
+            raise BadQuery(
+                "This query takes too much work. Ask one thing at a time: a name, an expression or a message."
+            )
+        return rows
+
+    @contextmanager
+    def bounded(self, most: float) -> Generator[None]:
+        """Lets look-ups raise BadQuery once there were ``most`` of them and of the rows that they found, together."""
+        self._work_left = most
+        try:
+            yield
+        finally:
+            self._work_left = _UNLIMITED
 
     def rows_of(self, sql: str, keys: Collection[object]) -> list[Any]:
         """The rows with any of the keys, unordered; ``sql`` ends with the keys' column."""
@@ -153,9 +174,10 @@ class BaseReader:
         rows = self.rows("SELECT record FROM symbols WHERE path = ?", path)
         return self._record(symbol_from_json, rows[0][0]) if rows else None
 
-    def by_name(self, name: str) -> list[SymbolEntry]:
+    def _by_name(self, name: str) -> tuple[SymbolEntry, ...]:
         """Every symbol whose last part is exactly ``name``."""
-        return [SymbolEntry(*row) for row in self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ?", name)]
+        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ?", name)
+        return tuple(SymbolEntry(*row) for row in rows)
 
     def pointing_at(self, cls: str) -> list[SymbolEntry]:
         """The pointer properties whose value is a class, given by its name."""

@@ -15,6 +15,7 @@ import mcp_types as types
 from mcp.server.lowlevel import Server
 from mcp.shared.exceptions import MCPError
 from mcp.shared.uri_template import UriTemplate
+from starlette.responses import Response
 
 from kb_build.records import to_json
 from kb_serve.errors import KBServeError
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
     from mcp.server.context import ServerRequestContext
     from mcp.server.transport_security import TransportSecuritySettings
-    from starlette.types import ASGIApp
+    from starlette.types import ASGIApp, Receive, Scope, Send
 
     from kb_serve.service import Service
 
@@ -44,13 +45,17 @@ INSTRUCTIONS = (
 
 _LOG = logging.getLogger(__name__)
 _JSON, _MARKDOWN = "application/json", "text/markdown"
-_LARGEST_REQUEST = 1024 * 1024
+_LARGEST_REQUEST = 256 * 1024  # the longest query, however JSON writes its characters
+_LONGEST_URI = 2_000
+_FOR_ERRORS = 500
 
 
 def make_server(service: Service) -> Server[None]:
     """The MCP server, without a transport. It opens bases, and rebuilds outdated ones, while it runs."""
     # Answers wait for this; the handshake does not.
     ready = anyio.Event()
+    # One thread beside the event loop: more would only wait for each other.
+    thread = anyio.CapacityLimiter(1)
 
     @asynccontextmanager
     async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
@@ -76,7 +81,7 @@ def make_server(service: Service) -> Server[None]:
             )
         await ready.wait()
         try:
-            return _answered(service, params.arguments)
+            return await anyio.to_thread.run_sync(_answered, service, params.arguments, limiter=thread)
         except KBServeError as error:
             return _failed(str(error))
         except Exception as error:
@@ -91,9 +96,9 @@ def make_server(service: Service) -> Server[None]:
         await ready.wait()
         uri = str(params.uri)
         try:
-            text, kind = _resource(service, uri)
+            text, kind = await anyio.to_thread.run_sync(_resource, service, uri, limiter=thread)
         except KBServeError as error:
-            raise MCPError(types.INVALID_PARAMS, str(error), {"uri": uri[:500]}) from error
+            raise MCPError(types.INVALID_PARAMS, str(error), {"uri": uri[:_FOR_ERRORS]}) from error
         return types.ReadResourceResult(
             contents=[types.TextResourceContents(uri=params.uri, text=text, mime_type=kind)]
         )
@@ -124,13 +129,29 @@ def make_server(service: Service) -> Server[None]:
 
 def make_app(service: Service, path: str, security: TransportSecuritySettings) -> ASGIApp:
     """The server as an ASGI application, without sessions: every request is answered by itself."""
-    return make_server(service).streamable_http_app(
+    app = make_server(service).streamable_http_app(
         streamable_http_path=path,
         json_response=True,
         stateless_http=True,
         max_request_body_size=_LARGEST_REQUEST,
         transport_security=security,
     )
+    return _WithoutStreams(app)
+
+
+class _WithoutStreams:
+    """Refuses GET, which would open a stream: without sessions there is nothing to send, and it would never end."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """ASGI."""
+        is_stream = scope["type"] == "http" and scope["method"] == "GET"
+        await (_NO_STREAM if is_stream else self._app)(scope, receive, send)
+
+
+_NO_STREAM = Response("This server has no streams: use POST.\n", status_code=405, headers={"Allow": "POST"})
 
 
 def _own_version() -> str:
@@ -186,11 +207,12 @@ def _resource(service: Service, uri: str) -> tuple[str, str]:
     """A resource's text and MIME type. Raises MCPError for an unknown one, and KBServeError."""
     if uri == BASES:
         return json.dumps(service.built(), indent=2), _JSON
-    if (parts := SYMBOL.match(uri)) is not None:
+    beginning = uri[:_LONGEST_URI]  # of the few that are longer, none exists
+    if (parts := SYMBOL.match(beginning)) is not None:
         symbol = service.symbol(str(parts["version"]), str(parts["path"]))
         if symbol is not None:
             return json.dumps(to_json(symbol), ensure_ascii=False, indent=2), _JSON
-    if (parts := PAGE.match(uri)) is not None:
+    if (parts := PAGE.match(beginning)) is not None:
         page = service.page(str(parts["version"]), str(parts["slug"]))
         if page is not None:
             return page.text, _MARKDOWN
@@ -198,5 +220,5 @@ def _resource(service: Service, uri: str) -> tuple[str, str]:
         types.INVALID_PARAMS,
         "There is no such resource. Write identifiers and slugs as in hits[].id of blender_docs: "
         "blender://5.1/symbol/bpy.types.ClothSettings.quality, blender://5.1/page/physics/cloth/introduction",
-        {"uri": uri[:500]},
+        {"uri": uri[:_FOR_ERRORS]},
     )

@@ -83,7 +83,7 @@ def _worker(setting: Setting) -> ReportPart:
         with tempfile.TemporaryDirectory() as place:
             folder = RunFolder.make(Path(place))
             began = time.perf_counter()
-            with Supervisor(make_launch(folder.workspace.mount), folder) as blender:
+            with Supervisor(make_launch(folder.workspace), folder) as blender:
                 _run(blender, "1+1")
                 starts.append(time.perf_counter() - began)
                 _run(blender, _SCENE.replace("COUNT", str(_KEPT)))

@@ -152,13 +152,13 @@ def _loose(setting: Setting, place: Path) -> ReportPart:
 def _built(place: Path, script: str, target: Path) -> dict[str, Any]:
     """Builds a scene by a script in a Blender of its own and saves it. Returns the script's last value."""
     folder = RunFolder.make(place / f"{target.stem} run")
-    with Supervisor(make_launch(folder.workspace.mount), folder) as blender:
-        saved = folder.workspace.mount / "scene.blend"
-        code = f"{script}\nbpy.ops.wm.save_as_mainfile(filepath={str(saved)!r}, copy=True)\ntold"
+    with Supervisor(make_launch(folder.workspace), folder) as blender:
+        saved = folder.workspace.for_blender("scene.blend")
+        code = f"{script}\nbpy.ops.wm.save_as_mainfile(filepath={saved!r}, copy=True)\ntold"
         reply = blender.call("execute", {"code": code}, unread, timeout=_SECONDS)
         if reply.value["error"] is not None:
             raise _Failed(reply.value["error"]["message"])
-        saved.replace(target)
+        folder.workspace.take("scene.blend", target)
     return ast.literal_eval(reply.value["value"])
 
 

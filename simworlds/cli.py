@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import click
+
+from simworlds.terminal.streams import guard_streams
 
 
 class _Command(NamedTuple):
@@ -37,7 +39,12 @@ _COMMANDS = {
 
 
 class _Lazy(click.Group):
-    """A group that loads only the command that is called."""
+    """A group that loads only the command that is called, and guards what it prints."""
+
+    def main(self, *args: Any, **options: Any) -> Any:
+        """See click."""
+        guard_streams()
+        return super().main(*args, **options)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names, sorted."""

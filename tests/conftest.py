@@ -18,6 +18,18 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 
+_mktemp = pytest.TempPathFactory.mktemp
+
+
+def _readable_mktemp(self: pytest.TempPathFactory, basename: str, numbered: bool = True) -> Path:
+    """A new folder that others may read, as most folders: run by root, Blender is another user."""
+    path = _mktemp(self, basename, numbered)
+    path.chmod(0o755)
+    return path
+
+
+pytest.TempPathFactory.mktemp = _readable_mktemp
+
 # What tests get from a Blender, or from the documentation sources, by asking for a fixture.
 _OF_BLENDER = frozenset({"base", "extract", "kb", "reader"})
 

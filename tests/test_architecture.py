@@ -212,6 +212,31 @@ def breaches_between_roles(graph: Graph) -> Iterator[str]:
                 yield f"{module} imports {name}"
 
 
+# The streams of the process are guarded, and one console may send escapes of its own (simworlds.terminal).
+AROUND_THE_GUARD = frozenset(
+    (  # noqa: SIM905
+        "rich.console.Console rich.get_console rich.print rich.print_json rich.inspect rich.pretty.pprint "
+        "simworlds.terminal.streams.unguarded"
+    ).split()
+)
+RAW_STREAMS = frozenset({"sys.__stdout__", "sys.__stderr__", "sys.stdout.buffer", "sys.stderr.buffer"})
+
+
+def breaches_of_guard(repo: Path) -> Iterator[str]:
+    """Ways to a terminal that do not go through ``simworlds.terminal``."""
+    graph = imports(repo)
+    for module, (_, tree) in modules(repo).items():
+        if below(module, "simworlds.terminal") or "inside" in module.split("."):
+            continue
+        yield from (f"{module} uses {name}" for name in sorted(AROUND_THE_GUARD & graph[module]))
+        for node in ast.walk(tree):
+            if (
+                isinstance(node, ast.Attribute)
+                and (name := ast.unparse(node)) in RAW_STREAMS | AROUND_THE_GUARD
+            ):
+                yield f"{module} uses {name}"
+
+
 def circles(graph: Graph) -> list[list[str]]:
     """Groups of modules that import each other, directly or through others (Tarjan's strongly connected components)."""
     own = between_modules(graph)
@@ -255,7 +280,12 @@ def package_circles(graph: Graph) -> list[list[str]]:
 
 def breaches(repo: Path) -> list[str]:
     graph = imports(repo)
-    return [*breaches_of_rules(graph), *breaches_inside(graph), *breaches_between_roles(graph)]
+    return [
+        *breaches_of_rules(graph),
+        *breaches_inside(graph),
+        *breaches_between_roles(graph),
+        *breaches_of_guard(repo),
+    ]
 
 
 def rebuilders(repo: Path) -> list[str]:
@@ -337,6 +367,14 @@ def test_the_server_reaches_the_build_through_one_function_at_most() -> None:
             "agents.blender.inside.a imports agents.blender.b",
         ),
         ("bench/audit/inside/a.py", "import agents.blender.inside", "bench.audit.inside.a imports agents"),
+        ("bench/a.py", "from rich.console import Console", "bench.a uses rich.console.Console"),
+        ("agents/a.py", "import rich\nrich.print('a')", "agents.a uses rich.print"),
+        ("kb_serve/a.py", "import sys\nsys.stdout.buffer.write(b'a')", "kb_serve.a uses sys.stdout.buffer"),
+        (
+            "agents/a.py",
+            "from simworlds.terminal.streams import unguarded",
+            "agents.a uses simworlds.terminal.streams.unguarded",
+        ),
     ],
 )
 def test_a_breach_is_seen(tmp_path: Path, path: str, code: str, breach: str) -> None:

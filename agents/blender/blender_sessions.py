@@ -162,7 +162,7 @@ class BlenderSession:
                 self._unused = setup.run is None
                 self.folder = RunFolder.make(setup.run) if setup.run else new_run(runs_folder())
             launch = make_launch(
-                self.folder.workspace.mount,
+                self.folder.workspace,
                 version=setup.version,
                 blender_exe=setup.blender_exe,
                 sandbox=setup.sandbox,

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simworlds.sandbox.confined_command import Sandbox, best_sandbox
-from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.launch import LENT, PRIVATE, Launch, find_blender
 from simworlds.sandbox.program import SHARED, Program
 from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
+    from simworlds.sandbox.hostile_ground import HostileGround
     from simworlds.sandbox.runtime import Runtime
 
 # In Blender the package has a name of its own: executed code may bring modules named ``agents`` or ``blender``.
@@ -24,7 +24,7 @@ def runs_folder() -> Path:
 
 
 def make_launch(
-    workspace: Path,
+    workspace: HostileGround,
     *,
     version: str | None = None,
     blender_exe: Path | None = None,
@@ -36,12 +36,16 @@ def make_launch(
 
 
 def launch_in(
-    workspace: Path, runtime: Runtime, *, sandbox: Sandbox | None = None, read: tuple[Path, ...] = ()
+    workspace: HostileGround, runtime: Runtime, *, sandbox: Sandbox | None = None, read: tuple[Path, ...] = ()
 ) -> Launch:
     """The launch of the worker in ``runtime``; the workspace is made."""
-    workspace.mkdir(parents=True, exist_ok=True)
-    workspace = workspace.resolve()
-    ground, private = HostileGround(workspace), HostileGround(workspace.with_name(PRIVATE))
+    ground = workspace.make()
     return Launch(
-        runtime, ground, private, sandbox or best_sandbox(), WORKER, read, workspace.with_name(LENT)
+        runtime,
+        ground,
+        ground.beside(PRIVATE),
+        sandbox or best_sandbox(),
+        WORKER,
+        read,
+        ground.beside(LENT),
     )

@@ -30,8 +30,8 @@ class RunFolder:
     def make(cls, root: Path) -> RunFolder:
         """Makes the folders that are missing."""
         folder = cls(root.absolute())
-        for path in (folder.workspace.mount, folder.checkpoints):
-            path.mkdir(parents=True, exist_ok=True)
+        folder.workspace.make()
+        folder.checkpoints.mkdir(parents=True, exist_ok=True)
         return folder
 
     @property

@@ -139,7 +139,7 @@ def open_elsewhere(launch: Launch, blend: Path, *, timeout: float) -> FileConten
         read = [path for path in (blend, caches_folder(blend)) if path.exists()]
         workspace, private = HostileGround(root / "workspace"), HostileGround(root / "private")
         second = replace(launch, workspace=workspace, private=private, read=(*launch.read, *read), lent=None)
-        workspace.mount.mkdir()
+        workspace.make()
         try:
             process = BlenderProcess(second)
             try:
@@ -237,7 +237,7 @@ def lent_to_blender(blend_file: BlendFile, folder: RunFolder) -> Generator[str]:
 
     A file of the run is copied to where Blender may read; what lies in its workspace is its own anyway.
     """
-    if blend_file.root != folder.root or blend_file.path.is_relative_to(folder.workspace.mount):
+    if blend_file.root != folder.root or folder.workspace.holds(blend_file.path):
         yield str(blend_file.path)
         return
     with tempfile.TemporaryDirectory(dir=folder.lent, ignore_cleanup_errors=True) as lent:

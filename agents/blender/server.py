@@ -21,6 +21,7 @@ from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
 from agents.blender.tool_catalogue import BY_NAME, TOOLS
 from agents.blender.tools.base import Call
+from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
 from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
 from simworlds.schemas.json_schema import schema_of
 
@@ -56,7 +57,6 @@ _HABITS = (
 _PROGRESS_SECONDS = 0.25
 _LIST_SECONDS = 20.0  # what a list waits for the knowledge base
 _MANY_CLIENTS = 64
-_SESSION = "mcp-session-id"
 
 _LOG = logging.getLogger(__name__)
 
@@ -177,7 +177,7 @@ def _own_version() -> str:
 
 def _client(context: _Context) -> str:
     """The client's id: over HTTP its session, which the transport has checked; else \"\"."""
-    return context.request.headers.get(_SESSION, "") if context.request is not None else ""
+    return context.request.headers.get(SESSION, "") if context.request is not None else ""
 
 
 # Tools
@@ -319,10 +319,10 @@ def make_app(
     app = server.streamable_http_app(
         streamable_http_path=path,
         session_idle_timeout=idle,
-        max_sessions=_MANY_CLIENTS,
+        max_sessions=_MANY_CLIENTS + UNFINISHED,
         transport_security=security,
     )
-    return _EndOnDelete(app, sessions)
+    return _EndOnDelete(EndUnfinishedSessions(app, path), sessions)
 
 
 async def _only_with_sessions(ctx: ServerRequestContext[Any, Any], call_next: CallNext) -> HandlerResult:
@@ -360,4 +360,4 @@ class _EndOnDelete:
 
         await self._app(scope, receive, watched)
         if ended:
-            await self._sessions.end(Headers(scope=scope).get(_SESSION, ""))
+            await self._sessions.end(Headers(scope=scope).get(SESSION, ""))

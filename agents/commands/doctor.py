@@ -15,11 +15,12 @@ from agents.commands import options
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rich.console import Console, Group
+    from rich.console import Group
     from rich.text import Text
 
     from agents.commands.doctor_checks import BlenderChoice, DoctorResult, State
     from simworlds.sandbox.confined_command import Kind
+    from simworlds.terminal.console import Console
 
 _NEEDED = ("Blender", "Start", "Sandbox")  # without these Blender cannot work, or must not
 _SIGNS: dict[State, tuple[str, str]] = {"good": ("✓", "green"), "poor": ("!", "yellow"), "bad": ("✗", "red")}
@@ -37,28 +38,29 @@ def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | Non
     """
     if sys.platform == "win32":
         raise click.ClickException("A live Blender needs Linux or macOS. On Windows, use the Linux of WSL.")
-    from rich.console import Console  # noqa: PLC0415 - not for --help
-
     from agents.commands.doctor_checks import BlenderChoice  # noqa: PLC0415
+    from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
 
-    results = _run_checks(BlenderChoice(blender, blender_exe, sandbox), Console(stderr=True))
+    results = _run_checks(BlenderChoice(blender, blender_exe, sandbox), Console(sys.stderr))
     well = all(result.state != "bad" for result in results if result.name in _NEEDED)
     if as_json:
         data = {"works": well, "findings": [asdict(result) for result in results]}
         click.echo(json.dumps(data, indent=2, ensure_ascii=False))
     else:
-        Console(highlight=False).print(_page(results, well))
+        Console(sys.stdout).print(_page(results, well))
     sys.exit(0 if well else 1)
 
 
 def _run_checks(choice: BlenderChoice, console: Console) -> list[DoctorResult]:
     """The result of each check; on a terminal, what is being done is shown meanwhile."""
+    from rich.text import Text  # noqa: PLC0415 - not for --help
+
     from agents.commands.doctor_checks import checks  # noqa: PLC0415 - not for --help
 
     results: list[DoctorResult] = []
     with console.status("") as status, closing(checks(choice)) as each:
         for doing, check in each:
-            status.update(f"[dim]{doing} …[/dim]")
+            status.update(Text(f"{doing} …", "dim"))
             results.append(check())
     return results
 

@@ -110,7 +110,7 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
         started: list[Supervisor] = []
         if runtimes:
             folder = RunFolder.make(scratch / "run")
-            launch = launch_in(folder.workspace.mount, runtimes[0], sandbox=sandbox)
+            launch = launch_in(folder.workspace, runtimes[0], sandbox=sandbox)
             yield "starting Blender", lambda: _start(launch, folder, held, started)
         if started:
             blender = started[0]
@@ -122,7 +122,7 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
             yield "rendering with Cycles", lambda: _tried(blender, "Cycles", "check_cycles", _cycles)
             yield "checking for video", lambda: _tried(blender, "Films", "check_video", _films)
             other = RunFolder.make(scratch / "fluids")
-            alone = launch_in(other.workspace.mount, runtimes[0], sandbox=sandbox)
+            alone = launch_in(other.workspace, runtimes[0], sandbox=sandbox)
             yield "baking a drop of liquid", lambda: _fluids(alone)
         yield (
             "looking for the knowledge base",

@@ -161,11 +161,10 @@ def resume(run: Path, **given: Any) -> None:
 @click.command()
 def runs() -> None:
     """List the runs, newest first."""
-    from rich.console import Console  # noqa: PLC0415 - not for --help
-
     from agents.views.run_list import list_runs  # noqa: PLC0415
+    from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
 
-    Console().print(list_runs())
+    Console(sys.stdout).print(list_runs())
 
 
 @click.command()
@@ -173,14 +172,13 @@ def runs() -> None:
 @click.option("--report", is_flag=True, help="Write report.html again.")
 def show(run: Path, *, report: bool) -> None:
     """Show the state or the outcome of a run."""
-    from rich.console import Console  # noqa: PLC0415 - not for --help
-
     from agents.loop.errors import RunError  # noqa: PLC0415
     from agents.views.report.page import write_report  # noqa: PLC0415
     from agents.views.run_list import shown  # noqa: PLC0415
+    from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
 
     try:
-        Console().print(shown(run))
+        Console(sys.stdout).print(shown(run))
         if report:
             click.echo(write_report(run))
     except RunError as error:

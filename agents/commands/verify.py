@@ -7,6 +7,7 @@ import signal
 import sys
 import tempfile
 import threading
+import time
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
     from agents.protocol.rule import Rule
 
 _UNCHECKED, _INTERRUPTED = 2, 130
-_LOAD_SECONDS, _STAND_SECONDS = 300.0, 3600.0
-_PATIENCE_SECONDS = 2.0
+_LOAD_SECONDS, _STAND_SECONDS = 300.0, 600.0
+_PATIENCE_SECONDS, _LINE_SECONDS = 2.0, 10.0
 _WIDTH = 132  # of a table that does not go to a terminal
 _PATH = click.Path(path_type=Path)
 
@@ -172,7 +173,7 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
             raise _CannotCheckError(f"There is no file {scene}.")
         find_blend_file(str(real), folder, (real.parent,))
         launch = make_launch(
-            folder.workspace.mount,
+            folder.workspace,
             version=choices["blender"],
             blender_exe=choices["blender_exe"],
             # Blender may read the file and the caches beside it, but nothing else in that folder.
@@ -220,9 +221,9 @@ def _print(report: Report, checked: VerificationScope, form: str | None) -> None
     if form is not None:
         click.echo(dump_json((as_json if form == "json" else as_sarif)(report, checked)))
         return
-    from rich.console import Console  # noqa: PLC0415 - not for --json
+    from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --json
 
-    console = Console(highlight=False, soft_wrap=False)
+    console = Console(sys.stdout, soft_wrap=False)
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = _WIDTH
     console.print(as_table(report, checked, console.width))
@@ -249,6 +250,7 @@ class _StatusLine:
         self._text = self._what = ""
         self._status: Status | None = None
         self._late = False
+        self._since = 0.0
         self._timer = threading.Timer(_PATIENCE_SECONDS, self._begin)
         self._timer.daemon = True
 
@@ -270,24 +272,37 @@ class _StatusLine:
     def progress(self, done: float, total: float | None, text: str) -> None:
         """Sets how far it is."""
         share = f" {done / total:.0%}" if total else ""
+        line = f"{self._what}{share} {text}".rstrip()
         if self._status is not None:
-            self._status.update(f"{self._what}{share} {text}".rstrip())
+            self._update(line)
+        elif self._late and time.monotonic() - self._since >= _LINE_SECONDS:
+            self._say(line)
 
     def _say(self, text: str) -> None:
         self._text = text
         if self._status is not None:
-            self._status.update(text)
+            self._update(text)
         elif self._late:
+            self._since = time.monotonic()
             click.echo(f"{text} …", err=True)
+
+    def _update(self, line: str) -> None:
+        from rich.text import Text  # noqa: PLC0415 - only when it takes long
+
+        assert self._status is not None
+        self._status.update(Text(line))  # a string would be read as markup
 
     def _begin(self) -> None:
         if sys.stderr.isatty():
-            from rich.console import Console  # noqa: PLC0415 - only when it takes long
+            from rich.text import Text  # noqa: PLC0415 - only when it takes long
 
-            self._status = Console(stderr=True).status(self._text)
+            from simworlds.terminal.console import Console  # noqa: PLC0415
+
+            self._status = Console(sys.stderr).status(Text(self._text))
             self._status.start()
         else:
             click.echo(f"{self._text} …", err=True)
+        self._since = time.monotonic()
         self._late = True
 
 

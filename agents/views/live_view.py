@@ -9,14 +9,13 @@ import threading
 import time
 from typing import TYPE_CHECKING, Self
 
-from rich.console import Console
-
 from agents.loop.events import ModelAsked, ToolAnswered, ToolCalled
 from agents.loop.reducer import after
 from agents.loop.run_state import RunState
 from agents.views.event_lines import format_event
 from agents.views.formatting import format_clock
 from agents.views.rich_views import Now, ToolProgress, run_in_progress
+from simworlds.terminal.console import Console
 from simworlds.terminal.lines import is_terminal, write_line
 from simworlds.terminal.live_view import LiveView
 from simworlds.terminal.text import shortened
@@ -152,5 +151,5 @@ class RunScreen(LiveView, RunView):
 def make_view(stream: TextIO, folder: str = "", before: RunState | None = None) -> RunView:
     """The view that fits where ``stream`` goes. ``folder`` is the run's, ``before`` its state so far."""
     if is_terminal(stream):
-        return RunScreen(Console(file=stream), folder, before)
+        return RunScreen(Console(stream), folder, before)
     return RunLog(stream, before)

@@ -91,9 +91,9 @@ class UntrustedBlend:
         self._deadline = time.monotonic() + self._means.seconds
 
     def __enter__(self) -> UntrustedBlend:
-        self._place = HostileGround(Path(tempfile.mkdtemp(prefix="simworlds-audit-")).resolve())
+        self._place = Path(tempfile.mkdtemp(prefix="simworlds-audit-")).resolve()
         try:
-            self._process = BlenderProcess(self._launch(self._place.mount))
+            self._process = BlenderProcess(self._launch(self._place))
             self.ask("open", path=str(self._path), doing="opening it")
         except BaseException:
             self._end()
@@ -151,9 +151,9 @@ class UntrustedBlend:
         process: BlenderProcess | None = getattr(self, "_process", None)
         if process is not None:
             process.close()
-        self._place.empty()
+        HostileGround(self._place).empty()
         with suppress(OSError):
-            self._place.mount.rmdir()
+            self._place.rmdir()
 
 
 def resolve_blend(blend: Path) -> Path:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Self
 
-from rich.console import Console, Group
+from rich.console import Group
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
 
+from simworlds.terminal.console import Console
 from simworlds.terminal.lines import is_terminal, write_line
 from simworlds.terminal.live_view import LiveView
 from simworlds.terminal.text import shortened
@@ -98,7 +99,7 @@ class LiveSweepView(LiveView, SweepView):
 
 def make_view(stream: TextIO, total: int) -> SweepView:
     """The view that fits ``stream``; ``total``: the number of tasks."""
-    return LiveSweepView(Console(file=stream), total) if is_terminal(stream) else SweepView(stream, total)
+    return LiveSweepView(Console(stream), total) if is_terminal(stream) else SweepView(stream, total)
 
 
 def format_done(done: FinishedTask) -> str:

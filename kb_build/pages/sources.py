@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.digests import Digests
 from kb_build.errors import SourceError
 from kb_build.pages.archives import unpack
 from kb_build.pages.download import DownloadPatience, download
+from simworlds.folder_files import FolderFiles, FolderLimits, FolderTooLarge, list_files, read_file
 from simworlds.releases import ROLES, Role, address, archive_suffixes, minor_of, source_names
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path, PurePosixPath
 
     from kb_build.pages.archives import Progress
 
@@ -22,7 +24,8 @@ Form = Literal["rst", "html"]
 
 _SUFFIXES: dict[Form, str] = {"rst": ".rst", "html": ".html"}
 _DEPTH = 4
-_FOLDERS = 5_000
+_HEAD = 400_000
+_LIMITS = FolderLimits(file_bytes=8 << 20)
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +34,8 @@ class DocumentationSource:
 
     ``path`` is the folder that the pages' slugs are relative to; ``version`` the documentation's own minor
     version, ``"unknown"`` where a given path does not tell; ``sha256`` the archive's, or over the folder's
-    page names and contents; ``origin`` the path they came from; ``given`` whether the user named it.
+    page names and contents; ``origin`` the path they came from; ``given`` whether the user named it;
+    ``passed_over`` what of it is not read, such as links (empty: nothing).
     """
 
     role: Role
@@ -41,6 +45,7 @@ class DocumentationSource:
     sha256: str
     origin: str
     given: bool
+    passed_over: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,18 +193,26 @@ class _Search:
                 unpack(path, top, wanted=_RELEVANT[role], progress=self.progress)
         else:
             raise SourceError(f"{path} does not exist; give a folder, a .zip or a .tar archive")
-        pages, form = _pages_folder(top, role, path)
-        version = _version_of(pages, top, path)
+        try:
+            files = list_files(top, _RELEVANT[role], _LIMITS)
+        except FolderTooLarge as error:
+            raise SourceError(str(error)) from error
+        folder, form = _pages_folder(files, role, path)
+        version = _version_of(folder, top, path)
         if not given and version not in {self.version, "unknown"}:
             raise SourceError(f"{path} holds Blender {version}")
+        pages = files.beneath(folder)
+        if files.passed_over() and folder.parts:  # elsewhere in a clone it is nobody's loss
+            files = list_files(pages.folder, _RELEVANT[role], _LIMITS)
         return DocumentationSource(
             role=role,
-            path=pages,
+            path=pages.folder,
             form=form,
             version=self.version if version == "unknown" and not given else version,
-            sha256=digest or self.digests.of_folder(pages, _RELEVANT[role]),
+            sha256=digest or self.digests.of_files(pages),
             origin=str(path),
             given=given,
+            passed_over=files.passed_over(),
         )
 
 
@@ -231,31 +244,24 @@ def _candidates(folder: Path, role: Role, version: str) -> Iterator[Path]:
                 yield path
 
 
-def _pages_folder(top: Path, role: Role, origin: Path) -> tuple[Path, Form]:
-    """The folder below ``top`` that the pages' slugs are relative to, and their form; RST before HTML."""
-    folders = list(_breadth_first(top))
+def _pages_folder(files: FolderFiles, role: Role, origin: Path) -> tuple[PurePosixPath, Form]:
+    """The folder among ``files`` that the pages' slugs are relative to, and their form; RST before HTML."""
+    names: dict[PurePosixPath, list[PurePosixPath]] = {}
+    for file in files.files:
+        path = PurePosixPath(file.name)
+        if len(path.parts) <= _DEPTH + 1 and not any(part.startswith("_") for part in path.parts[:-1]):
+            names.setdefault(path.parent, []).append(path)
+    folders = sorted(names, key=lambda folder: (len(folder.parts), folder))
     for mark in _MARKS[role]:
         for form, suffix in _SUFFIXES.items():
             for folder in folders:
-                if any(folder.glob(mark + suffix)):
+                if any(path.match(mark + suffix) for path in names[folder]):
                     return folder, form
     wanted = "manual pages (.rst or .html)" if role == "manual" else "guides (info_*.rst or info_*.html)"
-    raise SourceError(f"{origin} holds no {wanted}")
-
-
-def _breadth_first(top: Path) -> Iterator[Path]:
-    level, count = [top], 0
-    for _ in range(_DEPTH + 1):
-        yield from level
-        count += len(level)
-        if count > _FOLDERS:
-            return
-        level = [
-            child
-            for folder in level
-            for child in sorted(folder.iterdir())
-            if child.name[0] not in "._" and child.is_dir()
-        ]
+    passed_over = files.passed_over()
+    raise SourceError(
+        f"{origin} holds no {wanted}" + (f"; passed over: {passed_over}" if passed_over else "")
+    )
 
 
 _INVENTORY = re.compile(rb"^# (?:Version|Project):[^\n]*?(\d{1,2}\.\d{1,2})", re.MULTILINE)
@@ -265,20 +271,20 @@ _NAME = re.compile(r"(?:blender|manual|api|guides|python)\D*?(\d{1,2})[._](\d{1,
 _COMPACT_NAME = re.compile(r"manual_v(\d)(\d{1,2})0_")
 
 
-def _version_of(pages: Path, top: Path, origin: Path) -> str:
+def _version_of(folder: PurePosixPath, top: Path, origin: Path) -> str:
     """The documentation's minor version as its own files say, else as its names say, else "unknown"."""
-    for path, pattern in (
-        (pages / "objects.inv", _INVENTORY),
-        (pages / "conf.py", _CONF),
-        (pages.parent / "conf.py", _CONF),
-        (pages / "index.html", _TITLE),
-        (pages / "info_overview.html", _TITLE),
+    above, conf = (top, folder.parent / "conf.py") if folder.parts else (top.parent, PurePosixPath("conf.py"))
+    for place, name, pattern in (
+        (top, folder / "objects.inv", _INVENTORY),
+        (top, folder / "conf.py", _CONF),
+        (above, conf, _CONF),
+        (top, folder / "index.html", _TITLE),
+        (top, folder / "info_overview.html", _TITLE),
     ):
-        if path.is_file():
-            with path.open("rb") as file:
-                if match := pattern.search(file.read(400_000)):
-                    return minor_of(match[1].decode())
-    inside = reversed(pages.relative_to(top).parts)
+        with suppress(OSError):
+            if match := pattern.search(read_file(place, name.as_posix(), most=_HEAD, cut=True)):
+                return minor_of(match[1].decode())
+    inside = reversed(folder.parts)
     outside = (origin.name, origin.parent.name)
     for name in (*inside, *outside):
         if match := _COMPACT_NAME.search(name) or _NAME.search(name):

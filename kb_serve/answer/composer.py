@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
@@ -27,6 +28,8 @@ LEAST_TOKENS = 150
 _FOOTER_TOKENS = 70
 _ASKED_TOKENS = 20
 _LINE_TOKENS = 60
+_LONGEST_WORD = 100  # no name of Blender's has as many letters
+_LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +79,7 @@ class AnswerComposer:
         """Answers a query. Raises BadQuery for an empty one, a wrong limit, or a part that does not exist."""
         # No base holds lone surrogates.
         text = " ".join(query.encode(errors="ignore").decode().replace("\0", " ").split())
+        text = _LONG_WORD.sub(r"\1", text)
         if not text:
             raise BadQuery(
                 "The query is empty. Send a name (ClothSettings.quality), or say what you want to do."

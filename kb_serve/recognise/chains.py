@@ -10,6 +10,8 @@ from typing import Literal
 _BUILTINS = frozenset(dir(builtins))
 MAX_QUERY = 4_000
 _MAX_CHAINS = 12
+_MAX_STEPS = 16  # the longest expression of a scene's script has ten
+_MAX_BUILTINS = 12
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
@@ -96,19 +98,24 @@ def _step(text: str, position: int) -> tuple[ChainStep, int] | None:
 
 
 def find_chains(text: str) -> list[Chain]:
-    """Every name or dotted expression in a text, in order; at most a dozen with code in them."""
+    """Every name or dotted expression in a text, in order; at most a dozen with code in them.
+
+    What follows the last step that an expression may have is taken as a further expression.
+    """
     chains: list[Chain] = []
-    position, code = 0, 0
+    position, code, builtins_called = 0, 0, 0
     text = text[:MAX_QUERY]
     while match := _IDENTIFIER.search(text, position):
         start, position = match.span()
         steps: list[ChainStep] = []
-        while taken := _step(text, position):
+        while len(steps) < _MAX_STEPS and (taken := _step(text, position)):
             step, position = taken
             steps.append(step)
         assigned = _ASSIGNMENT.match(text, position) is not None
         if steps and steps[0].kind == "call" and match.group() in _BUILTINS:
-            position = match.end() + 1  # the arguments of Python's own functions may be Blender's
+            builtins_called += 1
+            if builtins_called <= _MAX_BUILTINS:
+                position = match.end() + 1  # the arguments of Python's own functions may be Blender's
             continue
         chain = Chain(match.group(), tuple(steps), text[start:position], assigned)
         chains.append(chain)

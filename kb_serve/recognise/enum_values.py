@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
+_MOST_VALUES = 40
 _FITTING = 0.5  # how well the words around a bare value must fit its property
 
 
@@ -29,7 +30,7 @@ class EnumValues:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds the properties and parameters that take the values in a query, and quoted classes."""
         text = _ERROR.sub(" ", query)
-        quoted = [a or b for a, b in _QUOTED.findall(text)]
+        quoted = [a or b for a, b in _QUOTED.findall(text)][:_MOST_VALUES]
         values = self.values(query)
         if not values:
             return
@@ -51,13 +52,14 @@ class EnumValues:
 
     @staticmethod
     def values(query: str) -> list[str]:
-        """Possible values: quoted texts, and words in capitals."""
+        """Possible values: the first quoted texts and words in capitals."""
         text = _ERROR.sub(" ", query)
-        return list(dict.fromkeys([*(a or b for a, b in _QUOTED.findall(text)), *_CAPITALS.findall(text)]))
+        found = dict.fromkeys([*(a or b for a, b in _QUOTED.findall(text)), *_CAPITALS.findall(text)])
+        return list(found)[:_MOST_VALUES]
 
     def owners(self, values: Iterable[str], around: set[str] | None = None) -> Iterator[tuple[str, float]]:
         """(owner, share of the values that it has), by that share, then by fit to the other words."""
-        wanted = list(values)
+        wanted = list(values)[:_MOST_VALUES]
         held: dict[str, set[str]] = defaultdict(set)
         for value in wanted:
             for owner, identifier, name in self._reader.enum_owners(key(value)):

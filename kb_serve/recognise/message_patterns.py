@@ -17,7 +17,8 @@ BAD_ENUM = re.compile(r"enum \"(?P<name>[^\"]*)\" not found in \((?P<items>[^)]*
 BAD_KEYWORD = re.compile(r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)")
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 WRONG_TYPE = re.compile(
-    r"\b(?:(?P<operator>[A-Z][A-Z_0-9]*_OT_\w+)\.\w+|(?P<path>\w+(?:\.\w+)+)) expected [^,]{1,80}, not \w+"
+    # Only from the start of a dotted name, and the whole of it: trying each part of a long one takes seconds.
+    r"(?<![\w.])(?:(?P<operator>[A-Z][A-Z_0-9]*_OT_\w+)\.\w+|(?P<path>\w++(?:\.\w++)++)) expected [^,]{1,80}, not \w+"
 )
 READ_ONLY = re.compile(
     r"attribute \"(?P<name>\w+)\" from \"(?P<owner>\w+)\" is read-only"

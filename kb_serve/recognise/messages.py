@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
@@ -13,6 +14,8 @@ from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.corrections import RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.enum_values import EnumValues
@@ -24,6 +27,11 @@ _MANY = 8  # where more properties may be None, none is likely enough to be name
 # Pages of the API's own guides that explain a kind of message; named where the base has them.
 _ON_OPERATORS = "info_gotchas_operators"
 _ON_FREED = "info_gotchas_crashes"
+
+
+def _matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str]]:
+    """The first matches: a log with more of them repeats itself."""
+    return islice(pattern.finditer(query), _MANY)
 
 
 class Messages:
@@ -46,16 +54,16 @@ class Messages:
 
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes that need the query's names: the right argument, a removed socket."""
-        for match in forms.BAD_KEYWORD.finditer(query):
+        for match in _matches(forms.BAD_KEYWORD, query):
             self._keyword(match["name"], recognition)
-        for match in forms.NO_KEY.finditer(query):
+        for match in _matches(forms.NO_KEY, query):
             self._key(match["on"], match["name"], query, recognition)
 
     # Attributes
 
     def _attributes(self, query: str, recognition: Recognition) -> None:
         for pattern in (forms.HAS_NO, forms.MODULE_HAS_NO):
-            for match in pattern.finditer(query):
+            for match in _matches(pattern, query):
                 if match["owner"] == "NoneType":
                     self._none(match["name"], query, recognition)
                     continue
@@ -65,13 +73,13 @@ class Messages:
                 elif owner and not self._resolver.member(owner, match["name"]):
                     recognition.missing.append(MissingName(match["name"], owner))
                     recognition.add(owner, 0.6, "error message")
-        for match in forms.READ_ONLY.finditer(query):
+        for match in _matches(forms.READ_ONLY, query):
             owner = "bpy.context" if match["context"] else TYPES + match["owner"]
             entry = self._named(owner, match["context"] or match["name"])
             if entry:
                 recognition.add(entry.path, 0.98, "error message")
                 recognition.notes.append(f"`{entry.path}` is read-only: it cannot be assigned.")
-        for match in forms.WRONG_TYPE.finditer(query):
+        for match in _matches(forms.WRONG_TYPE, query):
             if match["path"] and (entry := self._named(*match["path"].rpartition(".")[::2])):
                 recognition.add(entry.path, 0.98, "error message")
 
@@ -131,7 +139,7 @@ class Messages:
     # Operators
 
     def _operators(self, query: str, recognition: Recognition) -> None:
-        for match in forms.POLL.finditer(query):
+        for match in _matches(forms.POLL, query):
             if self._reader.entry(match["path"]):
                 recognition.add(match["path"], 0.98, "error message")
                 recognition.notes.append(
@@ -140,7 +148,7 @@ class Messages:
                 )
                 self._page(_ON_OPERATORS, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
-        for match in forms.WRONG_TYPE.finditer(query):
+        for match in _matches(forms.WRONG_TYPE, query):
             if match["operator"]:
                 module, _, name = match["operator"].partition("_OT_")
                 if entry := self._reader.entry(f"bpy.ops.{module.lower()}.{name}"):
@@ -149,7 +157,7 @@ class Messages:
             recognition.notes.append(NO_OVERRIDE)
             recognition.add(OVERRIDE, 0.9, "error message")
             self._page(_ON_OPERATORS, recognition)
-        for match in forms.NOT_AN_OPERATOR.finditer(query):
+        for match in _matches(forms.NOT_AN_OPERATOR, query):
             names = self._reader.members("bpy.ops").keys() | self._reader.members("bmesh.ops").keys()
             for name, alike in nearest(match["name"], names, _FEW):
                 if entry := self._reader.entry(f"bmesh.ops.{name}"):
@@ -167,7 +175,7 @@ class Messages:
     # Values
 
     def _values(self, query: str, recognition: Recognition) -> None:
-        for match in forms.BAD_ENUM.finditer(query):
+        for match in _matches(forms.BAD_ENUM, query):
             items = re.findall(r"'([^']+)'", match["items"])
             for rank, (owner, _) in enumerate(self._enum_values.owners(items)):
                 if rank >= 2:
@@ -203,7 +211,7 @@ class Messages:
     # Removed data
 
     def _data(self, query: str, recognition: Recognition) -> None:
-        for match in forms.FREED.finditer(query):
+        for match in _matches(forms.FREED, query):
             recognition.notes.append(
                 "The variable's data was removed, freed, or moved by an undo or by adding another element: "
                 "look it up again by name."
@@ -217,7 +225,7 @@ class Messages:
                     remove := self._resolver.member(TYPES + entry.collection, "remove")
                 ):
                     recognition.add(remove.path, 0.84, "error message")
-        for match in forms.NO_NODE_TYPE.finditer(query):
+        for match in _matches(forms.NO_NODE_TYPE, query):
             if entry := self._reader.entry(TYPES + match["type"]):
                 recognition.add(entry.path, 0.95, "error message")
             else:

@@ -20,7 +20,7 @@ from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.resolver import Resolver
 from kb_serve.recognise.spellings import Spellings
 
-_FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n]*/[^'"\n]*\1""")
+_FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
 _FEW = 3
 _SURE = 0.9
 _MANY = 12

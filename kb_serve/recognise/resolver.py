@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_serve.reader import COLLECTION, TYPES, BaseReader, SymbolEntry
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.recognise.chains import Chain, ChainStep
 
@@ -35,6 +36,7 @@ _CUSTOMISABLE = frozenset({"ID", "Bone", "EditBone", "PoseBone", "PropertyGroup"
 _COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
 _USUAL = 0.05
 _MAX_BRANCHES = 60
+_MOST_NAMES = 8  # in the longest path
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
 
@@ -96,6 +98,7 @@ class Resolver:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self._returned = lru_cache(maxsize=500)(self._returned_class)
+        self._named = lru_cache(maxsize=64)(self._named_classes)
 
     def member(self, cls: str, name: str) -> SymbolEntry | None:
         """A class's own or inherited member."""
@@ -161,7 +164,7 @@ class Resolver:
         names = chain.dotted.split(".")
         names[:1] = _ROOTS.get(names[0], names[0]).split(".")
         extra = len(names) - len(chain.dotted.split("."))
-        for length in range(len(names), 0, -1):
+        for length in range(min(len(names), _MOST_NAMES), 0, -1):
             path = ".".join(names[:length])
             for candidate in (path, TYPES + path):
                 entry = self._reader.entry(candidate)
@@ -255,11 +258,12 @@ class Resolver:
         symbols = [value.symbol]
         values = [value]
         for number, step in enumerate(steps):
-            following = [after for before in values for after in self._step(before, step)]
+            branches = (after for before in values for after in self._step(before, step))
+            following = list(islice(branches, _MAX_BRANCHES))
             if not following:
                 missing, owner = self._unresolved(values[0], step)
                 return ResolvedChain(tuple(symbols), missing, owner, steps_left=len(steps) - number)
-            values = following[:_MAX_BRANCHES]
+            values = following
             if step.kind == "attr" or values[0].symbol != symbols[-1]:
                 symbols.append(values[0].symbol)
         return ResolvedChain(tuple(symbols))
@@ -318,13 +322,13 @@ class Resolver:
         if step.kind == "key" and side in {"inputs", "outputs"}:
             yield from self._socket(owner, side, step.text)
             return
-        named = set(self._named_classes(value.cls, step.text)) if step.kind == "key" else set[str]()
-        for path in self._in_tree(sorted(named, key=lambda path: (len(path), path)), owner):
+        named = self._named(value.cls, step.text) if step.kind == "key" else ()
+        for path in self._in_tree(named, owner):
             yield ChainValue(path, path)
         if not named:
             yield ChainValue(value.symbol, value.cls)
 
-    def _in_tree(self, nodes: list[str], tree: str) -> list[str]:
+    def _in_tree(self, nodes: Sequence[str], tree: str) -> Sequence[str]:
         """Of nodes with one name, those that the tree can hold; all if that does not tell them apart."""
         if len(nodes) < 2:
             return nodes
@@ -334,13 +338,16 @@ class Resolver:
         }
         return sorted(trees, key=lambda path: len(trees[path])) or nodes
 
-    def _named_classes(self, cls: str, text: str) -> Iterator[str]:
-        """Descendants of ``cls`` (or itself) whose elements are called ``text`` by default."""
+    def _named_classes(self, cls: str, text: str) -> tuple[str, ...]:
+        """Descendants of ``cls`` (or itself) whose elements are called ``text`` by default, the shortest first."""
         wanted = key(_NUMBERED.sub("", text))
-        for suffix in ("", *_ELEMENT_SUFFIXES):
-            for _, identifier in self._reader.by_key(wanted + suffix):
-                if identifier.startswith(TYPES) and self._reader.descends(identifier, cls):
-                    yield identifier
+        named = {
+            identifier
+            for suffix in ("", *_ELEMENT_SUFFIXES)
+            for _, identifier in self._reader.by_key(wanted + suffix)
+            if identifier.startswith(TYPES) and self._reader.descends(identifier, cls)
+        }
+        return tuple(sorted(named, key=lambda path: (len(path), path)))
 
     def _socket(self, owner: str, side: str, name: str) -> Iterator[ChainValue]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""

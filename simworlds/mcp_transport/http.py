@@ -9,6 +9,7 @@ import signal
 import socket
 import sys
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import uvicorn
@@ -17,6 +18,13 @@ from starlette.datastructures import Headers
 from starlette.responses import Response
 
 from simworlds.errors import UserError
+from simworlds.mcp_transport.connections import (
+    PATIENCE_SECONDS,
+    BoundedProtocol,
+    ConnectionBook,
+    Listener,
+    connection_limits,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,7 +39,7 @@ _GRACE_SECONDS = 3
 
 
 class CannotServe(UserError):  # noqa: N818 - reads as the state it names
-    """The server cannot start with this address or token."""
+    """The server cannot start with this address or token, or cannot go on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,23 +57,36 @@ class Address:
 
 
 def run_http(
-    make_app: Callable[[str, TransportSecuritySettings], ASGIApp], address: Address, what: str
+    make_app: Callable[[str, TransportSecuritySettings], ASGIApp],
+    address: Address,
+    what: str,
+    patience: float = PATIENCE_SECONDS,
 ) -> None:
     """Serves until Ctrl-C or SIGTERM. Raises CannotServe, saying what to do.
 
     ``make_app`` makes the application from the path where it answers, and the host names and origins that it
-    accepts. ``what`` names the service on stderr.
+    accepts. ``what`` names the service on stderr. A client that keeps the server waiting for ``patience`` seconds is
+    disconnected.
     """
     check(address)
     listener = _listen(address)
+    limits = connection_limits(patience)
+    book = ConnectionBook(limits)
     config = uvicorn.Config(
         _guarded(make_app(PATH, _security(address)), address),
-        log_level="warning",
+        # What is installed beside uvicorn must not take the connections over: only these are bounded.
+        loop="asyncio",
+        http=partial(BoundedProtocol, book),  # pyright: ignore[reportArgumentType] - is only called
+        ws="none",
+        lifespan="on",
+        backlog=limits.at_once,
+        log_level="error",  # anybody can cause warnings
+        use_colors=False,
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=_GRACE_SECONDS,
     )
-    server = uvicorn.Server(config)
+    server = _Server(config, book)
     sys.stderr.write(f"Serving {what} at {url(address.host, listener)}\n")
     sys.stderr.flush()
     # uvicorn raises the signal that ended it again after the shutdown; that must not look like a crash.
@@ -76,6 +97,30 @@ def run_http(
         pass
     finally:
         listener.close()
+    if server.has_lost_app:
+        raise CannotServe(f"The server of {what} ended after an error of its own. Start it again.")
+
+
+class _Server(uvicorn.Server):
+    """A server that looks after its connections, and ends with its application."""
+
+    def __init__(self, config: uvicorn.Config, book: ConnectionBook) -> None:
+        super().__init__(config)
+        self._book = book
+        self.has_lost_app = False
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Begins to serve."""
+        await super().startup(sockets)
+        for listener in sockets or ():
+            listener.listen(_BACKLOG)  # asyncio has set it to the number that it accepts at one go
+
+    async def on_tick(self, counter: int) -> bool:
+        """Whether to end; called ten times a second."""
+        self._book.drop_overdue()
+        # Without what runs beside the requests, each of them would fail.
+        self.has_lost_app = self.lifespan.shutdown_event.is_set()
+        return self.has_lost_app or await super().on_tick(counter)
 
 
 def check(address: Address) -> None:
@@ -159,7 +204,7 @@ def _own_names() -> list[str]:
     return [bracketed for known in names for bracketed in _bracketed(known)]
 
 
-def _listen(address: Address) -> socket.socket:
+def _listen(address: Address) -> Listener:
     family = socket.AF_INET6 if ":" in address.host else socket.AF_INET
     try:
         listener = socket.create_server((address.host, address.port), family=family, backlog=_BACKLOG)
@@ -171,4 +216,4 @@ def _listen(address: Address) -> socket.socket:
     # Connections inherit it. asyncio sets it only on sockets with an explicit protocol; without it each answer,
     # sent in two pieces, waits 40 ms for the client to acknowledge the first.
     listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    return listener
+    return Listener(listener)

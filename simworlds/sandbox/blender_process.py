@@ -38,7 +38,6 @@ from simworlds.sandbox.errors import (
     Untrustworthy,
 )
 from simworlds.sandbox.inside import channel
-from simworlds.sandbox.pausing import PausableProcess
 from simworlds.sandbox.replies import (
     AnswerMessage,
     Malformed,
@@ -49,6 +48,7 @@ from simworlds.sandbox.replies import (
     parse_value,
 )
 from simworlds.sandbox.usage import innermost_process
+from simworlds.sandbox.watched_process import WatchedProcess
 
 if TYPE_CHECKING:
     import threading
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger(__name__)
 
 START_SECONDS = 60.0
-_CHECK_SECONDS = 0.25  # between two checks whether the call was cancelled or a limit exceeded
+_CHECK_SECONDS = 0.05  # between two checks whether the call was cancelled or a limit exceeded
 _END_SECONDS = 5.0
 _EXIT_SECONDS = 1.0  # in which a process that has closed its channel is expected to end
 _CHUNK = 1 << 18
@@ -98,7 +98,7 @@ class BlenderProcess:
         self._closed = False
         self._stdout, self._stderr = CapturedOutput(), CapturedOutput()
         self._usage = launch.usage
-        self._pausable = PausableProcess(0)
+        self._worker = WatchedProcess(0)
         ours, theirs = socket.socketpair()
         try:
             self._process = spawn(
@@ -141,9 +141,9 @@ class BlenderProcess:
             self.kill()
             raise
         self.inner = innermost_process(self._process.pid)
-        self._pausable = PausableProcess(self.inner)
-        self._usage.watch(self.inner)
-        self._pausable.pause()
+        self._worker = WatchedProcess(self.inner)
+        self._usage.watch(self._worker)
+        self._worker.pause()
 
     @property
     def started(self) -> int:
@@ -187,8 +187,8 @@ class BlenderProcess:
         except channel.TooLarge as error:
             raise Refusal(f"The arguments of {what} are too large: {error}.") from error
         try:
-            self._pausable.mark()
-            self._pausable.go_on()
+            self._worker.mark()
+            self._worker.go_on()
             self._send(request, what, timeout)
             answer = self._answer(ticket, what, timeout, progress, cancelled, limited=limited)
             self._drain()
@@ -225,8 +225,8 @@ class BlenderProcess:
                 if progress is not None:
                     progress(*claim.progress)
                 continue
-            threads = self._pausable.threads_left()
-            self._pausable.pause()
+            threads = self._worker.threads_left()
+            self._worker.pause()
             if threads and not claim.left:
                 claim = claim.model_copy(update={"left": [_of_its_own(threads)]})
             return claim
@@ -367,7 +367,7 @@ class BlenderProcess:
             hint = ", as after bpy.ops.wm.quit_blender or os._exit" if code == 0 else ""
             return f"it was ended from inside, with exit code {code}{hint}"
         name = signal_name(code)
-        if any(word in self._last_output() for word in _NO_MEMORY):
+        if self._launch.group.ran_out_of_memory or any(word in self._last_output() for word in _NO_MEMORY):
             allowed = self._launch.sandbox.limits.memory / 1e9
             return f"it ran out of memory; the limit is {allowed:.1f} GB ({name})"
         if name == "SIGKILL":
@@ -385,7 +385,7 @@ class BlenderProcess:
             return
         self.stop()
         self._closed = True
-        self._pausable.close()
+        self._worker.close()
         try:
             self._process.wait(_END_SECONDS)
         except subprocess.TimeoutExpired:
@@ -401,7 +401,7 @@ class BlenderProcess:
     def close(self) -> None:
         """Lets Blender end by itself, or kills it."""
         if not self._closed:
-            self._pausable.go_on()
+            self._worker.go_on()
             with contextlib.suppress(OSError):
                 self._socket.shutdown(socket.SHUT_RDWR)
             with contextlib.suppress(subprocess.TimeoutExpired):

@@ -23,6 +23,8 @@ from typing import TYPE_CHECKING, Literal
 
 from simworlds.sandbox import confine_self
 from simworlds.sandbox.errors import CannotStart
+from simworlds.sandbox.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
+from simworlds.sandbox.worker_user import check_readable, hand_over, worker_id
 
 if TYPE_CHECKING:
     from simworlds.sandbox.walls import Wall
@@ -38,6 +40,14 @@ _SETTINGS = (
 )
 _GRAPHICS = ("/dev/dri", "/dev/kfd", "/dev/nvidia*")
 _DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
+_TO_BECOME = ("CAP_SETUID", "CAP_SETGID", "CAP_SETPCAP")
+# The worker is the first to be killed when memory runs out, and enters its control group, before it is anything else.
+_ENTER = """
+[ ! -w /proc/self/oom_score_adj ] || echo 1000 > /proc/self/oom_score_adj
+while [ "$1" != -- ]; do echo $$ > "$1/cgroup.procs" || exit 126; shift; done
+shift
+exec "$@"
+"""
 _PROCESS = ("/proc/self", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat", "/proc/sys", "/proc/filesystems")
 
 
@@ -77,24 +87,58 @@ class Sandbox:
     limits: ResourceLimits = field(default_factory=ResourceLimits)
     without: frozenset[Wall] = frozenset()
 
-    def command(self, words: list[str], *, read: list[Path], write: list[Path]) -> list[str]:
+    @property
+    def user(self) -> int | None:
+        """The user that the confined process becomes, to whom the folders to write are given; None: it stays ours."""
+        return None if self.kind == "none" or "uid" in self.without else worker_id()
+
+    def command(
+        self, words: list[str], *, read: list[Path], write: list[Path], group: tuple[Path, ...] = ()
+    ) -> list[str]:
         """The command that runs ``words`` confined: it can read ``read`` and the system's programs, write ``write``.
 
-        Raises CannotStart if that would open the user's whole home folder.
+        What is in ``write`` is given to ``user``. ``group``: folders of a control group to run in. Raises CannotStart
+        if that would open the user's whole home folder, or ``user`` could not reach what it needs.
         """
-        rights: dict[str, object] = {"memory": self.limits.memory, "file_size": self.limits.file_size}
         script = Path(confine_self.__file__)
-        readable = [str(path) for path in read]
-        if self.kind == "landlock":
+        readable = [*(str(path) for path in read), *own_python()]
+        if self.kind != "none":
             _check_home(readable)
+        if (user := self.user) is not None:
+            for folder in write:
+                hand_over(folder, user)
+            in_place = [str(folder) for folder in write] if self.kind == "landlock" else []
+            check_readable([*readable, *in_place], user, with_parents=self.kind == "landlock")
+        rights = self._rights()
+        if self.kind == "landlock":
             rights["read"] = [*_SYSTEM, *_SETTINGS, *_PROCESS, *readable]
             rights["write"] = [*(str(path) for path in write), *_DEVICES, *graphics()]
         launcher = [sys.executable, "-I", "-S", str(script), json.dumps(rights), "--", *words]
-        if self.kind != "bubblewrap":
+        if self.kind == "bubblewrap":
+            launcher = [*_bubblewrap([*readable, str(script)], write, user, self.without), "--", *launcher]
+        if sys.platform != "linux":
             return launcher
-        readable += [str(script), *own_python()]
-        _check_home(readable)
-        return [*_bubblewrap(readable, write), "--", *launcher]
+        return ["/bin/sh", "-c", _ENTER, "sh", *(str(folder) for folder in group), "--", *launcher]
+
+    def _rights(self) -> dict[str, object]:
+        """What confine_self.py is told."""
+        unlimited = {"memory", "limits"} & self.without
+        rights: dict[str, object] = {
+            "memory": 0 if unlimited else self.limits.memory,
+            "file_size": 0 if {"disk", "limits"} & self.without else self.limits.file_size,
+            "user": self.user,
+            "groups": device_groups() if self.user is not None else [],
+            "without": sorted(self.without),
+        }
+        if confine_self.has_seccomp():
+            machine, files = os.uname().machine, self.kind == "landlock"
+            last = last_filter(machine, files=files, without=self.without)
+            rights |= {
+                "calls": first_filter(machine, files=files, without=self.without).hex(),
+                "hole": OWN_PROCESS,
+                "last": f"{installing_call(machine)}:{last.hex()}",
+            }
+        return rights
 
 
 def _check_home(paths: list[str]) -> None:
@@ -119,11 +163,33 @@ def graphics() -> list[str]:
     return sorted(path for pattern in _GRAPHICS for path in glob(pattern))  # noqa: PTH207 - absolute patterns
 
 
-def _bubblewrap(read: list[str], write: list[Path]) -> list[str]:
-    words = [
-        *("bwrap", "--unshare-all", "--die-with-parent", "--new-session", "--cap-drop", "ALL"),
-        *("--hostname", "blender", "--proc", "/proc", "--dev", "/dev"),
-    ]
+def device_groups() -> list[int]:
+    """The groups through which the graphics cards can be used, but that of root."""
+    groups: set[int] = set()
+    for path in graphics():
+        with suppress(OSError):
+            groups.add(os.stat(path).st_gid)  # noqa: PTH116 - paths here are words of a command
+    return sorted(groups - {0})
+
+
+def _bubblewrap(
+    read: list[str], write: list[Path], user: int | None, without: frozenset[Wall] = frozenset()
+) -> list[str]:
+    words = ["bwrap", "--die-with-parent", "--new-session", *_namespaces(user, without)]
+    words += [] if "capabilities" in without else ["--cap-drop", "ALL"]
+    if user is not None:
+        # For the launcher alone, which becomes the user and then has none.
+        words += [word for name in _TO_BECOME for word in ("--cap-add", name)]
+    if "files" in without:
+        words += ["--dev-bind", "/", "/"]
+    words += ["--bind", "/proc", "/proc"] if "namespaces" in without else ["--proc", "/proc"]
+    if "files" in without:
+        return words
+    words += ["--dev", "/dev"]
+    # The folders above would be made for root alone.
+    shown = [*_SYSTEM, *_SETTINGS, *read, *map(str, write)]
+    for folder in sorted({str(above) for path in shown for above in Path(path).parents} - {"/"}):
+        words += ["--dir", folder]
     for path in (*_SYSTEM, *_SETTINGS, *read):
         words += ["--ro-bind-try", path, path]
     for path in graphics():
@@ -132,7 +198,37 @@ def _bubblewrap(read: list[str], write: list[Path]) -> list[str]:
         words += ["--bind", str(folder), str(folder)]
     # The folders that bubblewrap makes for these are in memory and gone with the process: a write to them must not seem
     # to work, and would not count against any limit.
+    if "proc" not in without:
+        # /proc/sys obeys root, and oom_score_adj everybody.
+        words += ["--remount-ro", "/proc"]
     return [*words, "--remount-ro", "/dev", "--remount-ro", "/"]
+
+
+def _namespaces(user: int | None, without: frozenset[Wall]) -> list[str]:
+    """Root has no namespace of users: in one that it makes itself it would stay root towards the kernel."""
+    words = ["--unshare-net"] if "sockets" not in without else []
+    if "namespaces" not in without:
+        words += ["--unshare-pid", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try"]
+        words += ["--hostname", "blender"]
+    if user is None:
+        words += ["--unshare-user", *(["--disable-userns"] if _can_disable_namespaces() else [])]
+    return words
+
+
+@cache
+def _can_disable_namespaces() -> bool:
+    """Whether this bubblewrap can keep what it runs from making further namespaces of users."""
+    try:
+        done = subprocess.run(
+            ["bwrap", "--help"],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_PROBE_SECONDS,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return b"--disable-userns" in done.stdout + done.stderr
 
 
 def best_sandbox(
@@ -201,7 +297,7 @@ def bubblewrap_fault() -> str | None:
     """Why bubblewrap does not work here; None if it does."""
     if shutil.which("bwrap") is None:
         return "bwrap is not on PATH"
-    words = [*_bubblewrap(own_python(), []), "--", sys.executable, "-I", "-S", "-c", ""]
+    words = [*_bubblewrap(own_python(), [], worker_id()), "--", sys.executable, "-I", "-S", "-c", ""]
     try:
         done = subprocess.run(
             words, stdin=subprocess.DEVNULL, capture_output=True, timeout=_PROBE_SECONDS, check=False

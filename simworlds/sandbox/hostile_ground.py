@@ -70,6 +70,19 @@ class HostileGround:
 
     mount: Path
 
+    def make(self) -> HostileGround:
+        """Makes the folder unless it is there; returns it by its real path. Raises OSError."""
+        self.mount.mkdir(parents=True, exist_ok=True)
+        return HostileGround(self.mount.resolve())
+
+    def beside(self, name: str) -> HostileGround:
+        """A folder of that name beside it."""
+        return HostileGround(self.mount.with_name(name))
+
+    def holds(self, path: Path) -> bool:
+        """Whether a path leads below it, as it is spelled."""
+        return path.is_relative_to(self.mount)
+
     def for_blender(self, relative: str = "") -> str:
         """A path below it (or its own) as the process itself opens it."""
         return str(self.mount / relative)
@@ -106,16 +119,9 @@ class HostileGround:
             try:
                 with source.open("rb") as file:
                     _copy_new(file, scratch, name, durable=False)
+                _give_to_owner(scratch, name, ground)
                 self._clear(ground, name)
                 os.replace(name, name, src_dir_fd=scratch, dst_dir_fd=ground)
-            except OSError as error:
-                raise _cannot_write(f"{self.mount.name}/{name}", error) from error
-
-    def make_folder(self, name: str) -> None:
-        """Makes an empty folder in it. Raises Refusal if there is something of that name."""
-        with _opened_folder(self.mount) as ground:
-            try:
-                os.mkdir(name, dir_fd=ground)
             except OSError as error:
                 raise _cannot_write(f"{self.mount.name}/{name}", error) from error
 
@@ -282,6 +288,13 @@ def _copy_new(source: BinaryIO, folder: int, name: str, *, durable: bool) -> int
             copy.flush()
             os.fsync(copy.fileno())
     return done
+
+
+def _give_to_owner(folder: int, name: str, ground: int) -> None:
+    """Gives a new file to the user who owns the ground: as root, the process runs as another. Raises OSError."""
+    owner, own = os.fstat(ground), os.stat(name, dir_fd=folder, follow_symlinks=False)
+    if (owner.st_uid, owner.st_gid) != (own.st_uid, own.st_gid):
+        os.chown(name, owner.st_uid, owner.st_gid, dir_fd=folder, follow_symlinks=False)
 
 
 @contextmanager

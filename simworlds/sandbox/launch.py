@@ -9,8 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simworlds.sandbox.control_group import ControlGroup, group_parents
 from simworlds.sandbox.errors import CannotStart, RuntimeMissing
-from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
 from simworlds.sandbox.usage import UsageMonitor
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from simworlds.sandbox.confined_command import Sandbox
+    from simworlds.sandbox.hostile_ground import HostileGround
 
 PRIVATE = "private"  # the name of a folder for temporary files, beside the workspace
 LENT = "lent"  # the name of a folder of files that Blender is to load, beside the workspace
@@ -41,15 +42,22 @@ class Launch:
     sandbox: Sandbox
     program: Program
     read: tuple[Path, ...] = field(default=())
-    lent: Path | None = None
+    lent: HostileGround | None = None
 
     def command(self, channel: int) -> list[str]:
         """The command's words; ``channel`` is the descriptor of the program's socket."""
         words = self.runtime.command(BOOT, self.program.arguments(str(channel)))
         readable = [*self.program.folders, *_folders_of(self.runtime), *self.read]
         if self.lent is not None:
-            readable.append(self.lent)
-        return self.sandbox.command(words, read=readable, write=[self.workspace.mount, self.private.mount])
+            readable.append(self.lent.mount)
+        writable = [self.workspace.mount, self.private.mount]
+        return self.sandbox.command(words, read=readable, write=writable, group=self.group.folders)
+
+    @cached_property
+    def group(self) -> ControlGroup:
+        """The control group of the running worker."""
+        down = "memory" in self.sandbox.without
+        return ControlGroup(self.sandbox.limits, None if down else group_parents())
 
     @cached_property
     def environment(self) -> dict[str, str]:
@@ -70,9 +78,9 @@ class Launch:
         return UsageMonitor(self.folders, self.sandbox.limits)
 
     @property
-    def _passing(self) -> tuple[Path, ...]:
+    def _passing(self) -> tuple[HostileGround, ...]:
         """The folders that come and go with the process."""
-        return (self.private.mount, *([self.lent] if self.lent is not None else []))
+        return (self.private, *([self.lent] if self.lent is not None else []))
 
     def prepare(self) -> None:
         """Makes the private and the lent folder, empty, and removes files that an earlier Blender left half written.
@@ -81,18 +89,20 @@ class Launch:
         """
         for folder in self._passing:
             try:
-                folder.mkdir(parents=True, exist_ok=True)
+                folder.make()
             except OSError as error:
-                raise CannotStart(f"{folder} cannot be made: {error.strerror or error}") from error
-            HostileGround(folder).empty()
+                raise CannotStart(f"{folder.mount} cannot be made: {error.strerror or error}") from error
+            folder.empty()
+        self.group.renew()
         self.workspace.remove_named(HALF_WRITTEN)
 
     def clean(self) -> None:
-        """Removes the private and the lent folder, and half-written files."""
+        """Removes the private and the lent folder, half-written files and the control group."""
+        self.group.close()
         for folder in self._passing:
-            HostileGround(folder).empty()
+            folder.empty()
             with suppress(OSError):
-                folder.rmdir()
+                folder.mount.rmdir()
         self.workspace.remove_named(HALF_WRITTEN)
 
 

@@ -42,7 +42,9 @@ class Runtime:
     def command(self, script: Path, args: list[str]) -> list[str]:
         """The command that runs ``script``, whose own arguments are those after the first ``"--"`` of sys.argv."""
         if self.kind == "executable":
-            flags = ["--background", "--factory-startup", "--python-exit-code", "3", "--python", str(script)]
+            # Without a sound device: connecting to a sound server that cannot be reached may never end.
+            flags = ["--background", "--factory-startup", "-noaudio"]
+            flags += ["--python-exit-code", "3", "--python", str(script)]
         else:
             flags = ["-P" if self.kind == "environment" else "-I", str(script)]
         return [str(self.executable), *flags, "--", *args]

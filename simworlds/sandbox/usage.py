@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import os
 import time
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from simworlds.sandbox.hostile_ground import DEEPEST, DiskUsage, HostileGround
+from simworlds.sandbox.nameless_files import nameless_files
+from simworlds.sandbox.watched_process import WatchedProcess
 
 if TYPE_CHECKING:
     from simworlds.sandbox.confined_command import ResourceLimits
@@ -16,42 +19,57 @@ _LEAST_FREE = (
     1 << 30
 )  # bytes that stay free on the disk for others; half of what is free at the start, if less
 _MOST_COUNTED = 2_000_000
-_CHECK_SECONDS = 0.25  # between two checks
-_PAUSE = 10.0  # after a slow check, in its durations
-_QUICK_SECONDS = 0.005
+_CHECK_SECONDS = 0.25  # between two counts of the files
+_PAUSE = 10.0  # after a slow count, in its durations
+_MUCH_SPACE, _MANY_FILES = 150_000_000, 10_000  # taken since the last count, for the next to come at once
+_QUICK_SECONDS = 0.02
 
 
 class UsageMonitor:
-    """Checks now and then whether a process is over its limits. It may write to ``folders``.
+    """Checks whether a process is over its limits, each time that it is asked. It may write to ``folders``.
 
     What lies there at the start does not count as excess. ``last_within_limits`` is the last time at which no limit was
     exceeded, as HostileGround.now tells it.
+
+    Each check looks at the process and at the free space of the file systems: that takes a fraction of a millisecond,
+    however many files there are. The files are counted now and then, and at once when more space was taken than may
+    still be. While they are counted, the process stands still, so nothing is written unseen.
     """
 
     def __init__(self, folders: tuple[HostileGround, ...], limits: ResourceLimits) -> None:
         self._folders = folders
         self._limits = limits
-        self._process = 0
+        self._process = WatchedProcess(0)
         self._next = self._next_at_end = 0.0
-        self._least_free = min(_LEAST_FREE, _free(folders[0]) // 2)
-        present = self._disk_usage(_MOST_COUNTED)
+        self._at_start = self._at_walk = self._free()
+        self._devices = frozenset(self._at_start)
+        self._least_free = {
+            device: min(_LEAST_FREE, free.bytes // 2) for device, free in self._at_start.items()
+        }
+        present = self._walked = self._disk_usage(_MOST_COUNTED)
+        self._present = present
         self._most = DiskUsage(max(limits.disk, present.bytes), max(limits.files, present.files))
         self.last_within_limits = folders[-1].now()
 
-    def watch(self, process: int) -> None:
-        """Also checks this process (by its number outside the sandbox) from here on."""
+    def watch(self, process: WatchedProcess) -> None:
+        """Also checks this process from here on."""
         self._process = process
 
     def excess(self, *, at_end: bool = False) -> str | None:
-        """Which limit is exceeded, in words; None also right after another check.
+        """Which limit is exceeded, in words.
 
-        ``at_end``: the call has ended, so the pause between two checks is skipped unless checks are slow.
+        ``at_end``: the call has ended, so the pause between two counts is skipped unless counting is slow.
         """
         started = time.monotonic()
-        if started < (self._next_at_end if at_end else self._next):
+        free = self._free()
+        if (excess := self._excess_of_process() or self._excess_of_space(free)) is not None:
+            return excess
+        due = started >= (self._next_at_end if at_end else self._next)
+        if not due and not self._may_exceed(free):
             return None
-        moment = self._folders[-1].now()
-        excess = self._excess_of_process() or self._excess_on_disk()
+        with self._process.standing_still():
+            moment = self._folders[-1].now()
+            excess = self._excess_on_disk()
         if excess is None:
             self.last_within_limits = moment
         ended = time.monotonic()
@@ -61,19 +79,33 @@ class UsageMonitor:
 
     def _excess_of_process(self) -> str | None:
         limits = self._limits
-        memory, threads = _memory_and_threads(self._process)
+        memory, threads = self._process.memory_and_threads()
         if 0 < limits.threads < threads:
             return f"started {threads:,} threads; the limit is {limits.threads:,}"
         if 0 < limits.memory < memory:
             return f"used {_size(memory)} of memory; the limit is {_size(limits.memory)}"
         return None
 
+    def _excess_of_space(self, free: dict[int, FreeSpace]) -> str | None:
+        for device, space in free.items():
+            least = self._least_free.get(device, 0)
+            if space.bytes < least:
+                return f"left {_size(space.bytes)} free on the disk; {_size(least)} must stay free"
+        return None
+
+    def _may_exceed(self, free: dict[int, FreeSpace]) -> bool:
+        """Whether so much space was taken since the last count, by whomever, that a limit may be exceeded."""
+        taken = _taken(self._at_walk, free)
+        walked, most, limits = self._walked, self._most, self._limits
+        much = taken.bytes >= _MUCH_SPACE and walked.bytes + taken.bytes > most.bytes and limits.disk > 0
+        return much or (
+            taken.files >= _MANY_FILES and walked.files + taken.files > most.files and limits.files > 0
+        )
+
     def _excess_on_disk(self) -> str | None:
         limits = self._limits
-        free = _free(self._folders[0])
-        if free < self._least_free:
-            return f"left {_size(free)} free on the disk; {_size(self._least_free)} must stay free"
-        usage = self._disk_usage(self._most.files if limits.files else 0)
+        self._at_walk = self._free()
+        usage = self._walked = self._disk_usage(self._most.files if limits.files else 0)
         if usage.deepest >= DEEPEST:
             return f"nested folders more than {DEEPEST} deep"
         if limits.disk and usage.bytes > self._most.bytes:
@@ -85,34 +117,43 @@ class UsageMonitor:
     def _disk_usage(self, at_most: int) -> DiskUsage:
         usages = [folder.measure(at_most) for folder in self._folders]
         size, files = sum(usage.bytes for usage in usages), sum(usage.files for usage in usages)
-        return DiskUsage(size, files, max(usage.deepest for usage in usages))
+        nameless = nameless_files(self._process.number, self._devices)
+        size += nameless.bytes
+        if nameless.mapped:
+            # Their size is unknown, but at most what nothing else explains.
+            unexplained = _taken(self._at_start, self._free()).bytes - (size - self._present.bytes)
+            size += max(0, min(unexplained, nameless.mapped * (self._limits.file_size or unexplained)))
+        return DiskUsage(size, files + nameless.open, max(usage.deepest for usage in usages))
+
+    def _free(self) -> dict[int, FreeSpace]:
+        """File system → what is free on it, of those that the folders are on."""
+        free: dict[int, FreeSpace] = {}
+        for folder in self._folders:
+            with suppress(OSError):
+                disk = os.statvfs(folder.mount)
+                device = folder.mount.lstat().st_dev
+                free[device] = FreeSpace(disk.f_bavail * disk.f_frsize, disk.f_ffree)
+        return free
+
+
+class FreeSpace(NamedTuple):
+    """Free bytes of a file system, and how many more files it can hold."""
+
+    bytes: int
+    files: int
+
+
+def _taken(before: dict[int, FreeSpace], after: dict[int, FreeSpace]) -> FreeSpace:
+    """By how much free space became less."""
+    both = [(before[device], space) for device, space in after.items() if device in before]
+    return FreeSpace(
+        sum(max(0, old.bytes - new.bytes) for old, new in both),
+        sum(max(0, old.files - new.files) for old, new in both),
+    )
 
 
 def _size(amount: int) -> str:
     return f"{amount / 1e9:,.1f} GB" if amount >= 1e9 else f"{amount / 1e6:,.0f} MB"
-
-
-def _free(folder: HostileGround) -> int:
-    try:
-        disk = os.statvfs(folder.mount)
-    except OSError:
-        return 1 << 62
-    return disk.f_bavail * disk.f_frsize
-
-
-def _memory_and_threads(process: int) -> tuple[int, int]:
-    """(bytes of memory not backed by a file, number of threads) of a process; 0 where that cannot be known."""
-    if not process:
-        return 0, 0
-    try:
-        lines = Path(f"/proc/{process}/status").read_text().splitlines()
-        values = dict(
-            line.split(":\t", 1) for line in lines if line.startswith(("RssAnon", "RssShmem", "Threads"))
-        )
-        memory = sum(int(values[name].split()[0]) for name in ("RssAnon", "RssShmem"))
-        return memory * 1024, int(values["Threads"])
-    except (OSError, LookupError, ValueError):
-        return 0, 0
 
 
 def innermost_process(process: int) -> int:

@@ -6,6 +6,8 @@ import os
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from simworlds.terminal.streams import visible
+
 if TYPE_CHECKING:
     from typing import TextIO
 
@@ -16,8 +18,8 @@ def is_terminal(stream: TextIO) -> bool:
 
 
 def write_line(stream: TextIO, line: str) -> None:
-    """Writes a line. Does nothing when the reader is gone; letters that the stream cannot encode are replaced."""
+    """Writes a visible line. Does nothing when the reader is gone; what the stream cannot encode is replaced."""
     encoding = getattr(stream, "encoding", None) or "utf-8"
     with suppress(OSError, ValueError):
-        stream.write(f"{line}\n".encode(encoding, "replace").decode(encoding))
+        stream.write(f"{visible(line)}\n".encode(encoding, "replace").decode(encoding))
         stream.flush()

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Self
 
 from rich.live import Live
 
+from simworlds.terminal.streams import guard_streams
+
 if TYPE_CHECKING:
     from types import TracebackType
 
@@ -38,6 +40,7 @@ class LiveView:
     def __enter__(self) -> Self:
         with suppress(OSError):
             self._live.start(refresh=True)
+            guard_streams()  # rich has redirected them, and would read escapes in what is printed as styles
         return self
 
     def __exit__(

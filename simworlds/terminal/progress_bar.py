@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
-from rich.console import Console
 from rich.progress import (
     BarColumn,
     Progress,
@@ -14,6 +14,8 @@ from rich.progress import (
     TimeElapsedColumn,
 )
 from rich.text import Text
+
+from simworlds.terminal.console import Console
 
 if TYPE_CHECKING:
     from rich.progress import Task
@@ -32,11 +34,11 @@ def start_bar() -> Progress:
     """Starts a bar with one task on stderr; it is drawn on request only, and vanishes when it is stopped."""
     bar = Progress(
         SpinnerColumn(),
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         _KnownLengthColumn(bar_width=30),
         TaskProgressColumn(),
         TimeElapsedColumn(),
-        console=Console(stderr=True),
+        console=Console(sys.stderr),
         # A drawing thread would make forking unsafe (simworlds.forked), and builds read pages in a second process.
         auto_refresh=False,
         transient=True,

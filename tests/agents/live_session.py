@@ -27,10 +27,15 @@ class LiveSession:
     """A session, and short ways to use it."""
 
     def __init__(
-        self, root: Path, *, sandbox: Sandbox | None = None, blender_exe: Path | None = None
+        self,
+        root: Path,
+        *,
+        sandbox: Sandbox | None = None,
+        blender_exe: Path | None = None,
+        read: tuple[Path, ...] = (),
     ) -> None:
         folder = RunFolder.make(root)
-        launch = make_launch(folder.workspace.mount, sandbox=sandbox, blender_exe=blender_exe)
+        launch = make_launch(folder.workspace, sandbox=sandbox, blender_exe=blender_exe, read=read)
         self.blender = Supervisor(launch, folder)
         self.blender.start()
         self.context = ToolContext(self.blender, no_docs)

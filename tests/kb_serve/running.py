@@ -73,12 +73,19 @@ class Wire:
         return self.process.stdout.read()
 
 
+def _limited(descriptors: int | None) -> list[str]:
+    """What begins a command that is to have so few descriptors."""
+    return ["sh", "-c", f'ulimit -n {descriptors} && exec "$@"', "sh"] if descriptors is not None else []
+
+
 class HttpServer:
     """``simworlds serve --http`` on a free port of the loopback address. ``url`` is what it says it serves at."""
 
-    def __init__(self, home: Path, *arguments: str, **environment_variables: str) -> None:
+    def __init__(
+        self, home: Path, *arguments: str, descriptors: int | None = None, **environment_variables: str
+    ) -> None:
         self.process = subprocess.Popen(
-            [*COMMAND, "serve", "--http", "--port", "0", *arguments],
+            [*_limited(descriptors), *COMMAND, "serve", "--http", "--port", "0", *arguments],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -85,7 +85,7 @@ def test_unknown_symbols_and_pages_are_none(reader: BaseReader, text: str) -> No
     assert reader.page_entry(text) is None
     assert reader.removed(text) is None
     assert not reader.members(text) or text == ""
-    assert reader.by_name(text) == []
+    assert reader.by_name(text) == ()
     assert reader.links_from(text, "manual") == []
     assert reader.replacements(text) == []
     assert reader.since(text) == ""

@@ -30,6 +30,7 @@ _RESTORED_MODULES = (
     *("threading", "time", "traceback", "types", "bpy", "bpy.ops", "bpy.path", "bpy.utils", "mathutils"),
 )
 _CODE = (types.FunctionType, types.BuiltinFunctionType, types.ModuleType, type)
+_OF_FUNCTIONS = frozenset({"__code__", "__defaults__", "__kwdefaults__"})
 _current_frames = sys._current_frames
 _count_started = _thread._count
 
@@ -52,6 +53,9 @@ class InterpreterState:
             for name in _RESTORED_MODULES
             if (module := sys.modules.get(name)) is not None
         ]
+        self._code = {}
+        for module, names in self._names:
+            self._remember_code(module.__name__, names)
         self._seen = 0
         self._builtins = {**vars(builtins)}
         self._environment = {**os.environ}
@@ -73,12 +77,15 @@ class InterpreterState:
         self._started = 0
         self._flush_c = ctypes.CDLL(None).fflush
         self._audited = 0
-        sys.addaudithook(self._note_hooks)
+        self._recoded = False
+        sys.addaudithook(self._note_events)
         globals()["current"] = self
 
-    def _note_hooks(self, event, _arguments):
+    def _note_events(self, event, arguments):
         if event == "sys.addaudithook":
             self._audited += 1
+        elif event == "object.__setattr__" and arguments[1] in _OF_FUNCTIONS:
+            self._recoded = True
 
     def protect_modules(self, folder):
         """Has the functions and classes of all modules loaded from below ``folder`` restored as well."""
@@ -91,6 +98,17 @@ class InterpreterState:
             if path.startswith(folder + os.sep) and id(module) not in known:
                 code = {name: value for name, value in vars(module).items() if isinstance(value, _CODE)}
                 self._names.append((module, code))
+                self._remember_code(module.__name__, code)
+
+    def _remember_code(self, module, names):
+        """Remembers what the module's own functions and methods do: code can be put into a function as it stands."""
+        own = [value for value in names.values() if getattr(value, "__module__", None) == module]
+        classes = [value for value in own if isinstance(value, type)]
+        for value in [*own, *(value for owner in classes for value in vars(owner).values())]:
+            function = getattr(value, "__func__", getattr(value, "fget", value))
+            if isinstance(function, types.FunctionType):
+                kept = (function.__code__, function.__defaults__, function.__kwdefaults__)
+                self._code[id(function)] = (function, *kept)
 
     def before(self):
         """Call it before a call: what that leaves behind is counted from here."""
@@ -160,7 +178,7 @@ class InterpreterState:
         gc.enable()
 
     def restore_names(self):
-        """Restores the names in protected modules, the builtins, and the modules in ``sys.modules``.
+        """Restores the names in protected modules, what their functions do, the builtins, and ``sys.modules``.
 
         New names in modules stay: importing a submodule adds one.
         """
@@ -169,6 +187,10 @@ class InterpreterState:
             for name, value in kept.items():
                 if now.get(name) is not value:
                     now[name] = value
+        if self._recoded:
+            for function, *kept in self._code.values():
+                function.__code__, function.__defaults__, function.__kwdefaults__ = kept
+            self._recoded = False
         for name in vars(builtins).keys() - self._builtins.keys():
             del vars(builtins)[name]
         for name, module in self._modules.items():

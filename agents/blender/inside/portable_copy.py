@@ -13,6 +13,7 @@ import shutil
 
 import bpy
 
+from simworlds.sandbox.inside.open_blend import open_blend
 from simworlds.sandbox.inside.refusal import Refused
 
 from .blend.file_io import SCENE_FILE, make_own, read_file, reason
@@ -69,7 +70,8 @@ def load(arguments, report):
     before may be lost then.
     """
     path, workspace = arguments["path"], arguments["workspace"]
-    read_file(path)
+    report(0, None, "reading and estimating it")
+    open_blend(path)
     version = tuple(bpy.data.version)
     if version[:2] > bpy.app.version[:2]:
         raise Refused(

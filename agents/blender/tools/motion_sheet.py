@@ -96,7 +96,6 @@ def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Re
     """Measures and draws. Raises BlenderError."""
     blender, folder = context.blender, context.blender.folder
     tiles = f".motion-{secrets.token_hex(4)}"
-    folder.workspace.make_folder(tiles)
     try:
         reply = blender.call(
             "motion_sheet",

@@ -5,24 +5,16 @@ import os
 
 import bpy
 
-from simworlds.sandbox.inside.refusal import Refused
-
 from . import channels, sample_frames, shapes, solvers
 from .json_values import called, number, text
 
-MOST_OBJECTS = 20_000
 _PLAIN_PROPERTIES = (str, int, float, bool)
 _INVISIBLE = {"CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE", "ARMATURE", "LATTICE"}
 
 
-def read_facts(play, most=MOST_OBJECTS):
-    """The facts of the active scene, as JSON. ``play``: whether the clip is played; else only its start is evaluated.
-
-    Raises Refused for a scene of more than ``most`` objects.
-    """
+def read_facts(play):
+    """The facts of the active scene, as JSON. ``play``: whether the clip is played; else only its start is read."""
     scene = bpy.context.scene
-    if len(scene.objects) > most:
-        raise Refused(f"the scene has {len(scene.objects):,} objects; at most {most:,} can be audited")
     shapes.forget()
     channels.forget()
     watched = []
@@ -146,7 +138,7 @@ def _objects(scene, watched):
     instanced, waiting = set(), [obj.instance_collection for obj in own if _instances_collection(obj)]
     while waiting:
         for obj in waiting.pop().all_objects:
-            if obj not in own and obj not in instanced and len(own) + len(instanced) < MOST_OBJECTS:
+            if obj not in own and obj not in instanced:
                 instanced.add(obj)
                 if _instances_collection(obj):
                     waiting.append(obj.instance_collection)

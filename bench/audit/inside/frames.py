@@ -13,6 +13,7 @@ import bpy
 from mathutils import Vector
 
 from simworlds.sandbox.inside.refusal import Refused
+from simworlds.sandbox.inside.scene_estimate import check_scene
 
 from . import sample_frames, solvers
 from .json_values import called
@@ -33,6 +34,7 @@ def render(shares, pixels, samples, jump=False):
     ``unbaked``: physics without a bake, in words. Raises Refused.
     """
     scene = bpy.context.scene
+    check_scene(scene, render=True)
     facts_by_object = {obj: {"modifiers": solvers.modifiers_of(obj)} for obj in scene.objects}
     solvers.take_moved_caches(facts_by_object)
     unbaked = sample_frames.unbaked_of(scene, facts_by_object)

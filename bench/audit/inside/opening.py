@@ -1,23 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Opens the file to audit. Nothing in it is executed, and nothing is written."""
 
-import os
-
 import bpy
 
+from simworlds.sandbox.inside.open_blend import open_blend
 from simworlds.sandbox.inside.refusal import Refused
-
-from .json_values import text
 
 
 def open_file(path):
     """Opens ``path``. Returns ``objects``: how many it has. Raises Refused."""
-    name = os.path.basename(path)
-    try:
-        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
-    except RuntimeError as error:
-        said = " ".join(str(error).replace(path, name).split()).removeprefix("Error: ")
-        raise Refused(f"{text(name)} cannot be opened: {text(said)[:300]}") from None
+    open_blend(path)
     saved, own = tuple(bpy.data.version)[:2], tuple(bpy.app.version)[:2]
     if saved > own:
         raise Refused(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.records import Page, PageSource, Section
@@ -12,7 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 ROOT = "index"
-_MOST_WARNINGS = 20
+MOST_WARNINGS = 20
+_MOST_LINKS = 1_000
+_MOST_ABOVE = 20
+_LONGEST_TITLE = 300
 _URLS: dict[PageSource, str] = {
     "manual": "https://docs.blender.org/manual/en/{version}/{slug}.html",
     "guide": "https://docs.blender.org/api/{version}/{slug}.html",
@@ -58,7 +62,7 @@ def assemble(texts: Iterable[PageText], *, source: PageSource, version: str) -> 
                 children=children[slug],
                 links=_existing(text.links, by_slug, slug),
                 url=_URLS[source].format(version=version, slug=slug) if source in _URLS else "",
-                warnings=tuple(dict.fromkeys(text.warnings))[:_MOST_WARNINGS],
+                warnings=tuple(dict.fromkeys(text.warnings))[:MOST_WARNINGS],
             )
         )
     return pages
@@ -66,13 +70,14 @@ def assemble(texts: Iterable[PageText], *, source: PageSource, version: str) -> 
 
 def _title(text: PageText) -> str:
     if text.sections and text.sections[0].title:
-        return text.sections[0].title
+        return text.sections[0].title[:_LONGEST_TITLE]
     parts = [part for part in text.slug.split("/") if part != ROOT] or [text.slug]
     return re.sub(r"[_-]+", " ", parts[-1]).strip().title()
 
 
 def _existing(slugs: Iterable[str], by_slug: Mapping[str, PageText], own: str) -> tuple[str, ...]:
-    return tuple(slug for slug in dict.fromkeys(slugs) if slug in by_slug and slug != own)
+    existing = (slug for slug in dict.fromkeys(slugs) if slug in by_slug and slug != own)
+    return tuple(islice(existing, _MOST_LINKS))
 
 
 def _parents(children: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
@@ -98,6 +103,6 @@ def _parents(children: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
 
 def _ancestors(slug: str, parents: Mapping[str, str]) -> list[str]:
     above: list[str] = []
-    while (slug := parents.get(slug, "")) and slug != ROOT and slug not in above:
+    while (slug := parents.get(slug, "")) and slug != ROOT and slug not in above and len(above) < _MOST_ABOVE:
         above.insert(0, slug)
     return above

@@ -27,9 +27,10 @@ if TYPE_CHECKING:
     from sphinx.util.typing import ExtensionMetadata
 
 _DIRECTIVE = re.compile(
-    r"^[ \t]*(?:\S.*[ \t])?\.\.[ \t]+(?:\|[^|\n]+\|[ \t]+)?([A-Za-z][\w:+.-]*?)[ \t]?::", re.MULTILINE
+    r"^[ \t]*(?:\S.*[ \t])?\.\.[ \t]+(?:\|[^|\n]+\|[ \t]+)?([A-Za-z][\w:+.-]{0,60}?)[ \t]?::", re.MULTILINE
 )
-_ROLE = re.compile(r":([A-Za-z][\w:+.-]*):`")
+_ROLE = re.compile(r":([A-Za-z][\w:+.-]{0,60}):`")
+_MOST_NAMES = 1_000
 _INVENTORY = re.compile(r"blender_[a-z]+")
 _TARGET = re.compile(r"^(.*?)\s*<[^<>]*>$", re.DOTALL)
 _log = logging.getLogger(__name__)
@@ -182,17 +183,20 @@ def _elsewhere(
     return shown
 
 
-def accept_unknown(app: Sphinx, texts: Iterable[str]) -> None:
-    """Make every directive and role that ``texts`` use and Sphinx does not know keep its content.
+def note_names(text: str, used_directives: set[str], used_roles: set[str]) -> None:
+    """Add the names of the directives and roles in ``text``, up to a number that no manual comes near."""
+    for names, pattern in ((used_directives, _DIRECTIVE), (used_roles, _ROLE)):
+        for name in pattern.findall(text):
+            if len(names) < _MOST_NAMES:
+                names.add(name.lower())
+
+
+def accept_unknown(app: Sphinx, used_directives: Iterable[str], used_roles: Iterable[str]) -> None:
+    """Make every directive and role in use that Sphinx does not know keep its content.
 
     They have to be known by name beforehand: once docutils has met a name it does not know, the content is
     no longer parsed, and it is dropped from the tree.
     """
-    used_directives: set[str] = set()
-    used_roles: set[str] = set()
-    for text in texts:
-        used_directives.update(name.lower() for name in _DIRECTIVE.findall(text))
-        used_roles.update(name.lower() for name in _ROLE.findall(text))
     language: Any = languages.get_language("en")
     document = utils.new_document("")
     for name in sorted(used_directives):

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import html
 import re
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,63 +16,102 @@ from kb_build.pages.readers import markdown as md
 from kb_build.pages.readers.article import read_article
 from kb_build.pages.readers.assemble import ROOT, PageText, assemble
 from kb_build.pages.readers.html_elements import slug_of
-from kb_build.pages.readers.workers import processes
+from kb_build.pages.readers.workers import PageBudget, PageWork, read_apart, read_elsewhere
 from kb_build.records import Section
+from simworlds.folder_files import FolderLimits, list_files, read_file
+from simworlds.forked import can_fork
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from kb_build.records import Page, PageSource
 
     Progress = Callable[[int, int], None]
 
 _GENERATED = frozenset({"404", "genindex", "modindex", "py-modindex", "search"})
-_CHUNK = 40
 _ELEMENTS = ("article", "[role=main]", "main", "div.body", "body")
 _SIDEBAR = b'<div class="sidebar-tree">'
-_MARKUP = re.compile(rb"<(script|style)\b.*?</\1\s*>|<[^>]*>", re.DOTALL | re.IGNORECASE)
+# What is not closed ends with the page: looking for an end that is not there would cost each start the whole page.
+_MARKUP = re.compile(
+    rb"<script\b(?:(?!</script).)*+(?:</script[^>]*+>?|\Z)|<style\b(?:(?!</style).)*+(?:</style[^>]*+>?|\Z)|<[^>]*+>?",
+    re.DOTALL | re.IGNORECASE,
+)
+_LIMITS = FolderLimits(file_bytes=8 << 20)
 
 
-def read_html(
-    folder: Path, *, source: PageSource, version: str, jobs: int = 2, progress: Progress | None = None
+def read_html(  # noqa: PLR0913 - what, and how much of it
+    folder: Path,
+    *,
+    source: PageSource,
+    version: str,
+    jobs: int = 2,
+    progress: Progress | None = None,
+    budget: PageBudget | None = None,
 ) -> list[Page]:
     """Every page of an HTML documentation below ``folder``, sorted by slug.
 
     Search page, index and the page for wrong addresses are left out; with ``source="guide"`` only the pages
-    ``info_*.html`` are read (the API reference itself comes from Blender). ``version``, ``jobs`` and
+    ``info_*.html`` are read (the API reference itself comes from Blender). ``version``, ``jobs``, ``budget`` and
     ``progress`` (pages done, pages in all) as in :func:`kb_build.pages.readers.rst.read_rst`, and the pages are the
     same as if they had been read from their RST sources. A page that cannot be understood is kept and carries
     warnings. Raises SourceError when there are no pages, or one cannot be read from disk.
     """
-    folder = Path(folder)
-    pattern = "info_*.html" if source == "guide" else "*.html"
-    slugs = {
-        path.relative_to(folder).with_suffix("").as_posix()
-        for path in folder.rglob(pattern)
-        if path.is_file()
-    }
+    folder, budget = Path(folder), budget or PageBudget()
+    if not can_fork():
+        return read_elsewhere(
+            read_html,
+            folder=folder,
+            source=source,
+            version=version,
+            jobs=jobs,
+            progress=progress,
+            budget=budget,
+        )
+    start = "info_" if source == "guide" else ""
+    try:
+        files = list_files(
+            folder, lambda path: path.suffix == ".html" and path.name.startswith(start), _LIMITS
+        ).files
+    except OSError as error:
+        raise SourceError(f"{folder} cannot be read ({error})") from error
+    slugs = [file.name.removesuffix(".html") for file in files]
     names = sorted(slug for slug in slugs if slug not in _GENERATED and not _is_asset(slug))
     if not names:
         raise SourceError(
-            f"{folder} holds no pages ({pattern}): give the folder with the documentation's index.html"
+            f"{folder} holds no pages ({start}*.html): give the folder with the documentation's index.html"
         )
-    texts: list[PageText] = []
+    done = 0
 
-    def finished(part: list[PageText]) -> None:
-        texts.extend(part)
+    def finished(_: str) -> None:
+        nonlocal done
+        done += 1
         if progress is not None:
-            progress(len(texts), len(names))
+            progress(done, len(names))
 
-    _read_all(partial(_read_some, folder), names, processes(jobs, len(names)), finished)
-    listed = _listed(folder / f"{ROOT}.html")
+    work = PageWork(partial(_read_one, folder), done=finished)
+    found = read_apart(names, work, jobs=jobs, budget=budget)
+    texts: list[PageText] = [*found.answers.values()]
+    texts += [_plain_page(_bytes(folder, slug), slug, reason) for slug, reason in found.failed.items()]
+    listed = read_apart(
+        [ROOT] if ROOT in slugs else [], PageWork(partial(_listed, folder)), jobs=1, budget=budget
+    ).answers.get(ROOT, {})
     texts = [replace(text, children=_merged(text.children, listed.get(text.slug, {}))) for text in texts]
     return assemble(texts, source=source, version=version)
 
 
-def _listed(front: Path) -> dict[str, dict[str, None]]:
+def _bytes(folder: Path, slug: str) -> bytes:
+    try:
+        return read_file(folder, f"{slug}.html", most=_LIMITS.file_bytes)
+    except OSError as error:
+        raise SourceError(
+            f"{folder / slug}.html cannot be read ({error.strerror or error}): unpack the documentation again"
+        ) from error
+
+
+def _listed(folder: Path, slug: str) -> dict[str, dict[str, None]]:
     """Who lists whom, from the front page's sidebar. It is the same on every page and slow to parse, but
     knows the tables of contents that the pages themselves do not show."""
-    data = front.read_bytes() if front.is_file() else b""
+    data = _bytes(folder, slug)
     start = data.find(_SIDEBAR)
     if start < 0:
         return {}
@@ -105,37 +141,8 @@ def _is_asset(slug: str) -> bool:
     return any(part.startswith("_") for part in slug.split("/")[:-1]) or slug.startswith("genindex-")
 
 
-def _read_all(
-    read: Callable[[Sequence[str]], list[PageText]],
-    names: list[str],
-    jobs: int,
-    finished: Callable[[list[PageText]], None],
-) -> None:
-    chunks = [names[at : at + _CHUNK] for at in range(0, len(names), _CHUNK)]
-    if jobs == 1:
-        for chunk in chunks:
-            finished(read(chunk))
-        return
-    try:
-        with ProcessPoolExecutor(jobs, mp_context=get_context("fork")) as pool:
-            futures: list[Future[list[PageText]]] = [pool.submit(read, chunk) for chunk in chunks]
-            for future in as_completed(futures):
-                finished(future.result())
-    except BrokenProcessPool as error:
-        raise SourceError("a process that read HTML pages was killed: try again with jobs=1") from error
-
-
-def _read_some(folder: Path, slugs: Sequence[str]) -> list[PageText]:
-    return [_read_one(folder / f"{slug}.html", slug) for slug in slugs]
-
-
-def _read_one(path: Path, slug: str) -> PageText:
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise SourceError(
-            f"{path} cannot be read ({error.strerror}): unpack the documentation again"
-        ) from error
+def _read_one(folder: Path, slug: str) -> PageText:
+    data = _bytes(folder, slug)
     cut = _article(data)
     warnings: list[str] = []
     try:
@@ -147,8 +154,7 @@ def _read_one(path: Path, slug: str) -> PageText:
         root = _main_element(BeautifulSoup(text, "lxml"))
         article = read_article(root, slug)
     except (RecursionError, ValueError, TypeError, AttributeError) as error:  # markup out of all shape
-        reason = f"kept as plain text: {type(error).__name__} while its markup was read"
-        return PageText(slug=slug, sections=(_plain(cut),), warnings=(*warnings, reason))
+        return _plain_page(data, slug, f"{type(error).__name__} while its markup was read")
     if root.name == "body" and not any(section.text for section in article.sections):
         warnings.append("the page holds no text")
     return PageText(
@@ -177,6 +183,8 @@ def _main_element(soup: BeautifulSoup) -> Tag:
     return soup
 
 
-def _plain(data: bytes) -> Section:
-    text = html.unescape(_MARKUP.sub(b" ", data).decode("utf-8", errors="replace"))
-    return Section(anchor="", title="", level=1, text=md.fold(text))
+def _plain_page(data: bytes, slug: str, reason: str) -> PageText:
+    """A page as it reads without its markup. This cannot fail, and takes time that grows with the page alone."""
+    text = html.unescape(_MARKUP.sub(b" ", _article(data)).decode("utf-8", errors="replace"))
+    section = Section(anchor="", title="", level=1, text=md.cut(md.fold(text)))
+    return PageText(slug=slug, sections=(section,), warnings=(f"kept as plain text: {reason}",))

@@ -8,9 +8,16 @@ that one page read twice is one text.
 from __future__ import annotations
 
 import re
-from itertools import zip_longest
+from bisect import insort
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
 
 INDENT = "  "
+_LONGEST = 400_000
+_LARGE_TABLE = 50_000
+_MOST_SPANS = 200
 
 # RST sources are typed in ASCII and made typographic by Sphinx when it writes HTML. ASCII is what people type
 # into a query, so both forms are brought back to it.
@@ -18,6 +25,7 @@ _STRAIGHT = str.maketrans(
     {"’": "'", "‘": "'", "“": '"', "”": '"', "–": "--", "—": "---", "…": "...", "\u200b": ""}
 )
 _LANGUAGES = {"default": "", "none": "", "text": "", "python3": "python", "py": "python"}
+_BACKTICKS = re.compile("`+")
 _LIST_MARKER = re.compile(r"(?:- |\d+\. )")
 # Stands for an icon until the line is folded: brackets that held nothing else go with it.
 ICON = "\ufffc"
@@ -34,6 +42,11 @@ def fold(text: str) -> str:
     if ICON in text:
         text = _HOLLOW.sub("", text)
     return " ".join(text.split())
+
+
+def cut(text: str) -> str:
+    """``text`` without what exceeds the length of any honest page."""
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
 
 def emphasis(text: str) -> str:
@@ -62,7 +75,7 @@ def code(text: str) -> str:
         return ""
     if "`" not in text:
         return f"`{text}`"
-    fence = "`" * (max(len(run) for run in re.findall(r"`+", text)) + 1)
+    fence = "`" * (max(map(len, _BACKTICKS.findall(text))) + 1)
     return f"{fence} {text} {fence}"
 
 
@@ -97,9 +110,7 @@ def fence(text: str, language: str = "") -> str:
     text = text.strip("\n").rstrip()
     if not text:
         return ""
-    marks = "```"
-    while marks in text:
-        marks += "`"
+    marks = "`" * max(3, 1 + max(map(len, _BACKTICKS.findall(text)), default=0))
     name = _LANGUAGES.get(language, language)
     return f"{marks}{name}\n{text}\n{marks}"
 
@@ -162,43 +173,62 @@ def definition(terms: list[str], body: list[str]) -> str:
 
 
 class MarkdownGrid:
-    """Rows of a table being read. A cell that spans several is written once; the rest of it stays empty."""
+    """Rows of a table being read, each with its cells by column. A cell that spans several stands in the first.
 
-    _MOST = 200  # a span in a hostile page may be any number
+    A span in a hostile page may be any number: it is remembered, never filled in.
+    """
 
     def __init__(self) -> None:
-        self.rows: list[list[str]] = []
-        self._taken: set[tuple[int, int]] = set()
+        self.rows: list[dict[int, str]] = []
+        self._column = 0
+        self._spans: list[_Span] = []
 
     def row(self) -> None:
         """Begin the next row."""
-        self.rows.append([])
+        self.rows.append({})
+        self._column = 0
+        self._spans = [span for span in self._spans if span.until >= len(self.rows)]
 
     def cell(self, text: str, columns: int = 1, rows: int = 1) -> None:
         """Add a cell to the row begun last, to the right of what is there."""
-        at, line = len(self.rows) - 1, self.rows[-1]
-        while (at, len(line)) in self._taken:
-            line.append("")
-        first = len(line)
-        span = range(first, first + max(1, min(columns, self._MOST)))
-        line += [text, *("" for _ in span[1:])]
+        if len(self._spans) == _MOST_SPANS:
+            rows = 1
+        for span in self._spans:
+            if span.first <= self._column <= span.last:
+                self._column = span.last + 1
+        first, self._column = self._column, self._column + max(1, columns)
+        if text.strip():
+            self.rows[-1][first] = text
         if rows > 1:
-            self._taken |= {(at + down, x) for down in range(1, min(rows, self._MOST)) for x in span}
+            insort(self._spans, _Span(first, self._column - 1, len(self.rows) - 1 + rows))
 
 
-def table(rows: list[list[str]], *, header: bool, title: str = "") -> str:
-    """A table whose cells hold inline text or blocks already joined; nothing when all cells are empty."""
-    rows = [row for row in rows if any(cell.strip() for cell in row)]
-    if not rows:
+class _Span(NamedTuple):
+    """Columns that a cell above takes, until a row (counted from 1)."""
+
+    first: int
+    last: int
+    until: int
+
+
+def table(rows: Iterable[Mapping[int, str]], *, header: bool, title: str = "") -> str:
+    """A table of rows that have a text in some of their columns; nothing when none has any.
+
+    Columns in which no row has a text are left out, as galleries have them for pictures. A large table whose cells are
+    nearly all empty is not filled up: there each row has its texts alone.
+    """
+    filled = [row for row in rows if row]
+    if not filled:
         return ""
-    width = max(len(row) for row in rows)
-    columns = list(zip_longest(*rows, fillvalue=""))
-    # Galleries have columns of pictures without captions.
-    keep = [index for index in range(width) if any(cell.strip() for cell in columns[index])]
-    shown = [[_cell(row[index]) if index < len(row) else "" for index in keep] for row in rows]
+    columns = sorted({column for row in filled for column in row})
+    if len(columns) * len(filled) <= max(_LARGE_TABLE, 4 * sum(map(len, filled))):
+        shown = [[_cell(row.get(column, "")) for column in columns] for row in filled]
+    else:
+        shown = [[_cell(text) for _, text in sorted(row.items())] for row in filled]
+    width = max(map(len, shown))
     if not header:
-        shown.insert(0, ["" for _ in keep])
-    shown.insert(1, ["---" for _ in keep])
+        shown.insert(0, [""] * width)
+    shown.insert(1, ["---"] * width)
     text = "\n".join("| " + " | ".join(row) + " |" for row in shown)
     return f"{strong(title)}\n\n{text}" if title else text
 

@@ -1,34 +1,30 @@
-"""The Sphinx builder that turns resolved doctrees into page texts, with the parser it needs."""
+"""The Sphinx builder that turns sources into page texts, every page in a process that may fail."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from docutils import nodes
 from sphinx.builders import Builder
-from sphinx.parsers import RSTParser
 from sphinx.transforms import SphinxTransform
-from sphinx.util import logging
-from sphinx.util.parallel import ParallelTasks, make_chunks
 
 from kb_build.pages.readers import blender_markup
 from kb_build.pages.readers import markdown as md
 from kb_build.pages.readers.assemble import PageText
 from kb_build.pages.readers.doctree import PAGE_SCHEME, DoctreeReader
+from kb_build.pages.readers.workers import PageBudget, PageWork, ReadPages, read_apart
 from kb_build.records import Section
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence, Set
+    from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 
-    from docutils.statemachine import StringList
     from sphinx.application import Sphinx
+    from sphinx.environment import BuildEnvironment
     from sphinx.util.typing import ExtensionMetadata
 
-LONGEST_LINE = 100_000
-"""In characters. docutils also stops substitutions that grow beyond it, which could be made to take days."""
-_log = logging.getLogger(__name__)
 _HEADING = re.compile(r"^[ ]{0,4}(\S[^\n]*)\n([^\w\s])\2{2,}[ \t]*$", re.MULTILINE)
 
 # Passes over every tree that only translations, printed forms, colouring or picture files need.
@@ -50,40 +46,12 @@ _NEEDLESS = {
 }
 
 
-def plain_page(slug: str, text: str, warning: str) -> PageText:
+def plain_page(slug: str, text: str, reason: str) -> PageText:
     """A page whose markup could not be read: its text as it stands, under the first heading found in it."""
     heading = _HEADING.search(text)
     title = md.fold(heading[1]) if heading else ""
-    section = Section(anchor="", title=title, level=1, text=md.fence(text))
-    return PageText(slug=slug, sections=(section,), warnings=(warning,))
-
-
-class KeepingParser(RSTParser):
-    """Sphinx's parser for RST, except that a page on which it fails is kept as plain text."""
-
-    supported = ("restructuredtext", "rst")
-
-    def parse(self, inputstring: str | StringList, document: nodes.document) -> None:
-        """Fill ``document`` from ``inputstring``."""
-        lines = inputstring.splitlines() if isinstance(inputstring, str) else inputstring
-        try:
-            if any(len(line) > LONGEST_LINE for line in lines):
-                raise ValueError(f"a line of more than {LONGEST_LINE} characters")
-            super().parse(inputstring, document)
-        except Exception as error:  # a parser that gives up must not take 2,000 pages with it
-            text = "\n".join(lines)
-            page = plain_page("", text, "")
-            document.clear()
-            document.ids.clear()
-            section = nodes.section("", nodes.title("", page.sections[0].title), ids=["page"])
-            section += nodes.literal_block(text, text)
-            document += section
-            location = document.settings.env.docname
-            _log.warning(
-                "the page could not be parsed (%s) and is kept as plain text",
-                _reason(error),
-                location=location,
-            )
+    section = Section(anchor="", title=title, level=1, text=md.fence(md.cut(text)))
+    return PageText(slug=slug, sections=(section,), warnings=(f"kept as plain text: {reason}",))
 
 
 class VersionSubstitutions(SphinxTransform):
@@ -99,14 +67,25 @@ class VersionSubstitutions(SphinxTransform):
         version = self.config.version
         names = ("BLENDER_VERSION", "BLENDER_VERSION_LABEL", "version", "release")
         texts = {**dict.fromkeys(names, str(version)), "TODO": "Todo", "today": ""}
-        for reference in list(self.document.findall(nodes.substitution_reference)):
-            name = reference["refname"]
-            if name in texts and name not in self.document.substitution_defs:
-                reference.replace_self(nodes.Text(texts[name]))
+        ours = {
+            id(reference): nodes.Text(texts[reference["refname"]])
+            for reference in self.document.findall(nodes.substitution_reference)
+            if reference["refname"] in texts and reference["refname"] not in self.document.substitution_defs
+        }
+        # Parent by parent: a reference that replaces itself looks for itself among all its siblings.
+        parents = [node for node in self.document.findall(nodes.TextElement) if len(node)] if ours else []
+        for parent in parents:
+            if any(id(child) in ours for child in parent.children):
+                parent[:] = [ours.get(id(child), child) for child in parent.children]
 
 
 class PagesBuilder(Builder):
-    """Collects a :class:`PageText` for every page in ``pages``; writes nothing."""
+    """Collects a :class:`PageText` for every page, in ``pages``; writes no pages.
+
+    A page that cannot be read is there as plain text. Whoever starts it sets ``jobs``, ``budget``, ``unread`` (pages
+    not to be tried, with the reason), ``step`` (called with each page that was parsed, and again when it was resolved)
+    and ``take_warnings`` (gives the warnings since it was called last, by page).
+    """
 
     name = "pages"
     allow_parallel = True
@@ -114,7 +93,13 @@ class PagesBuilder(Builder):
 
     def init(self) -> None:
         """Called by Sphinx."""
-        self.pages: list[PageText] = []
+        self.jobs = 1
+        self.budget = PageBudget()
+        self.unread: Mapping[str, str] = {}
+        self.step: Callable[[str], None] | None = None
+        self.take_warnings: Callable[[], dict[str, list[str]]] = dict
+        self.pages: dict[str, PageText] = {}
+        self.warnings: dict[str, list[str]] = {}
 
     def get_outdated_docs(self) -> Iterable[str]:
         """All pages: nothing is kept from run to run."""
@@ -134,50 +119,88 @@ class PagesBuilder(Builder):
     def write_doc(self, docname: str, doctree: nodes.document) -> None:
         """Not used: pages are read by ``write_documents``."""
 
-    def write_documents(self, docnames: Set[str]) -> None:
-        """Read all pages. Sphinx would resolve every tree in the main process and hand it to a worker; here
-        the workers do both, and send back only the finished text."""
-        names = sorted(docnames)
-        if not self.parallel_ok:
-            self._finished(names, self._read(names))
-            return
-        tasks = ParallelTasks(self._app.parallel)
-        for chunk in make_chunks(names, self._app.parallel):
-            tasks.add_task(self._read, chunk, self._finished)
-        tasks.join()
+    # Both names are Sphinx's. It would parse in processes whose end is the end of the build.
 
-    def _read(self, docnames: Sequence[str]) -> list[PageText]:
-        return [self._page(docname) for docname in docnames]
+    def _read_serial(self, docnames: list[str]) -> None:
+        self._parse_all(docnames)
 
-    def _finished(self, docnames: Sequence[str], pages: list[PageText]) -> None:
-        self.pages += pages
-        self.events.emit("pages-read", len(docnames))
+    def _read_parallel(self, docnames: list[str], nproc: int) -> None:  # noqa: ARG002
+        self._parse_all(docnames)
 
-    def _page(self, docname: str) -> PageText:
-        reader = DoctreeReader()
+    def _parse_all(self, docnames: Sequence[str]) -> None:
+        for docname in docnames:
+            self.env.clear_doc(docname)  # which also makes the tables that are merged later
+        names = [name for name in docnames if name not in self.unread]
+        parsed = self._apart(names, PageWork(self._parse, lambda: self.env, self._merge, self.step))
+        for found in parsed.answers.values():
+            self._warned(found)
+        for docname, reason in {**self.unread, **parsed.failed}.items():
+            page = self._plain(docname, reason)
+            # As Sphinx knows pages that it has read, so that others can refer to this one.
+            self.env.all_docs[docname] = 0
+            title = nodes.title("", page.sections[0].title or docname)
+            self.env.titles[docname] = self.env.longtitles[docname] = title
+
+    def _parse(self, docname: str) -> dict[str, list[str]]:
         try:
-            doctree = self.env.get_doctree(docname)
-            # Not get_and_resolve_doctree: expanding the tables of contents costs more than all else together,
-            # and the page's children are known from the environment.
-            self.env.apply_post_transforms(doctree, docname)
-            sections = reader.read(doctree)
-        except Exception as error:  # one page must not take 2,000 others with it
-            text = Path(self.env.doc2path(docname)).read_text(encoding="utf-8", errors="replace")
-            return plain_page(docname, text, f"kept as plain text: {_reason(error)}")
-        return PageText(
+            self.read_doc(docname, _cache=False)
+        except BaseException:
+            self.events.emit("env-purge-doc", self.env, docname)
+            self.env.clear_doc(docname)
+            self.env.current_document.clear()
+            self.env.ref_context.clear()
+            raise
+        return self.take_warnings()
+
+    def _merge(self, docnames: Sequence[str], environment: BuildEnvironment) -> None:
+        self.env.merge_info_from(docnames, environment, self._app)
+
+    def write_documents(self, docnames: Set[str]) -> None:
+        """Resolve all pages. Sphinx would do so in the main process and hand each tree to another; here the others do
+        both, and send back only the finished text."""
+        names = sorted(docnames - self.pages.keys())
+        resolved = self._apart(names, PageWork(self._resolve, done=self.step))
+        for docname, (page, found) in resolved.answers.items():
+            self.pages[docname] = page
+            self._warned(found)
+        for docname, reason in resolved.failed.items():
+            self._plain(docname, reason)
+
+    def _resolve(self, docname: str) -> tuple[PageText, dict[str, list[str]]]:
+        reader = DoctreeReader()
+        doctree = self.env.get_doctree(docname)
+        # Not get_and_resolve_doctree: expanding the tables of contents costs more than all else together,
+        # and the page's children are known from the environment.
+        self.env.apply_post_transforms(doctree, docname)
+        page = PageText(
             slug=docname,
-            sections=sections,
-            children=tuple(self.env.toctree_includes.get(docname, ())),
+            sections=reader.read(doctree),
+            children=self._children(docname),
             links=tuple(reader.links),
         )
+        return page, self.take_warnings()
 
+    def _children(self, docname: str) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(self.env.toctree_includes.get(docname, ())))
 
-def _reason(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}".splitlines()[0][:200]
+    def _plain(self, docname: str, reason: str) -> PageText:
+        text = Path(self.env.doc2path(docname)).read_text(encoding="utf-8", errors="replace")
+        page = replace(plain_page(docname, text, reason), children=self._children(docname))
+        self.pages[docname] = page
+        return page
+
+    def _warned(self, found: Mapping[str, Sequence[str]]) -> None:
+        for docname, texts in found.items():
+            self.warnings.setdefault(docname, []).extend(texts)
+
+    def _apart(self, names: Sequence[str], work: PageWork) -> ReadPages:
+        return read_apart(names, work, jobs=self.jobs, budget=self.budget)
 
 
 def drop_needless_work(app: Sphinx) -> None:
     """Take out of a configured application what costs time and leaves no trace in the text."""
+    # Numbers of sections and figures. Sphinx goes down all tables of contents for them, however deep.
+    app.events.listeners.pop("env-get-updated", None)
     registry = app.registry
     registry.transforms[:] = [each for each in registry.transforms if each.__name__ not in _NEEDLESS]
     registry.post_transforms[:] = [
@@ -190,7 +213,5 @@ def drop_needless_work(app: Sphinx) -> None:
 def setup(app: Sphinx) -> ExtensionMetadata:
     """Called by Sphinx."""
     app.add_builder(PagesBuilder)
-    app.add_source_parser(KeepingParser, override=True)
     app.add_transform(VersionSubstitutions)
-    app.add_event("pages-read")
     return blender_markup.setup(app)

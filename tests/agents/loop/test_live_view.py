@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from domino_run import domino_plan, dominoes, finding
-from rich.console import Console
+from hostile_text import HOSTILE, steering
 from sample_runs import Tape
 
 from agents.loop.events import read_event
@@ -26,6 +26,7 @@ from agents.views.rich_views import (
     runs_table,
     seconds_left,
 )
+from simworlds.terminal.console import Console
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,7 +38,7 @@ _STEERING = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u202a-\u202e]")
 
 
 def drawn(what: RenderableType, width: int = 120) -> str:
-    console = Console(width=width, height=40, file=io.StringIO(), color_system=None)
+    console = Console(io.StringIO(), width=width, height=40, color_system=None)
     console.print(what)
     assert isinstance(console.file, io.StringIO)
     return console.file.getvalue()
@@ -191,7 +192,7 @@ def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
 
 
 def test_screen_shows_the_last_state_when_it_closes() -> None:
-    console = Console(width=100, height=40, file=io.StringIO(), force_terminal=True, color_system=None)
+    console = Console(io.StringIO(), width=100, height=40, force_terminal=True, color_system=None)
     with RunScreen(console, "/tmp/run") as view:
         for row in dominoes().rows:
             view.take(read_event(row))
@@ -204,8 +205,22 @@ def test_screen_shows_the_last_state_when_it_closes() -> None:
     assert written.rstrip().endswith("\x1b[?25h"), "the cursor is back"
 
 
+def test_words_of_models_and_tools_cannot_steer_the_terminal() -> None:
+    console = Console(io.StringIO(), width=200, height=40, force_terminal=True)
+    with RunScreen(console, HOSTILE) as view:
+        tape = Tape()
+        tape.began(HOSTILE, models={"planner": HOSTILE})
+        for row in tape.rows:
+            view.take(read_event(row))
+        view.saying("planner", HOSTILE)
+        view.progress("blender_bake", 1, None, HOSTILE)
+    assert isinstance(console.file, io.StringIO)
+    assert "evil" in console.file.getvalue()
+    assert steering(console.file.getvalue(), is_terminal=True) == []
+
+
 def test_rows_words_and_progress_may_come_from_several_threads() -> None:
-    console = Console(width=100, height=40, file=io.StringIO(), force_terminal=True, color_system=None)
+    console = Console(io.StringIO(), width=100, height=40, force_terminal=True, color_system=None)
     tapes = [Tape(), Tape(), Tape(), Tape()]
     with RunScreen(console) as view:
 

@@ -12,7 +12,7 @@ from in_blender import HERE, run
 
 from bench.audit import untrusted_blend
 from bench.audit.audit import Audit, audit, open_scene
-from bench.audit.untrusted_blend import GIB, BlenderOptions, NotScored, UntrustedBlend
+from bench.audit.untrusted_blend import GIB, BlenderOptions
 from bench.scenes.spec import read_spec
 from simworlds.cli import main
 from simworlds.sandbox.program import Program
@@ -187,14 +187,6 @@ def test_a_file_of_a_newer_blender_is_not_scored_and_names_it(
     (tmp_path / "newer.blend").write_bytes(data.replace(b"BLENDER17-01v0501", b"BLENDER17-01v0905", 1))
     found = audited("newer", tmp_path, spec)
     assert "Blender 9.5" in (found.not_scored or "")
-
-
-def test_a_scene_with_too_many_objects_is_not_scored(files: Path) -> None:
-    with (
-        UntrustedBlend(files / "good.blend") as file,
-        pytest.raises(NotScored, match="has 2 objects; at most 1"),
-    ):
-        file.ask("facts", play=True, most=1, doing="reading")
 
 
 def test_a_file_that_needs_too_much_memory_is_not_scored(files: Path, spec: Spec) -> None:

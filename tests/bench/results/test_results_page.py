@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from click.testing import CliRunner
+from hostile_text import HOSTILE, steering
 
 from bench.sweep.records import read_record, write_record
 from simworlds.cli import main
@@ -233,6 +234,16 @@ def test_tables_are_printed_and_written(full: Written, tmp_path: Path) -> None:
     assert numbers["bootstrap"] == {"seed": 0, "draws": 10_000, "level": 0.95}
     assert (tmp_path / "a.html").is_file()
     assert not (full.folder / "report.html").exists()
+
+
+def test_text_from_results_cannot_steer_the_terminal(full: Written) -> None:
+    full.add("mine", "cloth_D1_02", why=HOSTILE, prompt=HOSTILE)
+    (full.folder / HOSTILE[:4] / HOSTILE.replace("/", "")).mkdir(parents=True)
+    (full.folder / HOSTILE[:4] / HOSTILE.replace("/", "") / "record.json").write_text("{")
+    for words in ((), ("--json", "-")):
+        done = reported(full, *words)
+        assert "evil" in done.output
+        assert steering(done.output) == []
 
 
 def test_figures_can_be_printed_as_json(full: Written) -> None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 from pydantic import ValidationError
-from rich.console import Console
 
 from bench.scenes.spec import BadSpec, spec_of
 from bench.sweep import provenance as origin
@@ -19,6 +18,7 @@ from bench.sweep.scene_task import SceneTask
 from bench.sweep.sweep_view import LiveSweepView, SweepView
 from bench.sweep.systems.folder import FolderSystem
 from simworlds.files import write_whole
+from simworlds.terminal.console import Console
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -189,7 +189,7 @@ def test_a_record_rejects_paths_outside_its_folder(path: str) -> None:
 def test_screen_shows_progress_without_control_characters(tmp_path: Path) -> None:
     stream = io.StringIO()
     task = SceneTask(spec_of(SCENE), FolderSystem(INFO, tmp_path), tmp_path)
-    with LiveSweepView(Console(file=stream, force_terminal=True, width=80), 2) as view:
+    with LiveSweepView(Console(stream, force_terminal=True, width=80), 2) as view:
         view.doing(None, "two nodes")
         view.doing(task, "opening")
         view.done(FinishedTask(task, None, "crashed over \x1b[2J\x07evil"))

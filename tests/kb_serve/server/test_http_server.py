@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from contextlib import ExitStack
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -220,13 +221,15 @@ def test_a_port_that_is_taken_is_named(home_of_servers: Path) -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_ends_the_server_cleanly_though_a_stream_is_open(home_of_servers: Path, number: int) -> None:
+def test_a_signal_ends_the_server_cleanly_though_a_connection_is_open(
+    home_of_servers: Path, number: int
+) -> None:
     with HttpServer(home_of_servers, "--no-rebuild") as running:
         assert post(running.url).status_code == 200
         host, _, port = running.url.removeprefix("http://").removesuffix("/mcp").rpartition(":")
-        with socket.create_connection((host, int(port))) as stream:
-            stream.sendall(f"GET /mcp HTTP/1.1\r\nHost: {host}\r\nAccept: text/event-stream\r\n\r\n".encode())
-            assert stream.recv(100).startswith(b"HTTP/1.1 ")
+        with socket.create_connection((host, int(port))) as kept:
+            kept.sendall(f"GET /mcp HTTP/1.1\r\nHost: {host}\r\nAccept: text/event-stream\r\n\r\n".encode())
+            assert kept.recv(100).startswith(b"HTTP/1.1 ")
             code, out, err = running.end(number)
     assert (code, out) == (0, "")
     assert "Traceback" not in err
@@ -256,6 +259,22 @@ def test_requests_that_make_no_sense_are_refused_and_others_still_served(
     assert answer.status_code in {200, 202, 400, 404}
     assert "Traceback" not in answer.text
     assert post(server.url).status_code == 200
+
+
+def test_there_are_no_streams_that_could_be_held_open(server: HttpServer) -> None:
+    answer = httpx2.get(server.url, headers={"Accept": "text/event-stream"}, timeout=20)
+    assert answer.status_code == 405
+    assert answer.headers["Allow"] == "POST"
+
+
+def test_half_open_connections_shut_nobody_out(home_of_servers: Path) -> None:
+    with HttpServer(home_of_servers, "--no-rebuild", descriptors=128) as running, ExitStack() as opened:
+        port = int(running.url.rpartition(":")[2].removesuffix("/mcp"))
+        for number in range(300):
+            connection = opened.enter_context(socket.create_connection(("127.0.0.1", port)))
+            connection.sendall(b"POST /mcp HTTP/1.1\r\n")
+            if number % 50 == 49:
+                assert post(running.url).status_code == 200
 
 
 def test_a_request_too_large_is_refused(server: HttpServer) -> None:

@@ -6,8 +6,11 @@ import json
 from collections.abc import Callable
 from dataclasses import asdict, fields
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING, Any
 
+import anyio
+import anyio.to_thread
 import pytest
 from mcp import Client
 from mcp.shared.exceptions import MCPError
@@ -193,6 +196,25 @@ async def test_huge_limits_are_no_trouble(service: Service) -> None:
     assert result.structured_content is not None
     assert result.structured_content["parts"] == 1
     assert 8 < len(result.structured_content["hits"]) <= 50
+
+
+async def test_others_are_served_while_a_query_is_answered(
+    service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, others_served = Event(), Event()
+    ask_base = Service.ask
+
+    def ask_slowly(self: Service, *arguments: Any, **more: Any) -> tuple[DocsAnswer, str]:
+        begun.set()
+        assert others_served.wait(60)
+        return ask_base(self, *arguments, **more)
+
+    monkeypatch.setattr(Service, "ask", ask_slowly)
+    async with Client(make_server(service)) as client, anyio.create_task_group() as calls:
+        calls.start_soon(client.call_tool, "blender_docs", {"query": QUALITY})
+        await anyio.to_thread.run_sync(begun.wait)
+        assert (await client.list_tools()).tools
+        others_served.set()
 
 
 async def test_another_tool_is_refused_by_name(service: Service) -> None:

@@ -26,9 +26,10 @@ _RAYS = 16  # from an actor to the viewer, to see whether it is hidden
 
 
 def motion_sheet(arguments, report):
-    """Follows ``actors`` over ``phases``, and draws them at ``frames`` in ``folder``, in rows of ``width`` pixels.
+    """Follows ``actors`` over ``phases``, and draws them at ``frames``, in rows of ``width`` pixels.
 
-    Returns the range, the sampled frames, and for each actor its caches, keyframes, curves, numbers and pictures.
+    The pictures go to ``folder``, which is made. Returns the range, the sampled frames, and for each actor its caches,
+    keyframes, curves, numbers and pictures.
     """
     scene = bpy.context.scene
     actors = resolve(arguments["actors"], scene)
@@ -148,6 +149,7 @@ class _PictureStrips:
 
     def __init__(self, tracks, sampled, arguments):
         self._tracks, self._sampled, self._folder = tracks, sampled, arguments["folder"]
+        os.makedirs(self._folder, exist_ok=True)
         self.columns = len(sampled) if len(sampled) <= _IN_A_ROW else -(-len(sampled) // 2)
         tile = (arguments["width"] - arguments["gap"] * (self.columns - 1)) // self.columns - 2
         self._tile = min(tile, _WIDEST)

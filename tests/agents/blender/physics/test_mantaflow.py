@@ -9,6 +9,7 @@ import pytest
 from agents.blender.fluid_support import FluidCheck, check_fluids
 from agents.blender.launch import make_launch
 from simworlds.sandbox.blender_process import BlenderProcess
+from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def test_code_that_drops_manta_does_no_harm(own_session: LiveSession) -> None:
 
 
 def test_the_self_test_tells_that_fluids_work_and_what_this_version_needs(tmp_path: Path) -> None:
-    launch = make_launch(tmp_path)
+    launch = make_launch(HostileGround(tmp_path))
     try:
         found = check_fluids(launch)
     finally:
@@ -66,7 +67,7 @@ def test_the_self_test_tells_that_fluids_work_and_what_this_version_needs(tmp_pa
 
 
 def test_a_process_that_has_run_a_fluid_ends_in_peace(tmp_path: Path) -> None:
-    launch = make_launch(tmp_path)
+    launch = make_launch(HostileGround(tmp_path))
     process = BlenderProcess(launch)
     process.call("fluid_self_test", {"remedy": True}, unread, timeout=60)
     process.close()

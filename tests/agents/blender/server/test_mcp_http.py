@@ -220,6 +220,14 @@ def test_refuses_foreign_hosts_and_origins(server: OverHttp, headers: dict[str, 
         assert httpx2.delete(server.url, headers={**ACCEPT, **session}).status_code == 200
 
 
+async def test_unfinished_initialisations_do_not_shut_clients_out(server: OverHttp) -> None:
+    async with httpx2.AsyncClient() as http:
+        for _ in range(150):
+            assert (await http.post(server.url, json=HELLO, headers=ACCEPT)).status_code == 200
+    async with Client(server.url, mode="legacy") as client:
+        assert len((await client.list_tools()).tools) > 1
+
+
 async def test_requires_the_token(home: Path) -> None:
     with OverHttp(home, "--host", "0.0.0.0", SIMWORLDS_TOKEN=TOKEN) as server:
         url = server.url.replace("0.0.0.0", "127.0.0.1")

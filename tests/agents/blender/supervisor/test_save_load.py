@@ -24,6 +24,7 @@ from agents.blender.tools.files import LOAD, SAVE
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confined_command import best_sandbox, default_limits
 from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def session_for(root: Path, **launch: Any) -> Iterator[LiveSession]:
     """A run whose Blender is started otherwise."""
     folder = RunFolder.make(root)
     made = LiveSession.__new__(LiveSession)
-    made.blender = Supervisor(make_launch(folder.workspace.mount, **launch), folder)
+    made.blender = Supervisor(make_launch(folder.workspace, **launch), folder)
     made.context = ToolContext(made.blender, no_docs)
     made.blender.start()
     yield made
@@ -130,7 +131,7 @@ def elsewhere(path: Path, room: Path, code: str) -> Any:
     for one in (path, path.with_name(f"blendcache_{path.stem}")):
         if one.exists():
             shutil.move(one, room / one.name)
-    launch = make_launch(room)
+    launch = make_launch(HostileGround(room))
     process = BlenderProcess(launch)
     try:
         process.call("inspect", {"path": str(room / path.name)}, unread, timeout=60)

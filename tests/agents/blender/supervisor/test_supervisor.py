@@ -27,6 +27,7 @@ from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
 from simworlds.sandbox.errors import CannotStart, Died, Interrupted, LeftBehind, Lost, Refusal, TookTooLong
+from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
@@ -86,7 +87,6 @@ def lost(session: LiveSession, code: str, timeout: float = 20.0) -> Lost:
         ("import os; os._exit(3)", "it was ended from inside, with exit code 3"),
         ("import os; os._exit(0)", "exit code 0, as after bpy.ops.wm.quit_blender or os._exit"),
         ("import os; os.closerange(3, 65536)", "its channel was closed from inside"),
-        ("import os; os.execv('/bin/sleep', ['sleep', '600'])", "or it became another program"),
     ],
 )
 def test_undoes_code_that_ends_blender(hardy: LiveSession, code: str, told: str) -> None:
@@ -284,6 +284,42 @@ def test_reports_changes_lost_between_calls(hardy: LiveSession) -> None:
     assert "lost" not in hardy.use(TOOL, code="1").text
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere nothing is stopped")
+def test_blender_stands_still_between_calls(hardy: LiveSession) -> None:
+    hardy.run("1")
+    tasks = Path(f"/proc/{hardy.blender.inner_pid}/task")
+    assert becomes(lambda: {(task / "stat").read_text().split()[2] for task in tasks.iterdir()} == {"T"})
+    assert hardy.run("1 + 1") == 2
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted by /proc")
+def test_a_thread_that_python_does_not_know_of_is_found(hardy: LiveSession) -> None:
+    code = (
+        "import ctypes\nlibc = ctypes.CDLL(None)\n"
+        "libc.pthread_create(ctypes.byref(ctypes.c_ulong()), None, libc.pause, 0)"
+    )
+    with pytest.raises(LeftBehind, match="1 thread of its own still running"):
+        hardy.use(TOOL, code=code)
+    assert hardy.run(NAMES) == ["Kept"]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "from simworlds_worker import execute\nexecute._run.__code__ = (lambda code: 'forged').__code__",
+        "from simworlds_worker import execute\nexecute._run = lambda code: 'forged'",
+        "from simworlds_worker import execute\nexecute.execute.__defaults__ = (None,)",
+        "import json\njson.dumps.__code__ = (lambda *_, **__: '{}').__code__",
+        "import json\njson.JSONEncoder.encode.__code__ = (lambda *_: '{}').__code__",
+    ],
+    ids=["what a function does", "a name", "defaults", "a module's function", "a method"],
+)
+def test_what_code_changes_in_the_tools_is_restored(hardy: LiveSession, change: str) -> None:
+    hardy.use(TOOL, code=change)
+    assert hardy.run("1 + 1") == 2
+    assert "restarted" not in hardy.use(TOOL, code="1").text
+
+
 def test_blender_outlives_the_thread_that_started_it(tmp_path: Path) -> None:
     made: list[LiveSession] = []
     starter = threading.Thread(target=lambda: made.append(LiveSession(tmp_path / "run")))
@@ -366,7 +402,7 @@ def test_closing_leaves_no_process_and_no_private_folder(tmp_path: Path) -> None
 def test_refuses_a_second_supervisor_for_a_run(hardy: LiveSession) -> None:
     folder = hardy.blender.folder
     with pytest.raises(Refusal, match="in use by another"):
-        Supervisor(make_launch(folder.workspace.mount), folder)
+        Supervisor(make_launch(folder.workspace), folder)
 
 
 def test_rejects_a_wrong_executable_before_starting_it(tmp_path: Path) -> None:
@@ -375,7 +411,7 @@ def test_rejects_a_wrong_executable_before_starting_it(tmp_path: Path) -> None:
         (tmp_path, "no Blender executable"),
     ):
         with pytest.raises(CannotStart, match=told):
-            make_launch(tmp_path / "run" / "workspace", blender_exe=path)
+            make_launch(HostileGround(tmp_path / "run" / "workspace"), blender_exe=path)
 
 
 def test_reports_why_blender_does_not_start(tmp_path: Path) -> None:

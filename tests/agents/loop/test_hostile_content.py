@@ -1,0 +1,174 @@
+"""Every command that shows what files, pages, plans or runs say: nothing of that steers the terminal it is shown on."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from hostile_text import HOSTILE, on_terminal, steering
+from places import REPO
+from sample_runs import Tape, write
+
+from simworlds.sandbox.runtime import clean_environment, installed_bpy
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+pytestmark = pytest.mark.blender
+
+NAME = HOSTILE.replace("/", "").replace("\\", "")  # of a file
+COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
+SPEC = f"""
+id: cloth_D1_99
+category: cloth
+level: D1
+prompt: A checked tablecloth drapes over a small table in a quiet dining room at noon.
+frames: {{min: 12}}
+actors:
+  - name: {json.dumps(HOSTILE[:4] + "l")}
+    role: cloth
+    must_have: [renderable, cloth_modifier, cloth_cache_baked]
+"""
+_MAKE = """
+import sys, bpy
+folder, hostile, name = sys.argv[1:]
+bpy.ops.wm.read_factory_settings(use_empty=True)
+for number in range(2):
+    bpy.ops.mesh.primitive_cube_add(location=(0, 0, 0.5 * number))
+    made = bpy.context.object
+    made.name = made.data.name = f"{number}{hostile}"
+    made["contact_with"] = [hostile]
+    made.modifiers.new(hostile, "CLOTH")
+bpy.context.scene.name = hostile
+bpy.ops.wm.save_as_mainfile(filepath=f"{folder}/{name}.blend")
+bpy.context.preferences.filepaths.file_preview_type = "NONE"
+scene = bpy.data.scenes.new(hostile)
+heavy = bpy.data.objects.new(hostile, made.data)
+scene.collection.objects.link(heavy)
+heavy.modifiers.new(hostile, "ARRAY").count = 10**9
+bpy.data.libraries.write(f"{folder}/{name}-heavy.blend", {scene})
+"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A scene, one that is too heavy, a plan, a spec and a run, all of them hostile in every name that they have."""
+    if installed_bpy() is None:
+        pytest.skip("there is no Blender in this environment")
+    folder = tmp_path_factory.mktemp("hostile")
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", _MAKE, str(folder), HOSTILE, NAME],
+        env=clean_environment(folder / "settings"),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    (folder / "plan.json").write_text(
+        json.dumps({"title": HOSTILE, HOSTILE: [HOSTILE], "objects": [HOSTILE]})
+    )
+    (folder / "cloth_D1_99.yaml").write_text(SPEC)
+    tape = Tape()
+    tape.began(HOSTILE, models={"planner": HOSTILE, "coder": HOSTILE}, source=HOSTILE)
+    tape.simple_stage("modeling")
+    tape.ended("failed", HOSTILE)
+    for run in (folder / "home" / "runs" / NAME, folder / "run"):
+        run.mkdir(parents=True)
+        write(tape, run)
+    (folder / "home" / "runs" / f"{NAME}-broken").mkdir()
+    (folder / "home" / "runs" / f"{NAME}-broken" / "journal.jsonl").write_text(
+        f'{{"type": "{NAME}"}}\n{HOSTILE}'
+    )
+    return folder
+
+
+def environment(place: Path, **more: str) -> Mapping[str, str]:
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("ANTHROPIC_")}
+    return {**kept, "PYTHONPATH": str(REPO), "SIMWORLDS_HOME": str(place / "home"), **more}
+
+
+WORDS = {
+    "verify": ("verify", "BLEND"),
+    "verify-json": ("verify", "BLEND", "--json"),
+    "verify-sarif": ("verify", "BLEND", "--sarif"),
+    "verify-plan": ("verify", "BLEND", "--plan", "PLAN"),
+    "verify-heavy": ("verify", "HEAVY"),
+    "verify-none": ("verify", "NONE"),
+    "audit": ("bench", "audit", "BLEND", "--scene", "SPEC"),
+    "audit-json": ("bench", "audit", "BLEND", "--scene", "SPEC", "--json"),
+    "audit-heavy": ("bench", "audit", "HEAVY", "--scene", "SPEC"),
+    "runs": ("runs",),
+    "show": ("show", "RUN"),
+    "show-broken": ("show", "BROKEN"),
+    "resume": ("resume", "RUN"),
+    "replay": ("replay", "BROKEN"),
+    "edit": ("edit", "BLEND", HOSTILE),
+    "make": ("make", HOSTILE, "--run", "RUN"),
+    "report": ("bench", "report", "RUN"),
+    "scenes": ("bench", "show", HOSTILE),
+    "kb": ("kb", "info", HOSTILE),
+}
+
+
+def command(place: Path, name: str) -> list[str]:
+    paths = {
+        "BLEND": place / f"{NAME}.blend",
+        "HEAVY": place / f"{NAME}-heavy.blend",
+        "NONE": place / NAME / "none.blend",
+        "PLAN": place / "plan.json",
+        "SPEC": place / "cloth_D1_99.yaml",
+        "RUN": place / "home" / "runs" / NAME,
+        "BROKEN": place / "home" / "runs" / f"{NAME}-broken",
+    }
+    return [*COMMAND, *(str(paths.get(word, word)) for word in WORDS[name])]
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_what_a_command_prints_steers_nothing(name: str, place: Path) -> None:
+    done = subprocess.run(
+        command(place, name), env=environment(place), capture_output=True, check=False, timeout=120
+    )
+    printed = (done.stdout + done.stderr).decode()
+    assert "evil" in printed, printed
+    assert "Traceback" not in printed
+    assert steering(printed) == []
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_what_a_command_draws_on_a_terminal_steers_nothing(name: str, place: Path) -> None:
+    printed = on_terminal(command(place, name), environment(place))
+    assert "evil" in printed, printed
+    assert "Traceback" not in printed
+    assert steering(printed, is_terminal=True) == []
+
+
+def test_pages_steer_nothing(place: Path, tmp_path: Path) -> None:
+    """A base is built from hostile pages, asked, inspected and checked."""
+    mini = REPO / "tests" / "corpora_mini"
+    shutil.copytree(mini / "manual", tmp_path / "manual")
+    (tmp_path / "manual" / f"{NAME}.rst").write_text(
+        f"{HOSTILE}\n{'=' * 90}\n\nCloth {HOSTILE}\n\n:ref:`{HOSTILE}`\n"
+    )
+    index = tmp_path / "manual" / "index.rst"
+    index.write_text(f"{index.read_text()}\n\n{HOSTILE} `page <evil:{HOSTILE}>`__\n")
+    sources = ("--manual", str(tmp_path / "manual"), "--guides", str(mini / "guides"), "--offline")
+    given = environment(place, SIMWORLDS_HOME=str(tmp_path / "home"))
+    for words in (
+        ("kb", "build", *sources),
+        ("docs", "evil"),
+        ("docs", "evil live", "--json"),
+        ("kb", "info"),
+    ):
+        done = subprocess.run([*COMMAND, *words], env=given, capture_output=True, check=False, timeout=280)
+        printed = (done.stdout + done.stderr).decode()
+        assert done.returncode in (0, 1), printed
+        assert steering(printed) == []
+    printed = on_terminal([*COMMAND, "docs", "evil"], given)
+    assert "evil" in printed
+    assert steering(printed, is_terminal=True) == []
