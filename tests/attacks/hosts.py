@@ -120,7 +120,9 @@ class Host:
         except OSError as error:
             raise HostLost(f"the server has ended: {error}") from error
         if not line:
-            raise HostLost(f"the server has ended, with {self._process.wait(10)}")
+            raise HostLost(
+                f"the server has ended, with {self._process.wait(10)}: {self.log.read_text()[-1500:]}"
+            )
         return json.loads(line)
 
     def close(self) -> None:
