@@ -64,7 +64,7 @@ class Session:
         self.workspace = Path(wanted["root"], "workspace")
         read = tuple(Path(path) for path in wanted["read"])
         sandbox = _sandbox(wanted["kind"], wanted["without"])
-        launch = make_launch(self.workspace, sandbox=sandbox, read=read)
+        launch = make_launch(folder.workspace, sandbox=sandbox, read=read)
         if wanted["liar"]:
             launch = replace(launch, program=LIAR)
         self.blender = Supervisor(launch, folder)
