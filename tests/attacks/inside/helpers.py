@@ -5,8 +5,10 @@ import contextlib
 import ctypes
 import errno
 import os
+import struct  # noqa: F401 - for the attacks
 import sys
 import threading
+import time  # noqa: F401 - for the attacks
 from types import SimpleNamespace
 
 target = SimpleNamespace()  # what is attacked; filled in by what sends the code
