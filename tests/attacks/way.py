@@ -50,7 +50,7 @@ class Way:
     lies: Mapping[str, str] = field(default_factory=dict[str, str])
     kinds: tuple[Kind, ...] = KINDS
     denied: tuple[str, ...] = ()
-    seconds: float = 60.0
+    seconds: float = 40.0
     timeout: float = 20.0
     spoils: bool = False
     must_fail: bool = False

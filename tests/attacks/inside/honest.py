@@ -92,6 +92,7 @@ def on_preview(arguments):
 
 
 def on_motion_sheet(arguments):
+    os.makedirs(arguments["folder"], exist_ok=True)
     shots = []
     for frame in (1, 2):
         leave(os.path.join(arguments["folder"], f"0-path-{frame}.png"), png(64, 64))
