@@ -45,15 +45,14 @@ def _sandbox(kind: Any, without: list[Any]) -> Sandbox:
     return best_sandbox(kind, limits, frozenset(without))
 
 
-def _open_up(remove: Any, path: str, error: BaseException) -> None:
-    """Removes what may not be entered by letting itself in."""
-    del error
-    Path(path).parent.chmod(0o700)
-    Path(path).chmod(0o700)
-    if Path(path).is_dir():
-        shutil.rmtree(path, ignore_errors=True)
-    else:
-        remove(path)
+def _remove_folder(path: Path) -> None:
+    """Removes a folder that may hold some that nobody may enter."""
+    path.chmod(0o700)
+    for folder, folders, _ in os.walk(path):
+        for inner in (Path(folder, name) for name in folders):
+            if not inner.is_symlink():
+                inner.chmod(0o700)
+    shutil.rmtree(path, ignore_errors=True)
 
 
 class Session:
@@ -109,7 +108,7 @@ class Session:
                 if path.name in kept and not path.is_symlink() and path.is_dir() == (kept is _OWN_FOLDERS):
                     continue
                 if path.is_dir() and not path.is_symlink():
-                    shutil.rmtree(path, onexc=_open_up)
+                    _remove_folder(path)
                 elif path.name != ".lock":
                     path.unlink(missing_ok=True)
         if how != "folder":

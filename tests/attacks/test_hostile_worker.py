@@ -92,7 +92,7 @@ def _explored(check: Any, examples: int, **drawn: Any) -> None:
         derandomize=True,
         deadline=None,
         database=None,
-        suppress_health_check=list(HealthCheck),
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )
     explore(given(**drawn)(check))()
 

@@ -29,9 +29,9 @@ def _lower(name: str) -> Way:
     )
 
 
-def _disk(name: str, code: str, **more: object) -> Way:
+def _disk(name: str, *steps: str, **more: object) -> Way:
     """A way to fill the disk. The limit is 64 MB and 400 files; at most 200 MB may pass beyond it."""
-    return way(name, "disk", code, **{"timeout": 30.0, "once": True, **more})
+    return way(name, "disk", *steps, **{"timeout": 30.0, "once": True, **more})
 
 
 _MIB = "1 << 20"
@@ -182,6 +182,19 @@ WAYS = (
         "os.mkdir('d')\n"
         "for number in range(60): open(f'd/b{number}', 'wb').write(bytes(10 << 20)) if number "
         "else os.chmod('d', 0o300)\nTrue",
+    ),
+    _disk(
+        "many-bytes-in-many-calls",
+        *(f"open('b{number}', 'wb').write(bytes(12 << 20)) and None" for number in range(30)),
+        "sum(os.path.getsize(name) for name in os.listdir()) > 264 << 20",
+    ),
+    _disk(
+        "one-large-file-of-blender",
+        "import numpy\nmesh = bpy.data.meshes.new('large')\nmesh.use_fake_user = True\n"
+        "mesh.vertices.add(14_000_000)\n"
+        "mesh.vertices.foreach_set('co', numpy.random.random(42_000_000).astype('float32'))\n"
+        "bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//large.blend'), copy=True)\nTrue",
+        spoils=True,
     ),
     way("a-core-dump", "limits", "os.abort()", denied=("Died",), spoils=True),
     # Threads and time.
