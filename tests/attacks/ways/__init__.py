@@ -1,0 +1,1 @@
+"""Every way of attack, by what it is aimed at."""
