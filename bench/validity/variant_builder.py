@@ -63,6 +63,7 @@ class VariantBuilder:
         self._stack = ExitStack()
         folder = tempfile.TemporaryDirectory(prefix="simworlds-validate-", ignore_cleanup_errors=True)
         self.folder = Path(self._stack.enter_context(folder)).resolve()
+        self.folder.chmod(0o755)  # it is read by a Blender that runs as another user where this one is root
         self.original = self.folder / self.blend.name
         shutil.copy2(self.blend, self.original)
         for path in self.blend.parent.iterdir():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -13,7 +14,7 @@ from domino_run import domino_plan, dominoes, finding
 from PIL import Image
 from sample_runs import Tape, write
 
-from agents.views.report.media import LARGEST_VIDEO, Media
+from agents.views.report.media import LARGEST_VIDEO, Media, MediaItem
 from agents.views.report.page import NAME, write_report
 
 if TYPE_CHECKING:
@@ -312,10 +313,15 @@ def test_only_files_of_the_run_are_read(tmp_path: Path, name: str) -> None:
     (run / "folder").mkdir(parents=True)
     Image.new("RGB", (4, 4)).save(tmp_path / "secret.png")
     (run / "link.png").symlink_to(tmp_path / "secret.png")
-    media = Media(run)
-    assert media.picture(name) is None
-    assert media.video(name) is None
-    assert media.link(name) == ""
+    with closing(Media(run)) as media:
+        assert media.picture(name) is None
+        assert media.video(name) is None
+        assert media.link(name) == ""
+
+
+def picture_of(run: Path, name: str) -> MediaItem | None:
+    with closing(Media(run)) as media:
+        return media.picture(name)
 
 
 @pytest.mark.parametrize(
@@ -323,19 +329,19 @@ def test_only_files_of_the_run_are_read(tmp_path: Path, name: str) -> None:
 )
 def test_what_is_no_picture_is_left_out(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.png").write_bytes(content)
-    assert Media(tmp_path).picture("a.png") is None
+    assert picture_of(tmp_path, "a.png") is None
 
 
 def test_a_large_picture_is_made_small_and_leads_to_the_whole_one(tmp_path: Path) -> None:
     Image.new("RGB", (4000, 2000)).save(tmp_path / "a b#.png")
-    shown = Media(tmp_path).picture("a b#.png")
+    shown = picture_of(tmp_path, "a b#.png")
     assert shown
     assert (shown.width, shown.height, shown.link) == (1280, 640, "./a%20b%23.png")
 
 
 def test_a_picture_of_too_many_pixels_is_left_out(tmp_path: Path) -> None:
     Image.new("1", (20_000, 20_000)).save(tmp_path / "a.png")
-    assert Media(tmp_path).picture("a.png") is None
+    assert picture_of(tmp_path, "a.png") is None
 
 
 def test_a_large_video_is_linked(tmp_path: Path) -> None:
