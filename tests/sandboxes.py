@@ -1,4 +1,4 @@
-"""Skips tests whose sandbox does not work on this machine."""
+"""The sandboxes that work on this machine, and tests that are skipped where one does not."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import bubblewrap_fault
+from simworlds.sandbox.confined_command import ResourceLimits, Sandbox, best_sandbox, bubblewrap_fault
 from simworlds.sandbox.worker_user import worker_id
 
 if TYPE_CHECKING:
@@ -20,6 +20,10 @@ def skip_unless_it_works(kind: Kind) -> Kind:
         pytest.skip(f"bubblewrap does not work here: {fault}")
     if kind == "landlock" and not confine_self.landlock_abi():
         pytest.skip("this kernel has no Landlock")
-    if kind == "landlock" and worker_id() is not None:
-        pytest.skip("root's files are closed to the worker's user; tests/attacks tries Landlock as a user")
     return kind
+
+
+def sandbox_of(kind: Kind, limits: ResourceLimits | None = None) -> Sandbox:
+    """The sandbox of this kind, with the user of the tests where root's Python cannot be reached by the worker's."""
+    keeps_user = kind == "landlock" and worker_id() is not None
+    return best_sandbox(kind, limits, frozenset({"uid"} if keeps_user else ()))

@@ -19,11 +19,11 @@ from agents.blender.fluid_support import check_fluids
 from agents.blender.launch import launch_in, runs_folder
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
-from simworlds.sandbox import confine_self
 from simworlds.sandbox.confined_command import GIB, best_sandbox, bubblewrap_fault
 from simworlds.sandbox.errors import BlenderError, CannotStart
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.replies import mapping
+from simworlds.sandbox.walls import WALLS, WITHOUT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from simworlds.sandbox.confined_command import Kind, Sandbox
     from simworlds.sandbox.launch import Launch
     from simworlds.sandbox.runtime import Runtime
+    from simworlds.sandbox.walls import Wall
 
 State = Literal["good", "poor", "bad"]
 
@@ -57,13 +58,6 @@ PACKAGES = {
     "libgomp.so.1": "libgomp1",
     "libstdc++.so.6": "libstdc++6",
     "libxkbcommon.so.0": "libxkbcommon0",
-}
-_ESCAPES = {
-    "read": "files outside can be read",
-    "write": "files outside can be written",
-    "network": "sockets can be opened",
-    "process": "processes can be started",
-    "secret": "your environment can be seen",
 }
 
 
@@ -208,23 +202,28 @@ def _output(words: list[str]) -> str:
 
 
 def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> DoctorResult:
-    data = {"kind": sandbox.kind, "holds": sandbox.holds, "lacks": sandbox.lacks}
+    walls = [wall for wall in WALLS if wall in sandbox.walls]
+    data: dict[str, Any] = {
+        "kind": sandbox.kind,
+        "walls": walls,
+        "holds": sandbox.holds,
+        "lacks": sandbox.lacks,
+    }
     with tempfile.TemporaryDirectory(prefix=".simworlds-doctor-", dir=_outside()) as outside:
-        file = Path(outside) / "file"
+        file, link = Path(outside) / "file", Path(outside) / "link"
         file.touch()
-        request = {"file": str(file), "folder": outside, "variable": _VARIABLE}
+        link.symlink_to("file")
+        request = {"file": str(file), "link": str(link), "folder": outside, "variable": _VARIABLE}
         try:
             tried: dict[str, Any] = blender.call(
                 "check_escapes", request, mapping, timeout=_TRY_SECONDS
             ).value
         except BlenderError as error:
             return DoctorResult("Sandbox", "bad", str(error), data=data)
-    escapes = [text for name, text in _ESCAPES.items() if tried.get(name)]
-    expected = {_ESCAPES["read"], _ESCAPES["write"]} if sandbox.kind == "none" else set[str]()
-    if not confine_self.has_seccomp():
-        expected |= {_ESCAPES["network"], _ESCAPES["process"]}
-    if broken := [text for text in escapes if text not in expected]:
-        text = f"{sandbox.kind}, but it does not work: {'; '.join(broken)}"
+    data["tried"] = sorted(wall for wall in WALLS if wall in tried)
+    fallen = {wall for wall in WALLS if tried.get(wall)} | ({"memory"} - _grouped(blender))
+    if broken := [WITHOUT[wall] for wall in WALLS if wall in fallen & sandbox.walls]:
+        text = f"{sandbox.kind}, but it does not work. It fails to prevent {'; '.join(broken)}"
         return DoctorResult("Sandbox", "bad", text, lacks=tuple(broken), data=data)
     advice = _better(sandbox.kind) if wanted is None else ""
     text = {
@@ -236,6 +235,16 @@ def _confined(blender: Supervisor, sandbox: Sandbox, wanted: Kind | None) -> Doc
     return DoctorResult(
         "Sandbox", state, text, advice=advice, keeps=sandbox.holds, lacks=sandbox.lacks, data=data
     )
+
+
+def _grouped(blender: Supervisor) -> set[Wall]:
+    """The wall that a control group is, if Blender runs in one of its own."""
+    names = {folder.name for folder in blender.launch.group.folders}
+    try:
+        groups = Path(f"/proc/{blender.pid}/cgroup").read_text()
+    except OSError:
+        return set()
+    return {"memory"} if names and all(name in groups for name in names) else set()
 
 
 def _outside() -> Path | None:

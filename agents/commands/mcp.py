@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from agents.commands import options
+from agents.commands.sandbox_warning import warn
 
 if TYPE_CHECKING:
     from agents.blender.blender_sessions import SessionSetup
@@ -153,6 +154,5 @@ def _confined(wanted: Kind | None) -> Sandbox:
         raise CannotStart("This system's kernel has no Landlock.")
     best = best_sandbox(wanted)
     click.echo(f"Sandbox ({best.kind}): {'; '.join(best.holds)}.", err=True)
-    if best.lacks:
-        click.echo(f"It does not prevent: {'; '.join(best.lacks)}.", err=True)
+    warn(best)
     return best

@@ -221,7 +221,11 @@ def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
     except ValidationError as error:
         wrong = "; ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
         raise click.UsageError(wrong) from error
+    from agents.commands.sandbox_warning import warn  # noqa: PLC0415 - not for --help
+    from simworlds.sandbox.confined_command import best_sandbox  # noqa: PLC0415
+
     root = _root(given)
+    warn(best_sandbox(options.sandbox))
     _work(lambda session: begin(root, options, session), root, given)
 
 

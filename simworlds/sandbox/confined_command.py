@@ -2,8 +2,7 @@
 
 What code in Blender can still reach: its own process, and so its own replies (see blender_process.py); the run's
 workspace and temporary folder; reading the system's programs, Blender and Python; the graphics card; the kernel, as
-far as its calls are not closed. Files in memory (memfd) count against no limit: when memory runs out, the kernel kills
-Blender first. With Landlock, code can ask whether a path exists.
+far as its calls are not closed. With Landlock, code can ask whether a path exists.
 """
 
 from __future__ import annotations
@@ -22,8 +21,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from simworlds.sandbox import confine_self
+from simworlds.sandbox.control_group import group_parents
 from simworlds.sandbox.errors import CannotStart
 from simworlds.sandbox.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
+from simworlds.sandbox.walls import EVERY_WALL, WALLS, WITHOUT
 from simworlds.sandbox.worker_user import check_readable, hand_over, worker_id
 
 if TYPE_CHECKING:
@@ -88,6 +89,16 @@ class Sandbox:
     without: frozenset[Wall] = frozenset()
 
     @property
+    def walls(self) -> frozenset[Wall]:
+        """The walls that stand."""
+        return standing_walls(self.kind) - self.without
+
+    @property
+    def warning(self) -> str:
+        """One line that says what is not prevented; "" if every wall stands."""
+        return f"Sandbox ({self.kind}): it does not prevent {'; '.join(self.lacks)}." if self.lacks else ""
+
+    @property
     def user(self) -> int | None:
         """The user that the confined process becomes, to whom the folders to write are given; None: it stays ours."""
         return None if self.kind == "none" or "uid" in self.without else worker_id()
@@ -107,8 +118,10 @@ class Sandbox:
         if (user := self.user) is not None:
             for folder in write:
                 hand_over(folder, user)
-            in_place = [str(folder) for folder in write] if self.kind == "landlock" else []
-            check_readable([*readable, *in_place], user, with_parents=self.kind == "landlock")
+            # Bubblewrap makes the folders above anew.
+            in_place = self.kind == "landlock" or "files" in self.without
+            needed = [*readable, *map(str, write)] if in_place else readable
+            check_readable(needed, user, with_parents=in_place)
         rights = self._rights()
         if self.kind == "landlock":
             rights["read"] = [*_SYSTEM, *_SETTINGS, *_PROCESS, *readable]
@@ -240,28 +253,54 @@ def best_sandbox(
     """
     kind = wanted or _best_kind()
     limits = limits or default_limits()
-    holds = ["ends with SimWorlds, however that ends", "sees none of your environment's secrets"]
-    lacks: list[str] = []
-    if kind == "none":
-        lacks.append("reading and writing any file that you can")
-    else:
-        holds.append("writes only to the run's workspace and a private temporary folder")
-        holds.append("reads only these, the system's programs, Blender and Python")
-    if confine_self.has_seccomp():
-        holds.append("opens no network or other socket, starts no process, signals no other process")
-    elif kind == "bubblewrap":
-        holds.append("opens no network, signals no process outside")
-        lacks.append("starting processes, which end with Blender")
-    else:
-        lacks.append("network access and starting processes")
-    if kind == "bubblewrap":
-        holds.append("sees no other process")
-    elif kind == "landlock":
-        lacks.append("asking whether a path exists, its size and its age")
+    walls = standing_walls(kind) - without
+    holds = ["ends with SimWorlds, however that ends"]
+    words: dict[frozenset[Wall], str] = {
+        frozenset({"environment"}): "sees none of your environment's secrets",
+        frozenset(
+            {"files"}
+        ): "writes only to the run's workspace and a private temporary folder, and reads only "
+        "these, the system's programs, Blender and Python",
+        frozenset(
+            {"proc", "uid", "capabilities", "kernel"}
+        ): "has no rights of root, and changes nothing of the kernel",
+        frozenset(
+            {"sockets", "processes", "signals"}
+        ): "opens no network or other socket, starts no process, signals no other process",
+        frozenset({"namespaces"}): "sees no other process",
+        frozenset(
+            {"memory"}
+        ): "is ended by the kernel, before any other program, when it takes too much memory",
+    }
+    holds += [text for needed, text in words.items() if needed <= walls]
+    lacks = [
+        WITHOUT[wall] for wall in WALLS if wall not in walls and (kind, wall) != ("landlock", "namespaces")
+    ]
+    if kind == "landlock":
+        lacks.append("asking whether a path exists, its size and its age, and where a link to a folder leads")
     if kind != "none" and graphics():
         lacks.append("use of the graphics card")
     holds.append(f"takes at most {', '.join(limits.in_words)}")
     return Sandbox(kind, tuple(holds), tuple(lacks), limits, without)
+
+
+def standing_walls(kind: Kind) -> frozenset[Wall]:
+    """The walls that stand in a sandbox of this kind on this machine."""
+    down: set[Wall] = set()
+    if kind == "none":
+        down |= {"files", "proc", "namespaces", "attributes"}
+        down |= {"uid"} if worker_id() is not None else set()
+    if kind == "landlock":
+        down.add("namespaces")
+    if not confine_self.has_seccomp():
+        down |= {"processes", "memfd", "kernel", "limits"}
+        down |= {"sockets", "signals"} if kind != "bubblewrap" else set()
+        down |= {"attributes"} if kind == "landlock" else set()
+    if sys.platform != "linux":
+        down |= {"capabilities"}
+    if group_parents() is None:
+        down.add("memory")
+    return EVERY_WALL - down
 
 
 def default_limits() -> ResourceLimits:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import time
 import weakref
 from contextlib import suppress
@@ -111,7 +112,7 @@ class ControlGroup:
 
 
 def _remove_groups(folders: Iterable[Path]) -> None:
-    """Removes groups whose last process may just be ending; those that stay busy are tried again later."""
+    """Removes groups and ends what still runs in them; those that stay busy are tried again later."""
     for folder in folders:
         for _ in range(_TRIES):
             try:
@@ -119,11 +120,19 @@ def _remove_groups(folders: Iterable[Path]) -> None:
             except FileNotFoundError:
                 break
             except OSError:
+                _end_processes(folder)
                 time.sleep(_BETWEEN_TRIES)
             else:
                 break
         else:
             _busy.add(folder)
+
+
+def _end_processes(folder: Path) -> None:
+    with suppress(OSError, ValueError):
+        for number in map(int, (folder / "cgroup.procs").read_text().split()):
+            if number not in {0, os.getpid()}:  # 0: not to be seen from here
+                os.kill(number, signal.SIGKILL)
 
 
 def _remove_leftovers(parents: Iterable[Path]) -> None:

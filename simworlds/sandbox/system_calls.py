@@ -22,7 +22,7 @@ OWN_PROCESS = 0x5E1F5E1F
 # A filter is a program of classic BPF: steps of (code, jump if true, jump if false, constant).
 _LOAD, _AND, _EQUAL, _AT_LEAST, _RETURN = 0x20, 0x54, 0x15, 0x35, 0x06
 _ALLOW, _KILL, _ERROR = 0x7FFF0000, 0x80000000, 0x00050000
-_EPERM, _EINVAL, _ENOSYS, _ENOTSUP, _SUCCESS = 1, 22, 38, 95, 0
+_EPERM, _EINVAL, _ENOSYS, _ENOTSOCK, _ENOTSUP, _SUCCESS = 1, 22, 38, 88, 95, 0
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16
 # clone: a thread shares memory, working folder and open files, so that all that it opens is seen from outside; and no
 # namespace is its own
@@ -32,9 +32,7 @@ _TRUNCATING, _ACCESS = 0o1000, 0o3
 
 # Wall → the calls that it refuses, whatever their arguments.
 _REFUSED: Mapping[Wall, str] = {
-    "sockets": """
-        socket socketpair bind connect listen accept accept4 sendto sendmsg sendmmsg recvfrom recvmsg recvmmsg
-        shutdown setsockopt getsockopt getsockname getpeername""",
+    "sockets": "socket socketpair",
     "processes": "fork vfork",
     "signals": """
         tkill rt_sigqueueinfo rt_tgsigqueueinfo pidfd_open pidfd_send_signal pidfd_getfd ptrace process_vm_readv
@@ -52,6 +50,12 @@ _REFUSED: Mapping[Wall, str] = {
         ioperm lookup_dcookie nfsservctl vhangup syslog settimeofday clock_settime clock_adjtime adjtimex
         sethostname setdomainname uselib sysfs _sysctl""",
     "limits": "setrlimit",
+}
+# What libraries try on a pipe before they read or write it as one.
+_NOT_SOCKETS: Mapping[Wall, str] = {
+    "sockets": """
+        bind connect listen accept accept4 sendto sendmsg sendmmsg recvfrom recvmsg recvmmsg shutdown setsockopt
+        getsockopt getsockname getpeername""",
 }
 # Mesa and libffi fall back to other memory when the kernel does not know these.
 _UNKNOWN: Mapping[Wall, str] = {"memfd": "memfd_create memfd_secret"}
@@ -88,7 +92,7 @@ def first_filter(machine: str, *, files: bool, without: frozenset[Wall] = frozen
     ``files``: also close what Landlock leaves open. Raises KeyError for an unknown machine.
     """
     program = _Program(machine)
-    for walls, error in ((_REFUSED, _EPERM), (_UNKNOWN, _ENOSYS)):
+    for walls, error in ((_REFUSED, _EPERM), (_NOT_SOCKETS, _ENOTSOCK), (_UNKNOWN, _ENOSYS)):
         for wall, calls in walls.items():
             if wall not in without:
                 program.refuse(calls, error)

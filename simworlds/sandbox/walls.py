@@ -26,7 +26,7 @@ WALLS: tuple[Wall, ...] = get_args(Wall)
 EVERY_WALL: frozenset[Wall] = frozenset(WALLS)
 
 WITHOUT: dict[Wall, str] = {
-    "files": "reading and writing files outside the run",
+    "files": "reading and writing any file that you can",
     "proc": "changing the kernel's settings and its own place among those killed for memory",
     "uid": "acting as root towards the kernel",
     "capabilities": "keeping capabilities",
@@ -38,7 +38,7 @@ WITHOUT: dict[Wall, str] = {
     "attributes": "reading extended attributes and the targets of links outside",
     "kernel": "rarely used parts of the kernel: bpf, perf, io_uring, userfaultfd, keys, fanotify, mounts",
     "limits": "changing its own limits, and files beyond their limit",
-    "memory": "taking memory from other programs",
+    "memory": "taking more memory than its limit by sharing it between mappings",
     "disk": "filling the disk",
     "environment": "seeing your environment's secrets",
 }

@@ -63,7 +63,7 @@ class WatchedProcess:
     @contextmanager
     def standing_still(self) -> Generator[None]:
         """Stops the process meanwhile, unless it is stopped already."""
-        if self._paused:
+        if self._paused or self._status().get("State", "").startswith("T"):
             yield
             return
         self.pause()

@@ -102,10 +102,18 @@ class InterpreterState:
 
     def _remember_code(self, module, names):
         """Remembers what the module's own functions and methods do: code can be put into a function as it stands."""
-        own = [value for value in names.values() if getattr(value, "__module__", None) == module]
+        own = [
+            value
+            for value in names.values()
+            if isinstance(value, (types.FunctionType, type)) and value.__module__ == module
+        ]
         classes = [value for value in own if isinstance(value, type)]
         for value in [*own, *(value for owner in classes for value in vars(owner).values())]:
-            function = getattr(value, "__func__", getattr(value, "fget", value))
+            function = value
+            if isinstance(value, (staticmethod, classmethod)):
+                function = value.__func__
+            elif isinstance(value, property):
+                function = value.fget
             if isinstance(function, types.FunctionType):
                 kept = (function.__code__, function.__defaults__, function.__kwdefaults__)
                 self._code[id(function)] = (function, *kept)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tries out what works in this Blender. Most checks replace the open file."""
 
+import ctypes
+import errno
 import os
 import socket
 import subprocess
@@ -14,25 +16,102 @@ _PIXELS = 64
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 
 
-def try_escapes(arguments, report):
-    """Which of these the sandbox fails to prevent: ``read``, ``write``, ``network``, ``process``, ``secret``.
+# Machine → numbers of calls that do no harm: asking for a keyring, a descriptor for io_uring, one for bpf
+_RARE_CALLS = {"x86_64": (250, 425, 321), "aarch64": (219, 425, 280)}
+_DENIED = (errno.EPERM, errno.ENOSYS, errno.EACCES)
 
-    ``file`` and ``folder`` are outside what may be read and written; ``variable`` is an environment variable.
+
+def try_escapes(arguments, report):
+    """Tries each wall of the sandbox that can be tried from inside. Returns {wall: whether it fails to hold}.
+
+    ``file``, ``link`` and ``folder`` are outside what may be read and written; ``variable`` is an environment variable.
+    What works is undone, or does nothing.
     """
     del report
+    file, folder, link = arguments["file"], arguments["folder"], arguments["link"]
     return {
-        "read": _works(lambda: open(arguments["file"]).close()),
-        "write": _works(lambda: open(os.path.join(arguments["folder"], "written"), "w").close()),
-        "network": _works(lambda: socket.socket(socket.AF_INET).close()),
-        "process": _works(lambda: subprocess.run(["true"], check=False)),
-        "secret": arguments["variable"] in os.environ,
+        "files": _works(lambda: open(file).close())
+        or _works(lambda: open(os.path.join(folder, "written"), "w").close()),
+        "proc": any(map(_can_be_written, ("/proc/sys/kernel/core_pattern", "/proc/self/oom_score_adj"))),
+        "uid": os.getuid() == 0 and _is_root_outside(),
+        "capabilities": int(_status("CapEff") or "0", 16) != 0,
+        "namespaces": _sees_other_processes(),
+        "sockets": _works(lambda: socket.socket().close())
+        or _works(lambda: [end.close() for end in socket.socketpair()]),
+        "processes": _works(lambda: subprocess.run(["true"], check=False)) or _may_execute(),
+        "signals": _works(lambda: os.kill(os.getppid(), 0)),
+        "memfd": hasattr(os, "memfd_create") and _works(lambda: os.close(os.memfd_create("tried"))),
+        "attributes": _works(lambda: os.readlink(link)) or _works(lambda: os.listxattr(file)),
+        "kernel": _does_rare_calls(),
+        "limits": _sets_a_limit(),
+        "environment": arguments["variable"] in os.environ,
     }
 
 
 def _works(act):
     try:
         act()
+    except (OSError, AttributeError):
+        return False
+    return True
+
+
+def _can_be_written(path):
+    return _works(lambda: os.close(os.open(path, os.O_WRONLY)))
+
+
+def _status(name):
+    """A row of this process's status; None where there is none."""
+    try:
+        with open("/proc/self/status") as rows:
+            return next((row.split()[1] for row in rows if row.startswith(name + ":")), None)
     except OSError:
+        return None
+
+
+def _is_root_outside():
+    try:
+        with open("/proc/self/uid_map") as rows:
+            return any(row.split()[:2] == ["0", "0"] for row in rows)
+    except OSError:
+        return True
+
+
+def _sees_other_processes():
+    """Beside its own there is at most the one that bubblewrap puts first."""
+    try:
+        return len([name for name in os.listdir("/proc") if name.isdigit()]) > 2
+    except OSError:
+        return False
+
+
+def _may_execute():
+    try:
+        os.execv("/nonexistent/program", ["program"])  # noqa: S606
+    except OSError as error:
+        return error.errno not in _DENIED
+    return False
+
+
+def _does_rare_calls():
+    if not hasattr(os, "uname") or os.uname().machine not in _RARE_CALLS:
+        return False
+    keys, ring, program = _RARE_CALLS[os.uname().machine]
+    libc = ctypes.CDLL(None, use_errno=True)
+    for call in ((keys, 0, -3, 0), (ring, 0, 0), (program, -1, 0, 0)):
+        ctypes.set_errno(0)
+        if libc.syscall(*call) >= 0 or ctypes.get_errno() not in _DENIED:
+            return True
+    return False
+
+
+def _sets_a_limit():
+    """Sets a limit to what it is."""
+    import resource
+
+    try:
+        resource.setrlimit(resource.RLIMIT_CORE, resource.getrlimit(resource.RLIMIT_CORE))
+    except (OSError, ValueError):
         return False
     return True
 

@@ -20,6 +20,7 @@ from agents.commands import doctor_checks
 from simworlds.sandbox import confine_self
 from simworlds.sandbox.confined_command import Sandbox, best_sandbox, bubblewrap_fault
 from simworlds.sandbox.runtime import Runtime, installed_bpy
+from simworlds.sandbox.walls import WALLS, WITHOUT, Wall
 
 pytestmark = pytest.mark.blender
 
@@ -75,7 +76,7 @@ def test_this_machine_is_found_to_work(here: subprocess.CompletedProcess[str]) -
     assert found["Blender"]["data"]["version"] == installed_bpy()
     assert found["Blender"]["data"]["kind"] == "environment"
     assert 0.05 < found["Start"]["data"]["seconds"] < 60
-    assert found["Cycles"]["state"] == "good"
+    assert found["Cycles"]["state"] == "good", found["Cycles"]
     assert 0 < found["Cycles"]["data"]["seconds"] < 60
     assert found["Films"]["data"]["supported"] is True
     assert (found["Fluids"]["state"], found["Fluids"]["data"]["fault"]) == ("good", None)
@@ -177,9 +178,36 @@ def test_detects_a_sandbox_that_does_not_hold(tmp_path: Path) -> None:
     finally:
         session.blender.close()
     assert found.state == "bad"
-    assert found.lacks == ("files outside can be read", "files outside can be written")
+    assert found.lacks[0] == "reading and writing any file that you can"
+    assert WITHOUT["attributes"] in found.lacks
+    assert WITHOUT["sockets"] not in found.lacks
     assert confine_self.has_seccomp()
     assert not list(Path.home().glob(".simworlds-doctor-*"))
+
+
+@pytest.mark.parametrize(
+    "wall",
+    ["files", "capabilities", "namespaces", "sockets", "processes", "signals", "memfd", "kernel", "limits"],
+)
+def test_names_the_wall_that_is_down(tmp_path: Path, wall: Wall) -> None:
+    skip_unless_it_works("bubblewrap")
+    whole = best_sandbox("bubblewrap")
+    # Root that becomes another user can do less by that alone.
+    without: frozenset[Wall] = frozenset({wall, "uid"})
+    session = LiveSession(tmp_path / "run", sandbox=best_sandbox("bubblewrap", without=without))
+    try:
+        found = doctor_checks._confined(session.blender, whole, None)
+    finally:
+        session.blender.close()
+    assert found.state == "bad"
+    assert WITHOUT[wall] in found.lacks
+
+
+def test_tries_every_wall_but_those_that_only_show_from_outside(
+    here: subprocess.CompletedProcess[str],
+) -> None:
+    tried = findings(here)["Sandbox"]["data"]["tried"]
+    assert set(WALLS) - set(tried) == {"memory", "disk"}
 
 
 def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,7 +229,7 @@ def test_checks_an_installed_blender(tmp_path: Path) -> None:
     found = findings(done)
     assert found["Blender"]["data"]["kind"] == "executable"
     assert found["Start"]["state"] == found["Sandbox"]["state"] == "good"
-    assert found["Cycles"]["state"] == "good"
+    assert found["Cycles"]["state"] == "good", found["Cycles"]
     assert found["Fluids"]["state"] == "good"
 
 

@@ -105,6 +105,17 @@ def test_a_group_is_removed_with_its_worker(group: ControlGroup) -> None:
     assert group.folders == ()
 
 
+def test_what_still_runs_in_a_group_ends_with_it(group: ControlGroup) -> None:
+    folders = group.folders
+    words = ["sh", "-c", 'for f; do echo $$ > "$f/cgroup.procs"; done; echo in; exec sleep 600', "sh"]
+    with subprocess.Popen([*words, *map(str, folders)], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "in\n"
+        group.close()
+        assert process.wait(20) == -9
+    assert not any(folder.exists() for folder in folders)
+
+
 def test_groups_of_a_killed_owner_are_removed_by_the_next(group: ControlGroup) -> None:
     code = (
         "import os\nfrom simworlds.sandbox.confined_command import ResourceLimits\n"

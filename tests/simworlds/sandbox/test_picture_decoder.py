@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from PIL import Image
-from sandboxes import skip_unless_it_works
+from sandboxes import sandbox_of, skip_unless_it_works
 
 from simworlds.sandbox import picture_decoder
 from simworlds.sandbox.confined_command import best_sandbox
@@ -44,7 +44,7 @@ def gradient(width: int, height: int) -> Image.Image:
 @pytest.mark.parametrize("kind", ["bubblewrap", "landlock"])
 def test_gives_the_pixels_whatever_confines_it(kind: str) -> None:
     picture = gradient(300, 200)
-    with closing(PictureDecoder(best_sandbox(skip_unless_it_works(kind)))) as confined:
+    with closing(PictureDecoder(sandbox_of(skip_unless_it_works(kind)))) as confined:
         read = confined.decode(encoded(picture), "gradient")
     assert read.image.tobytes() == picture.tobytes()
     assert read.size == (300, 200)

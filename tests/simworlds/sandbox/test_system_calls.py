@@ -18,12 +18,13 @@ from simworlds.sandbox.system_calls import OWN_PROCESS, first_filter, installing
 
 OWN = OWN_PROCESS
 ALLOWED, REFUSED, UNKNOWN, PRETENDED, KILLED = "allowed", "EPERM", "ENOSYS", "nothing", "killed"
-NO_LINK, UNSUPPORTED = "EINVAL", "ENOTSUP"
+NO_LINK, UNSUPPORTED, NO_SOCKET = "EINVAL", "ENOTSUP", "ENOTSOCK"
 ANSWERS = {
     0x7FFF0000: ALLOWED,
     0x00050001: REFUSED,
     0x00050016: NO_LINK,
     0x00050026: UNKNOWN,
+    0x00050058: NO_SOCKET,
     0x0005005F: UNSUPPORTED,
     0x00050000: PRETENDED,
     0x80000000: KILLED,
@@ -74,9 +75,7 @@ def answer(
 
 # Wall → calls that a worker has no use for.
 CLOSED = {
-    "sockets": """
-        socket socketpair bind connect listen accept accept4 sendto sendmsg sendmmsg recvfrom recvmsg recvmmsg
-        shutdown setsockopt""",
+    "sockets": "socket socketpair",
     "signals": """
         tkill rt_sigqueueinfo rt_tgsigqueueinfo pidfd_open pidfd_send_signal pidfd_getfd ptrace process_vm_readv
         process_vm_writev setpriority""",
@@ -94,6 +93,15 @@ CLOSED = {
 def test_refuses_what_reaches_out_of_the_process(machine: str, wall: Wall, call: str) -> None:
     assert answer(machine, call, files=False) == answer(machine, call, files=True) == REFUSED
     assert answer(machine, call, without=frozenset({wall})) == ALLOWED
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize(
+    "call", ["bind", "connect", "listen", "accept", "sendto", "sendmsg", "recvfrom", "recvmsg", "shutdown"]
+)
+def test_every_descriptor_seems_to_be_no_socket(machine: str, call: str) -> None:
+    assert answer(machine, call, 3) == NO_SOCKET
+    assert answer(machine, call, 3, without=frozenset({"sockets"})) == ALLOWED
 
 
 @pytest.mark.parametrize("machine", MACHINES)

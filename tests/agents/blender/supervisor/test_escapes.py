@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from live_session import LiveSession
 from places import REPO
-from sandboxes import skip_unless_it_works
+from sandboxes import sandbox_of, skip_unless_it_works
 
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox
+from simworlds.sandbox.confined_command import ResourceLimits
 from simworlds.sandbox.errors import Died, LeftBehind, LimitExceeded, Refusal, Untrustworthy
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def _confined(
     kind = skip_unless_it_works(request.param)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ANTHROPIC_API_KEY", SECRET)
-        session = LiveSession(tmp_path_factory.mktemp(kind) / "run", sandbox=best_sandbox(kind, LIMITS))
+        session = LiveSession(tmp_path_factory.mktemp(kind) / "run", sandbox=sandbox_of(kind, LIMITS))
     yield session
     session.blender.close()
 

@@ -439,12 +439,12 @@ def test_blender_ends_with_its_supervisor_whatever_it_is_doing(tmp_path: Path, k
         skip_unless_it_works(kind)
     script = f"""
 import sys
-sys.path[:0] = [{str(REPO / "tests" / "agents")!r}]
+sys.path[:0] = [{str(REPO / "tests" / "agents")!r}, {str(REPO / "tests")!r}]
 from pathlib import Path
 from live_session import LiveSession
-from simworlds.sandbox.confined_command import best_sandbox
+from sandboxes import sandbox_of
 from simworlds.sandbox.replies import unread
-session = LiveSession(Path({str(tmp_path / "run")!r}), sandbox=best_sandbox({kind!r}))
+session = LiveSession(Path({str(tmp_path / "run")!r}), sandbox=sandbox_of({kind!r}))
 print("ready", flush=True)
 session.blender.call("execute", {{"code": "open('begun', 'w').close()\\nsum(range(10**13))"}}, unread, timeout=600)
 """
@@ -474,7 +474,7 @@ from simworlds.sandbox.errors import LimitExceeded
 from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
-session = LiveSession(Path({place!r}) / "run", sandbox=best_sandbox("landlock"))
+session = LiveSession(Path({place!r}) / "run", sandbox=best_sandbox("landlock", without=frozenset({{"uid"}})))
 try:
     session.use(TOOL, code=(
         "import os, time\\nfile = os.open('hidden', os.O_CREAT | os.O_RDWR)\\nos.unlink('hidden')\\n"
