@@ -211,8 +211,8 @@ WAYS = (
     _call(
         "have-any-capability",
         "capabilities uid",
-        "[line for line in read('/proc/self/status').decode().splitlines() if line[:3] == 'Cap' "
-        "and int(line.split()[1], 16)]",
+        "[line for line in read('/proc/self/status').decode().splitlines() "
+        "if line[:6] in ('CapInh', 'CapPrm', 'CapEff', 'CapAmb') and int(line.split()[1], 16)]",
     ),
     _call(
         "be-root",

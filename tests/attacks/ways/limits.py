@@ -71,6 +71,7 @@ WAYS = (
         "bpy.ops.mesh.primitive_grid_add(x_subdivisions=15000, y_subdivisions=15000)\nTrue",
         denied=("Died",),
         spoils=True,
+        once=True,
     ),
     way(
         "take-shared-memory",
@@ -78,6 +79,7 @@ WAYS = (
         "import mmap\nshared = mmap.mmap(-1, 3 << 30)\n"
         "for at in range(0, 3 << 30, 4096): shared[at] = 1\ntime.sleep(2)\nTrue",
         timeout=40.0,
+        once=True,
     ),
     way(
         "take-memory-as-a-file",
@@ -93,6 +95,7 @@ WAYS = (
         "for number in numbers:\n    for _ in range(64): os.write(number, bytes(1 << 20))\n"
         "time.sleep(2)\nTrue",
         timeout=40.0,
+        once=True,
     ),
     way(
         "take-memory-as-a-shared-file",
@@ -123,18 +126,18 @@ WAYS = (
         "one-large-file-by-reservation",
         "number = os.open('big', os.O_CREAT | os.O_WRONLY)\nos.posix_fallocate(number, 0, 1 << 30) or True",
     ),
-    _disk("many-files", "for number in range(30_000): open(f'f{number}', 'w').write('x')\nTrue"),
-    _disk("many-empty-files", "for number in range(30_000): open(f'f{number}', 'w').close()\nTrue"),
-    _disk("many-folders", "for number in range(30_000): os.mkdir(f'd{number}')\nTrue"),
-    _disk("many-links", "for number in range(30_000): os.symlink('x' * 200, f'l{number}')\nTrue"),
+    _disk("many-files", "for number in range(15_000): open(f'f{number}', 'w').write('x')\nTrue"),
+    _disk("many-empty-files", "for number in range(15_000): open(f'f{number}', 'w').close()\nTrue"),
+    _disk("many-folders", "for number in range(15_000): os.mkdir(f'd{number}')\nTrue"),
+    _disk("many-links", "for number in range(15_000): os.symlink('x' * 200, f'l{number}')\nTrue"),
     _disk(
         "many-names-of-one-file",
-        "write('f')\nfor number in range(30_000): os.link('f', f'{number:0200}')\nTrue",
+        "write('f')\nfor number in range(15_000): os.link('f', f'{number:0200}')\nTrue",
     ),
     _disk(
         "many-files-in-folders-in-folders",
         "os.makedirs('/'.join('d' * 60))\n"
-        "for number in range(30_000): open('/'.join('d' * 60) + f'/{number}', 'w').close()\nTrue",
+        "for number in range(15_000): open('/'.join('d' * 60) + f'/{number}', 'w').close()\nTrue",
     ),
     _disk("folders-without-end", "for number in range(10_000): os.mkdir('d'); os.chdir('d')\nTrue"),
     _disk("many-bytes", "for number in range(60): open(f'b{number}', 'wb').write(bytes(10 << 20))\nTrue"),
@@ -206,6 +209,7 @@ WAYS = (
         "daemon=True).start()\nTrue",
         spoils=True,
         timeout=30.0,
+        once=True,
     ),
     way("no-end", "deadline", "while True: pass", timeout=0.7),
     way(

@@ -86,13 +86,21 @@ WAYS = (
         "ground",
         "threading.Thread(target=lambda: (name_thread(), time.sleep(60))).start()\nNone",
         spoils=True,
+        once=True,
     ),
-    way("leave-a-daemon-thread", "ground", "in_background(lambda: time.sleep(60))\nNone", spoils=True),
+    way(
+        "leave-a-daemon-thread",
+        "ground",
+        "in_background(lambda: time.sleep(60))\nNone",
+        spoils=True,
+        once=True,
+    ),
     way(
         "leave-a-thread-uncounted",
         "ground",
         "blind()\nin_background(lambda: time.sleep(60))\nNone",
         spoils=True,
+        once=True,
     ),
     way(
         "leave-a-thread-without-python",
@@ -102,6 +110,7 @@ WAYS = (
         "for task in set(os.listdir('/proc/self/task')) - before: "
         "open(f'/proc/self/task/{task}/comm', 'w').write(target.mark)\nNone",
         spoils=True,
+        once=True,
     ),
     way(
         "leave-a-thread-without-python-uncounted",
@@ -111,6 +120,7 @@ WAYS = (
         "for task in set(os.listdir('/proc/self/task')) - before: "
         "open(f'/proc/self/task/{task}/comm', 'w').write(target.mark)\nNone",
         spoils=True,
+        once=True,
     ),
     way(
         "leave-a-thread-of-low-priority",
@@ -119,6 +129,7 @@ WAYS = (
         "    os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 19)\n    time.sleep(60)\n"
         "blind()\nthreading.Thread(target=run, daemon=True).start()\ntime.sleep(0.1)\nNone",
         spoils=True,
+        once=True,
     ),
     way(
         "leave-a-thread-that-starts-late",
@@ -126,6 +137,7 @@ WAYS = (
         "import weakref, gc\nclass Late:\n    def __del__(self): in_background(lambda: time.sleep(60))\n"
         "blind()\nbpy.late = Late()\ndel bpy.late\nNone",
         spoils=True,
+        once=True,
     ),
     way(
         "leave-a-timer-that-notifies-by-a-thread",
@@ -138,5 +150,6 @@ WAYS = (
         "libc.timer_settime(number, 0, struct.pack('qqqq', 0, 100_000_000, 0, 100_000_000), None)\n"
         "time.sleep(0.3)\nNone",
         spoils=True,
+        once=True,
     ),
 )
