@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from agents.blender.formatting import format_list
 from simworlds.sandbox.blender_process import BlenderProcess
@@ -69,6 +69,12 @@ class SavedCopy(FileContents):
     rescued: list[Name] = Field(max_length=_MOST_NAMED)
     files: list[tuple[Place, Place]] = Field(max_length=_MOST_FILES)
     external: list[ExternalFile] = Field(max_length=_MOST_NAMED)
+
+    @model_validator(mode="after")
+    def _each_once(self) -> SavedCopy:
+        if len({source for source, _ in self.files}) < len(self.files):
+            raise ValueError("a file is to be copied more than once")
+        return self
 
 
 class LoadedFile(FileContents):

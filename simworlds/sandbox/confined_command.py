@@ -49,7 +49,27 @@ while [ "$1" != -- ]; do echo $$ > "$1/cgroup.procs" || exit 126; shift; done
 shift
 exec "$@"
 """
-_PROCESS = ("/proc/self", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat", "/proc/sys", "/proc/filesystems")
+# What /proc tells of the whole machine, though not of other processes.
+_COVERED = (
+    "/proc/keys",
+    "/proc/key-users",
+    "/proc/timer_list",
+    "/proc/sysrq-trigger",
+    "/proc/kcore",
+    "/proc/kallsyms",
+)
+# Not all of /proc/self: it holds the network's tables.
+_OF_ITSELF = (
+    "auxv cgroup cmdline comm environ exe fd fdinfo limits maps mountinfo mounts smaps stat statm status"
+)
+_PROCESS = (
+    *(f"/proc/self/{name}" for name in _OF_ITSELF.split()),
+    "/proc/cpuinfo",
+    "/proc/meminfo",
+    "/proc/stat",
+    "/proc/sys",
+    "/proc/filesystems",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,6 +232,8 @@ def _bubblewrap(
     # The folders that bubblewrap makes for these are in memory and gone with the process: a write to them must not seem
     # to work, and would not count against any limit.
     if "proc" not in without:
+        for place in filter(os.path.exists, _COVERED):
+            words += ["--dev-bind", "/dev/null", place]
         # /proc/sys obeys root, and oom_score_adj everybody.
         words += ["--remount-ro", "/proc"]
     return [*words, "--remount-ro", "/dev", "--remount-ro", "/"]

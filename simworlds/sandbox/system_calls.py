@@ -20,7 +20,7 @@ OWN_PROCESS = 0x5E1F5E1F
 """Stands in a filter for the number of the process itself, which the launcher fills in (see confine_self.py)."""
 
 # A filter is a program of classic BPF: steps of (code, jump if true, jump if false, constant).
-_LOAD, _AND, _EQUAL, _AT_LEAST, _RETURN = 0x20, 0x54, 0x15, 0x35, 0x06
+_LOAD, _AND, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x54, 0x15, 0x35, 0x45, 0x06
 _ALLOW, _KILL, _ERROR = 0x7FFF0000, 0x80000000, 0x00050000
 _EPERM, _EINVAL, _ENOSYS, _ENOTSOCK, _ENOTSUP, _SUCCESS = 1, 22, 38, 88, 95, 0
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16
@@ -29,6 +29,7 @@ _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16
 _VM, _FS, _FILES, _THREAD, _NAMESPACES = 0x100, 0x200, 0x400, 0x10000, 0x7E020080
 _SHARED = _VM | _FS | _FILES | _THREAD
 _TRUNCATING, _ACCESS = 0o1000, 0o3
+_CREATING, _AS_OWNER = 0o100 | 0o20000000, 0o6000  # O_CREAT, O_TMPFILE; set-user-ID, set-group-ID
 
 # Wall → the calls that it refuses, whatever their arguments.
 _REFUSED: Mapping[Wall, str] = {
@@ -76,12 +77,20 @@ _PDEATHSIG, _DUMPABLE, _SECCOMP, _MEMORY_MAP, _PTRACER = 1, 4, 22, 35, 0x59616D6
 _SETOWN, _SETOWN_EX, _SETLEASE, _NOTIFY = 8, 15, 1024, 1026
 # ioctl: the same for sockets; typing into a terminal
 _FIOSETOWN, _SIOCSPGRP, _TIOCSTI, _TIOCLINUX = 0x8901, 0x8902, 0x5412, 0x541C
+# ioctl: flags and attributes of a file that may only be read, and sealing it for good
+_FLAGS, _FLAGS_32, _EXTENDED, _VERITY = 0x40086602, 0x40046602, 0x401C5820, 0x40806685
 _REFUSED_VALUES: Mapping[Wall, tuple[tuple[str, int, tuple[int, ...]], ...]] = {
+    "files": (("ioctl", 1, (_FLAGS, _FLAGS_32, _EXTENDED, _VERITY)),),
     "signals": (
         ("prctl", 0, (_PDEATHSIG, _DUMPABLE, _SECCOMP, _MEMORY_MAP, _PTRACER)),
         ("fcntl", 1, (_SETOWN, _SETOWN_EX, _SETLEASE, _NOTIFY)),
         ("ioctl", 1, (_FIOSETOWN, _SIOCSPGRP, _TIOCSTI, _TIOCLINUX)),
     ),
+}
+# Call → the argument that holds the mode of what it makes or changes.
+_MODES = {
+    **{"chmod": 1, "fchmod": 1, "fchmodat": 2, "fchmodat2": 2},
+    **{"creat": 1, "mkdir": 1, "mkdirat": 2, "mknod": 1, "mknodat": 2},
 }
 _QUERY_PERSONALITY = 0xFFFFFFFF
 
@@ -98,8 +107,10 @@ def first_filter(machine: str, *, files: bool, without: frozenset[Wall] = frozen
                 program.refuse(calls, error)
     if files and "attributes" not in without:
         program.refuse(_UNSUPPORTED_FILES, _ENOTSUP)
-    if files and "files" not in without:
-        _close_files(program)
+    if "files" not in without:
+        if files:
+            _close_files(program)
+        _close_modes(program)
     _close_by_arguments(program, without)
     if files and "signals" not in without:
         # With bubblewrap there is no other process whose CPU affinity could be set.
@@ -110,11 +121,21 @@ def first_filter(machine: str, *, files: bool, without: frozenset[Wall] = frozen
 def _close_files(program: _Program) -> None:
     program.refuse(_REFUSED_FILES, _EPERM)
     program.refuse(_PRETENDED_FILES, _SUCCESS)
-    program.refuse("openat2", _ENOSYS)
     # Opening only for reading can truncate a file.
     for call, index in (("open", 1), ("openat", 2)):
         truncates = (_step(_AND, _TRUNCATING | _ACCESS), _step(_EQUAL, _TRUNCATING, 0, 1))
         program.rule(call, _argument(index), *truncates, _error(_EPERM))
+
+
+def _close_modes(program: _Program) -> None:
+    """No program is left behind that runs as its owner, whoever starts it later."""
+    for call, index in _MODES.items():
+        program.rule(call, _argument(index), _step(_ANY_BIT, _AS_OWNER, 0, 1), _error(_EPERM))
+    for call, flags in (("open", 1), ("openat", 2)):
+        # Without a new file the mode is whatever was left in the register.
+        is_new = (_argument(flags), _step(_ANY_BIT, _CREATING, 0, 3))
+        program.rule(call, *is_new, _argument(flags + 1), _step(_ANY_BIT, _AS_OWNER, 0, 1), _error(_EPERM))
+    program.refuse("openat2", _ENOSYS)  # its flags and mode lie in memory
 
 
 def _close_by_arguments(program: _Program, without: frozenset[Wall]) -> None:

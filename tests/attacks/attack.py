@@ -35,6 +35,7 @@ _NUMBERS = {
         errno.ENOENT,
         errno.ESRCH,
         errno.ENOTSUP,
+        errno.ENOTSOCK,
         errno.EXDEV,
     ),
     *(errno.ENOTDIR, errno.ENXIO, errno.EAFNOSUPPORT, errno.EPROTONOSUPPORT, errno.ELOOP, errno.ECONNREFUSED),

@@ -25,6 +25,7 @@ def execute(arguments, report):
     linecache.cache[FILE] = (len(code), None, code.splitlines(keepends=True), FILE)
     result = {"value": None, "error": None}
     watch = ChangeWatch()
+    loaded = {*sys.modules}
     failure = None
     try:
         result["value"] = _run(code)
@@ -33,6 +34,7 @@ def execute(arguments, report):
     # The code may have patched what is used below, or left a tracer or an alarm that raises here once.
     for _ in range(3):
         try:
+            interpreter_state.current.forget_modules(loaded)
             interpreter_state.current.restore_names()
             break
         except Exception:

@@ -30,6 +30,7 @@ _RESTORED_MODULES = (
     *("threading", "time", "traceback", "types", "bpy", "bpy.ops", "bpy.path", "bpy.utils", "mathutils"),
 )
 _CODE = (types.FunctionType, types.BuiltinFunctionType, types.ModuleType, type)
+_OWN = (__package__ + ".", "simworlds.")
 _OF_FUNCTIONS = frozenset({"__code__", "__defaults__", "__kwdefaults__"})
 _current_frames = sys._current_frames
 _count_started = _thread._count
@@ -87,18 +88,25 @@ class InterpreterState:
         elif event == "object.__setattr__" and arguments[1] in _OF_FUNCTIONS:
             self._recoded = True
 
-    def protect_modules(self, folder):
-        """Has the functions and classes of all modules loaded from below ``folder`` restored as well."""
+    def protect_modules(self):
+        """Has the functions and classes of all our modules that are loaded restored as well."""
         if len(sys.modules) == self._seen:
             return
         self._seen = len(sys.modules)
         known = {id(module) for module, _ in self._names}
         for module in list(sys.modules.values()):
-            path = getattr(module, "__file__", None) or ""
-            if path.startswith(folder + os.sep) and id(module) not in known:
+            if str(getattr(module, "__name__", "")).startswith(_OWN) and id(module) not in known:
                 code = {name: value for name, value in vars(module).items() if isinstance(value, _CODE)}
                 self._names.append((module, code))
                 self._remember_code(module.__name__, code)
+
+    def forget_modules(self, loaded):
+        """Forgets our modules that are not among ``loaded``: code has imported them, and may have changed them."""
+        for name in [name for name in sys.modules if name.startswith(_OWN) and name not in loaded]:
+            del sys.modules[name]
+            above, _, last = name.rpartition(".")
+            if above in sys.modules:
+                vars(sys.modules[above]).pop(last, None)
 
     def _remember_code(self, module, names):
         """Remembers what the module's own functions and methods do: code can be put into a function as it stands."""

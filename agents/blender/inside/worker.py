@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Serves the tools of the live Blender to its supervisor."""
 
-import os
-
 from simworlds.sandbox.inside import mantaflow, service
 
 from . import interpreter_state
@@ -40,7 +38,6 @@ TOOLS = {
     "check_cycles": ("self_check", "cycles"),
     "check_video": ("self_check", "video"),
 }
-_FOLDER = os.path.dirname(os.path.abspath(__file__))
 
 
 class _Guard:
@@ -50,7 +47,7 @@ class _Guard:
         self._interpreter = interpreter_state.InterpreterState(service.HIGH)
 
     def before(self):
-        self._interpreter.protect_modules(_FOLDER)
+        self._interpreter.protect_modules()
         self._interpreter.before()
 
     def after(self):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, model_validator
 
 from simworlds.sandbox.replies import Claim, Frame
 
 Text = Annotated[str, Field(max_length=1000)]
 Vector = tuple[float, float, float]
 Side = Annotated[int, Field(ge=16, le=2048)]
-_MOST_ACTORS, _MOST_PICTURES, _MOST_FRAMES = 8, 12, 1500
+_MOST_ACTORS, _MOST_PICTURES, _MOST_FRAMES, _MOST_PHASES = 8, 12, 1500, 100
 
 
 class _Reply(Claim):
@@ -106,7 +106,7 @@ class ActorMotion(_Reply):
     speed_of: Text
     caches: list[CacheState] = Field(max_length=1000)
     keyframes: list[Frame] = Field(max_length=100_000)
-    phases: list[PhaseMotion] = Field(min_length=1)
+    phases: list[PhaseMotion] = Field(min_length=1, max_length=_MOST_PHASES)
     frames: list[Frame] = Field(min_length=1, max_length=_MOST_FRAMES)
     centres: list[Vector | None] = Field(max_length=_MOST_FRAMES)
     displacements: list[float | None] = Field(max_length=_MOST_FRAMES)
@@ -114,6 +114,12 @@ class ActorMotion(_Reply):
     notes: list[Text] = Field(max_length=50)
     columns: int = Field(ge=1, le=_MOST_PICTURES)
     views: list[Strip] = Field(max_length=2)
+
+    @model_validator(mode="after")
+    def _as_many_as_frames(self) -> ActorMotion:
+        if {len(self.centres), len(self.displacements), len(self.speeds)} != {len(self.frames)}:
+            raise ValueError("there must be a centre, a displacement and a speed for each frame")
+        return self
 
 
 class MotionReply(_Reply):
@@ -125,7 +131,7 @@ class MotionReply(_Reply):
     stride: int = Field(ge=1)
     sampled: list[Frame] = Field(min_length=1, max_length=_MOST_PICTURES)
     stepped_from: Frame | None
-    stepped_for: list[Text]
+    stepped_for: list[Text] = Field(max_length=20_000)
     notes: list[Text] = Field(max_length=50)
     actors: list[ActorMotion] = Field(min_length=1, max_length=_MOST_ACTORS)
 

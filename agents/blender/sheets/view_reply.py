@@ -6,11 +6,13 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from simworlds.sandbox.replies import Claim, Count, Frame, Name, Text
+from simworlds.sandbox.replies import Claim, Count, Frame, Name
 
 _LARGEST = 2048  # pixels a side
+_MOST_NOTES = 60
 _FARTHEST = 1e38
 _File = Annotated[str, Field(pattern=r"^\.(preview|close-up)-\d{1,3}\.png$")]
+Note = Annotated[str, Field(max_length=2000)]
 Metres = Annotated[float, Field(ge=-_FARTHEST, le=_FARTHEST)]
 Pixel = Annotated[float, Field(ge=-1e15, le=1e15)]
 Side = Annotated[int, Field(ge=16, le=_LARGEST)]
@@ -55,7 +57,7 @@ class PreviewReply(Claim):
     low: Corner
     high: Corner
     views: list[DrawnView] = Field(min_length=1, max_length=6)
-    notes: list[Text] = Field(max_length=1000)
+    notes: list[Note] = Field(max_length=_MOST_NOTES)
     engine: Name
 
     @property
@@ -72,4 +74,4 @@ class FindingsReply(Claim):
     frame: Frame
     views: list[DrawnView] = Field(min_length=1, max_length=6)
     close: list[CloseUp] = Field(max_length=200)
-    notes: list[Text] = Field(max_length=1000)
+    notes: list[Note] = Field(max_length=_MOST_NOTES)

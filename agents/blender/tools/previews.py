@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from PIL import Image
 from pydantic import Field
 
-from agents.blender.formatting import format_count
+from agents.blender.formatting import format_count, format_list
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import format_length
 from agents.blender.sheets.view_reply import PreviewReply
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 PANEL = 384  # pixels a side
 _BACKGROUND: contact_sheet.Colour = (198, 202, 208)
 _LAST_FRAME = 1_048_574
+_NAMED = 30
 
 
 class PreviewArguments(Arguments):
@@ -168,7 +169,7 @@ def _size_of(preview: PreviewReply) -> str:
 
 def _cut_away(preview: PreviewReply) -> list[str]:
     """A line on what was cut away in which view; none if nothing was."""
-    views = [f"{view.name}: {', '.join(view.cut_away)}" for view in preview.views if view.cut_away]
+    views = [f"{view.name}: {format_list(view.cut_away, _NAMED)}" for view in preview.views if view.cut_away]
     return [f"Cut away to see inside – {'; '.join(views)}."] if views else []
 
 

@@ -10,6 +10,7 @@ import importlib
 import os
 import time
 import traceback
+import types
 
 from . import channel
 from .refusal import Refused
@@ -25,7 +26,7 @@ class Tools:
 
     def __init__(self, package, table):
         self._package = package
-        self._table = table
+        self._table = types.MappingProxyType(dict(table))  # code may write to the module's own
 
     def find(self, name):
         """The function of a tool."""

@@ -142,7 +142,7 @@ WAYS = (
         "mine = os.open('copy', os.O_RDWR | os.O_CREAT)\nos.copy_file_range(source, mine, 99)\n"
         "read('copy')",
     ),
-    way("the-target-of-a-link", "files attributes", "os.readlink(target.link)"),
+    way("the-target-of-a-link", "files attributes", "os.readlink(target.link)", denied=("22",)),
     way("an-attribute", "files attributes", "os.getxattr(target.file, 'user.note')"),
     way("the-names-of-attributes", "files attributes", "os.listxattr(target.file)"),
     _call(
