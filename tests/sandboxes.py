@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import ResourceLimits, Sandbox, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.confined_command import Sandbox, best_sandbox, bubblewrap_fault
 from simworlds.sandbox.worker_user import worker_id
 
 if TYPE_CHECKING:
     from simworlds.sandbox.confined_command import Kind
+    from simworlds.sandbox.resource_limits import ResourceLimits
 
 
 def skip_unless_it_works(kind: Kind) -> Kind:

@@ -19,10 +19,11 @@ from agents.blender.fluid_support import check_fluids
 from agents.blender.launch import launch_in, runs_folder
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
-from simworlds.sandbox.confined_command import GIB, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault
 from simworlds.sandbox.errors import BlenderError, CannotStart
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.replies import mapping
+from simworlds.sandbox.resource_limits import GIB
 from simworlds.sandbox.walls import WALLS, WITHOUT
 
 if TYPE_CHECKING:

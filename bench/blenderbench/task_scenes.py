@@ -20,12 +20,13 @@ from bench.audit.untrusted_blend import AUDITOR
 from bench.blenderbench.errors import TaskFailed, UnreadableRender
 from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess
-from simworlds.sandbox.confined_command import ResourceLimits, best_sandbox, default_limits
+from simworlds.sandbox.confined_command import best_sandbox, default_limits
 from simworlds.sandbox.errors import BlenderError, CannotStart
 from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.launch import PRIVATE, Launch, find_blender
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.replies import unread
+from simworlds.sandbox.resource_limits import ResourceLimits
 
 if TYPE_CHECKING:
     from collections.abc import Generator

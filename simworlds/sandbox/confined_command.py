@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Literal
 from simworlds.sandbox import confine_self
 from simworlds.sandbox.control_group import group_parents
 from simworlds.sandbox.errors import CannotStart
+from simworlds.sandbox.resource_limits import ResourceLimits
 from simworlds.sandbox.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
 from simworlds.sandbox.walls import EVERY_WALL, WALLS, WITHOUT
 from simworlds.sandbox.worker_user import check_readable, hand_over, worker_id
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
 Kind = Literal["bubblewrap", "landlock", "none"]
 
-GIB = 1024**3
 _PROBE_SECONDS = 10
 _SYSTEM = ("/usr", "/lib", "/lib32", "/lib64", "/bin", "/sbin", "/nix/store", "/sys")
 _SETTINGS = (
@@ -70,29 +70,6 @@ _PROCESS = (
     "/proc/sys",
     "/proc/filesystems",
 )
-
-
-@dataclass(frozen=True, slots=True)
-class ResourceLimits:
-    """Bytes of memory, of one file, of all files; numbers of files and threads. 0: no limit."""
-
-    memory: int = 0
-    file_size: int = 4 * GIB
-    disk: int = 20 * GIB
-    files: int = 200_000
-    threads: int = 4096
-
-    @property
-    def in_words(self) -> tuple[str, ...]:
-        """The limits as phrases."""
-        each = (
-            (self.memory, f"{self.memory / GIB:.1f} GiB of memory"),
-            (self.file_size, f"{self.file_size / GIB:.1f} GiB a file"),
-            (self.disk, f"{self.disk / GIB:.1f} GiB on disk"),
-            (self.files, f"{self.files:,} files"),
-            (self.threads, f"{self.threads:,} threads"),
-        )
-        return tuple(words for amount, words in each if amount)
 
 
 @dataclass(frozen=True, slots=True)

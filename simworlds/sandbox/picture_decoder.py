@@ -15,9 +15,10 @@ from PIL import Image
 
 from simworlds.processes import end_group, spawn
 from simworlds.sandbox import decode_pictures
-from simworlds.sandbox.confined_command import GIB, ResourceLimits, own_python
+from simworlds.sandbox.confined_command import own_python
 from simworlds.sandbox.decode_pictures import FAULT, FORMATS, LONGEST_FAULT, PICTURE, REQUEST
 from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.resource_limits import GIB, ResourceLimits
 from simworlds.sandbox.runtime import clean_environment
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from simworlds.sandbox.nameless_files import nameless_files
 from simworlds.sandbox.watched_process import WatchedProcess
 
 if TYPE_CHECKING:
-    from simworlds.sandbox.confined_command import ResourceLimits
+    from simworlds.sandbox.resource_limits import ResourceLimits
 
 _LEAST_FREE = (
     1 << 30

@@ -30,7 +30,8 @@ _RESTORED_MODULES = (
     *("threading", "time", "traceback", "types", "bpy", "bpy.ops", "bpy.path", "bpy.utils", "mathutils"),
 )
 _CODE = (types.FunctionType, types.BuiltinFunctionType, types.ModuleType, type)
-_OWN = (__package__ + ".", "simworlds.")
+_ABOVE = (__package__, "simworlds")
+_OWN = tuple(f"{name}." for name in _ABOVE)  # how the names of our modules begin
 _OF_FUNCTIONS = frozenset({"__code__", "__defaults__", "__kwdefaults__"})
 _current_frames = sys._current_frames
 _count_started = _thread._count
@@ -95,7 +96,8 @@ class InterpreterState:
         self._seen = len(sys.modules)
         known = {id(module) for module, _ in self._names}
         for module in list(sys.modules.values()):
-            if str(getattr(module, "__name__", "")).startswith(_OWN) and id(module) not in known:
+            name = str(getattr(module, "__name__", ""))
+            if (name in _ABOVE or name.startswith(_OWN)) and id(module) not in known:
                 code = {name: value for name, value in vars(module).items() if isinstance(value, _CODE)}
                 self._names.append((module, code))
                 self._remember_code(module.__name__, code)

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from simworlds.sandbox import control_group
-from simworlds.sandbox.confined_command import ResourceLimits
 from simworlds.sandbox.control_group import ControlGroup, GroupParents, find_parents, group_parents
+from simworlds.sandbox.resource_limits import ResourceLimits
 
 LIMITS = ResourceLimits(memory=300 << 20, threads=40)
 
@@ -118,7 +118,7 @@ def test_what_still_runs_in_a_group_ends_with_it(group: ControlGroup) -> None:
 
 def test_groups_of_a_killed_owner_are_removed_by_the_next(group: ControlGroup) -> None:
     code = (
-        "import os\nfrom simworlds.sandbox.confined_command import ResourceLimits\n"
+        "import os\nfrom simworlds.sandbox.resource_limits import ResourceLimits\n"
         "from simworlds.sandbox.control_group import ControlGroup, group_parents\n"
         "group = ControlGroup(ResourceLimits(memory=1 << 30), group_parents())\ngroup.renew()\n"
         "print(*group.folders, flush=True)\nos.kill(os.getpid(), 9)\n"

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from simworlds.sandbox import usage
-from simworlds.sandbox.confined_command import ResourceLimits
 from simworlds.sandbox.hostile_ground import HostileGround
+from simworlds.sandbox.resource_limits import ResourceLimits
 
 if TYPE_CHECKING:
     from pathlib import Path

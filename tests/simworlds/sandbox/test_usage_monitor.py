@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from simworlds.sandbox import usage
-from simworlds.sandbox.confined_command import ResourceLimits
 from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.nameless_files import nameless_files
+from simworlds.sandbox.resource_limits import ResourceLimits
 from simworlds.sandbox.watched_process import WatchedProcess
 
 if TYPE_CHECKING:

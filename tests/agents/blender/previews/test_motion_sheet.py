@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from agents.blender.sheets.motion_reply import MotionReply
 from agents.blender.tools.base import Call
 from agents.blender.tools.motion_sheet import TOOL
 from simworlds.sandbox.errors import Refusal, Untrustworthy
@@ -392,9 +393,8 @@ def test_what_is_not_in_the_view_layer_is_refused(session: LiveSession) -> None:
         session.use(TOOL, actors=["Attic"])
 
 
-def test_rejects_a_forged_reply(own_session: LiveSession) -> None:
-    own_session.run(FALL)
-    forged = "motion_sheet.motion_sheet = lambda *_: {'actors': [], 'start': 'x'}"
-    own_session.run(f"from simworlds_worker.motion import motion_sheet\n{forged}")
+def test_rejects_what_is_no_motion(own_session: LiveSession) -> None:
     with pytest.raises(Untrustworthy, match="not a valid reply"):
-        own_session.use(TOOL, actors=["Crate"])
+        own_session.blender.call("ping", {}, MotionReply.model_validate, timeout=60)
+    own_session.run(FALL)
+    assert own_session.use(TOOL, actors=["Crate"]).data["actors"]

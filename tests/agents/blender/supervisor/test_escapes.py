@@ -19,8 +19,8 @@ from sandboxes import sandbox_of, skip_unless_it_works
 
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import ResourceLimits
 from simworlds.sandbox.errors import Died, LeftBehind, LimitExceeded, Refusal, Untrustworthy
+from simworlds.sandbox.resource_limits import ResourceLimits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,7 +37,7 @@ pytestmark = [
 SECRET = "sk-ant-this-is-no-key-but-must-not-be-seen"
 MIB = 1 << 20
 LIMITS = ResourceLimits(memory=1600 * MIB, file_size=16 * MIB, disk=64 * MIB, files=400, threads=300)
-KINDS: tuple[Kind, ...] = ("bubblewrap", "landlock")
+KINDS: tuple[Kind, ...] = ("bubblewrap",)  # tests/attacks tries the same ways with Landlock
 DENIED = {"PermissionError", "FileNotFoundError", "OSError", "ProcessLookupError"}
 
 
