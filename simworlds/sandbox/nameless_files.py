@@ -19,8 +19,11 @@ class NamelessFiles(NamedTuple):
     mapped: int
 
 
-def nameless_files(process: int, devices: frozenset[int]) -> NamelessFiles:
-    """Those of a process on these file systems (numbers as in st_dev). What cannot be looked at counts as none."""
+def nameless_files(process: int, devices: frozenset[int], *, mapped: bool = True) -> NamelessFiles:
+    """Those of a process on these file systems (numbers as in st_dev). What cannot be looked at counts as none.
+
+    Without ``mapped``, only open files are looked for, which takes a tenth of the time.
+    """
     open_bytes: dict[tuple[int, int], int] = {}
     with suppress(OSError), os.scandir(f"/proc/{process}/fd") as entries:
         for entry in entries:
@@ -28,8 +31,8 @@ def nameless_files(process: int, devices: frozenset[int]) -> NamelessFiles:
                 status = entry.stat()  # of the file itself, whatever the link's text says
                 if _takes_space(status, devices):
                     open_bytes[status.st_dev, status.st_ino] = status.st_blocks * 512
-    mapped = _mapped(process, devices) - open_bytes.keys()
-    return NamelessFiles(sum(open_bytes.values()), len(open_bytes), len(mapped))
+    others = _mapped(process, devices) - open_bytes.keys() if mapped else ()
+    return NamelessFiles(sum(open_bytes.values()), len(open_bytes), len(others))
 
 
 def _takes_space(status: os.stat_result, devices: frozenset[int]) -> bool:

@@ -22,6 +22,7 @@ _MOST_COUNTED = 2_000_000
 _CHECK_SECONDS = 0.25  # between two counts of the files
 _PAUSE = 10.0  # after a slow count, in its durations
 _MUCH_SPACE, _MANY_FILES = 150_000_000, 10_000  # taken since the last count, for the next to come at once
+_LITTLE_SPACE = 5_000_000  # of which it does not matter who took it
 _QUICK_SECONDS = 0.02
 
 
@@ -117,11 +118,12 @@ class UsageMonitor:
     def _disk_usage(self, at_most: int) -> DiskUsage:
         usages = [folder.measure(at_most) for folder in self._folders]
         size, files = sum(usage.bytes for usage in usages), sum(usage.files for usage in usages)
-        nameless = nameless_files(self._process.number, self._devices)
+        taken = _taken(self._at_start, self._free()).bytes
+        nameless = nameless_files(self._process.number, self._devices, mapped=taken > _LITTLE_SPACE)
         size += nameless.bytes
         if nameless.mapped:
             # Their size is unknown, but at most what nothing else explains.
-            unexplained = _taken(self._at_start, self._free()).bytes - (size - self._present.bytes)
+            unexplained = taken - (size - self._present.bytes)
             size += max(0, min(unexplained, nameless.mapped * (self._limits.file_size or unexplained)))
         return DiskUsage(size, files + nameless.open, max(usage.deepest for usage in usages))
 
