@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import tempfile
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path, PurePosixPath
@@ -13,7 +15,7 @@ from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.launch import LENT, PRIVATE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator, Iterator
 
 _NAME = re.compile(r"[\w .()+-]{1,100}")
 SCENE_FILE = "scene.blend"  # in the workspace: the run's own file, as Blender has it open
@@ -44,10 +46,12 @@ class RunFolder:
         """The folder of Blender's temporary files, while it runs."""
         return HostileGround(self.root / PRIVATE)
 
-    @property
-    def lent(self) -> Path:
-        """The folder of files that Blender is to load and cannot change, while it runs."""
-        return self.root / LENT
+    @contextmanager
+    def lending(self) -> Generator[Path]:
+        """An empty folder for files that Blender is to load and cannot change, gone afterwards. Raises OSError."""
+        with tempfile.TemporaryDirectory(dir=self.root / LENT, ignore_cleanup_errors=True) as lent:
+            Path(lent).chmod(0o755)  # as root, Blender runs as another user
+            yield Path(lent)
 
     @property
     def saved(self) -> Iterator[Path]:

@@ -246,9 +246,8 @@ def lent_to_blender(blend_file: BlendFile, folder: RunFolder) -> Generator[str]:
     if blend_file.root != folder.root or folder.workspace.holds(blend_file.path):
         yield str(blend_file.path)
         return
-    with tempfile.TemporaryDirectory(dir=folder.lent, ignore_cleanup_errors=True) as lent:
-        copy = Path(lent) / blend_file.path.name
-        copy.parent.chmod(0o755)
+    with folder.lending() as lent:
+        copy = lent / blend_file.path.name
         with HostileGround(blend_file.root).open(blend_file.relative, at_most=_LARGEST) as source:
             copy_to(source, copy, durable=False)
         caches = caches_folder(blend_file.path)

@@ -36,11 +36,15 @@ _ENGINES = {"CYCLES": "cycles", "BLENDER_EEVEE": "eevee", "BLENDER_WORKBENCH": "
 
 @dataclass(frozen=True, slots=True)
 class RenderResult:
-    """What was rendered: a ``video`` and its frames, or a still; ``path`` is the file in the run's folder."""
+    """What was rendered: a ``video`` and its frames, or a still; ``path`` is the file in the run's folder.
+
+    ``shown``: some of the frames, each with its picture as models see it.
+    """
 
     path: Path
     frames: tuple[Path, ...]
     text: str
+    shown: tuple[tuple[Path, Picture], ...]
 
 
 def render(run: Run, plan: RenderSettings | None, number: int) -> RenderResult:
@@ -62,6 +66,7 @@ def render(run: Run, plan: RenderSettings | None, number: int) -> RenderResult:
     result = run.root / ("video.mp4" if moving else "still.png")
     if made.is_file():
         _link(made, result)
+    shown = _pictures(_spread(frames))
     run.journal.note(
         SceneRendered(
             round=number,
@@ -70,23 +75,22 @@ def render(run: Run, plan: RenderSettings | None, number: int) -> RenderResult:
             frames=len(frames),
             samples=data.get("samples"),
             seconds=data.get("seconds"),
-            pictures=tuple(run.keep(picture) for picture in _pictures(_spread(frames))),
+            pictures=tuple(run.keep(picture) for _, picture in shown),
         )
     )
-    return RenderResult(result, frames, outcome.text)
+    return RenderResult(result, frames, outcome.text, shown)
 
 
-def _pictures(paths: Sequence[Path]) -> list[Picture]:
-    """Rendered pictures as models see them; Blender has written the files."""
+def _pictures(paths: Sequence[Path]) -> tuple[tuple[Path, Picture], ...]:
+    """Rendered frames with their pictures as models see them; Blender has written the files."""
     with closing(PictureDecoder(best_sandbox())) as decoder:
-        return [Picture(look_at(decoder, path).png) for path in paths]
+        return tuple((path, Picture(look_at(decoder, path).png)) for path in paths)
 
 
 def review(run: Run, task: RunTask, rendering: RenderResult, number: int) -> FinalReview:
     """The final reviewer's verdict. A reviewer that declines counts as accepting, and the summary says so."""
     content: list[Block | str] = [Text(rendering.text)]
-    shown = _spread(rendering.frames)
-    for place, (path, picture) in enumerate(zip(shown, _pictures(shown), strict=True)):
+    for place, (path, picture) in enumerate(rendering.shown):
         content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
     try:
         review = final_review(run.context, task.plan_text, content, edit=task.edit)

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import secrets
-import tempfile
 import time
 from contextlib import suppress
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.render.replies import RenderPlan, VideoFacts
@@ -18,6 +16,7 @@ from simworlds.sandbox.replies import Reader, T, nothing
 if TYPE_CHECKING:
     import threading
     from collections.abc import Sequence
+    from pathlib import Path
 
     from agents.blender.render.replies import Shot, UnbakedCache
     from agents.blender.supervisor import Supervisor
@@ -106,15 +105,12 @@ class FrameRenderer:
         workspace = self._blender.folder.workspace
         video = f".film-{secrets.token_hex(6)}.mp4"
         try:
-            with tempfile.TemporaryDirectory(
-                dir=self._blender.folder.lent, ignore_cleanup_errors=True
-            ) as lent:
-                Path(lent).chmod(0o755)
+            with self._blender.folder.lending() as lent:
                 for path in {*frames}:
                     with path.open("rb") as file:
-                        copy_to(file, Path(lent) / path.name, durable=False)
+                        copy_to(file, lent / path.name, durable=False)
                 arguments: dict[str, Any] = {
-                    "folder": lent,
+                    "folder": str(lent),
                     "pictures": [path.name for path in frames],
                     "path": workspace.for_blender(video),
                     "width": self.shot.width,
