@@ -29,6 +29,8 @@ from simworlds.sandbox.walls import EVERY_WALL, WALLS, WITHOUT
 from simworlds.sandbox.worker_user import check_readable, hand_over, worker_id
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from simworlds.sandbox.walls import Wall
 
 Kind = Literal["bubblewrap", "landlock", "none"]
@@ -243,6 +245,22 @@ def _can_disable_namespaces() -> bool:
     return b"--disable-userns" in done.stdout + done.stderr
 
 
+# What is promised of executed code → the walls that it takes.
+_HELD_BY: Mapping[str, tuple[Wall, ...]] = {
+    "sees none of your environment's secrets": ("environment",),
+    "writes only to the run's workspace and a private temporary folder, and reads only these, the system's programs, "
+    "Blender and Python": ("files",),
+    "has no rights of root, and changes nothing of the kernel": ("proc", "uid", "capabilities", "kernel"),
+    "opens no network or other socket, starts no process, signals no other process": (
+        "sockets",
+        "processes",
+        "signals",
+    ),
+    "sees no other process": ("namespaces",),
+    "is ended by the kernel, before any other program, when it takes too much memory": ("memory",),
+}
+
+
 def best_sandbox(
     wanted: Kind | None = None, limits: ResourceLimits | None = None, without: frozenset[Wall] = frozenset()
 ) -> Sandbox:
@@ -254,24 +272,7 @@ def best_sandbox(
     limits = limits or default_limits()
     walls = standing_walls(kind) - without
     holds = ["ends with SimWorlds, however that ends"]
-    words: dict[frozenset[Wall], str] = {
-        frozenset({"environment"}): "sees none of your environment's secrets",
-        frozenset(
-            {"files"}
-        ): "writes only to the run's workspace and a private temporary folder, and reads only "
-        "these, the system's programs, Blender and Python",
-        frozenset(
-            {"proc", "uid", "capabilities", "kernel"}
-        ): "has no rights of root, and changes nothing of the kernel",
-        frozenset(
-            {"sockets", "processes", "signals"}
-        ): "opens no network or other socket, starts no process, signals no other process",
-        frozenset({"namespaces"}): "sees no other process",
-        frozenset(
-            {"memory"}
-        ): "is ended by the kernel, before any other program, when it takes too much memory",
-    }
-    holds += [text for needed, text in words.items() if needed <= walls]
+    holds += [text for text, needed in _HELD_BY.items() if walls.issuperset(needed)]
     lacks = [
         WITHOUT[wall] for wall in WALLS if wall not in walls and (kind, wall) != ("landlock", "namespaces")
     ]

@@ -7,6 +7,7 @@ before any other code (see inside/boot.py), in all threads: from then on no prog
 from __future__ import annotations
 
 import struct
+from functools import cache
 from typing import TYPE_CHECKING
 
 from simworlds.sandbox.system_call_numbers import ARCHITECTURES, NEWEST, NUMBERS
@@ -95,6 +96,7 @@ _MODES = {
 _QUERY_PERSONALITY = 0xFFFFFFFF
 
 
+@cache
 def first_filter(machine: str, *, files: bool, without: frozenset[Wall] = frozenset()) -> bytes:
     """The filter under which Blender's program starts, with a hole for its process (see OWN_PROCESS).
 
@@ -159,6 +161,7 @@ def _close_by_arguments(program: _Program, without: frozenset[Wall]) -> None:
                 program.rule(call, _argument(index), _step(_EQUAL, value, 0, 1), _error(_EPERM))
 
 
+@cache
 def last_filter(machine: str, *, files: bool, without: frozenset[Wall] = frozenset()) -> bytes:
     """The filter that is added once Blender's Python runs; ``files``: see first_filter. Raises KeyError."""
     program = _Program(machine)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import time
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from simworlds.sandbox.hostile_ground import DEEPEST, DiskUsage, HostileGround
@@ -156,16 +155,3 @@ def _taken(before: dict[int, FreeSpace], after: dict[int, FreeSpace]) -> FreeSpa
 
 def _size(amount: int) -> str:
     return f"{amount / 1e9:,.1f} GB" if amount >= 1e9 else f"{amount / 1e6:,.0f} MB"
-
-
-def innermost_process(process: int) -> int:
-    """The last of the chain of child processes of this one: Blender itself, behind what started it."""
-    for _ in range(8):
-        try:
-            children = Path(f"/proc/{process}/task/{process}/children").read_text().split()
-        except OSError:
-            return process
-        if not children:
-            return process
-        process = int(children[0])
-    return process

@@ -126,3 +126,16 @@ class WatchedProcess:
         except OSError:
             return {}
         return dict(line.split(":\t", 1) for line in lines if ":\t" in line)
+
+
+def innermost_process(process: int) -> int:
+    """The last of the chain of child processes of this one: Blender itself, behind what started it."""
+    for _ in range(8):
+        try:
+            children = Path(f"/proc/{process}/task/{process}/children").read_text().split()
+        except OSError:
+            return process
+        if not children:
+            return process
+        process = int(children[0])
+    return process

@@ -99,6 +99,17 @@ WAYS = (
         _LOAD,
     ),
     _lie(
+        "a-link-where-a-file-is-lent-at-once",
+        {
+            "write": "def run():\n    until = time.monotonic() + 3\n    while time.monotonic() < until:\n"
+            "        try: os.symlink(target.victim, '.loading/kept.blend')\n        except OSError: pass\n"
+            "threading.Thread(target=run, daemon=True).start()\nreturn truth()",
+        },
+        _SAVE_QUICKLY,
+        _RUN,
+        _LOAD,
+    ),
+    _lie(
         "links-where-a-film-is-made",
         {
             "render_frame": "value = truth()\nimport glob\nos.makedirs('.film', exist_ok=True)\n"
@@ -220,12 +231,16 @@ WAYS = (
     _lie(
         "modes-of-folders-that-become-links",
         {
-            "motion_sheet": "value = truth()\nfor n in range(40): os.makedirs(arguments['folder'] + f'/f{n}/g')\n"
-            "os.symlink(target.folder, 'e')\n"
-            "import glob\ndef run():\n    until = time.monotonic() + 4\n"
-            "    while time.monotonic() < until:\n"
-            "        for n in range(40): libc.syscall(*raw(316, -100, (arguments['folder'] + "
-            "f'/f{n}').encode(), -100, b'e', 2))\n"
+            # Once the first of many folders is gone, all are known to be folders: the rest become links.
+            "motion_sheet": "value = truth()\ntop = arguments['folder'] + '/a/'\n"
+            "for n in range(300): os.makedirs(f'{top}f{n}/g')\n"
+            "def run():\n    until = time.monotonic() + 8\n"
+            "    while len(os.listdir(top)) == 300 and time.monotonic() < until: pass\n"
+            "    for n in range(300):\n"
+            "        for name in (f'{top}f{n}', f'{top}f{299 - n}'):\n"
+            "            try:\n                os.rename(name, f'gone{n}-{time.monotonic_ns()}')\n"
+            "                os.symlink(target.folder, name)\n"
+            "            except OSError: pass\n"
             "threading.Thread(target=run, daemon=True).start()\nreturn value"
         },
         _MOTION,

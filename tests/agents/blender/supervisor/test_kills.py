@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-KILLS = 20  # of each of the five
+KILLS = 12  # of each of the five
 SEED = 20251
 
 # A scene that takes a moment to write, and has something to bake and to render.
