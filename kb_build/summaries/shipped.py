@@ -1,7 +1,7 @@
 """Summaries and phrases that ship with SimWorlds: a language model wrote them once, so that a build needs no key.
 
-They are found by the content of a page: a page that has changed since has none. See corpora/summaries/README.md for
-who wrote them, and for the licence.
+They are found by the slug and content of a page: one that has changed since has none. corpora/summaries/README.md says
+who wrote them, and under which licence.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ShippedSummary:
-    """A line of a file in corpora/summaries, found by the ``content_hash`` of a page."""
+    """A line of a file in corpora/summaries: what was written for a page when its ``content_hash`` was this."""
 
     slug: str
     content_hash: str
@@ -49,14 +49,16 @@ def file_name(version: str) -> str:
 
 def shipped_summaries(pages: Iterable[Page]) -> dict[str, PageSummary]:
     """slug → what ships for the page's very content; pages without are absent."""
-    wanted = {page.content_hash: page.slug for page in pages}
+    wanted = {(page.slug, page.content_hash) for page in pages}
     found: dict[str, PageSummary] = {}
     for file in files("corpora").joinpath("summaries").iterdir():
         if not file.name.endswith(f".{PROMPT_VERSION}.jsonl"):
             continue
         for line in file.read_text(encoding="utf-8").splitlines():
             row = ShippedSummary.from_line(line)
-            if slug := wanted.get(row.content_hash):
+            if (row.slug, row.content_hash) in wanted:
                 key = summary_key(row.content_hash, PROMPT_VERSION, row.model)
-                found[slug] = PageSummary(key, row.summary, "claude", row.model, PROMPT_VERSION, row.phrases)
+                found[row.slug] = PageSummary(
+                    key, row.summary, "claude", row.model, PROMPT_VERSION, row.phrases
+                )
     return found

@@ -15,6 +15,7 @@ from kb_build.index.analysis import key, short_path
 from kb_build.records import Deprecation, EnumItem, Link, Page, Parameter, Section, Symbol
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, pack, unpack
 from kb_build.store import Contents, write_base
+from kb_build.summaries.types import PageSummary
 from kb_build.versions.removed_symbols import RemovedSymbols
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import BaseReader
@@ -66,7 +67,7 @@ CONTENTS = Contents(
     pages=(TOP, PAGE),
     links=(Link(STEPS.path, "physics/cloth/index#steps", "manual"), Link(ADD.path, "physics/index", "manual")),
     meta={"minor": "5.1", "fingerprint": "f"},
-    summaries={PAGE.slug: ("In short.", "extractive")},
+    summaries={PAGE.slug: PageSummary("key", "In short.", "extractive", "extractive", "1")},
     removed_symbols=lambda: REMOVED_SYMBOLS,
 )  # fmt: skip
 

@@ -10,8 +10,10 @@ from places import REPO
 from kb_build.index.documents import make_units
 from kb_build.index.query_expansions import load_query_expansions
 from kb_build.records import Link, Page, Section, Symbol
+from kb_build.summaries.shipped import ShippedSummary
 
 QUERIES = REPO / "corpora" / "queries"
+SUMMARIES = REPO / "corpora" / "summaries"
 
 
 def test_every_topic_has_phrases() -> None:
@@ -26,6 +28,10 @@ def test_no_phrase_is_a_labelled_query() -> None:
     phrases = {
         phrase.strip().lower() for row in load_query_expansions().values() for phrase in row.split(";")
     }
+    for file in SUMMARIES.glob("*.jsonl"):
+        for line in file.read_text(encoding="utf-8").splitlines():
+            phrases |= {phrase.lower() for phrase in ShippedSummary.from_line(line).phrases}
+    assert len(phrases) > 30_000
     for path in QUERIES.glob("*.jsonl"):
         queries = {
             json.loads(line)["query"].lower() for line in path.read_text(encoding="utf-8").splitlines()

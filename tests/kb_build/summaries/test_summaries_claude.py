@@ -52,7 +52,7 @@ def title(params: dict) -> str:
 
 
 def says(text: str) -> Reply:
-    return Reply(json.dumps({"summary": text}))
+    return Reply(json.dumps({"summary": text, "phrases": [f"how to {text}", "bad; one"]}))
 
 
 def good(params: dict) -> Answer:
@@ -92,6 +92,7 @@ def test_every_page_gets_claudes_summary_with_its_provenance(store):
         outcome = run(api, store)
     cloth = outcome.by_slug["physics/cloth"]
     assert cloth.text == "Cloth settings."
+    assert cloth.phrases == ("how to cloth settings.",)  # the other one holds what separates phrases
     assert (cloth.method, cloth.model, cloth.prompt_version) == ("claude", MODEL, PROMPT_VERSION)
     assert cloth.key == summary_key(PAGES[0].content_hash, PROMPT_VERSION, MODEL)
     assert (outcome.report.made, outcome.report.reused, outcome.report.failed) == (4, 0, ())
@@ -297,7 +298,9 @@ BAD = {
     "nothing": Reply(""),
     "no JSON": Reply("Here is your summary: Fluid settings."),
     "other JSON": Reply('{"text": "Fluid"}'),
-    "no string": Reply('{"summary": 3}'),
+    "no string": Reply('{"summary": 3, "phrases": []}'),
+    "no phrases": Reply('{"summary": "Fluid settings."}'),
+    "no list of phrases": Reply('{"summary": "Fluid settings.", "phrases": "flood"}'),
     "empty": says("  \n "),
     "too long": says("word " * 150),
     "markdown": says("# Fluid\n\n**bold**"),
@@ -389,7 +392,7 @@ def test_the_limit_is_never_exceeded_even_if_every_answer_is_as_long_as_can_be(s
     price = TokenPrice(0.0, 1000.0)  # an answer: expected 120 tokens ($0.06), at most 1,024 ($0.512)
 
     def longest(params):
-        return Reply(json.dumps({"summary": f"{title(params)}."}), output_tokens=1024)
+        return Reply(json.dumps({"summary": f"{title(params)}.", "phrases": []}), output_tokens=1024)
 
     with FakeMessagesAPI(longest) as api:
         outcome = run(api, store, pages, price=price, max_cost=3.0)

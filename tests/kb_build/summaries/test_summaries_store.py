@@ -50,6 +50,36 @@ def test_what_was_added_is_found_by_another_store_on_the_same_file(store):
     assert again.get([one(1).key, one(3).key]) == {one(1).key: one(1)}
 
 
+def test_phrases_are_kept_with_the_summary(store):
+    searched = PageSummary(one(1).key, "Cloth.", "claude", "m", "page-2", ("flag in the wind", "table cloth"))
+    store.add([searched])
+    assert SummaryStore(store.path).get([searched.key]) == {searched.key: searched}
+
+
+def of_the_first_version(path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with closing(sqlite3.connect(path)) as db:
+        db.execute(
+            "CREATE TABLE summaries (key TEXT PRIMARY KEY, text TEXT NOT NULL, method TEXT NOT NULL, "
+            "model TEXT NOT NULL, prompt_version TEXT NOT NULL) WITHOUT ROWID"
+        )
+        db.execute("INSERT INTO summaries VALUES (?, 'Old.', 'claude', 'm', 'page-1')", [one(1).key])
+        db.execute("PRAGMA user_version = 1")
+        db.commit()
+
+
+def test_a_file_of_the_first_version_keeps_its_summaries(store):
+    of_the_first_version(store.path)
+    assert store.add([one(2)]) == 1
+    assert store.get([one(1).key])[one(1).key].text == "Old."
+
+
+def test_a_colleagues_file_of_the_first_version_is_merged(store, tmp_path):
+    of_the_first_version(tmp_path / "theirs.sqlite")
+    assert store.merge(tmp_path / "theirs.sqlite") == 1
+    assert store.get([one(1).key])[one(1).key].phrases == ()
+
+
 def test_the_first_summary_of_a_page_stays(store):
     store.add([one(1)])
     assert store.add([one(1, "Another."), one(2)]) == 1
