@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -21,8 +23,11 @@ def outside() -> Iterator[Outside]:
 
 
 @pytest.fixture(scope="session")
-def attackers(outside: Outside, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Attackers]:
+def attackers(outside: Outside) -> Iterator[Attackers]:
     """Hosts of any kind, started when they are first attacked."""
-    made = Attackers(tmp_path_factory.mktemp("attacks"), outside)
-    yield made
-    made.close()
+    # Not in pytest's own folder, which others may not enter: run by root, Blender is another user.
+    with tempfile.TemporaryDirectory(prefix="simworlds-hosts-", ignore_cleanup_errors=True) as folder:
+        Path(folder).chmod(0o755)
+        made = Attackers(Path(folder), outside)
+        yield made
+        made.close()
