@@ -30,9 +30,11 @@ _ONLOOKERS = frozenset(
         "base_file.py",
         "base_report.py",
         "cli.py",
+        "new_instances.py",
         "diff.py",
         "history_builder.py",
         "reference_list.py",
+        "values.py",
         "verify.py",
     }
 )
@@ -73,8 +75,9 @@ def own_version() -> str:
 
 @cache
 def extractor_digest() -> str:
-    """Digest of the code that runs inside Blender."""
-    return _code((_PACKAGE / "blender" / "inside").glob("*.py"))
+    """Digest of the code that runs inside Blender, and of the history whose names it tries."""
+    code = _code((_PACKAGE / "blender" / "inside").glob("*.py"))
+    return _digest([code, *(path.read_bytes() for path in sorted((_DATA / "history").glob("*")))])
 
 
 @cache

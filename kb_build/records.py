@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import asdict, dataclass, fields, is_dataclass
-from typing import Any, Literal, cast, get_args
+from typing import TYPE_CHECKING, Any, Literal, cast, get_args
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Scalar = str | int | float | bool | None
 Default = Scalar | list[Any]
@@ -21,13 +24,33 @@ PAGE_SOURCES: tuple[PageSource, ...] = get_args(PageSource)
 LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
 
 
+# Where an enum item is taken that RNA lists and every instance refused.
+NOT_TAKEN = "by none that was tried"
+
+
 @dataclass(frozen=True, slots=True)
 class EnumItem:
-    """One value of an enumeration."""
+    """One value of an enumeration.
+
+    ``where`` it is taken, as what follows the word "taken"; empty for everywhere: ``only with domain_type='LIQUID'``.
+    """
 
     identifier: str
     name: str = ""
     description: str = ""
+    where: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class NewValue:
+    """What newly made instances have: all of them, or those that ``made`` names, or those in the mode ``when``.
+
+    Of several without a mode the first is the usual one; ``made`` is then empty: all the others.
+    """
+
+    value: Default
+    made: tuple[str, ...] = ()
+    when: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +94,10 @@ class Symbol:
     ``collection`` the class of the collection itself, which carries ``new`` and ``remove``; ``group`` of a class
     is ``data``, ``ui`` or ``operator``; ``modes`` name the enum values under which a node shows a socket;
     ``trees`` the node trees that take a node; ``reached`` is an expression that leads to an instance.
+
+    ``default`` is RNA's, which a new instance need not have: ``new_values`` are what new ones had where some differed.
+    The flag ``compared`` says that new ones were read. ``subscripts`` give a socket in every mode in which its node
+    has it, best first; with the flag ``name-when-shown`` its name does only while the node shows it.
     """
 
     path: str
@@ -101,6 +128,8 @@ class Symbol:
     collection: str = ""
     trees: tuple[str, ...] = ()
     reached: str = ""
+    new_values: tuple[NewValue, ...] = ()
+    subscripts: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -198,21 +227,29 @@ def _parameters(rows: list[dict[str, Any]]) -> tuple[Parameter, ...]:
     return tuple(parameters)
 
 
+def _new_values(rows: list[dict[str, Any]]) -> tuple[NewValue, ...]:
+    return tuple(NewValue(row["value"], tuple(row.get("made", ())), row.get("when", "")) for row in rows)
+
+
+# How the fields that JSON has as lists or objects are read.
+_SYMBOL_FIELDS: dict[str, Callable[[Any], Any]] = {
+    **dict.fromkeys(("array", "flags", "modes", "trees", "subscripts"), tuple),
+    "enum_items": _enum_items,
+    "parameters": _parameters,
+    "returns": _parameters,
+    "deprecation": lambda row: Deprecation(**row),
+    "new_values": _new_values,
+}
+
+
 def symbol_from_json(data: dict[str, Any]) -> Symbol:
     """The inverse of :func:`to_json` for symbols. Raises TypeError on unknown fields."""
-    deprecation = data.get("deprecation")
-    values: dict[str, Any] = {
-        **data,
-        "array": tuple(data.get("array", ())),
-        "flags": tuple(data.get("flags", ())),
-        "modes": tuple(data.get("modes", ())),
-        "trees": tuple(data.get("trees", ())),
-        "enum_items": _enum_items(data.get("enum_items", [])),
-        "parameters": _parameters(data.get("parameters", [])),
-        "returns": _parameters(data.get("returns", [])),
-        "deprecation": Deprecation(**deprecation) if deprecation else None,
-    }
-    return Symbol(**values)
+    return Symbol(
+        **{
+            name: _SYMBOL_FIELDS[name](value) if name in _SYMBOL_FIELDS else value
+            for name, value in data.items()
+        }
+    )
 
 
 def page_from_json(data: dict[str, Any]) -> Page:

@@ -1,74 +1,364 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Enumerations that only an instance can list (colour management's views and looks, render engines, …)."""
+"""Reads instances: the values that a new one has, and the items that its enumerations take.
+
+RNA's own defaults are those of zeroed memory for one setting in six, and its lists of enum items are a superset, or
+empty, where the items depend on the instance. So whatever is made (see ``new_things``) is read here, with all structs
+that belong to it, and read again in each of its modes.
+"""
 
 import re
 
 import bpy
 
+from .rna import default_of, read_items
+from .wire import plain
+
 DEPTH = 3
+LONGEST_ARRAY = 32
+# How many instances of one class are put into every mode.
+VARIED = 3
+# Values more various than this describe the instances, not what is new in them.
+MOST_VALUES = 24
 # Up to Blender 4.3 it claims to be a Paint, which it is not in memory: reading what it inherits crashes.
 UNREADABLE = frozenset({"UvSculpt"})
+# Its modes crash Blender 3.4.
+UNVARIED = frozenset({"BrushGpencilSettings"})
+# Pointers to what is around an instance. Blender 4.5 crashes when an unpaired node is asked for its pair.
+AROUND = frozenset({"rna_type", "parent", "paired_output"})
+# Names and places that whoever makes the thing chooses, and what depends on the machine.
+CHOSEN = frozenset({
+    "type", "socket_type", "co", "co_ui", "handle_left", "handle_right", "location", "dimensions", "matrix",
+    "matrix_local", "matrix_world", "matrix_basis", "matrix_parent_inverse", "texspace_location", "texspace_size",
+    "head", "tail", "length", "data_path", "name_display", "action_slot_handle", "last_slot_identifier",
+    "target_id_type", "generated_width", "generated_height", "child_number", "frame_number",
+    "rotation_estimate", "scale_estimate", "empty_image_offset", "material_slot", "threads",
+})  # fmt: skip
+CHOSEN_OF = frozenset({
+    ("FieldSettings", "seed"), ("TimelineMarker", "frame"), ("ColorRampElement", "position"),
+    ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("Driver", "expression"),
+})  # fmt: skip
+# When these begin and end is up to whoever makes them.
+TIMED = frozenset({"Strip", "Sequence", "NlaStrip"})
+MACHINES_OWN = frozenset({"FILE_PATH", "DIR_PATH", "FILE_NAME"})
+# Setting these makes another thing of the instance, which is made by itself; some of the old ones are then freed.
+KINDS = frozenset({
+    ("Light", "type"), ("Texture", "type"), ("FluidModifier", "fluid_type"),
+    ("NodeTreeInterfaceSocket", "socket_type"), ("ActionSlot", "target_id_type"), ("Spline", "type"),
+})  # fmt: skip
 
 
-def refused_value_items(owner, name):
+def refused_value_items(owner, name, flag=False):
     """An enum's items as Blender names them when it refuses a value that cannot be one of them."""
     try:
-        setattr(owner, name, "\x01")
-    except TypeError as refusal:
+        setattr(owner, name, {"\x01"} if flag else "\x01")
+    except (TypeError, ValueError) as refusal:
         return re.findall(r"'([^']*)'", str(refusal).partition("not found in")[2])
     except (AttributeError, RuntimeError):
         pass
     return []
 
 
-def reachable(root, depth):
-    """The data behind a scene's or object's pointers, each class once."""
-    queue, seen = [(root, depth)], set(UNREADABLE)
-    while queue:
-        owner, left = queue.pop(0)
-        if owner.bl_rna.identifier in seen:
-            continue
-        seen.add(owner.bl_rna.identifier)
-        yield owner
-        if left:
-            for prop in owner.bl_rna.properties:
-                if prop.type == "POINTER" and prop.identifier != "rna_type":
-                    value = getattr(owner, prop.identifier, None)
-                    if isinstance(value, bpy.types.bpy_struct):
-                        queue.append((value, left - 1))
-
-
 def declaring_class(rna, name):
-    """The class that adds the property, seen from one of its descendants."""
-    while rna.base is not None and name in rna.base.properties:
+    """The class whose own property it is, seen from one of its descendants."""
+    pointer = rna.properties[name].as_pointer()
+    while rna.base is not None:
+        inherited = rna.base.properties.get(name)
+        if inherited is None or inherited.as_pointer() != pointer:
+            break
         rna = rna.base
     return rna.identifier
 
 
-def write_all(write):
-    """One ``enum_items`` record for each enumeration that RNA alone lists as empty, or as a lone placeholder."""
-    context = bpy.context
-    done = set()
-    for root in (
-        context.scene,
-        context.object,
-        context.view_layer,
-        context.preferences,
-        *bpy.data.materials[:1],
-    ):
-        if root is None:
-            continue
-        for owner in reachable(root, DEPTH):
-            for prop in owner.bl_rna.properties:
-                if (
-                    prop.type != "ENUM"
-                    or prop.is_readonly
-                    or prop.is_enum_flag
-                    or len(prop.enum_items_static) > 1
-                ):
+def same(left, right):
+    """Whether two values are equal, floats as far as single precision goes."""
+    if isinstance(left, list) and isinstance(right, list):
+        return len(left) == len(right) and all(same(*pair) for pair in zip(left, right, strict=True))
+    if isinstance(left, (int, float)) and isinstance(right, (int, float)):
+        return left == right or abs(left - right) <= 2e-6 * max(abs(left), abs(right))
+    return left == right
+
+
+class Field:
+    """A property of a class whose value can be compared."""
+
+    def __init__(self, rna, prop):
+        self.name = prop.identifier
+        self.path = f"bpy.types.{declaring_class(rna, prop.identifier)}.{prop.identifier}"
+        self.default = default_of(prop)
+        self.is_enum = prop.type == "ENUM"
+        self.is_flag = self.is_enum and prop.is_enum_flag
+        self.is_many = self.is_flag or getattr(prop, "is_array", False)
+        cls = self.path.split(".")[-2]
+        self.is_chosen = (
+            self.name in CHOSEN
+            or (cls, self.name) in CHOSEN_OF
+            or (
+                cls in TIMED
+                and any(word in self.name for word in ("frame", "handle", "content", "channel", "duration"))
+            )
+        )
+        self.static = (
+            [row["identifier"] for row in read_items(prop.enum_items_static)] if self.is_enum else []
+        )
+        self.is_mode = self.is_enum and not self.is_flag and (cls, self.name) not in KINDS
+
+
+class Layout:
+    """What there is to read in the instances of a class."""
+
+    def __init__(self, rna):
+        named = rna.name_property.identifier if rna.name_property else "name"
+        left_out = {named, "name"}
+        self.fields = []
+        self.pointers = []
+        for prop in rna.properties:
+            name = prop.identifier
+            if prop.type == "POINTER":
+                if name not in AROUND:
+                    self.pointers.append(name)
+            elif (
+                prop.type != "COLLECTION"
+                and not prop.is_readonly
+                and name not in left_out
+                and not name.startswith("bl_")
+                and prop.subtype not in MACHINES_OWN
+                and not (getattr(prop, "is_array", False) and not 0 < prop.array_length <= LONGEST_ARRAY)
+            ):
+                self.fields.append(Field(rna, prop))
+        self.enums = [field for field in self.fields if field.is_enum]
+        self.modes = [field for field in self.fields if field.is_mode]
+
+
+class Contexts:
+    """Where an enumeration had the same items: (label, mode) pairs, and the values of the struct's other enums."""
+
+    def __init__(self):
+        self.made = {}
+        self.states = []
+
+    def add(self, pair, state):
+        """Adds an instance in a mode, and the values of its enums by name."""
+        self.made[pair] = None
+        self.states.append(state)
+
+    def row(self, items, name):
+        """The record of the enumeration ``name``."""
+        seen = {}
+        for state in self.states:
+            for other, value in state.items():
+                if other != name:
+                    seen.setdefault(other, set()).add(value)
+        states = {other: sorted(values) for other, values in seen.items()}
+        return {"items": list(items), "made": [list(pair) for pair in self.made], "states": states}
+
+
+class Observer:
+    """Collects what instances have, by property."""
+
+    def __init__(self):
+        self.fields = {}
+        # path → [(value, labels of what was made)]
+        self.values = {}
+        # path → [(value, mode, labels)]
+        self.in_modes = {}
+        # path → {items: Contexts}
+        self.items = {}
+        # path → {identifier: (name, description)}
+        self.texts = {}
+        self._layouts = {}
+        self._varied = {}
+
+    def layout(self, struct):
+        """The layout of the instance's class."""
+        rna = struct.bl_rna
+        known = self._layouts.get(rna.identifier)
+        if known is None:
+            known = self._layouts[rna.identifier] = Layout(rna)
+            self.fields.update((field.path, field) for field in known.fields)
+        return known
+
+    def belonging(self, struct):
+        """The structs behind an instance's pointers, without other data-blocks."""
+        values = [getattr(struct, name, None) for name in self.layout(struct).pointers]
+        return [
+            value
+            for value in values
+            if isinstance(value, bpy.types.bpy_struct)
+            and not isinstance(value, bpy.types.ID)
+            and value.bl_rna.identifier not in UNREADABLE
+        ]
+
+    def parts(self, root):
+        """An instance, and the structs that belong to it, directly and through each other."""
+        queue, seen = [(root, DEPTH)], set()
+        while queue:
+            struct, left = queue.pop(0)
+            key = (struct.as_pointer(), struct.bl_rna.identifier)
+            if key not in seen:
+                seen.add(key)
+                yield struct
+                queue += [(part, left - 1) for part in self.belonging(struct)] if left else []
+
+    def look(self, label, root, vary=True, place=""):
+        """Reads a new instance and what belongs to it; ``label`` says what it is.
+
+        ``vary``: in all modes, too. ``place``: where it is, if that decides which items enumerations take.
+        """
+        for struct in list(self.parts(root)):
+            before = self.read(struct)
+            for field, value in before.items():
+                if not field.is_chosen:
+                    self.add(self.values.setdefault(field.path, []), plain(value), label)
+            self.ask(struct, label + place, "")
+            name = struct.bl_rna.identifier
+            if vary and name not in UNVARIED and self._varied.get(name, 0) < VARIED:
+                self._varied[name] = self._varied.get(name, 0) + 1
+                self.vary(struct, label, place, before)
+
+    def read(self, struct):
+        """field → value of each comparable property, arrays and sets as lists."""
+        values = {}
+        for field in self.layout(struct).fields:
+            if field.is_chosen and not field.is_mode:
+                continue
+            try:
+                value = getattr(struct, field.name)
+            except Exception:
+                continue
+            # An empty enum is a number that stands for no item here.
+            if value != "" or not field.is_enum:
+                values[field] = plain(value) if field.is_many else value
+        return values
+
+    @staticmethod
+    def add(rows, value, label):
+        """Adds a label to the row of its value."""
+        for row in rows:
+            if row[0] == value or same(row[0], value):
+                row[1][label] = None
+                return
+        rows.append((value, {label: None}))
+
+    def ask(self, struct, label, mode, enums=None):
+        """Notes which items the instance's enumerations take now: all, or these."""
+        enums = self.layout(struct).enums if enums is None else enums
+        state = (
+            {field.name: getattr(struct, field.name) for field in self.layout(struct).modes} if enums else {}
+        )
+        for field in enums:
+            items = refused_value_items(struct, field.name, field.is_flag)
+            if items:
+                found = self.items.setdefault(field.path, {}).setdefault(tuple(items), Contexts())
+                found.add((label, mode), state)
+                known = self.texts.setdefault(field.path, {})
+                for item in items:
+                    if item not in known and item not in field.static:
+                        known[item] = self.text(struct, field.name, item)
+
+    @staticmethod
+    def text(struct, name, item):
+        """(name, description) of an item that only the instance has."""
+        layout = bpy.types.UILayout
+        try:
+            return layout.enum_item_name(struct, name, item), layout.enum_item_description(struct, name, item)
+        except Exception:
+            return "", ""
+
+    def vary(self, struct, label, place, before):
+        """Puts the instance into each mode and notes what else changed; then puts everything back."""
+        known = {part.as_pointer() for part in self.belonging(struct)}
+        enums = self.layout(struct).enums
+        if self._varied[struct.bl_rna.identifier] > 1:
+            # The first one of its class has shown which of them depend on the mode.
+            enums = [field for field in enums if self.is_computed(field)]
+        for field in self.layout(struct).modes:
+            start = before.get(field)
+            for item in refused_value_items(struct, field.name):
+                if item == start:
                     continue
-                path = f"bpy.types.{declaring_class(owner.bl_rna, prop.identifier)}.{prop.identifier}"
-                items = refused_value_items(owner, prop.identifier) if path not in done else []
-                if items:
-                    done.add(path)
-                    write("enum_items", path=path, items=items)
+                try:
+                    setattr(struct, field.name, item)
+                except Exception:
+                    continue
+                if getattr(struct, field.name) != item:
+                    continue
+                mode = f"{field.name}={item!r}"
+                self.compare(struct, label, mode, field, before)
+                self.ask(struct, label + place, mode, enums)
+                for part in self.belonging(struct):
+                    if part.as_pointer() not in known:
+                        self.look(f"{label} with {mode}", part)
+            before = self.restored(struct, before)
+
+    def compare(self, struct, label, mode, changed, before):
+        """Notes the properties that the mode has changed."""
+        for field, value in self.read(struct).items():
+            known = field in before and not field.is_chosen
+            if field is not changed and known and value != before[field] and not same(value, before[field]):
+                rows = self.in_modes.setdefault(field.path, [])
+                for row in rows:
+                    if row[1] == mode and same(row[0], value):
+                        row[2].append(label)
+                        break
+                else:
+                    rows.append((plain(value), mode, [label]))
+
+    def restored(self, struct, before):
+        """Gives an instance its first values back. Returns those that it has: some cannot be given."""
+        present = self.read(struct)
+        changed = [
+            field
+            for field, value in present.items()
+            if value != before.get(field) and not same(value, before.get(field))
+        ]
+        for field in changed:
+            try:
+                value = before[field]
+                setattr(struct, field.name, set(value) if field.is_flag else value)
+            except Exception:
+                continue
+        return self.read(struct) if changed else present
+
+    def write(self, write):
+        """One ``new_values`` record for each property that was read, one ``enum_items`` for each that was asked."""
+        for path in sorted(self.values):
+            write("new_values", path=path, values=self.usual(path), modes=self.modal(path))
+        for path in sorted(self.items):
+            self.write_items(write, path)
+
+    def usual(self, path):
+        """The values of new instances, the most frequent first, which needs no labels; none if all have RNA's."""
+        rows = sorted(self.values[path], key=lambda row: -len(row[1]))
+        if len(rows) > MOST_VALUES:
+            return []
+        if len(rows) == 1:
+            value, labels = rows[0]
+            known = same(value, self.fields[path].default)
+            return [] if known else [{"value": value, "made": list(labels) if len(labels) == 1 else []}]
+        return [
+            {"value": value, "made": list(labels) if row else []} for row, (value, labels) in enumerate(rows)
+        ]
+
+    def modal(self, path):
+        """The values that a mode gives: those of every instance that was put into it."""
+        return [
+            {"value": value, "when": mode, "made": labels}
+            for value, mode, labels in self.in_modes.get(path, ())
+        ]
+
+    def is_computed(self, field):
+        """Whether an enumeration had other items than RNA lists, somewhere."""
+        return any(set(items) != set(field.static) for items in self.items.get(field.path, ()))
+
+    def write_items(self, write, path):
+        """The items in every context, unless they are always those that RNA lists."""
+        field = self.fields[path]
+        if not self.is_computed(field):
+            return
+        contexts = self.items[path]
+        write(
+            "enum_items",
+            path=path,
+            contexts=[found.row(items, field.name) for items, found in contexts.items()],
+            texts={name: list(text) for name, text in self.texts.get(path, {}).items()},
+        )

@@ -52,13 +52,6 @@ def describe(socket):
     return row
 
 
-def keyed(sockets):
-    """(side, identifier) → socket for both sides of a node."""
-    return {
-        (side, socket.identifier): socket for side, collection in sockets.items() for socket in collection
-    }
-
-
 def sides(node):
     """A node's two socket collections."""
     return {"inputs": node.inputs, "outputs": node.outputs}
@@ -79,74 +72,147 @@ def mode_enums(node):
                 yield prop.identifier, values
 
 
-def vary_modes(node, rows, order):
-    """Sets every mode in turn; returns (side, identifier) → the modes that show the socket."""
-    modes = {}
-    for name, values in mode_enums(node):
-        before = getattr(node, name)
-        shown = {}
-        for value in values:
-            try:
-                setattr(node, name, value)
-            except (TypeError, AttributeError):
-                continue
-            for key, socket in keyed(sides(node)).items():
-                if key not in rows:
-                    rows[key] = describe(socket)
-                    order.append(key)
+def found(sockets, spelling):
+    """The socket that a subscript gives, as its pointer; 0 for none."""
+    try:
+        return sockets[spelling].as_pointer()
+    except (KeyError, IndexError):
+        return 0
+
+
+class Sockets:
+    """The sockets of one node in all its modes: what they are, when they are shown, and which subscripts give them."""
+
+    def __init__(self, node):
+        self.node = node
+        self.rows = {}
+        # key → (states in which it exists, …is shown, …its name gives it, …its identifier does) and its places
+        self.seen = {}
+        self.places = {}
+        self.look("")
+        self.modes = self.vary()
+        # Those that a new node does not show, or does not have.
+        self.hidden = {key for key, (_, shown, _, _) in self.seen.items() if "" not in shown}
+
+    def look(self, state):
+        """Reads the sockets in the node's present mode. Returns the keys of those that it shows."""
+        shown = []
+        for side, sockets in sides(self.node).items():
+            for place, socket in enumerate(sockets):
+                key = (side, socket.identifier)
+                if key not in self.rows:
+                    self.rows[key] = describe(socket)
+                    self.seen[key] = (set(), set(), set(), set())
+                    self.places[key] = set()
+                states = self.seen[key]
+                pointer = socket.as_pointer()
+                states[0].add(state)
+                self.places[key].add(place)
                 if available(socket):
+                    shown.append(key)
+                    states[1].add(state)
+                if found(sockets, socket.name) == pointer:
+                    states[2].add(state)
+                if found(sockets, socket.identifier) == pointer:
+                    states[3].add(state)
+        return shown
+
+    def vary(self):
+        """Sets every mode in turn; returns key → the modes that show the socket."""
+        modes = {}
+        for name, values in mode_enums(self.node):
+            before = getattr(self.node, name)
+            shown = {}
+            for value in values:
+                try:
+                    setattr(self.node, name, value)
+                except (TypeError, AttributeError):
+                    continue
+                for key in self.look(f"{name}={value}"):
                     shown.setdefault(key, []).append(value)
-        setattr(node, name, before)
-        tried = {value for row in shown.values() for value in row}
-        for key in rows:
-            if set(shown.get(key, ())) != tried and shown.get(key):
-                modes.setdefault(key, []).append(f"{name}={'|'.join(shown[key])}")
-    return modes
+            setattr(self.node, name, before)
+            tried = {value for row in shown.values() for value in row}
+            for key in self.rows:
+                if set(shown.get(key, ())) != tried and shown.get(key):
+                    modes.setdefault(key, []).append(f"{name}={'|'.join(shown[key])}")
+        return modes
+
+    def subscripts(self, key):
+        """(subscripts that always give a socket, the best first; whether its name does whenever it is shown)."""
+        side, identifier = key
+        present, shown, by_name, by_identifier = self.seen[key]
+        name = self.rows[key]["label"]
+        texts = [f'{side}["{name}"]'] if by_name == present else []
+        if by_identifier == present and identifier != name:
+            texts.append(f'{side}["{identifier}"]')
+        if len(self.places[key]) == 1:
+            texts.append(f"{side}[{next(iter(self.places[key]))}]")
+        return texts, by_name != present and bool(shown) and shown <= by_name
 
 
 def make(trees, identifier):
-    """(node, names of the tree types that take it), the node in the first of them; (None, []) if none does."""
-    first, taken = None, []
+    """Tree type → the new node, for each that takes it."""
+    nodes = {}
     for name, tree in trees.items():
         try:
             node = tree.nodes.new(identifier)
         except RuntimeError:
             continue
-        taken.append(name)
-        if first is None:
-            first = node
-        else:
-            tree.nodes.remove(node)
-    return first, taken
+        nodes[name] = node
+    return nodes
 
 
-def write_node(write, owner, node):
-    """The sockets of one node, in their order; of several with one name, Python's lookup finds the first."""
-    rows, order = {}, []
-    for key, socket in keyed(sides(node)).items():
-        rows[key] = describe(socket)
-        order.append(key)
-    hidden = {key for key, socket in keyed(sides(node)).items() if not available(socket)}
-    modes = vary_modes(node, rows, order)
-    named, index = set(), {"inputs": 0, "outputs": 0}
-    for side, identifier in order:
-        row = rows[side, identifier]
+def remove(nodes):
+    """Removes nodes from their trees."""
+    for node in nodes:
+        if node is not None:
+            node.id_data.nodes.remove(node)
+
+
+def write_node(write, owner, node, former):
+    """The sockets of one node, in their order. ``former``: side → names that its sockets had in other Blenders."""
+    sockets = Sockets(node)
+    named, paths = set(), {}
+    for key, row in sockets.rows.items():
+        side, identifier = key
         spelling = row["label"] if row["label"] and (side, row["label"]) not in named else identifier
         if (side, spelling) in named:
             continue
         named.add((side, spelling))
+        paths[key] = f'{owner}.{side}["{spelling}"]'
+        subscripts, while_shown = sockets.subscripts(key)
+        flags = [f"identifier:{identifier}"]
+        flags += ["hidden-by-default"] if key in sockets.hidden else []
+        flags += ["name-when-shown"] if while_shown else []
         write(
             "symbol",
-            path=f'{owner}.{side}["{spelling}"]',
+            path=paths[key],
             kind="socket",
             owner=owner,
-            signature=f"{side}[{index[side]}]",
-            flags=[f"identifier:{identifier}"]
-            + (["hidden-by-default"] if (side, identifier) in hidden else []),
-            modes=modes.get((side, identifier), []),
+            flags=flags,
+            modes=sockets.modes.get(key, []),
+            subscripts=subscripts,
             **row,
         )
-        index[side] += 1
+    for side, names in former.items():
+        pointers = {socket.as_pointer(): socket.identifier for socket in sides(node)[side]}
+        for name in names:
+            identifier = pointers.get(found(sides(node)[side], name))
+            if (side, name) not in named and (side, identifier) in paths:
+                write("still_works", path=f'{owner}.{side}["{name}"]', taken_as=paths[side, identifier])
+
+
+def paired(node, tree):
+    """Gives the first node of a zone its last one, which decides its sockets; returns that, or None."""
+    unfinished = "Closure" in node.bl_idname and bpy.app.version < (5, 0)  # they crash Blender 4.5
+    if unfinished or not hasattr(node, "pair_with_output"):
+        return None
+    try:
+        end = tree.nodes.new(node.bl_idname.replace("Input", "Output"))
+    except RuntimeError:
+        return None
+    node.pair_with_output(end)
+    return end
 
 
 def compositing_scene():
@@ -158,8 +224,20 @@ def compositing_scene():
     return scene
 
 
-def write_all(write, structs):
-    """The sockets of every node class that one of the built-in tree types takes."""
+def write_former_classes(write, trees, names):
+    """The node classes of other Blenders that this one still makes, under their new names."""
+    for identifier in names:
+        nodes = make(trees, identifier).values()
+        for made in {node.bl_idname for node in nodes} - {identifier}:
+            write("still_works", path=f"bpy.types.{identifier}", taken_as=f"bpy.types.{made}")
+        remove(nodes)
+
+
+def write_all(write, structs, observer, former):
+    """The sockets of every node class that one of the built-in tree types takes; ``observer`` reads the nodes.
+
+    ``former``: node class → side → names of sockets that other Blenders had.
+    """
     trees = {}
     for name in TREES:
         try:
@@ -167,23 +245,27 @@ def write_all(write, structs):
         except TypeError:
             continue
     scene = compositing_scene()
-    made = 0
     for identifier in sorted(structs):
         cls = getattr(bpy.types, identifier, None)
         if cls is None or not issubclass(cls, bpy.types.Node) or cls is bpy.types.Node:
             continue
-        node, taken = make(trees, identifier)
-        if node is None and scene is not None:
-            node, taken = make({"CompositorNodeTree": scene.node_tree}, identifier)
-        if node is None:
+        nodes = make(trees, identifier)
+        if not nodes and scene is not None:
+            nodes = make({"CompositorNodeTree": scene.node_tree}, identifier)
+        if not nodes:
             continue
-        made += 1
         owner = f"bpy.types.{identifier}"
-        write("node", path=owner, trees=taken)
-        write_node(write, owner, node)
-        node.id_data.nodes.remove(node)
+        node, *others = nodes.values()
+        end = paired(node, node.id_data)
+        # Which items its enumerations take depends on the tree; what a new one has does not.
+        observer.look(identifier, node, place=f" in a {node.id_data.bl_idname}" if others else "")
+        for other in others:
+            observer.ask(other, f"{identifier} in a {other.id_data.bl_idname}", "")
+        write("node", path=owner, trees=list(nodes))
+        write_node(write, owner, node, former.get(identifier, {}))
+        remove((*nodes.values(), end))
+    write_former_classes(write, trees, [name for name in former if name not in structs])
     for tree in trees.values():
         bpy.data.node_groups.remove(tree)
     if scene is not None:
         bpy.data.scenes.remove(scene)
-    return made
