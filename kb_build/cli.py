@@ -224,13 +224,19 @@ def _ask(name: str, progress: Progress) -> Extract:
 @kb.command()
 @click.argument("versions", nargs=-1)
 @click.option("--blender-exe", "blender_exes", type=_PATH, multiple=True, help="Another Blender to include.")
+@click.option(
+    "--stubs", type=_PATH, help="A folder with type stubs of versions that have no bpy package, each in X.Y."
+)
 @click.option("--out", type=_PATH, help="The file to write (default: the one that SimWorlds came with).")
 @click.option("--force", is_flag=True, help="Write even if the old file has more symbols.")
 @reports_errors
-def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path | None, force: bool) -> None:
+def history(
+    versions: tuple[str, ...], blender_exes: tuple[Path, ...], stubs: Path | None, out: Path | None, force: bool
+) -> None:
     """Write the history file: which version has which symbol.
 
-    Asks VERSIONS (default: all that have a bpy package); each is installed on first use, 350 MB.
+    Asks VERSIONS (default: all that have a bpy package, or none with --stubs); each is installed on first use, 350 MB.
+    Stubs are the packages fake-bpy-module-X.Y, unpacked; the report tells how well they agree with Blender.
     """
     from kb_build.base_report import history_lines  # noqa: PLC0415
     from kb_build.versions.history import HISTORY_FILE  # noqa: PLC0415 - only here
@@ -239,13 +245,14 @@ def history(versions: tuple[str, ...], blender_exes: tuple[Path, ...], out: Path
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
-    wanted = versions or tuple(release.minor for release in releases())
+    wanted = versions or (() if stubs else tuple(release.minor for release in releases()))
     with shown_progress() as progress:
         report = build_history(
             wanted,
             home=home_folder(),
             output=out or HISTORY_FILE,
             blender_exes=blender_exes,
+            stubs=stubs,
             force=force,
             progress=progress,
         )

@@ -15,7 +15,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -71,11 +71,21 @@ CREATE TABLE sections (
 -- source and target are ids; a manual link's target may carry an anchor.
 CREATE TABLE links (source TEXT NOT NULL, target TEXT NOT NULL, kind TEXT NOT NULL);
 
--- Symbols that this Blender does not have and another had: first and last version, and under which keys they are
--- asked for; the nearest symbols that this one has, best first.
-CREATE TABLE removed (path TEXT PRIMARY KEY, first TEXT NOT NULL, last TEXT NOT NULL) WITHOUT ROWID;
+-- Symbols that this Blender does not have and another has: the first and last version of their latest time before this
+-- one, and the first known not to have them any more. What only newer versions have has that time, and an empty gone.
+CREATE TABLE removed (
+    path TEXT PRIMARY KEY, first TEXT NOT NULL, last TEXT NOT NULL, gone TEXT NOT NULL
+) WITHOUT ROWID;
+-- Under which keys they are asked for.
 CREATE TABLE removed_names (key TEXT NOT NULL, path TEXT NOT NULL, PRIMARY KEY (key, path)) WITHOUT ROWID;
-CREATE TABLE replacements (
+-- What takes their place, best first (position 0), as a source says it. An empty target: nothing does, and ``how``
+-- says why. Otherwise ``how`` is what else changes, or empty. ``version`` is the first to be written so.
+CREATE TABLE successors (
+    path TEXT NOT NULL, position INTEGER NOT NULL, target TEXT NOT NULL, how TEXT NOT NULL, version TEXT NOT NULL,
+    source TEXT NOT NULL, PRIMARY KEY (path, position)
+) WITHOUT ROWID;
+-- For removed symbols of which no source speaks: the symbols of this version that resemble them, a guess.
+CREATE TABLE similar_names (
     path TEXT NOT NULL, target TEXT NOT NULL, score REAL NOT NULL, PRIMARY KEY (path, target)
 ) WITHOUT ROWID;
 

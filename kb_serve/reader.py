@@ -60,6 +60,20 @@ class PageEntry:
     summary_method: str
 
 
+@dataclass(frozen=True, slots=True)
+class Successor:
+    """What takes the place of a removed symbol, since which version, and where that is written down.
+
+    ``target`` is a path of this version; it is empty where nothing does, and ``how`` says why. Otherwise ``how`` is
+    what else changes.
+    """
+
+    target: str
+    how: str
+    version: str
+    source: str
+
+
 _ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, line"
 _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
@@ -193,9 +207,12 @@ class BaseReader:
         """(owner, identifier, name) for every enumeration that has the item."""
         return self.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)
 
-    def removed(self, path: str) -> tuple[str, str] | None:
-        """(first, last) version of a symbol that this version lacks."""
-        rows = self.rows("SELECT first, last FROM removed WHERE path = ?", path)
+    def removed(self, path: str) -> tuple[str, str, str] | None:
+        """(first, last, gone) of a symbol that this version lacks: the versions that have it, the first without it.
+
+        ``gone`` is empty for what only newer versions have.
+        """
+        rows = self.rows("SELECT first, last, gone FROM removed WHERE path = ?", path)
         return rows[0] if rows else None
 
     def removed_by_key(self, key: str) -> list[str]:
@@ -204,9 +221,14 @@ class BaseReader:
             row[0] for row in self.rows("SELECT path FROM removed_names WHERE key = ? ORDER BY path", key)
         ]
 
-    def replacements(self, path: str) -> list[tuple[str, float]]:
-        """The symbols closest to one that this version lacks, with scores, best first."""
-        return self.rows("SELECT target, score FROM replacements WHERE path = ? ORDER BY score DESC", path)
+    def successors(self, path: str) -> list[Successor]:
+        """What takes the place of a symbol that this version lacks, best first; empty where no source says it."""
+        sql = "SELECT target, how, version, source FROM successors WHERE path = ? ORDER BY position"
+        return [Successor(*row) for row in self.rows(sql, path)]
+
+    def similar_names(self, path: str) -> list[tuple[str, float]]:
+        """The symbols that resemble one without known successor, with scores, best first."""
+        return self.rows("SELECT target, score FROM similar_names WHERE path = ? ORDER BY score DESC", path)
 
     def since(self, path: str) -> str:
         """The version that introduced a symbol; empty for those older than the history."""

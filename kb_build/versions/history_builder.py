@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 from kb_build.blender.extract_reader import read_extract
 from kb_build.blender.extractor import extract_api
 from kb_build.errors import ExtractError, KBBuildError, StoreError
-from kb_build.versions.history import ApiHistory, history_paths, version_key
+from kb_build.versions.history import ApiHistory, history_paths, is_from_stubs
+from kb_build.versions.history_merge import merge_versions
+from kb_build.versions.paths import version_key
 from simworlds.errors import UserError
 from simworlds.files import staged_file
 from simworlds.releases import minor_of
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from kb_build.versions.stub_check import Agreement
     from simworlds.sandbox.runtime import Runtime
     from simworlds.terminal.progress import Progress
 
@@ -32,7 +35,8 @@ class HistoryReport:
 
     ``extracted`` and ``kept`` (taken over from the old file) are full versions; ``missing`` versions or executables →
     why they were not available (a kept version may be among them); ``faults`` are steps that failed inside Blender;
-    ``written`` is False when the file was up to date.
+    ``from_stubs`` are versions that were read from stubs;
+    ``written`` is False when the file was up to date; ``agreement`` is how well stubs that were read hold (by kind).
     """
 
     path: Path
@@ -43,6 +47,8 @@ class HistoryReport:
     size: int
     missing: Mapping[str, str] = field(default_factory=dict[str, str])
     faults: tuple[str, ...] = ()
+    from_stubs: tuple[str, ...] = ()
+    agreement: Mapping[str, Agreement] = field(default_factory=dict[str, "Agreement"])
 
 
 def build_history(  # noqa: PLR0913 - all but the first are named
@@ -51,28 +57,34 @@ def build_history(  # noqa: PLR0913 - all but the first are named
     home: Path,
     output: Path,
     blender_exes: Sequence[Path] = (),
+    stubs: Path | None = None,
     force: bool = False,
     progress: Progress = silent,
 ) -> HistoryReport:
     """Extracts ``versions`` (and whatever the executables are) and writes their history to ``output``.
 
     Extracts lie in ``home``: a run that was stopped goes on where it was. Versions that only the old file
-    knows are kept; so are those that cannot be had now. Raises StoreError rather than replacing an old file
+    knows are kept; so are those that cannot be had now. ``stubs`` is a folder of folders ``2.79``, ``2.80`` …, each with
+    that version's stubs: they tell of the versions that no Blender does. Raises StoreError rather than replacing an old file
     that cannot be read, or says more of a version, unless ``force``; and KBBuildError when no version could
     be had.
     """
     old = _old(output, force)
     paths, missing, faults = _collect(versions, blender_exes, home, progress)
-    if not paths:
+    if not paths and (stubs is None or old is None):
         reasons = "; ".join(f"{version}: {reason}" for version, reason in missing.items())
         raise KBBuildError(f"no Blender was available; {output} is unchanged. {reasons}")
+    extracted = tuple(paths)
     kept: tuple[str, ...] = ()
     if old is not None:
         kept = _keep(old, paths)
         if not force:
-            _refuse_poorer(old, paths, output)
+            _refuse_poorer(old, {patch: paths[patch] for patch in extracted}, output)
+    agreement: dict[str, Agreement] = {}
+    if stubs is not None:
+        agreement = _read_stubs(stubs, paths, progress)
     progress("Writing the history", 0, None)
-    history = ApiHistory.of(paths)
+    history = merge_versions(paths)
     data = history.to_bytes()
     written = old != history
     if written:
@@ -80,13 +92,35 @@ def build_history(  # noqa: PLR0913 - all but the first are named
     return HistoryReport(
         path=output,
         written=written,
-        extracted=tuple(sorted(set(paths) - set(kept), key=version_key)),
-        kept=kept,
+        extracted=tuple(sorted(extracted, key=version_key)),
+        kept=tuple(patch for patch in kept if stubs is None or not is_from_stubs(patch)),
+        from_stubs=() if stubs is None else tuple(filter(is_from_stubs, history.patches)),
         symbols=len(set().union(*paths.values())),
         size=len(data),
         missing=missing,
         faults=tuple(faults),
+        agreement=agreement,
     )
+
+
+def _read_stubs(folder: Path, paths: dict[str, set[str]], progress: Progress) -> dict[str, Agreement]:
+    """Adds what the stubs tell of versions that no Blender does; returns how well they hold for the others."""
+    from kb_build.versions.stub_check import kept_stubs  # noqa: PLC0415 - most runs read none
+    from kb_build.versions.stub_reader import read_stubs  # noqa: PLC0415
+
+    folders = sorted(folder.glob("[0-9]*.[0-9]*"), key=lambda entry: version_key(entry.name))
+    if not folders:
+        raise KBBuildError(f"{folder} has no folders that are named after versions, such as 2.79")
+    stubs: dict[str, set[str]] = {}
+    for number, entry in enumerate(folders):
+        progress(f"Stubs of {entry.name}", number, len(folders))
+        stubs[entry.name] = read_stubs(entry)
+    for version in [version for version in paths if is_from_stubs(version)]:
+        del paths[version]
+    asked = {minor_of(version): found for version, found in paths.items()}
+    kept, agreement = kept_stubs(stubs, asked)
+    paths.update(kept)
+    return agreement
 
 
 def _old(output: Path, force: bool) -> ApiHistory | None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, short_path
-from kb_build.versions.replacements import find_replacements, is_asked_for
+from kb_build.versions.history import SHARED
+from kb_build.versions.paths import split_path
+from kb_build.versions.similar_names import find_similar_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -16,14 +19,34 @@ if TYPE_CHECKING:
     from kb_build.versions.history import ApiHistory
 
 
+_TYPES = "bpy.types"
+_INTERFACE = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
+_EXTENDED = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT)_")
+
 @dataclass(frozen=True, slots=True)
 class RemovedSymbols:
-    """Rows of the tables removed, removed_names, replacements and since (see schema.DDL)."""
+    """Rows of the tables removed, removed_names, successors, similar_names and since (see schema.DDL)."""
 
-    removed: tuple[tuple[str, str, str], ...] = ()
+    removed: tuple[tuple[str, str, str, str], ...] = ()
     names: tuple[tuple[str, str], ...] = ()
-    replacements: tuple[tuple[str, str, float], ...] = ()
+    successors: tuple[tuple[str, int, str, str, str, str], ...] = ()
+    similar_names: tuple[tuple[str, str, float], ...] = ()
     since: tuple[tuple[str, str], ...] = ()
+
+
+def is_asked_for(path: str, history: ApiHistory, version: str) -> bool:
+    """Whether scripts use it: a class, member, operator or enum item; a parameter of a function that is still there.
+
+    Of the interface only menus, panels and headers as such: scripts add to them.
+    """
+    if path.startswith(SHARED):
+        return False
+    above, mark, name = split_path(path)
+    if mark == "(" or above.endswith(")"):
+        return bool(history.exists(above, version))
+    if above == _TYPES:
+        return bool(_EXTENDED.match(name)) or not _INTERFACE.match(name)
+    return not _INTERFACE.match(above.removeprefix(_TYPES + "."))
 
 
 def _keys(path: str, items: Counter[str]) -> Iterator[str]:
@@ -41,13 +64,15 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
 
     A symbol that extraction found is never called removed, whatever the history says.
     """
-    items = Counter(path.partition(":")[2] for path, _, _ in history.removed_from(version))
     known = {symbol.path for symbol in symbols}
-    removed = [row for row in history.removed_from(version) if row[0] not in known and is_asked_for(row[0])]
+    removed = [
+        span for span in history.removed_from(version) if span.path not in known and is_asked_for(span.path, history, version)
+    ]
+    items = Counter(span.path.partition(":")[2] for span in removed)
     since = history.since(version)
     return RemovedSymbols(
-        removed=tuple(removed),
-        names=tuple((spelled, path) for path, _, _ in removed for spelled in _keys(path, items)),
-        replacements=tuple(find_replacements(symbols, history, version)),
+        removed=tuple((span.path, span.first, span.last, span.gone) for span in removed),
+        names=tuple((spelled, span.path) for span in removed for spelled in _keys(span.path, items)),
+        similar_names=tuple(find_similar_names(symbols, history, version)),
         since=tuple((path, first) for path, first in since.items() if path in known),
     )

@@ -194,7 +194,10 @@ class RemovedSymbolLookup:
     def of_path(self, path: str) -> RemovedSymbol | None:
         """A removed symbol by its exact path."""
         span = self._reader.removed(path)
-        return RemovedSymbol(path, *span, tuple(self._reader.replacements(path))) if span else None
+        if span is None:
+            return None
+        successors = tuple((row.target, 1.0) for row in self._reader.successors(path) if row.target)
+        return RemovedSymbol(path, *span[:2], successors or tuple(self._reader.similar_names(path)))
 
     def spelled(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed symbols in any usual spelling; bare enum items only as code writes them."""

@@ -17,7 +17,7 @@ from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, pack, unpack
 from kb_build.store import Contents, write_base
 from kb_build.versions.removed_symbols import RemovedSymbols
 from kb_serve.knowledge_base import KnowledgeBase
-from kb_serve.reader import BaseReader
+from kb_serve.reader import BaseReader, Successor
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,7 +58,12 @@ PAGE = Page(
 )  # fmt: skip
 SYMBOLS = (CLOTH, STEPS, ADD, SOCKET, PANEL)
 REMOVED_SYMBOLS = RemovedSymbols(
-    (("bpy.types.ClothSettings.old", "4.2", "4.5"),), ((key("ClothSettings.old"), "bpy.types.ClothSettings.old"),),
+    (("bpy.types.ClothSettings.old", "4.2", "4.5", "5.0"),),
+    ((key("ClothSettings.old"), "bpy.types.ClothSettings.old"),),
+    (
+        ("bpy.types.ClothSettings.older", 1, CLOTH.path, "", "5.0", "notes"),
+        ("bpy.types.ClothSettings.older", 0, STEPS.path, "halve it", "5.0", "notes"),
+    ),
     (("bpy.types.ClothSettings.old", STEPS.path, 0.9),), ((STEPS.path, "5.0"),),
 )  # fmt: skip
 CONTENTS = Contents(
@@ -141,9 +146,12 @@ def test_links_meta_and_other_versions_read_back(small: BaseReader) -> None:
     assert small.links_from(STEPS.path, "manual") == ["physics/cloth/index#steps"]
     assert small.symbols_of_page("physics/index") == [ADD.path]
     assert small.meta == {"minor": "5.1", "fingerprint": "f"}
-    assert small.removed("bpy.types.ClothSettings.old") == ("4.2", "4.5")
+    assert small.removed("bpy.types.ClothSettings.old") == ("4.2", "4.5", "5.0")
     assert small.removed_by_key(key("ClothSettings.old")) == ["bpy.types.ClothSettings.old"]
-    assert small.replacements("bpy.types.ClothSettings.old") == [(STEPS.path, 0.9)]
+    assert small.successors("bpy.types.ClothSettings.older") == [
+        Successor(STEPS.path, "halve it", "5.0", "notes"), Successor(CLOTH.path, "", "5.0", "notes"),
+    ]  # fmt: skip
+    assert small.similar_names("bpy.types.ClothSettings.old") == [(STEPS.path, 0.9)]
     assert (small.since(STEPS.path), small.since(CLOTH.path)) == ("5.0", "")
 
 

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import StoreError
-from kb_build.versions.history import ApiHistory, split_path
+from kb_build.versions.history import ApiHistory, RemovedSpan
+from kb_build.versions.history_merge import merge_versions
+from kb_build.versions.paths import split_path
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -37,21 +39,27 @@ def committed() -> ApiHistory:
 @pytest.mark.parametrize(
     ("path", "span"),
     [
-        ("bpy.types.Action.fcurves", ("3.4", "4.5")),
-        ("bpy.types.Scene.node_tree", ("3.4", "4.5")),
+        ("bpy.types.Object.select", ("2.79", "2.79")),
+        ("bpy.types.Object.draw_type:WIRE", ("2.79", "2.79")),
+        ("bpy.ops.mesh.primitive_cube_add(radius)", ("2.79", "2.79")),
+        ("bpy.context.user_preferences", ("2.79", "2.79")),
+        ("bpy.types.INFO_MT_file_export", ("2.79", "2.79")),
+        ("bpy.types.BevelModifier.use_only_vertices", ("2.79", "2.83")),
+        ("bpy.types.Action.fcurves", ("2.79", "4.5")),
+        ("bpy.types.Scene.node_tree", ("2.79", "4.5")),
         ("bpy.types.Scene.compositing_node_group", ("5.0", "5.2")),
-        ("bpy.types.Mesh.use_auto_smooth", ("3.4", "3.4")),
-        ("bpy.types.SceneEEVEE.use_bloom", ("3.4", "4.2")),
-        ("bpy.ops.export_mesh.stl", ("3.4", "3.4")),
-        ("bpy.ops.wm.stl_export", ("4.2", "5.2")),
+        ("bpy.types.Mesh.use_auto_smooth", ("2.79", "4.0")),
+        ("bpy.types.SceneEEVEE.use_bloom", ("2.80", "4.2")),
+        ("bpy.ops.export_mesh.stl", ("2.79", "4.1")),
+        ("bpy.ops.wm.stl_export", ("4.1", "5.2")),
         ('bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular"]', ("3.4", "3.4")),
         ('bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular IOR Level"]', ("4.2", "5.2")),
-        ("bpy.types.ShaderNodeTexSky.sky_type:NISHITA", ("3.4", "4.5")),
-        ("bpy.types.SequenceEditor.sequences", ("3.4", "4.5")),
+        ("bpy.types.ShaderNodeTexSky.sky_type:NISHITA", ("2.90", "4.5")),
+        ("bpy.types.SequenceEditor.sequences", ("2.79", "4.5")),
         ("bpy.types.SequenceEditor.strips", ("4.4", "5.2")),
         ("bpy.types.RenderSettings.engine:BLENDER_EEVEE_NEXT", ("4.2", "4.5")),
-        ("bpy.types.UILayout.label(icon):CAMERA_DATA", ("3.4", "5.2")),
-        ("bpy.ops.object.modifier_add(type):NODES", ("3.4", "5.2")),
+        ("bpy.types.UILayout.label(icon):CAMERA_DATA", ("2.79", "5.2")),
+        ("bpy.ops.object.modifier_add(type):NODES", ("2.92", "5.2")),
         ('bpy.types.CompositorNodeRLayers.outputs["Image"]', ("3.4", "5.2")),
         ("bpy.types.Object.no_such_property", None),
     ],
@@ -62,8 +70,9 @@ def test_the_committed_history_dates_symbols(
     assert committed.span(path) == span
 
 
-def test_the_committed_history_reaches_from_3_4_to_5_2(committed: ApiHistory) -> None:
-    assert committed.versions == ("3.4", "4.2", "4.3", "4.4", "4.5", "5.0", "5.1", "5.2")
+def test_the_committed_history_reaches_from_2_79_to_5_2_without_a_gap(committed: ApiHistory) -> None:
+    versions = "2.79 2.80 2.81 2.82 2.83 2.90 2.91 2.92 2.93 3.0 3.1 3.2 3.3 3.4 3.5 3.6 4.0 4.1 4.2 4.3 4.4 4.5 5.0 5.1 5.2"
+    assert committed.versions == tuple(versions.split())
 
 
 def test_the_committed_history_survives_a_round_trip(committed: ApiHistory) -> None:
@@ -71,37 +80,38 @@ def test_the_committed_history_survives_a_round_trip(committed: ApiHistory) -> N
 
 
 def test_removed_and_new_symbols_of_5_1_have_versions(committed: ApiHistory) -> None:
-    gone = {path: (first, last) for path, first, last in committed.removed_from("5.1.2")}
+    gone = {span.path: span for span in committed.removed_from("5.1.2")}
     since = committed.since("5.1")
-    assert gone["bpy.types.Action.fcurves"] == ("3.4", "4.5")
+    path = "bpy.types.Action.fcurves"
+    assert gone[path] == RemovedSpan(path, "2.79", "4.5", "5.0")
     assert since["bpy.types.Scene.compositing_node_group"] == "5.0"
     assert "bpy.types.Object" not in gone.keys() | since.keys()
     assert not gone.keys() & since.keys()
 
 
 def test_every_path_of_every_version_is_found_again() -> None:
-    history = ApiHistory.from_bytes(ApiHistory.of(PATHS).to_bytes())
+    history = ApiHistory.from_bytes(merge_versions(PATHS).to_bytes())
     for version, paths in PATHS.items():
         expected = paths | {"aud"} if version == "4.3.0" else paths
         assert set(history.paths(version)) == expected
 
 
 def test_versions_are_ordered_as_numbers() -> None:
-    assert ApiHistory.of(PATHS).versions == ("4.2", "4.3", "4.10")
+    assert merge_versions(PATHS).versions == ("4.2", "4.3", "4.10")
 
 
 def test_a_symbol_that_came_back_counts_since_it_came_back() -> None:
-    history = ApiHistory.of(PATHS)
+    history = merge_versions(PATHS)
     assert history.since("4.10")["bpy.types.A.old"] == "4.10"
-    assert ("bpy.types.A.old", "4.2", "4.2") in set(history.removed_from("4.3"))
+    assert RemovedSpan("bpy.types.A.old", "4.2", "4.2", "4.3") in set(history.removed_from("4.3"))
 
 
 def test_a_future_symbol_has_the_version_that_brings_it() -> None:
-    assert ("bpy.types.A.look", "4.10", "4.10") in set(ApiHistory.of(PATHS).removed_from("4.3"))
+    assert RemovedSpan("bpy.types.A.look", "4.10", "4.10", "") in set(merge_versions(PATHS).removed_from("4.3"))
 
 
 def test_an_unknown_version_gives_neither_yes_nor_no() -> None:
-    history = ApiHistory.of(PATHS)
+    history = merge_versions(PATHS)
     assert history.exists("bpy", "2.79") is None
     assert history.exists("bpy", "4.3") is True
     assert history.exists("bpy.types.A.kind", "4.2") is False

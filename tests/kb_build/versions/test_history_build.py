@@ -8,6 +8,7 @@ import pytest
 
 from kb_build.errors import KBBuildError, StoreError
 from kb_build.versions.history import ApiHistory
+from kb_build.versions.history_merge import merge_versions
 from kb_build.versions.history_builder import build_history
 from simworlds.releases import minor_of
 from simworlds.sandbox.runtime import installed_bpy
@@ -46,7 +47,7 @@ def test_unavailable_versions_are_named_and_kept_from_the_old_file(
     version: str, home: Path, tmp_path: Path
 ) -> None:
     output = tmp_path / "api.csv.gz"
-    output.write_bytes(ApiHistory.of({"3.4.1": {"bpy", "bpy.old"}}).to_bytes())
+    output.write_bytes(merge_versions({"3.4.1": {"bpy", "bpy.old"}}).to_bytes())
     absent = tmp_path / "no-blender-here"
     report = build_history([version], home=home, output=output, blender_exes=[absent])
     assert report.kept == ("3.4.1",)
@@ -57,7 +58,7 @@ def test_unavailable_versions_are_named_and_kept_from_the_old_file(
 def test_a_poorer_extract_does_not_replace_the_file(version: str, home: Path, tmp_path: Path) -> None:
     output = tmp_path / "api.csv.gz"
     richer = {f"bpy.types.Lost.p{n}" for n in range(100_000)}
-    output.write_bytes(ApiHistory.of({version: richer}).to_bytes())
+    output.write_bytes(merge_versions({version: richer}).to_bytes())
     before = output.read_bytes()
     with pytest.raises(StoreError, match=r"lost: bpy\.types\.Lost\.p0"):
         build_history([version], home=home, output=output)

@@ -10,7 +10,7 @@ import pytest
 
 from kb_build.blender.extract_reader import read_extract
 from kb_build.versions.history import ApiHistory
-from kb_build.versions.replacements import KEPT, Replacements, find_replacements
+from kb_build.versions.similar_names import KEPT, SimilarNames, find_similar_names
 from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from kb_build.records import Symbol
 
-CASES = Path(__file__).parent / "replacement_cases.jsonl"
+CASES = Path(__file__).parent / "similar_name_cases.jsonl"
 JUDGED_FOR = "5.1"
 
 
@@ -37,8 +37,8 @@ def history() -> ApiHistory:
 
 
 @pytest.fixture(scope="module")
-def finder(symbols: Sequence[Symbol], history: ApiHistory) -> Replacements:
-    return Replacements(symbols, history, JUDGED_FOR)
+def finder(symbols: Sequence[Symbol], history: ApiHistory) -> SimilarNames:
+    return SimilarNames(symbols, history, JUDGED_FOR)
 
 
 @pytest.mark.blender
@@ -70,13 +70,13 @@ def finder(symbols: Sequence[Symbol], history: ApiHistory) -> Replacements:
     ],
 )
 def test_the_closest_symbol_is_offered_for_what_was_removed(
-    finder: Replacements, missing: str, closest: str
+    finder: SimilarNames, missing: str, closest: str
 ) -> None:
     assert closest in [path for path, _ in finder.closest(missing)]
 
 
 @pytest.mark.blender
-def test_five_of_six_judged_cases_are_among_the_closest(finder: Replacements) -> None:
+def test_five_of_six_judged_cases_are_among_the_closest(finder: SimilarNames) -> None:
     cases = [json.loads(line) for line in CASES.read_text(encoding="utf-8").splitlines()]
     missed = [
         case["missing"]
@@ -90,7 +90,7 @@ def test_five_of_six_judged_cases_are_among_the_closest(finder: Replacements) ->
 def test_replacements_exist_and_the_replaced_symbols_do_not(
     symbols: Sequence[Symbol], history: ApiHistory
 ) -> None:
-    rows = list(find_replacements(symbols, history, JUDGED_FOR))
+    rows = list(find_similar_names(symbols, history, JUDGED_FOR))
     known = {symbol.path for symbol in symbols}
     assert len({path for path, _, _ in rows}) > 1000
     for missing, target, score in rows:
@@ -103,7 +103,7 @@ def test_replacements_exist_and_the_replaced_symbols_do_not(
 @pytest.mark.blender
 def test_at_most_five_are_offered_best_first(symbols: Sequence[Symbol], history: ApiHistory) -> None:
     offered: dict[str, list[float]] = {}
-    for missing, _, score in find_replacements(symbols, history, JUDGED_FOR):
+    for missing, _, score in find_similar_names(symbols, history, JUDGED_FOR):
         offered.setdefault(missing, []).append(score)
     assert max(map(len, offered.values())) == KEPT
     assert all(scores == sorted(scores, reverse=True) for scores in offered.values())
@@ -113,7 +113,7 @@ def test_at_most_five_are_offered_best_first(symbols: Sequence[Symbol], history:
 def test_a_version_that_the_history_does_not_know_gets_none(
     symbols: Sequence[Symbol], history: ApiHistory
 ) -> None:
-    assert list(find_replacements(symbols, history, "9.9")) == []
+    assert list(find_similar_names(symbols, history, "9.9")) == []
 
 
 @pytest.mark.blender
@@ -122,7 +122,7 @@ def test_a_history_extended_by_an_unknown_version_tells_what_that_one_lacks(
 ) -> None:
     paths = [symbol.path for symbol in symbols if symbol.path != "bpy.types.Scene.compositing_node_group"]
     extended = history.including("9.9.0", paths)
-    gone = {path for path, _, _ in extended.removed_from("9.9")}
+    gone = {span.path for span in extended.removed_from("9.9")}
     assert extended.versions[-1] == "9.9"
     assert "bpy.types.Scene.compositing_node_group" in gone
     assert "bpy.types.Object" not in gone

@@ -1,4 +1,6 @@
-"""Finds replacements: for a symbol that a version lacks, the closest symbols that it has, by comparing the schemas.
+"""Finds similar names: for a symbol that a version lacks, the closest symbols that it has, by comparing the schemas.
+
+They are guesses, for symbols whose successor no source names.
 
 What counts: rare words that two identifiers share (those of the owner for less), what lies below them
 (members, parameters, enum items), the same owner or the owner's own replacement, having come when the other
@@ -15,11 +17,11 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, stem, words
 from kb_build.versions.feature_index import Bag, FeatureIndex, Mentions
-from kb_build.versions.history import split_path, version_key
+from kb_build.versions.paths import split_path
 from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import Symbol
     from kb_build.versions.history import ApiHistory
@@ -127,7 +129,7 @@ def _text(symbol: Symbol) -> str:
     return " ".join((symbol.label, symbol.description, *items))
 
 
-class Replacements:
+class SimilarNames:
     """Finds the closest symbols of one version, which the history must know. ``symbols`` are that version's."""
 
     def __init__(self, symbols: Sequence[Symbol], history: ApiHistory, version: str) -> None:
@@ -136,7 +138,12 @@ class Replacements:
         self._bases = {symbol.path: symbol.base for symbol in symbols if symbol.base}
         self._history = history
         self._known = {symbol.path: number for number, symbol in enumerate(self._candidates)}
-        self._missing = {path: last for path, _, last in history.removed_from(version)}
+        order = {name: number for number, name in enumerate(history.versions)}
+        # Missing path → the number of the first version without it.
+        self._missing = {
+            span.path: order[span.gone] if span.gone else order[span.last] + 1
+            for span in history.removed_from(version)
+        }
         self._below = _directly_below(history.masks)
         self._members: defaultdict[str, list[int]] = defaultdict(list)
         for number, symbol in enumerate(self._candidates):
@@ -146,11 +153,9 @@ class Replacements:
         self._themes = [symbol.path.startswith(_THEME) for symbol in self._candidates]
         self._of_modules = [_is_of_module(symbol.path) for symbol in self._candidates]
         self._found_items: dict[tuple[str, str, int], list[tuple[str, float]]] = {}
-        order = {name: number for number, name in enumerate(history.versions)}
-        self._order = order
         self._bit = 1 << order[minor_of(version)]
-        since = history.since(version)
-        self._came = [order[since.get(symbol.path, history.versions[0])] for symbol in self._candidates]
+        arrived = {path: order[first] for path, first, _ in history.arrivals(version)}
+        self._came = [arrived.get(symbol.path, 0) for symbol in self._candidates]
         self._kinds = [_candidate_kind(symbol) for symbol in self._candidates]
         self._names = FeatureIndex([_name_bag(symbol.path) for symbol in self._candidates], _COMMON)
         self._insides = FeatureIndex([self._inside(symbol.path) for symbol in self._candidates], _COMMON)
@@ -169,7 +174,7 @@ class Replacements:
 
     def _closest(self, path: str) -> list[tuple[str, float]]:
         above, _, name = split_path(path)
-        last = self._order[self._missing.get(path, self._history.versions[0])]
+        gone = self._missing.get(path, 1)
         kind = _kind(path, self._below.get(path, ()))
         scores: defaultdict[int, float] = defaultdict(float)
         names = self._names.vector(self._today(_name_bag(path)))
@@ -180,10 +185,10 @@ class Replacements:
         for owner, bonus in self._owners(above):
             members = self._members.get(owner, ())
             self._names.add_common(names, members, scores)
-            arrived = sum(self._came[number] == last + 1 for number in members)
+            arrived = sum(self._came[number] == gone for number in members)
             for number in members:
                 # One that came alone says more than one of many.
-                came_here = _CAME_TO_OWNER / (1 + arrived) if self._came[number] == last + 1 else 0.0
+                came_here = _CAME_TO_OWNER / (1 + arrived) if self._came[number] == gone else 0.0
                 at_home[number] = bonus * (1 + came_here)
         if kind == "class":
             alike = [number for number in scores if self._kinds[number] == kind]
@@ -195,9 +200,9 @@ class Replacements:
         for number in scores.keys() | at_home.keys() | mentions.keys():
             came = self._came[number]
             total = scores[number]
-            if came == last + 1:
+            if came == gone:
                 total += _CAME_THEN
-            elif 0 < came <= last and came > last - _VERSIONS_BEFORE:
+            elif gone - _VERSIONS_BEFORE <= came < gone and came:
                 total += _CAME_BEFORE
             elif number not in at_home:
                 total *= _LONG_ELSEWHERE
@@ -222,7 +227,7 @@ class Replacements:
             for lost, won in changes
             for other in won
         )
-        before = Counter(word for path in self._missing if is_asked_for(path) for word in _name_bag(path))
+        before = Counter(word for path in self._missing if has_similar(path) for word in _name_bag(path))
         successors: defaultdict[str, list[str]] = defaultdict(list)
         for (word, other), count in sorted(pairs.items()):
             dying = before[word] > self._names.df(word)
@@ -234,7 +239,7 @@ class Replacements:
         """(words lost, words won) between a missing symbol and a newer one that has the same inside."""
         for path in self._missing:
             inside = self._inside(path)
-            if len(inside) < _LEAST_INSIDE or not is_asked_for(path):
+            if len(inside) < _LEAST_INSIDE or not has_similar(path):
                 continue
             scores: defaultdict[int, float] = defaultdict(float)
             self._insides.add_cosines(self._insides.vector(inside), 1.0, scores)
@@ -310,12 +315,12 @@ class Replacements:
         if above in self._missing:
             return self.closest(above)
         enumeration = self._history.shared.get(above, above)
-        last = self._order[self._missing.get(path, self._history.versions[0])]
-        if (enumeration, name, last) not in self._found_items:
-            self._found_items[enumeration, name, last] = self._closest_items(enumeration, name, last)
-        return [(above + entry, score) for entry, score in self._found_items[enumeration, name, last]]
+        gone = self._missing.get(path, 1)
+        if (enumeration, name, gone) not in self._found_items:
+            self._found_items[enumeration, name, gone] = self._closest_items(enumeration, name, gone)
+        return [(above + entry, score) for entry, score in self._found_items[enumeration, name, gone]]
 
-    def _closest_items(self, enumeration: str, name: str, last: int) -> list[tuple[str, float]]:
+    def _closest_items(self, enumeration: str, name: str, gone: int) -> list[tuple[str, float]]:
         wanted = set(_stems(name))
         scored: list[tuple[float, str]] = []
         for entry in self._below.get(enumeration, ()):
@@ -323,7 +328,7 @@ class Replacements:
             if entry[0] == ":" and mask & self._bit:
                 having = set(_stems(entry[1:]))
                 alike = len(wanted & having) / len(wanted | having or {""})
-                came = mask & -mask == 2 << last
+                came = mask & -mask == 1 << gone
                 scored.append((round(alike + (_ITEM_CAME_THEN if came else 0.0), 3), entry))
         return [(entry, score) for score, entry in heapq.nlargest(KEPT, scored) if score >= _LEAST]
 
@@ -342,29 +347,28 @@ def _candidate_kind(symbol: Symbol) -> str:
     return {"data": "property"}.get(symbol.kind, symbol.kind)
 
 
-def is_asked_for(path: str) -> bool:
-    """Whether scripts use it: no interface classes, no parameters, no items of shared enumerations."""
+def has_similar(path: str) -> bool:
+    """Whether similar names are looked for: not for interface classes, parameters, items of shared enumerations."""
     above, mark, name = split_path(path)
     if mark == "(" or "(" in above or path.startswith("rna_enum_"):
         return False
     return _INTERFACE.match(name if above == "bpy.types" else above.removeprefix("bpy.types.")) is None
 
 
-def find_replacements(
-    symbols: Sequence[Symbol], history: ApiHistory, version: str
+def find_similar_names(
+    symbols: Sequence[Symbol], history: ApiHistory, version: str, besides: Collection[str] = ()
 ) -> Iterator[tuple[str, str, float]]:
     """(missing path, closest path, score) for what ``version`` lacks and an earlier version had.
 
-    Nothing for a version that the history does not know (see History.including), and nothing for the items of
-    an enumeration that is missing itself: what replaces it is told of it.
+    Nothing for a version that the history does not know (see History.including), nothing for what is in ``besides``,
+    and nothing for the items of an enumeration that is missing itself: what replaces it is told of it.
     """
     if minor_of(version) not in history.versions:
         return
-    finder = Replacements(symbols, history, version)
-    earlier = {known for known in history.versions if version_key(known) < version_key(version)}
-    for path, first, _ in history.removed_from(version):
-        above, mark, _ = split_path(path)
+    finder = SimilarNames(symbols, history, version)
+    for span in history.removed_from(version):
+        above, mark, _ = split_path(span.path)
         with_its_owner = mark == ":" and not history.exists(above, version)
-        if first in earlier and not with_its_owner and is_asked_for(path):
-            for target, score in finder.closest(path):
-                yield path, target, score
+        if span.gone and not with_its_owner and has_similar(span.path) and span.path not in besides:
+            for target, score in finder.closest(span.path):
+                yield span.path, target, score

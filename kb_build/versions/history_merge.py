@@ -1,0 +1,153 @@
+"""Merges what single versions have into one history."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from typing import TYPE_CHECKING
+
+from kb_build.versions.history import SHARED, ApiHistory, is_from_stubs
+from kb_build.versions.paths import split_path, version_key
+from simworlds.releases import minor_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+Masks = dict[str, int]
+
+
+def merge_versions(paths: Mapping[str, Iterable[str]]) -> ApiHistory:
+    """The history of these full versions and their paths (see :func:`history.history_paths`).
+
+    Of versions that are known from stubs (``2.79``), what no stubs have is unknown, and so are the items of an enumeration
+    that they do not list.
+    """
+    patches = tuple(sorted(paths, key=version_key))
+    masks: defaultdict[str, int] = defaultdict(int)
+    for number, version in enumerate(patches):
+        for path in paths[version]:
+            masks[path] |= 1 << number
+    plain = dict(masks)
+    stubs = sum(1 << number for number, version in enumerate(patches) if is_from_stubs(version))
+    _fill_unbuilt(plain, len(patches), stubs)
+    unknown = _unknown(plain, stubs)
+    shared = _share(plain, unknown, stubs)
+    unknown = {path: hidden for path, hidden in unknown.items() if hidden and path in plain}
+    return ApiHistory(tuple(map(minor_of, patches)), patches, plain, shared, unknown)
+
+
+def _fill_unbuilt(masks: Masks, count: int, stubs: int) -> None:
+    """A whole module missing between two versions that have it was left out of that build, not of Blender."""
+    for root in [path for path in masks if "." not in path and not path.startswith(SHARED)]:
+        for number in range(1, count - 1):
+            bit = 1 << number
+            if (masks[root] | stubs) & bit or not masks[root] >> number + 1:
+                continue
+            before = masks[root] & bit - 1
+            around = 1 << before.bit_length() - 1 if before else 0
+            for path, mask in masks.items():
+                if (path == root or path.startswith(f"{root}.")) and mask & around and mask > bit:
+                    masks[path] = mask | bit
+
+
+def _unknown(masks: Masks, stubs: int) -> Masks:
+    """Path → the versions known from stubs that say nothing about it."""
+    listed: defaultdict[str, int] = defaultdict(int)
+    for path, mask in masks.items():
+        above, mark, _ = split_path(path)
+        if mark == ":":
+            listed[above] |= mask
+    unknown: Masks = {}
+    for path in sorted(masks, key=len):  # owners before their members
+        mask = masks[path]
+        above, mark, _ = split_path(path)
+        hidden = unknown.get(above, 0) | _between(mask)
+        if not mask & stubs:  # stubs may not tell of such names at all
+            hidden = stubs
+        elif mark == ":":
+            hidden |= masks.get(above, 0) & ~listed[above]
+        unknown[path] = hidden & stubs & ~mask
+    return unknown
+
+
+def _between(mask: int) -> int:
+    """The versions after the first and before the last that have a symbol: stubs that lack it there left it out."""
+    return (1 << mask.bit_length()) - (mask & -mask)
+
+
+def _share(masks: Masks, unknown: Masks, stubs: int) -> dict[str, str]:
+    """Takes out the items of properties and parameters that have those of a shared enumeration.
+
+    Returns the property or parameter → its enumeration. Stubs do not name these enumerations: what they list where a
+    Blender says which one it is, tells its items.
+    """
+    items: defaultdict[str, Masks] = defaultdict(dict)
+    for path, mask in masks.items():
+        above, mark, name = split_path(path)
+        if mark == ":":
+            items[above][name] = mask
+    places = _places(items, masks, stubs)
+    shared: dict[str, str] = {}
+    for enumeration, users in places.items():
+        if stubs:
+            _infer(enumeration, users, items, masks, unknown, stubs)
+        own = items[enumeration]
+        for path in users:
+            hidden = _listed_nowhere(items[path], masks[path], stubs)
+            expected = {item: mask & masks[path] & ~hidden for item, mask in own.items()}
+            if {item: mask for item, mask in expected.items() if mask} == items[path]:
+                shared[path] = enumeration
+                for item in items[path]:
+                    del masks[f"{path}:{item}"]
+    return shared
+
+
+def _places(items: Mapping[str, Masks], masks: Masks, stubs: int) -> dict[str, list[str]]:
+    """Enumeration → the properties and parameters that have its items in every Blender that was asked."""
+    holders: defaultdict[str, list[str]] = defaultdict(list)
+    names = sorted(path for path in items if path.startswith(SHARED))
+    asked = {name: {item: mask & ~stubs for item, mask in items[name].items()} for name in names}
+    for name in names:
+        for item in items[name]:
+            holders[item].append(name)
+    places: defaultdict[str, list[str]] = defaultdict(list)
+    for path, own in items.items():
+        real = {item: mask & ~stubs for item, mask in own.items() if mask & ~stubs}
+        if path.startswith(SHARED) or not real:
+            continue
+        for name in min((holders.get(item, []) for item in real), key=len):
+            if {item: mask & masks[path] for item, mask in asked[name].items() if mask & masks[path]} == real:
+                places[name].append(path)
+                break
+    return dict(places)
+
+
+def _infer(  # noqa: PLR0913, PLR0917 - the merge's state
+    enumeration: str, users: list[str], items: defaultdict[str, Masks], masks: Masks, unknown: Masks, stubs: int
+) -> None:
+    """Sets which items a shared enumeration has in versions known from stubs: what most of its users list."""
+    own = items[enumeration]
+    for number in range(stubs.bit_length()):
+        bit = 1 << number
+        if not stubs & bit:
+            continue
+        sets = (frozenset(item for item, mask in items[path].items() if mask & bit) for path in users)
+        votes = Counter(listed for listed in sets if listed)
+        if not votes:
+            continue
+        most = max(votes, key=lambda listed: (votes[listed], sorted(listed)))
+        masks[enumeration] |= bit
+        unknown[enumeration] = unknown.get(enumeration, 0) & ~bit
+        for item in most:
+            own[item] = own.get(item, 0) | bit
+            masks[f"{enumeration}:{item}"] = own[item]
+    for item in own:
+        # Known wherever the enumeration is: there its items are listed.
+        unknown[f"{enumeration}:{item}"] = stubs & ~masks[enumeration]
+
+
+def _listed_nowhere(items: Masks, mask: int, stubs: int) -> int:
+    """The versions known from stubs that have a property without listing any of its items."""
+    listed = 0
+    for own in items.values():
+        listed |= own
+    return stubs & mask & ~listed
