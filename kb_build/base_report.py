@@ -138,7 +138,9 @@ def history_lines(report: HistoryReport) -> Iterator[str]:
         yield _row("from stubs", ", ".join(report.from_stubs))
     for kind, count in sorted(report.agreement.items(), key=lambda entry: -entry[1].both):
         surplus, lacking = (count.both / (count.both + other or 1) for other in (count.extra, count.lacking))
-        yield _row("", f"{kind}: {count.both:,} agree, {surplus:.2%} of the stubs', {lacking:.2%} of Blender's")
+        yield _row(
+            "", f"{kind}: {count.both:,} agree, {surplus:.2%} of the stubs', {lacking:.2%} of Blender's"
+        )
     for version, reason in report.missing.items():
         yield _row("MISSING", f"{version}: {reason}")
     for fault in report.faults:

@@ -231,7 +231,11 @@ def _ask(name: str, progress: Progress) -> Extract:
 @click.option("--force", is_flag=True, help="Write even if the old file has more symbols.")
 @reports_errors
 def history(
-    versions: tuple[str, ...], blender_exes: tuple[Path, ...], stubs: Path | None, out: Path | None, force: bool
+    versions: tuple[str, ...],
+    blender_exes: tuple[Path, ...],
+    stubs: Path | None,
+    out: Path | None,
+    force: bool,
 ) -> None:
     """Write the history file: which version has which symbol.
 

@@ -214,7 +214,11 @@ class ApiHistory:
         head, _, body = gzip.decompress(data).decode().partition("\n")
         columns = head.split(",")
         patches = tuple(columns[len(COLUMNS) :])
-        if columns[: len(COLUMNS)] != COLUMNS or not patches or [*patches] != sorted(patches, key=version_key):
+        if (
+            columns[: len(COLUMNS)] != COLUMNS
+            or not patches
+            or [*patches] != sorted(patches, key=version_key)
+        ):
             raise ValueError(f"its columns are {head[:60]!r}, not {', '.join(COLUMNS)} and versions")
         masks: dict[str, int] = {}
         shared: dict[str, str] = {}

@@ -64,10 +64,10 @@ def build_history(  # noqa: PLR0913 - all but the first are named
     """Extracts ``versions`` (and whatever the executables are) and writes their history to ``output``.
 
     Extracts lie in ``home``: a run that was stopped goes on where it was. Versions that only the old file
-    knows are kept; so are those that cannot be had now. ``stubs`` is a folder of folders ``2.79``, ``2.80`` …, each with
-    that version's stubs: they tell of the versions that no Blender does. Raises StoreError rather than replacing an old file
-    that cannot be read, or says more of a version, unless ``force``; and KBBuildError when no version could
-    be had.
+    knows are kept; so are those that cannot be had now. ``stubs`` is a folder of folders ``2.79``,
+    ``2.80`` …, each with that version's stubs: they tell of the versions that no Blender does. Raises StoreError
+    rather than replacing an old file that cannot be read, or says more of a version, unless ``force``; and
+    KBBuildError when no version could be had.
     """
     old = _old(output, force)
     paths, missing, faults = _collect(versions, blender_exes, home, progress)

@@ -18,8 +18,8 @@ Masks = dict[str, int]
 def merge_versions(paths: Mapping[str, Iterable[str]]) -> ApiHistory:
     """The history of these full versions and their paths (see :func:`history.history_paths`).
 
-    Of versions that are known from stubs (``2.79``), what no stubs have is unknown, and so are the items of an enumeration
-    that they do not list.
+    Of versions that are known from stubs (``2.79``), what no stubs have is unknown, and so are the items of an
+    enumeration that they do not list.
     """
     patches = tuple(sorted(paths, key=version_key))
     masks: defaultdict[str, int] = defaultdict(int)
@@ -122,7 +122,12 @@ def _places(items: Mapping[str, Masks], masks: Masks, stubs: int) -> dict[str, l
 
 
 def _infer(  # noqa: PLR0913, PLR0917 - the merge's state
-    enumeration: str, users: list[str], items: defaultdict[str, Masks], masks: Masks, unknown: Masks, stubs: int
+    enumeration: str,
+    users: list[str],
+    items: defaultdict[str, Masks],
+    masks: Masks,
+    unknown: Masks,
+    stubs: int,
 ) -> None:
     """Sets which items a shared enumeration has in versions known from stubs: what most of its users list."""
     own = items[enumeration]

@@ -29,3 +29,10 @@ def split_path(path: str) -> tuple[str, str, str]:
         return above, ":", item
     above, _, name = path.rpartition(".")
     return above, ".", name
+
+
+def joined_path(above: str, mark: str, name: str) -> str:
+    """The inverse of :func:`split_path`."""
+    if mark in "<>":
+        return f'{above}.{"inputs" if mark == "<" else "outputs"}["{name}"]'
+    return f"{above}({name})" if mark == "(" else f"{above}{mark}{name}"

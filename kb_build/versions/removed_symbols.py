@@ -11,6 +11,7 @@ from kb_build.index.analysis import key, short_path
 from kb_build.versions.history import SHARED
 from kb_build.versions.paths import split_path
 from kb_build.versions.similar_names import find_similar_names
+from kb_build.versions.successors import Successors, load_successors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,7 +22,14 @@ if TYPE_CHECKING:
 
 _TYPES = "bpy.types"
 _INTERFACE = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
+_MADE_IN_USE = re.compile(
+    r"bpy\.types\.(?:CompositorNode(?:RLayers|Image|OutputFile)|GeometryNode(?:Bake|RepeatOutput|Viewer|CaptureAttribute))"
+    r"\.(?:in|out)puts\["
+)
 _EXTENDED = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT)_")
+
+_MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)")
+
 
 @dataclass(frozen=True, slots=True)
 class RemovedSymbols:
@@ -37,9 +45,10 @@ class RemovedSymbols:
 def is_asked_for(path: str, history: ApiHistory, version: str) -> bool:
     """Whether scripts use it: a class, member, operator or enum item; a parameter of a function that is still there.
 
-    Of the interface only menus, panels and headers as such: scripts add to them.
+    Of the interface only menus, panels and headers as such: scripts add to them. Not sockets that nodes get from
+    what they are used with, such as the passes of a render layer: an instance has others.
     """
-    if path.startswith(SHARED):
+    if path.startswith(SHARED) or _MADE_IN_USE.match(path):
         return False
     above, mark, name = split_path(path)
     if mark == "(" or above.endswith(")"):
@@ -65,14 +74,41 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
     A symbol that extraction found is never called removed, whatever the history says.
     """
     known = {symbol.path for symbol in symbols}
+    bases = {symbol.path: symbol.base for symbol in symbols if symbol.base}
+    successors = Successors(load_successors(), history, version, bases)
+
+    def moved_up(path: str) -> bool:
+        """Whether a base of the class has it now: then it is still there."""
+        found = _MEMBER.match(path)
+        base = bases.get(found[1], "") if found else ""
+        while found and base:
+            if base + found[2] in known:
+                return True
+            base = bases.get(base, "")
+        return False
+
     removed = [
-        span for span in history.removed_from(version) if span.path not in known and is_asked_for(span.path, history, version)
+        (span.path, span.first, *successors.dated(span))
+        for span in history.removed_from(version)
+        if span.path not in known and is_asked_for(span.path, history, version) and not moved_up(span.path)
     ]
-    items = Counter(span.path.partition(":")[2] for span in removed)
+    dated = {row[0] for row in removed}
+    removed += [
+        (row.old, "", successors.before(row.version), row.version)
+        for row in successors.stated()
+        if row.old not in dated and row.old not in known
+    ]
+    rows = [
+        (path, position, row.new[0] if row.new else "", row.how, row.version, row.source)
+        for path, *_ in removed
+        for position, row in enumerate(successors.of(path))
+    ]
+    items = Counter(path.partition(":")[2] for path, *_ in removed)
     since = history.since(version)
     return RemovedSymbols(
-        removed=tuple((span.path, span.first, span.last, span.gone) for span in removed),
-        names=tuple((spelled, span.path) for span in removed for spelled in _keys(span.path, items)),
-        similar_names=tuple(find_similar_names(symbols, history, version)),
+        removed=tuple(removed),
+        names=tuple((spelled, path) for path, *_ in removed for spelled in _keys(path, items)),
+        successors=tuple(rows),
+        similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
         since=tuple((path, first) for path, first in since.items() if path in known),
     )

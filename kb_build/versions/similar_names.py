@@ -53,6 +53,8 @@ _VERSIONS_BEFORE = 2
 _WHERE_IT_STOOD = 1.2
 _RIVAL = 0.7  # of the best, from which on a second one may be an owner's replacement too
 _HOLDER = 0.25
+_MOST_ITEMS = 300  # more than in any enumeration but that of the icons
+_ROOTS = frozenset({"", "bpy.types", "bpy.ops", "bpy.context"})
 _FEW_HOLDERS = 2
 _OF_MODULES = 0.2
 _TYPES = "bpy.types."
@@ -323,7 +325,8 @@ class SimilarNames:
     def _closest_items(self, enumeration: str, name: str, gone: int) -> list[tuple[str, float]]:
         wanted = set(_stems(name))
         scored: list[tuple[float, str]] = []
-        for entry in self._below.get(enumeration, ()):
+        entries = self._below.get(enumeration, ())
+        for entry in entries if len(entries) <= _MOST_ITEMS else ():
             mask = self._history.masks[enumeration + entry]
             if entry[0] == ":" and mask & self._bit:
                 having = set(_stems(entry[1:]))
@@ -361,14 +364,15 @@ def find_similar_names(
     """(missing path, closest path, score) for what ``version`` lacks and an earlier version had.
 
     Nothing for a version that the history does not know (see History.including), nothing for what is in ``besides``,
-    and nothing for the items of an enumeration that is missing itself: what replaces it is told of it.
+    and nothing for what went with its owner: what resembles that is told of it.
     """
     if minor_of(version) not in history.versions:
         return
     finder = SimilarNames(symbols, history, version)
     for span in history.removed_from(version):
-        above, mark, _ = split_path(span.path)
-        with_its_owner = mark == ":" and not history.exists(above, version)
-        if span.gone and not with_its_owner and has_similar(span.path) and span.path not in besides:
+        if not span.gone or span.path in besides or not has_similar(span.path):
+            continue
+        above, _, _ = split_path(span.path)
+        if above in _ROOTS or history.exists(above, version):
             for target, score in finder.closest(span.path):
                 yield span.path, target, score

@@ -23,8 +23,8 @@ _MENUS_MADE_AT_RUN_TIME = "bpy.types.NODE_MT_"
 class Agreement:
     """How often stubs and Blender agree about one kind of path, over the versions of which both are known.
 
-    ``extra`` are paths that only the stubs have; ``lacking`` those that only Blender has, although stubs of some version
-    have them.
+    ``extra`` are paths that only the stubs have; ``lacking`` those that only Blender has, although stubs of some
+    version have them.
     """
 
     both: int = 0
@@ -37,11 +37,13 @@ def kept_stubs(
 ) -> tuple[dict[str, set[str]], dict[str, Agreement]]:
     """(minor version → paths that can be relied on, kind → agreement), for the versions that only stubs know.
 
-    ``asked`` are the paths of Blenders, by minor version. A path that stubs have where the Blender of that version lacks it
-    is dropped everywhere; so are kinds for which that is more than one in a hundred, modules that no Blender has, and
-    what belongs to classes of the interface.
+    ``asked`` are the paths of Blenders, by minor version. A path that stubs have where the Blender of that version
+    lacks it is dropped everywhere; so are kinds for which that is more than one in a hundred, modules that no
+    Blender has, and what belongs to classes of the interface.
     """
-    roots = {path for paths in asked.values() for path in paths if "." not in path and not path.startswith(SHARED)}
+    roots = {
+        path for paths in asked.values() for path in paths if "." not in path and not path.startswith(SHARED)
+    }
     wrong: set[str] = set()
     agreement: defaultdict[str, Agreement] = defaultdict(Agreement)
     only_stubs = [version for version in stubs if version not in asked]
@@ -51,7 +53,9 @@ def kept_stubs(
         listed, asked_lists = _lists(told), _lists(real)
         for path in told | real:
             above, mark, _ = split_path(path)
-            if not _is_compared(path, roots) or mark == ":" and not (above in listed and above in asked_lists):
+            if not _is_compared(path, roots) or (
+                mark == ":" and not (above in listed and above in asked_lists)
+            ):
                 continue
             count = agreement[_kind(path)]
             if path not in real:

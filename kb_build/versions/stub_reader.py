@@ -22,6 +22,7 @@ _ALIASES = "bpy.stub_internal.rna_enums"
 _OPERATORS = "bpy.ops."
 _CONTEXT = "bpy.types.Context."
 _MEMBER = re.compile(r"(bpy\.types\.\w+)\.(\w+)")
+_ALIAS = re.compile(rb"^type (\w+) =", re.MULTILINE)  # an assignment, to Pythons older than 3.12
 _IGNORED = re.compile(r"_|bl_rna_get_subclass")
 
 
@@ -40,7 +41,7 @@ def read_stubs(folder: Path) -> set[str]:
             stubs.read(name, _parse(file))
     paths = stubs.own_paths()
     # Stubs do not tell members of the class from those that only an editor has, ``bpy.context.selected_objects``.
-    return paths | {f"bpy.context.{path[len(_CONTEXT):]}" for path in paths if path.startswith(_CONTEXT)}
+    return paths | {f"bpy.context.{path[len(_CONTEXT) :]}" for path in paths if path.startswith(_CONTEXT)}
 
 
 def _module_name(folder: Path, file: Path) -> str:
@@ -53,7 +54,7 @@ def _parse(file: Path) -> ast.Module:
     try:
         with catch_warnings():
             simplefilter("ignore", SyntaxWarning)  # of their docstrings
-            return ast.parse(file.read_bytes())
+            return ast.parse(_ALIAS.sub(rb"\1 =", file.read_bytes()))
     except (SyntaxError, ValueError, OSError) as error:
         raise KBBuildError(f"{file} cannot be read as a stub: {error}") from error
 
@@ -61,9 +62,9 @@ def _parse(file: Path) -> ast.Module:
 def _enum_aliases(module: ast.Module) -> dict[str, frozenset[str]]:
     """Name → items of the enumerations that many annotations share."""
     return {
-        node.name.id: frozenset(_literals(node.value, {}))
+        node.targets[0].id: frozenset(_literals(node.value, {}))
         for node in module.body
-        if isinstance(node, ast.TypeAlias)
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
     }
 
 
@@ -107,7 +108,9 @@ class _Stubs:
         kept: set[str] = set()
         for path in self._paths:
             match = _MEMBER.match(path)
-            if match is None or not any(f"{base}.{match[2]}" in self._paths for base in self._ancestors(match[1])):
+            if match is None or not any(
+                f"{base}.{match[2]}" in self._paths for base in self._ancestors(match[1])
+            ):
                 kept.add(path)
         return kept
 

@@ -1,0 +1,154 @@
+"""What takes the place of removed symbols: the reviewed table, and what follows from it for one version.
+
+``corpora/history/successors.csv`` has the columns ``old``; ``new``, one path or several with ``|`` between, best first,
+or nothing where nothing takes its place; ``how``, a sentence; ``version``, the first to be written so; ``source``,
+where that is said. A star in ``old`` stands for a part of a name and is the same in ``new``.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kb_build.errors import StoreError
+from kb_build.versions.paths import joined_path, split_path, version_key
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from kb_build.versions.history import ApiHistory, RemovedSpan
+
+SUCCESSORS_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "successors.csv"
+COLUMNS = ["old", "new", "how", "version", "source"]
+_STEPS = 5  # names that were renamed more often than that are none
+
+
+@dataclass(frozen=True, slots=True)
+class Succession:
+    """A row of the table; see the module. ``new`` is empty where nothing takes the place of ``old``."""
+
+    old: str
+    new: tuple[str, ...]
+    how: str
+    version: str
+    source: str
+
+
+def load_successors(path: Path | None = None) -> list[Succession]:
+    """The table; by default the one that comes with the package. Raises StoreError."""
+    source = path or SUCCESSORS_FILE
+    try:
+        with source.open(encoding="utf-8", newline="") as file:
+            table = csv.reader(file)
+            if next(table, []) != COLUMNS:
+                raise ValueError(f"its columns are not {', '.join(COLUMNS)}")
+            return [
+                Succession(old, tuple(filter(None, new.split("|"))), how, version, origin)
+                for old, new, how, version, origin in table
+            ]
+    except (OSError, csv.Error, ValueError) as error:
+        raise StoreError(f"{source} is not a readable table of successors: {error}") from error
+
+
+class Successors:
+    """The successors in one version (minor) that the history knows. ``bases`` are class → its base, as paths."""
+
+    def __init__(
+        self, table: Iterable[Succession], history: ApiHistory, version: str, bases: Mapping[str, str]
+    ) -> None:
+        self._history = history
+        self._version = version
+        self._bases = bases
+        until = version_key(version)
+        rows = [row for row in table if version_key(row.version) <= until]
+        self._rows = {row.old: row for row in rows if "*" not in row.old}
+        self._patterns = [
+            (re.compile(re.escape(row.old).replace(r"\*", r"([^.()\[\]:]*)")), row)
+            for row in rows
+            if "*" in row.old
+        ]
+        self._found: dict[str, list[Succession]] = {}
+
+    def stated(self) -> Iterator[Succession]:
+        """The table's rows about single names that this version lacks, whether or not the history knows them."""
+        yield from (row for row in self._rows.values() if not self._exists(row.old))
+
+    def dated(self, span: RemovedSpan) -> tuple[str, str]:
+        """(last, gone) of a removed symbol: as the history has it, or where that has a gap, as the table says."""
+        row = self._row(span.path)
+        if row is None or not span.gone:
+            return span.last, span.gone
+        if not version_key(span.last) < version_key(row.version) < version_key(span.gone):
+            return span.last, span.gone
+        return self.before(row.version), row.version
+
+    def before(self, version: str) -> str:
+        """The version before one; empty for the oldest."""
+        number = self._history.versions.index(version)
+        return self._history.versions[number - 1] if number else ""
+
+    def of(self, path: str) -> list[Succession]:
+        """What takes the place of a missing path, best first, each row with one target or none.
+
+        Without a row of its own, a name has the same name in what took its owner's place, if that has it; and where
+        nothing took its owner's place, nothing took its own.
+        """
+        if path not in self._found:
+            self._found[path] = []  # against circles
+            self._found[path] = list(self._of(path, 0))
+        return self._found[path]
+
+    def _of(self, path: str, step: int) -> Iterator[Succession]:
+        row = self._row(path)
+        if row is None:
+            yield from self._with_owner(path)
+            return
+        if not row.new:
+            yield row
+            return
+        seen: set[str] = set()
+        for target in row.new:
+            if self._exists(target):
+                later = [Succession(path, (target,), row.how, row.version, row.source)]
+            else:
+                later = self._of(target, step + 1) if step < _STEPS else ()
+            for entry in later:
+                if entry.new and entry.new[0] not in seen:
+                    seen.add(entry.new[0])
+                    yield Succession(path, entry.new, entry.how or row.how, entry.version, entry.source)
+
+    def _with_owner(self, path: str) -> Iterator[Succession]:
+        above, mark, name = split_path(path)
+        if above in {"", "bpy.types", "bpy.ops"} or self._exists(above):
+            return
+        for row in self.of(above):
+            if not row.new:
+                yield Succession(path, (), row.how, row.version, row.source)
+                return
+            for owner in self._lineage(row.new[0]):
+                target = joined_path(owner, mark, name)
+                if self._exists(target):
+                    yield Succession(path, (target,), "", row.version, row.source)
+                    return
+
+    def _row(self, path: str) -> Succession | None:
+        if row := self._rows.get(path):
+            return row
+        for pattern, row in self._patterns:
+            if match := pattern.fullmatch(path):
+                new = tuple(target.replace("*", match[1]) for target in row.new)
+                return Succession(path, new, row.how, row.version, row.source)
+        return None
+
+    def _exists(self, path: str) -> bool:
+        return self._history.exists(path, self._version) is True
+
+    def _lineage(self, path: str) -> Iterator[str]:
+        for _ in range(_STEPS):
+            yield path
+            path = self._bases.get(path, "")
+            if not path:
+                return
