@@ -135,7 +135,11 @@ def find_chains(text: str) -> list[Chain]:
                 position = match.end() + 1  # the arguments of Python's own functions may be Blender's
             continue
         chain = Chain(
-            match.group(), tuple(steps), text[start:position], assigned, _values(text, position) if steps else ()
+            match.group(),
+            tuple(steps),
+            text[start:position],
+            assigned,
+            _values(text, position) if steps else (),
         )
         chains.append(chain)
         code += chain.is_code

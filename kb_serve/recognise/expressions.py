@@ -38,9 +38,7 @@ def _is_api(chain: Chain) -> bool:
 class Expressions:
     """Recognises code against one base."""
 
-    def __init__(
-        self, reader: BaseReader, resolver: Resolver, corrector: Corrector, old: OldCode
-    ) -> None:
+    def __init__(self, reader: BaseReader, resolver: Resolver, corrector: Corrector, old: OldCode) -> None:
         self._reader = reader
         self._resolver = resolver
         self._corrector = corrector

@@ -126,7 +126,9 @@ class Messages:
         if owner == COLLECTION:
             removed = self._of_a_collection(name)
         else:
-            removed = self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
+            removed = (
+                self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
+            )
         if removed is None and not self._reader.entry(TYPES + written):
             members = self._removed.spelled(f"{written}.{name}")
             removed = next(members, None) or (None if owner else next(self._removed.spelled(written), None))

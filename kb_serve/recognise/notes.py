@@ -51,7 +51,10 @@ class Notes:
     def removed(self, symbol: RemovedSymbol) -> str:
         """When a symbol was removed, and what takes its place: by a source, or only perhaps."""
         return " ".join(
-            (f"`{symbol.path}` does not exist in Blender {self._version}: {self._span(symbol)}.", *self._instead(symbol))
+            (
+                f"`{symbol.path}` does not exist in Blender {self._version}: {self._span(symbol)}.",
+                *self._instead(symbol),
+            )
         )
 
     def _span(self, symbol: RemovedSymbol) -> str:
@@ -70,7 +73,11 @@ class Notes:
     def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:
         how = next((successor.how for successor in symbol.successors if successor.how), "")
         if symbol.targets:
-            yield f"Use {_list(symbol.targets)}" + (f": {how}" if how else "") + ("" if how.endswith(".") else ".")
+            yield (
+                f"Use {_list(symbol.targets)}"
+                + (f": {how}" if how else "")
+                + ("" if how.endswith(".") else ".")
+            )
         elif symbol.successors:
             yield "Nothing takes its place" + (f": {how}" if how else "") + ("" if how.endswith(".") else ".")
         elif symbol.similar:
@@ -88,4 +95,5 @@ class Notes:
     def _never(self, missing: MissingName) -> str:
         if not missing.sure or not self._versions:
             return ""
-        return f", and never had it from {self._versions[0]} to {self._versions[-1]} (add-ons and custom properties aside)"
+        first, last = self._versions[0], self._versions[-1]
+        return f", and never had it from {first} to {last} (add-ons and custom properties aside)"

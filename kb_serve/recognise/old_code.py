@@ -189,5 +189,3 @@ class OldCode:
                 removed := self._removed.of_path(TYPES + match[2])
             ):
                 yield removed
-
-

@@ -12,8 +12,8 @@ from kb_serve.recognise.addresses import find_page
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
     from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3

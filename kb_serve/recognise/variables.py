@@ -20,7 +20,7 @@ _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|sele
 # Names that scripts give to instances of a class, besides the class's own name and its beginning. A camera, light or
 # armature is often the object that holds it.
 _NAMES = {
-    "Object": "o ob obj object objs act active cube sphere plane empty target parent child ground floor emitter domain rig",
+    "Object": "o ob obj object objs act active cube sphere plane empty target parent child ground emitter domain rig",
     "Camera Object": "cam camera cam_obj camera_obj",
     "Light Object": "lamp light sun spot lamp_data light_data key_light fill_light lt",
     "Armature Object": "arm armature arm_obj amt armt",
