@@ -1,10 +1,9 @@
-"""Corrections of names that do not exist, and symbols that only other versions have."""
+"""Corrections of misspelt names."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
@@ -12,7 +11,7 @@ from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.chains import Chain, ChainStep
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Container, Iterable, Mapping
 
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
@@ -21,6 +20,9 @@ _CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` 
 _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
+_TYPO = 0.8  # similarity of a whole name from which on it may be misspelt
+_TYPO_ACROSS_WORDS = 0.88  # … where it has more or fewer words
+_TYPO_IN_WORD = 0.6  # … and of each of its words
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,16 +32,6 @@ class Correction:
     written: str
     meant: str
     similarity: float
-
-
-@dataclass(frozen=True, slots=True)
-class RemovedSymbol:
-    """A symbol that only other versions have: its path, their first and last, and replacements in this version."""
-
-    path: str
-    first: str
-    last: str
-    instead: tuple[tuple[str, float], ...]
 
 
 def similarity(written: str, name: str) -> float:
@@ -68,6 +60,30 @@ def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[st
     return sorted(likely, key=lambda row: (-row[1], len(row[0]), row[0]))[:limit]
 
 
+def is_misspelling(written: str, name: str, vocabulary: Container[str] = ()) -> bool:
+    """Whether ``written`` can only be ``name`` with a slip of the fingers, not another word: ``location_x`` is no
+    misspelt ``location_y``, and ``groups`` no ``node_groups``.
+
+    A word of the ``vocabulary`` is hardly misspelt: ``tool_get`` is no ``tool_set``.
+    """
+    from rapidfuzz.distance import OSA  # noqa: PLC0415 - names that exist need no correction
+
+    left, right = key(written), key(name)
+    mine, theirs = words(written), words(name)
+    alike = OSA.normalized_similarity(left, right)
+    if alike in {0.0, 1.0}:
+        return alike == 1.0
+    if len(mine) != len(theirs):
+        contained = set(mine) < set(theirs) or set(theirs) < set(mine)
+        return alike >= _TYPO_ACROSS_WORDS and not contained
+    pairs = [(a, b) for a, b in zip(mine, theirs, strict=True) if a != b]
+    if any(a in vocabulary and not (a.startswith(b) or b.startswith(a)) for a, b in pairs):
+        return False
+    if OSA.distance(left, right) == 1:
+        return alike >= _TYPO and all(len(a + b) > 2 for a, b in pairs)  # one letter each: an axis, a number
+    return alike >= _TYPO and all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in pairs)
+
+
 class Corrector:
     """Corrects the wrong names in a chain."""
 
@@ -84,11 +100,19 @@ class Corrector:
         )
         return {key(name): path.removeprefix(TYPES) for name, path in rows}
 
+    @cached_property
+    def _words(self) -> set[str]:
+        """Every word in a name."""
+        rows = self._reader.rows(
+            "SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function', 'operator', 'class')"
+        )
+        return {word for (name,) in rows for word in words(name)}
+
     def root(self, written: str) -> Correction | None:
         """The class or module that a misspelt first name means."""
         if len(written) < 5:
             return None
-        return _closest(written, self._roots, 0.8)
+        return _closest(written, self._roots, _TYPO, self._words)
 
     @cached_property
     def _members(self) -> dict[str, str]:
@@ -99,10 +123,11 @@ class Corrector:
         return {key(name): name for (name,) in rows if len(name) >= _LONG and "_" in name}
 
     def member(self, written: str) -> Correction | None:
-        """Corrects a name of several words, ``use_self_colision``, without its owner."""
+        """Corrects a name of several words, ``use_self_colision``, without its owner; not a variable's plural."""
         if len(written) < _LONG or "_" not in written:
             return None
-        return _closest(written, self._members, _CLOSE)
+        closest = _closest(written, self._members, _CLOSE, self._words)
+        return None if closest and written.removesuffix("s") == closest.meant.removesuffix("s") else closest
 
     def member_names(self, owner: str) -> list[str]:
         """The members of a class, inherited ones included, or of a module."""
@@ -113,13 +138,17 @@ class Corrector:
             names.update(dict.fromkeys(self._reader.members(owner)))
         return list(names)
 
-    def corrected(self, chain: Chain) -> tuple[ResolvedChain, list[Correction]] | None:
-        """A chain with its wrong names corrected, and the corrections; None if no likely ones were found."""
+    def corrected(
+        self, chain: Chain, readings: list[ResolvedChain]
+    ) -> tuple[ResolvedChain, list[Correction]] | None:
+        """A chain with its wrong names corrected, and the corrections; None if no likely ones were found.
+
+        ``readings`` are the chain's, as it is.
+        """
         corrections: list[Correction] = []
-        readings = self._resolver.resolve(chain)
         if not readings or readings[0].fit < 1.0:
             root = self.root(chain.root)
-            if root and root.similarity < 1.0 and chain.root[:1].isupper():
+            if root and root.similarity < 1.0 and chain.root[:1].isupper() and not chain.root.isupper():
                 corrections.append(root)
                 chain = replace(chain, root=root.meant)
                 readings = self._resolver.resolve(chain)
@@ -131,6 +160,8 @@ class Corrector:
             if not similar:
                 break
             name, alike = similar[0]
+            if not is_misspelling(resolved.missing, name, self._words):
+                return None
             corrections.append(Correction(resolved.missing, name, alike))
             chain = _with_step(chain, len(chain.steps) - resolved.steps_left, name)
             readings = self._resolver.resolve(chain)
@@ -139,15 +170,19 @@ class Corrector:
         return None
 
 
-def _closest(written: str, names: Mapping[str, str], cutoff: float) -> Correction | None:
-    """The name whose key is most like what was written, if it is at least ``cutoff`` alike."""
+def _closest(
+    written: str, names: Mapping[str, str], cutoff: float, vocabulary: Container[str]
+) -> Correction | None:
+    """The name whose key is most like what was written, if it is at least ``cutoff`` alike, and no other word."""
     from rapidfuzz import process  # noqa: PLC0415 - names that exist need no correction
     from rapidfuzz.distance import OSA  # noqa: PLC0415
 
     hit = process.extractOne(
         key(written), names.keys(), scorer=OSA.normalized_similarity, score_cutoff=cutoff
     )
-    return Correction(written, names[hit[0]], hit[1]) if hit else None
+    if hit is None or not is_misspelling(written, names[hit[0]].rpartition(".")[2], vocabulary):
+        return None
+    return Correction(written, names[hit[0]], hit[1])
 
 
 def _with_step(chain: Chain, number: int, name: str) -> Chain:
@@ -156,57 +191,3 @@ def _with_step(chain: Chain, number: int, name: str) -> Chain:
         "key" if steps[number].kind == "key" else "attr", name.partition('["')[2].rstrip('"]') or name
     )
     return replace(chain, steps=tuple(steps))
-
-
-class RemovedSymbolLookup:
-    """Looks up symbols that only other versions have."""
-
-    def __init__(self, reader: BaseReader) -> None:
-        self._reader = reader
-
-    def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
-        """A removed member of a class, of its bases, or of a module."""
-        for ancestor in [entry.path for entry in self._reader.lineage(owner)] or [owner]:
-            if removed := self.of_path(f"{ancestor}.{name}"):
-                return removed
-        return None
-
-    def of_socket(self, owner: str, name: str, variable: str) -> RemovedSymbol | None:
-        """A removed socket, ``inputs["Subsurface"]``, of a node below ``owner``: the variable may tell which."""
-        paths = [path for path in self._reader.removed_by_key(key(name)) if '["' in path]
-        below = [
-            path
-            for path in paths
-            if self._reader.descends(path.partition('puts["')[0].rpartition(".")[0], owner)
-        ]
-        below.sort(key=lambda path: (key(variable) not in key(path), path))
-        return self.of_path(below[0]) if below else None
-
-    def of_variables_socket(self, chain: Chain) -> RemovedSymbol | None:
-        """A removed socket, ``bsdf.inputs["Transmission"]``, of a node known only by the variable's name."""
-        for before, step in pairwise(chain.steps[:2]):
-            if step.kind == "key" and before.text in {"inputs", "outputs"}:
-                paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
-                named = [path for path in paths if key(chain.root) in key(path.partition('puts["')[0])]
-                return self.of_path(named[0]) if named else None
-        return None
-
-    def of_path(self, path: str) -> RemovedSymbol | None:
-        """A removed symbol by its exact path."""
-        span = self._reader.removed(path)
-        if span is None:
-            return None
-        successors = tuple((row.target, 1.0) for row in self._reader.successors(path) if row.target)
-        return RemovedSymbol(path, *span[:2], successors or tuple(self._reader.similar_names(path)))
-
-    def spelled(self, text: str) -> Iterator[RemovedSymbol]:
-        """Removed symbols in any usual spelling; bare enum items only as code writes them."""
-        for path in self._reader.removed_by_key(key(text)):
-            if (
-                ":" in path
-                and "." not in text
-                and not (text.isupper() and not self._reader.enum_owners(key(text)))
-            ):
-                continue
-            if removed := self.of_path(path):
-                yield removed

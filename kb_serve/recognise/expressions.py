@@ -3,25 +3,33 @@
 from __future__ import annotations
 
 import builtins
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
 from kb_serve.recognise.recognition import MissingName
+from kb_serve.recognise.removed_symbols import for_reading, plain_path
+from kb_serve.recognise.variables import USUAL, usual_classes
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.chains import Chain
-    from kb_serve.recognise.corrections import Corrector, RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.corrections import Corrector
+    from kb_serve.recognise.old_code import OldCode, OldName
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
+_LONG = 12  # letters from which on a name is corrected without knowing what it belongs to
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 _CLEAR = 0.85  # fit of a variable's name that hardly means another class
 _LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
 _OWN_CLASS = 0.2  # from this fit on, a variable's name supports the class at all
+
+# Classes whose members are defined by scripts and add-ons.
+_OPEN = frozenset({"OperatorProperties", "Operator", "PropertyGroup", "AddonPreferences", "Context"})
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
@@ -35,13 +43,11 @@ def _is_api(chain: Chain) -> bool:
 class Expressions:
     """Recognises code against one base."""
 
-    def __init__(
-        self, reader: BaseReader, resolver: Resolver, corrector: Corrector, removed: RemovedSymbolLookup
-    ) -> None:
+    def __init__(self, reader: BaseReader, resolver: Resolver, corrector: Corrector, old: OldCode) -> None:
         self._reader = reader
         self._resolver = resolver
         self._corrector = corrector
-        self._removed = removed
+        self._old = old
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
@@ -54,7 +60,14 @@ class Expressions:
         for position, chain in enumerate(code):
             later = 0.02 * min(position, 5)
             readings = self._resolver.resolve(chain)
-            if self._names_removed(chain, readings, recognition):
+            if taken_as := self._old.still_taken(readings):
+                self._former_name(taken_as, later, recognition)
+                continue
+            variable = not chain.steps and (chain.assigned or len(code) > 1)
+            if not variable and (old := self._old.in_chain(chain, readings)):
+                if not chain.assigned:
+                    old = replace(old, removed=for_reading(old.removed))
+                self._old_name(old, later, recognition)
                 continue
             broken = max(
                 (resolved for resolved in readings if resolved.missing), key=lambda w: w.fit, default=None
@@ -65,7 +78,7 @@ class Expressions:
                 and not self._misspelt(chain, readings[0])
             ):
                 self._reading(chain, readings, later, recognition)
-            elif not self._corrected(chain, later, recognition):
+            elif not self._corrected(chain, readings, later, recognition):
                 if broken:
                     self._broken_off(chain, broken, later, recognition)
                 self._loose_name(chain, prose, recognition)
@@ -90,33 +103,25 @@ class Expressions:
         meant = self._corrector.root(chain.root)
         return meant is not None and _NEARLY <= meant.similarity < 1.0
 
-    def _names_removed(self, chain: Chain, readings: list[ResolvedChain], recognition: Recognition) -> bool:
-        """Adds the removed symbol that a chain names, on the likeliest class or by its path; whether there is one."""
-        if not (readings and readings[0].complete and readings[0].fit >= 0.85):
-            if removed := self._removed.of_variables_socket(chain):
-                recognition.removed.append(removed)  # in addition to other nodes with such a socket
-            if whole := self._removed.of_path(chain.dotted) if chain.steps else None:
-                recognition.removed.append(whole)
-                return True
-            for resolved in readings:
-                if removed := self._removed_symbol(chain, resolved):
-                    recognition.removed.append(removed)
-                    return True
-            for removed in self._removed.spelled(chain.dotted) if chain.is_code else ():
-                recognition.removed.append(removed)
-                return True
-        return False
+    def _old_name(self, old: OldName, later: float, recognition: Recognition) -> None:
+        """Adds a removed symbol, and where the rest of its chain leads from what took its place."""
+        for _ in range(_FEW):
+            recognition.add_removed(old.removed)
+            if not old.rest or not old.removed.targets:
+                return
+            resolved = self._resolver.onward(plain_path(old.removed.targets[0]), old.rest)
+            if resolved.complete:
+                recognition.add(resolved.symbols[-1], 0.88 - later, "behind the successor")
+                return
+            further = self._old.behind(resolved, old.rest)
+            if further is None:
+                return
+            old = further
 
-    def _removed_symbol(self, chain: Chain, resolved: ResolvedChain) -> RemovedSymbol | None:
-        """The removed symbol at which an incomplete reading stops."""
-        if "puts[" in resolved.missing:
-            removed = self._removed.of_member(resolved.owner, resolved.missing)
-            return removed or self._removed.of_socket(resolved.owner, resolved.missing, chain.root)
-        return (
-            self._removed.of_member(resolved.owner, resolved.missing)
-            if resolved.missing and resolved.fit >= 0.6
-            else None
-        )
+    @staticmethod
+    def _former_name(taken_as: str, later: float, recognition: Recognition) -> None:
+        recognition.add(taken_as, 0.97 - later, "former name")
+        recognition.notes.append(f"The former name still works here; the name is now `{taken_as}`.")
 
     def _reading(
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
@@ -134,11 +139,13 @@ class Expressions:
         for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
 
-    def _corrected(self, chain: Chain, later: float, recognition: Recognition) -> bool:
+    def _corrected(
+        self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
+    ) -> bool:
         """Adds a chain with its misspelt names corrected; whether that is possible."""
         if not chain.steps and not chain.root[:1].isupper():
             return False
-        corrected = self._corrector.corrected(chain)
+        corrected = self._corrector.corrected(chain, readings)
         if corrected is None:
             return False
         resolved, corrections = corrected
@@ -150,16 +157,35 @@ class Expressions:
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
 
-    @staticmethod
-    def _broken_off(chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
+    def _broken_off(
+        self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition
+    ) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
         assigned = chain.assigned and resolved.steps_left == 1
-        recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned))
+        if assigned and chain.dotted.startswith(("bpy.types.", "types.")) and len(resolved.symbols) == 1:
+            return  # ``bpy.types.Scene.my_property = …`` defines it
+        owner = self._reader.entry(resolved.owner)
+        if owner and owner.kind == "property" and hasattr(str, resolved.missing):
+            return  # ``obj.name.startswith``
+        sure = self._is_sure(chain, resolved)
+        recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure))
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'
             )  # one that takes no value of its own is still what was meant
             recognition.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
+
+    def _is_sure(self, chain: Chain, resolved: ResolvedChain) -> bool:
+        """Whether the owner of a missing name is certain, and has no members that only exist at run time."""
+        entry = self._reader.entry(resolved.owner)
+        if entry is None or (entry.kind == "class" and (entry.group != "data" or entry.name in _OPEN)):
+            return False
+        if entry.kind == "context" or self._old.had(resolved.owner, resolved.missing):
+            return False
+        before = chain.steps[: len(chain.steps) - resolved.steps_left]
+        if resolved.missing.startswith(("bl_", "_")) or any(step.kind in {"key", "index"} for step in before):
+            return False
+        return resolved.fit >= 1.0 or (resolved.fit >= USUAL and len(usual_classes(chain.root)) <= 1)
 
     def _loose_name(self, chain: Chain, prose: set[str], recognition: Recognition) -> None:
         """Adds the owners of a name without its owner (``thickness_outer``), by the words around it."""
@@ -170,7 +196,8 @@ class Expressions:
             if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
         ]
         rows = [entry for entry in rows if entry.name == name] or rows  # before the same letters
-        if not rows and not name.isupper() and (correction := self._corrector.member(name)):
+        lone = not chain.attributes or len(name) >= _LONG
+        if not rows and lone and not name.isupper() and (correction := self._corrector.member(name)):
             recognition.corrections.append(correction)
             rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
         if chain.attributes and len(rows) > _FEW:
