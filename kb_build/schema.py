@@ -71,6 +71,11 @@ CREATE TABLE sections (
 -- source and target are ids; a manual link's target may carry an anchor.
 CREATE TABLE links (source TEXT NOT NULL, target TEXT NOT NULL, kind TEXT NOT NULL);
 
+-- The place in the manual that is about a symbol: a section's number and a line of its text, -1 for the heading.
+CREATE TABLE passages (
+    path TEXT PRIMARY KEY, slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL
+) WITHOUT ROWID;
+
 -- Symbols that this Blender does not have and another had: first and last version, and under which keys they are
 -- asked for; the nearest symbols that this one has, best first.
 CREATE TABLE removed (path TEXT PRIMARY KEY, first TEXT NOT NULL, last TEXT NOT NULL) WITHOUT ROWID;

@@ -14,6 +14,7 @@ import sqlite_utils
 from kb_build.errors import StoreError
 from kb_build.index.analysis import content_words, key, short_path, topic_key
 from kb_build.index.documents import Document, is_code, make_units, topic_documents, weight_of
+from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
     TOPIC_B,
     UNIT_B,
@@ -242,12 +243,16 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
         expansions = query_expansions(contents.summaries)
-        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, expansions)
+        passages = find_passages(contents.symbols, contents.pages, contents.links)
+        units = make_units(
+            contents.symbols, contents.pages, contents.links, contents.summaries, expansions, passages
+        )
         with connection:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
             _write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
+            _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

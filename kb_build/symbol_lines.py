@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import textwrap
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from kb_build.records import Symbol
 
@@ -62,18 +64,37 @@ def member_line(symbol: Symbol) -> str:
     return " ".join([head, *notes]) + (f" — {said}" if said else "")
 
 
-def definitions_in(text: str) -> Iterator[tuple[str, Iterator[str]]]:
-    """(term line, the lines indented below it, read when wanted) of every definition in a section's Markdown."""
-    lines = text.split("\n")
-    for number, line in enumerate(lines):
+def term_lines(text: str) -> Iterator[tuple[int, str, int]]:
+    """(line, term, its indentation) of every definition in a section's Markdown."""
+    for number, line in enumerate(text.split("\n")):
         term = line.strip()
         if term.startswith("**") and term.rstrip(":").endswith("**"):
-            yield term, _indented_after(lines, number)
+            yield number, term.strip("*: "), len(line) - len(line.lstrip())
 
 
-def _indented_after(lines: Sequence[str], number: int) -> Iterator[str]:
-    depth = len(lines[number]) - len(lines[number].lstrip())
-    for line in lines[number + 1 :]:
-        if line.strip() and len(line) - len(line.lstrip()) <= depth:
-            return
-        yield line
+def passage_text(text: str, line: int) -> str:
+    """What stands at a line of a section's Markdown: a term's definition, or a paragraph; at -1 its first paragraph."""
+    lines = text.split("\n")
+    if line < 0:
+        return next(filter(_is_prose, text.split("\n\n")), "")
+    if line >= len(lines):
+        return ""
+    depth = _depth(lines[line])
+    if not lines[line].strip().startswith("**"):
+        return "\n".join(takewhile(str.strip, lines[line:]))
+    while (
+        line + 1 < len(lines) and lines[line + 1].startswith("**", depth) and _depth(lines[line + 1]) == depth
+    ):
+        line += 1  # several terms share the definition
+    below = takewhile(lambda each: not each.strip() or _depth(each) > depth, lines[line + 1 :])
+    return textwrap.dedent("\n".join(below)).strip()
+
+
+def _is_prose(paragraph: str) -> bool:
+    return paragraph[:1] not in {"", ">", "|", "-", "*", "`", "$", "#"} and not paragraph.startswith(
+        "Figure: "
+    )
+
+
+def _depth(line: str) -> int:
+    return len(line) - len(line.lstrip())

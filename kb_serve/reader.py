@@ -229,6 +229,11 @@ class BaseReader:
             for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)
         ]
 
+    def passage(self, path: str) -> tuple[str, int, int] | None:
+        """(slug, number of the section, line of its text) of the place in the manual that is about a symbol."""
+        rows = self.rows("SELECT slug, section, line FROM passages WHERE path = ?", path)
+        return rows[0] if rows else None
+
     def _page_entry(self, slug: str) -> PageEntry | None:
         rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE slug = ?", slug)
         return PageEntry(*rows[0]) if rows else None
