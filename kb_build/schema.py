@@ -76,6 +76,14 @@ CREATE TABLE passages (
     path TEXT PRIMARY KEY, slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL
 ) WITHOUT ROWID;
 
+-- The call that makes an instance of a class, the function or operator that it calls, and the type that it names.
+CREATE TABLE creation (
+    path TEXT PRIMARY KEY, call TEXT NOT NULL, maker TEXT NOT NULL, choice TEXT NOT NULL
+) WITHOUT ROWID;
+
+-- How much a symbol counts among its like (index.weights); the others count nothing.
+CREATE TABLE weights (path TEXT PRIMARY KEY, weight REAL NOT NULL) WITHOUT ROWID;
+
 -- Symbols that this Blender does not have and another had: first and last version, and under which keys they are
 -- asked for; the nearest symbols that this one has, best first.
 CREATE TABLE removed (path TEXT PRIMARY KEY, first TEXT NOT NULL, last TEXT NOT NULL) WITHOUT ROWID;

@@ -13,6 +13,7 @@ import sqlite_utils
 
 from kb_build.errors import StoreError
 from kb_build.index.analysis import content_words, key, short_path, topic_key
+from kb_build.index.creation import creation_calls
 from kb_build.index.documents import Document, is_code, make_units, topic_documents, weight_of
 from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
@@ -26,6 +27,7 @@ from kb_build.index.postings import (
     vocabulary,
 )
 from kb_build.index.query_expansions import query_expansions
+from kb_build.index.weights import symbol_weights
 from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
@@ -253,6 +255,10 @@ def _write(part: Path, contents: Contents) -> None:
             _write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
+            calls = creation_calls(contents.symbols)
+            _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
+            weights = symbol_weights(contents.symbols, passages, expansions, {})
+            _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

@@ -64,12 +64,12 @@ def member_line(symbol: Symbol) -> str:
     return " ".join([head, *notes]) + (f" — {said}" if said else "")
 
 
-def term_lines(text: str) -> Iterator[tuple[int, str, int]]:
-    """(line, term, its indentation) of every definition in a section's Markdown."""
+def term_lines(text: str) -> Iterator[tuple[int, str]]:
+    """(line, term) of every definition in a section's Markdown."""
     for number, line in enumerate(text.split("\n")):
         term = line.strip()
         if term.startswith("**") and term.rstrip(":").endswith("**"):
-            yield number, term.strip("*: "), len(line) - len(line.lstrip())
+            yield number, term.strip("*: ")
 
 
 def passage_text(text: str, line: int) -> str:
@@ -79,6 +79,9 @@ def passage_text(text: str, line: int) -> str:
         return next(filter(_is_prose, text.split("\n\n")), "")
     if line >= len(lines):
         return ""
+    if lines[line].startswith(">"):
+        quoted = takewhile(lambda each: each.startswith(">"), lines[line:])
+        return passage_text("\n".join(each.removeprefix(">").removeprefix(" ") for each in quoted), 0)
     depth = _depth(lines[line])
     if not lines[line].strip().startswith("**"):
         return "\n".join(takewhile(str.strip, lines[line:]))

@@ -20,7 +20,11 @@ TYPES = "bpy.types."
 _MAKERS = ("new", "create", "add")
 _ADDS = ("_add", "add")
 # Names by which scripts hold what is reached from the context.
-_HELD = (("bpy.context.object", "obj"), ("bpy.context.scene", "scene"), ("bpy.context.view_layer", "view_layer"))
+_HELD = (
+    ("bpy.context.object", "obj"),
+    ("bpy.context.scene", "scene"),
+    ("bpy.context.view_layer", "view_layer"),
+)
 _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTree": "tree", "Curve": "curve"}
 
 
@@ -83,19 +87,21 @@ class _Calls:
                 break
         else:
             return
-        base = self._symbols.get(f"{TYPES}{maker.returns[0].type}") or self._symbols.get(f"{TYPES}{holder.target}")
+        base = self._symbols.get(f"{TYPES}{maker.returns[0].type}") or self._symbols.get(
+            f"{TYPES}{holder.target}"
+        )
         if base is None:
             return
         head = f"{self._owner(holder)}.{holder.name}.{maker.name}"
-        items = {item.identifier: item.name for p in maker.parameters if p.name == "type" for item in p.enum_items}
-        by_name = any(p.name == "type" and not p.enum_items and p.type == "string" for p in maker.parameters)
-        below = [*self._descendants(base.path)]
-        for cls in below:
-            choice = cls.name if by_name or cls.name in items else _choice(cls, base, items)
-            if choice:
+        types = next((p for p in maker.parameters if p.name == "type"), None)
+        items = {item.identifier: item.name for item in types.enum_items} if types else {}
+        # What takes the name of any class is a string, or an enumeration whose items come at run time.
+        by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"})
+        for cls in self._descendants(base.path):
+            if choice := cls.name if by_name else _choice(cls, base, items):
                 yield cls.path, Creation(f"{head}({_arguments(maker, cls, choice)})", maker.path, choice)
-        if not below or not items:
-            first = next(iter(items), "") if not by_name else base.name
+        if not by_name:
+            first = next(iter(items), "") if holder.owner == f"{TYPES}BlendData" else ""
             yield base.path, Creation(f"{head}({_arguments(maker, base, first)})", maker.path)
 
     def _descendants(self, path: str) -> Iterator[Symbol]:
@@ -119,7 +125,7 @@ class _Calls:
 
 def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
     """The item of the maker's enumeration that stands for a subclass: ``CLOTH`` for ClothModifier."""
-    name = key(cls.name.removesuffix(base.name))
+    name = key(cls.name.removesuffix(base.name).removeprefix(base.name))
     label = key(cls.label.removesuffix(base.label))
     for identifier, text in items.items():
         if key(identifier) in {name, key(cls.name)}:

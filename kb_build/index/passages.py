@@ -1,9 +1,9 @@
 """The place in the manual that is about a symbol.
 
-Blender's own table leads every symbol to a page. Where the page carries the symbol's address, that is the place. Else it
-is the definition whose term is the symbol's label: within the part of the page that is about the symbol's class, not
-marked as another symbol's, and among several the one whose headings and words say most about the symbol. Where that
-is not sure, a symbol has no place.
+Blender's own table leads every symbol to a page. Where the page carries the symbol's address, that is the place.
+Else it is the definition whose term is the symbol's label, within the part of the page that is about the symbol's
+class, not marked as another symbol's, not under another class's heading, and the only one of that name. Where that is
+not sure, a symbol has no place.
 """
 
 from __future__ import annotations
@@ -14,13 +14,22 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import term_lines
+from kb_build.index.analysis import terms as terms_of
+from kb_build.symbol_lines import passage_text, term_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.records import Link, Page, Symbol
 
+_TYPES = "bpy.types."
+_KINDS = frozenset({"property", "socket", "operator", "class"})
+_BEGINNING = 400  # letters of a definition that say what it is about
+# Headings that say nothing about what stands below, and what the names of classes have in common.
+_PLAIN_HEADINGS = frozenset(
+    terms_of("options option properties property settings setting panel advanced general common")
+)
+_KIND_WORDS = frozenset(terms_of("f-modifier constraint node settings rule texture strip type types"))
 _ADDRESS = re.compile(r"[^a-z0-9]+")
 _PARTS = re.compile(r"\s*(?:/|,| and )\s*")
 _BRACKETS = re.compile(r"\s*[(\[][^)\]]*[)\]]")
@@ -41,12 +50,11 @@ def address_of(path: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Term:
-    """A term that a page defines, with the keys of its spellings and its depth below other definitions."""
+    """A term that a page defines: where, and the key of all of it."""
 
     section: int
     line: int
-    keys: frozenset[str]
-    depth: int
+    own: str
 
 
 @dataclass(slots=True)
@@ -55,7 +63,7 @@ class _Place:
 
     page: Page
     marks: dict[str, tuple[int, int]] = field(default_factory=dict[str, tuple[int, int]])
-    taken: dict[tuple[int, int], list[str]] = field(default_factory=lambda: defaultdict(list[str]))
+    taken: set[tuple[int, int]] = field(default_factory=set[tuple[int, int]])
     terms: dict[str, list[_Term]] = field(default_factory=lambda: defaultdict(list[_Term]))
     chains: list[tuple[str, ...]] = field(default_factory=list[tuple[str, ...]])
     words: dict[tuple[int, int], frozenset[str]] = field(
@@ -78,10 +86,11 @@ def _read(page: Page) -> _Place:
         place.chains.append(tuple(title for _, title in above))
         for name, line in section.marks:
             place.marks.setdefault(name, (number, line))
-            place.taken[number, line].append(name)
-        for line, term, depth in term_lines(section.text):
-            entry = _Term(number, line, _keys(term), depth)
-            for each in entry.keys:
+            place.taken.add((number, line))
+        for line, term in term_lines(section.text):
+            keys = _keys(term)
+            entry = _Term(number, line, key(_BRACKETS.sub("", term)))
+            for each in keys:
                 place.terms[each].append(entry)
     return place
 
@@ -90,7 +99,7 @@ def find_passages(
     symbols: Sequence[Symbol], pages: Sequence[Page], links: Iterable[Link]
 ) -> dict[str, Passage]:
     """Symbol path → its place in the manual, for every symbol that surely has one."""
-    return _Finder(symbols, pages, links).found()
+    return dict(_Finder(symbols, pages, links).found())
 
 
 class _Finder:
@@ -100,57 +109,96 @@ class _Finder:
         self._links = {link.source: link.target for link in links if link.kind == "manual"}
         self._places: dict[str, _Place] = {}
         self._sockets: dict[str, set[str]] = defaultdict(set)
+        self._explained: dict[str, list[Symbol]] = defaultdict(list)
         for symbol in symbols:
             if symbol.kind == "socket":
                 self._sockets[symbol.owner].add(key(symbol.label))
+            elif symbol.kind == "class" and symbol.path in self._links:
+                self._explained[self._links[symbol.path].partition("#")[0]].append(symbol)
 
-    def found(self) -> dict[str, Passage]:
-        found: dict[str, Passage] = {}
+    def found(self) -> Iterator[tuple[str, Passage]]:
         for symbol in self._symbols.values():
             source = symbol.owner if symbol.kind == "socket" else symbol.path
-            slug, _, anchor = self._links.get(source, "").partition("#")
-            if slug in self._pages and symbol.kind in {"property", "socket", "operator", "class"}:
-                place = self._place(slug)
-                at = self.marked(symbol, place) or self.defined(symbol, place, anchor)
-                if at:
-                    found[symbol.path] = Passage(slug, *at)
-        return found
+            slug, _, address = self._links.get(source, "").partition("#")
+            if slug not in self._pages or symbol.kind not in _KINDS:
+                continue
+            place = self._place(slug)
+            at = place.marks.get(address_of(symbol.path)) or self._defined(symbol, place, address)
+            if at and passage_text(place.page.sections[at[0]].text, at[1]):
+                yield symbol.path, Passage(slug, *at)
 
     def _place(self, slug: str) -> _Place:
         if slug not in self._places:
             self._places[slug] = _read(self._pages[slug])
         return self._places[slug]
 
-    def marked(self, symbol: Symbol, place: _Place) -> tuple[int, int] | None:
-        """Where the page carries the symbol's own address."""
-        return place.marks.get(address_of(symbol.path))
-
-    def defined(self, symbol: Symbol, place: _Place, anchor: str) -> tuple[int, int] | None:
+    def _defined(self, symbol: Symbol, place: _Place, address: str) -> tuple[int, int] | None:
         """Where the page surely defines the symbol's label."""
         if symbol.kind not in {"property", "socket"} or not symbol.label:
             return None
-        own = address_of(symbol.path)
-        scope = _scope(place.page, place.marks.get(anchor))
-        terms = [
-            term
-            for term in place.terms.get(key(symbol.label), ())
-            if term.section in scope and self._may_be(symbol, term, place, own)
-        ]
-        if not terms:
-            return None
-        if len(terms) == 1:
+        scope = _scope(place.page, place.marks.get(address))
+        wanted = key(symbol.label)
+        terms = [term for term in place.terms.get(wanted, ()) if self._may_be(symbol, term, place, scope)]
+        # A term of its own goes before one that it shares with others, as Target before Target/Owner.
+        terms = [term for term in terms if term.own == wanted] or terms
+        if len(terms) == 1 and self._is_sure(symbol, terms[0], place, address):
             return terms[0].section, terms[0].line
         return None
 
-    def _may_be(self, symbol: Symbol, term: _Term, place: _Place, own: str) -> bool:
-        taken = place.taken.get((term.section, term.line), ())
-        if taken and own not in taken:
+    def _may_be(self, symbol: Symbol, term: _Term, place: _Place, scope: range) -> bool:
+        """Whether nothing speaks against it: another symbol's address, another class's heading, the other sockets."""
+        if term.section not in scope or (term.section, term.line) in place.taken:
             return False
-        chain = [title.lower() for title in place.chains[term.section][1:]]
-        puts = [title for title in chain if title.startswith(("input", "output"))]
+        headings = place.chains[term.section][1:]
+        sides = [n for n, title in enumerate(headings) if title.lower().startswith(("input", "output"))]
         if symbol.kind == "socket":
-            return bool(puts) and puts[-1][:3] == symbol.path[len(symbol.owner) + 1 :][:3]
-        return not (puts and key(symbol.label) in self._sockets.get(symbol.owner, ()))
+            if not sides or headings[sides[-1]].lower()[:3] != symbol.path[len(symbol.owner) + 1 :][:3]:
+                return False
+            more = set(_stems(symbol.name)) - set(_stems(symbol.label))
+            below = set(_stems(*headings[sides[-1] + 1 :]))
+            return not more or not below or bool(more & below)
+        if sides and key(symbol.label) in self._sockets.get(symbol.owner, ()):
+            return False
+        return not any(self._is_anothers(title, symbol, place) for title in headings)
+
+    def _is_anothers(self, title: str, symbol: Symbol, place: _Place) -> bool:
+        """Whether a heading names another class that the page explains."""
+        words = set(_stems(title))
+        about = set(_stems(symbol.owner.removeprefix(_TYPES), symbol.name, symbol.description))
+        return any(
+            (name := set(_stems(cls.label)) - _KIND_WORDS) and name <= words and not name <= about
+            for cls in self._explained[place.page.slug]
+            if cls.path != symbol.owner
+        )
+
+    def _is_sure(self, symbol: Symbol, term: _Term, place: _Place, address: str) -> bool:
+        """Whether the only definition of a label is the symbol's: the page is its class's and the label says enough, or
+        the words around both agree.
+        """
+        label = set(_stems(symbol.label))
+        headings = set(_stems(*place.chains[term.section][1:])) - _PLAIN_HEADINGS
+        its_own = any(address.startswith(address_of(cls)) for cls in self._lineage(symbol.owner))
+        if symbol.kind == "socket" or (its_own and (len(label) > 1 or not headings)):
+            return symbol.label != symbol.name or symbol.kind == "socket" or bool(symbol.description)
+        return bool(_about(symbol) & (headings | self._words(term, place)))
+
+    def _lineage(self, path: str) -> Iterator[str]:
+        while (symbol := self._symbols.get(path)) is not None:
+            yield path
+            path = symbol.base
+
+    def _words(self, term: _Term, place: _Place) -> set[str]:
+        text = passage_text(place.page.sections[term.section].text, term.line)
+        return set(_stems(text[:_BEGINNING]))
+
+
+def _stems(*texts: str) -> list[str]:
+    return [word for text in texts for word in terms_of(text)]
+
+
+def _about(symbol: Symbol) -> set[str]:
+    """The words of a symbol beside its label's."""
+    return set(_stems(symbol.name, symbol.description)) - set(_stems(symbol.label))
 
 
 def _scope(page: Page, mark: tuple[int, int] | None) -> range:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
 from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
-from kb_serve.answer.render import MarkdownRenderer, first_sentence
+from kb_serve.answer.render import MarkdownRenderer, first_sentence, said_of
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
 from kb_serve.rank.merging import QueryRanker, RankedId, Ranking
@@ -185,7 +185,7 @@ class AnswerComposer:
             text = text.removeprefix(f"`{entry.name}`").strip()
             return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS)
         page = self._reader.page_entry(hit.id)
-        text = first_sentence(page.summary) if page else ""
+        text = first_sentence(said_of(page, self._reader.page_children(hit.id))) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
 
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import first_sentence, literal, passage_text, type_text
 from kb_serve.answer.budget import AnswerBlock
-from kb_serve.reader import STRUCT, TYPES, BaseReader, SymbolEntry
+from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -160,7 +160,8 @@ class MarkdownRenderer:
                 yield AnswerBlock(f"{mark} {section.title}\n\n{section.text}", section.title)
         if page.children:
             lines = [
-                f"- `{child.slug}` ({child.title}) {first_sentence(child.summary)}"
+                f"- `{child.slug}` ({child.title}) "
+                + first_sentence(said_of(child, self.reader.page_children(child.slug)))
                 for child in self.reader.page_children(slug)
             ]
             yield AnswerBlock("**Pages below**\n" + "\n".join(lines), "pages below")
@@ -272,3 +273,12 @@ class MarkdownRenderer:
 
 def _leads_to(anchor: str, section: Section) -> bool:
     return bool(anchor) and (section.anchor == anchor or any(name == anchor for name, _ in section.marks))
+
+
+def said_of(page: PageEntry, below: Sequence[PageEntry]) -> str:
+    """A page's summary; of a page that only lists others, which these are."""
+    said = page.summary.removeprefix(page.title).lstrip(". ")
+    if said and not said.startswith("Contents: "):
+        return page.summary
+    titles = ", ".join(child.title for child in below)
+    return f"Contents: {titles}" if titles else ""
