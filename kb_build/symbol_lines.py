@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from itertools import takewhile
+from itertools import dropwhile, takewhile
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -76,7 +76,9 @@ def passage_text(text: str, line: int) -> str:
     """What stands at a line of a section's Markdown: a term's definition, or a paragraph; at -1 its first paragraph."""
     lines = text.split("\n")
     if line < 0:
-        return next(filter(_is_prose, text.split("\n\n")), "")
+        blocks = list(dropwhile(lambda block: not _is_prose(block), text.split("\n\n")))
+        announces = blocks and blocks[0].endswith(":")
+        return "\n\n".join(blocks[: 2 if announces else 1])
     if line >= len(lines):
         return ""
     if lines[line].startswith(">"):

@@ -32,6 +32,7 @@ _PLAIN_HEADINGS = frozenset(
 _KIND_WORDS = frozenset(terms_of("f-modifier constraint node settings rule texture strip type types"))
 _ADDRESS = re.compile(r"[^a-z0-9]+")
 _PARTS = re.compile(r"\s*(?:/|,| and )\s*")
+_REFERS = re.compile(r"(?:See .{,40})?")  # to what is not there
 _BRACKETS = re.compile(r"\s*[(\[][^)\]]*[)\]]")
 
 
@@ -123,14 +124,28 @@ class _Finder:
             if slug not in self._pages or symbol.kind not in _KINDS:
                 continue
             place = self._place(slug)
-            at = place.marks.get(address_of(symbol.path)) or self._defined(symbol, place, address)
-            if at and passage_text(place.page.sections[at[0]].text, at[1]):
+            at = self._marked(symbol, place) or self._defined(symbol, place, address)
+            if at and not _REFERS.fullmatch(passage_text(place.page.sections[at[0]].text, at[1])):
                 yield symbol.path, Passage(slug, *at)
 
     def _place(self, slug: str) -> _Place:
         if slug not in self._places:
             self._places[slug] = _read(self._pages[slug])
         return self._places[slug]
+
+    def _marked(self, symbol: Symbol, place: _Place) -> tuple[int, int] | None:
+        """Where the page carries the symbol's address. Headings also carry those of what is only mentioned below: there
+        half of the label must be found in the heading or the first paragraph.
+        """
+        at = place.marks.get(address_of(symbol.path))
+        if at is None or symbol.kind == "class":
+            return at if at and at[1] < 0 else None
+        if at[1] >= 0:
+            return at
+        section = place.page.sections[at[0]]
+        label = set(_stems(symbol.label))
+        said = _stems(section.title if section.level > 1 else "", passage_text(section.text, -1))
+        return at if len(label.intersection(said)) * 2 >= len(label) else None
 
     def _defined(self, symbol: Symbol, place: _Place, address: str) -> tuple[int, int] | None:
         """Where the page surely defines the symbol's label."""
