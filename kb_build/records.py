@@ -223,7 +223,8 @@ def symbol_from_json(data: dict[str, Any]) -> Symbol:
 
 def _section(row: dict[str, Any]) -> Section:
     marks = tuple((str(name), int(line)) for name, line in row.get("marks", ()))
-    return Section(**{**row, "marks": marks})
+    values: dict[str, Any] = {**row, "marks": marks}
+    return Section(**values)
 
 
 def page_from_json(data: dict[str, Any]) -> Page:

@@ -7,7 +7,7 @@ import zlib
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
@@ -58,6 +58,14 @@ class PageEntry:
     url: str
     summary: str
     summary_method: str
+
+
+class Creation(NamedTuple):
+    """How an instance is made: the call, the function or operator that is called, and the type that it names."""
+
+    call: str
+    maker: str
+    choice: str
 
 
 _ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, line"
@@ -247,10 +255,10 @@ class BaseReader:
             weights.setdefault(owner, []).append(weight)
         return weights
 
-    def creations(self, paths: Collection[str]) -> dict[str, tuple[str, str, str]]:
-        """Class → (call, maker, type) that makes an instance, for those that have one."""
+    def creations(self, paths: Collection[str]) -> dict[str, Creation]:
+        """Class → how an instance is made, for those that have a call."""
         rows = self.rows_of("SELECT path, call, maker, choice FROM creation WHERE path", paths)
-        return {row[0]: row[1:] for row in rows}
+        return {row[0]: Creation(*row[1:]) for row in rows}
 
     def functions_named(self, prefix: str) -> list[str]:
         """Paths of the functions of data classes whose names begin with a key."""

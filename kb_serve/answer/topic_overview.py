@@ -21,6 +21,7 @@ _MAX_WORDS = 4
 _FIRST = 10  # entries of a list; the others follow all lists
 _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
+_ASIDE = 0.2  # nodes are found by their own names
 _ON_ITS_MODULE = 2.0
 _UNUSUAL = 0.2  # presets, and what interface code calls
 
@@ -101,7 +102,7 @@ class Topics:
         page = self._reader.page_entry(slug)
         assert page is not None
         names = self._names(slug, page.title)
-        head = "\n\n".join(filter(None, (f"## {page.title}", said_of(page, self._children(slug)), page.url)))
+        head = "\n\n".join(filter(None, (f"## {page.title}", self._said(page), page.url)))
         classes, operators = self._entries(names.classes), self._entries(names.operators)
         blocks = [AnswerBlock(head, "summary"), *Steps(self._reader, names).blocks()]
         lists = (
@@ -114,6 +115,14 @@ class Topics:
         for title, lines in lists:
             blocks += _list_of(f"More {title.lower()}", lines[_FIRST:])
         return TopicOverview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
+
+    def _said(self, page: PageEntry) -> str:
+        """What the page says; of a page that only lists others, what its introduction says."""
+        below = self._children(page.slug)
+        said = said_of(page, below)
+        if said.startswith("Contents: ") and below[0].title == "Introduction":
+            return said_of(below[0], ()) or said
+        return said
 
     def _names(self, slug: str, title: str) -> TopicNames:
         """The classes and operators of a topic: those that its pages explain, and those with its name."""
@@ -128,10 +137,10 @@ class Topics:
                 nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
         for path, words in self._classes.items():
             if any(wanted <= words for wanted in names.words):
-                nearness[path] = _NAMED * nearness.get(path, _FAR)
+                nearness[path] = _NAMED * nearness.get(path, _ASIDE if "Node" in path else _FAR)
         for module in names.keys:
             for path in self._reader.operators_of(module):
-                nearness[path] = _ON_ITS_MODULE * nearness.get(path, _FAR)
+                nearness[path] = _ON_ITS_MODULE * _NEAR
         weights = self._weights(nearness)
         for path, near in sorted(nearness.items(), key=lambda row: (-row[1] * weights[row[0]], row[0])):
             entry = self._reader.entry(path)

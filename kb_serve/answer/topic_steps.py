@@ -6,9 +6,9 @@ own settings and those it points to are set; the operators of the topic that nei
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from functools import cached_property
-from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
@@ -16,15 +16,16 @@ from kb_serve.answer.budget import AnswerBlock
 from kb_serve.reader import STRUCT, TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_serve.answer.topic_overview import TopicNames
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _MAKERS = 3
-_CHOICES = 14  # types that one maker is shown with
-_SETTINGS = 7
-_HOLDERS = 3  # pointers of a thing whose settings are shown
+_CHOICES = 12  # types that one maker is shown with
+_SETTINGS = 8
+_HOLDERS = 4  # pointers of a thing whose settings are shown
+_FUNCTIONS = 3
 _RUNS = 4
 _MAKES = ("add", "new", "create", "insert")
 _REMOVES = (
@@ -39,8 +40,15 @@ _REMOVES = (
     "move",
     "reset",
     "toggle",
+    "hide",
 )
-_CACHE = "PointCache"
+_LEAST_SHARE = 0.25  # of the heaviest class's weight
+_USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
+_INTERFACE = ("tool_settings", "space_data", "preferences", "window", "studio_light")
+_PLAIN = ("name", "index")  # every thing has them
+_CACHE = f"{TYPES}PointCache"
+_NODE = f"{TYPES}Node"
+_HUMP = re.compile(r"[A-Z]+[a-z0-9]*$")
 
 
 class Steps:
@@ -50,62 +58,127 @@ class Steps:
         self._reader = reader
         self._names = names
         self._shown: set[str] = set()
+        self._creations = reader.creations(list(names.classes))
+        # Where classes have the topic's name, the others of its pages are other topics' matter.
+        named = [path for path in names.classes if names.names(path)]
+        self._classes = named or list(names.classes)
 
     def blocks(self) -> Iterator[AnswerBlock]:
         """One block, a numbered list; none where nothing is made, set or run."""
-        steps = [*self._make(), *self._use(), *self._run()]
+        work = (self._make(), self._there()) if self._is_made() else (self._there(), self._make())
+        steps = [*self._functions(), *(step for part in work for step in part), *self._run()]
         if steps:
             lines = (f"{number}. {step}" for number, step in enumerate(steps, 1))
             yield AnswerBlock("**How it is done**\n" + "\n".join(lines), "how it is done")
 
     # What is made
 
-    def _make(self) -> Iterator[str]:
-        creations = self._reader.creations(list(self._names.classes))
-        groups: dict[str, list[str]] = defaultdict(list)
-        for path in self._names.classes:
-            if path in creations:
-                groups[creations[path][1]].append(path)
-        for maker, paths in islice(groups.items(), _MAKERS):
-            call, _, choice = creations[paths[0]]
-            others = [path for path in paths[1:] if creations[path][2]]
-            if len(others) >= _SETTINGS and maker.endswith("Nodes.new"):
-                yield from self._tree(paths[0])
-            text = f"`{call}`" + self._known(paths[0])
-            if choice and others:
-                named = ", ".join(f"`{creations[path][2]}`" for path in others[:_CHOICES])
-                more = f", … {len(others) - _CHOICES} more" if len(others) > _CHOICES else ""
-                text += f"; types by weight: {named}{more}"
-            yield text
-            yield from self._goes(paths[0])
-            if len(others) < _SETTINGS or self._names.names(paths[0]):
-                yield from self._set(paths[0])
+    def _is_made(self) -> bool:
+        """Whether the topic's main class is made, or held by a modifier that is."""
+        return any(path in self._creations for path in self._classes[:1]) or any(
+            map(self._is_own_modifier, self._classes)
+        )
 
-    def _known(self, path: str) -> str:
+    def _make(self) -> Iterator[str]:
+        groups: dict[str, list[str]] = defaultdict(list)
+        # A modifier with the topic's name makes the settings that it holds.
+        for path in sorted(self._classes, key=lambda path: not self._is_own_modifier(path)):
+            if path in self._creations and (self._counts(path) or self._is_own_modifier(path)):
+                groups[self._creations[path].maker].append(path)
+        done = 0
+        for paths in groups.values():
+            if paths[0] not in self._shown and done < _MAKERS:
+                yield from self._make_one(paths, is_first=not done)
+                done += 1
+
+    def _make_one(self, paths: Sequence[str], *, is_first: bool) -> Iterator[str]:
+        main = paths[0]
+        if self._reader.descends(main, _NODE):
+            yield from self._tree(main)
+            yield from self._nodes(paths)
+            return
+        yield self._call(paths)
+        if self._creations[main].call.startswith("bpy.data."):
+            yield from self._goes(main)
+        if is_first or self._names.names(main):
+            yield from self._set(main)
+        if is_first:
+            yield from self._own_tree(main)
+
+    def _counts(self, path: str) -> bool:
+        """Whether a class weighs enough beside the topic's heaviest."""
+        weights = self._names.classes
+        return weights[path] >= _LEAST_SHARE * max(weights[each] for each in self._classes)
+
+    def _is_own_modifier(self, path: str) -> bool:
+        name = path.removeprefix(TYPES)
+        return name.endswith("Modifier") and key(name.removesuffix("Modifier")) in self._names.keys
+
+    def _nodes(self, paths: Sequence[str]) -> Iterator[str]:
+        """How nodes are made and joined."""
+        yield self._call(paths)
+        yield from (f"`{link.call}`" for link in self._reader.creations([f"{TYPES}NodeLink"]).values())
+
+    def _own_tree(self, path: str) -> Iterator[str]:
+        """The nodes of what holds a tree, as a material does."""
+        for entry in self._reader.members(path).values():
+            if entry.type != "pointer" or not entry.target.endswith("NodeTree") or self._is_object_data(path):
+                continue
+            nodes = self._heaviest(self._reader.descendants(f"{TYPES}{entry.target.removesuffix('Tree')}"))
+            self._creations |= self._reader.creations([node.path for node in nodes])
+            if made := [node.path for node in nodes if node.path in self._creations]:
+                self._shown.add(f"{TYPES}{entry.target}")
+                yield f"`tree = {self._variable(path)}.{entry.name}`"
+                yield from self._nodes(made)
+
+    def _call(self, paths: Sequence[str]) -> str:
+        """The call that makes the heaviest of the classes that one maker makes, and the types of the others."""
+        main = paths[0]
+        text = self._made(main, self._creations[main].call)
+        choices = [choice for path in paths[1:] if (choice := self._creations[path].choice)]
+        others = [choice for choice in choices if f"'{choice}'" not in self._creations[main].call]
+        if others:
+            more = f", … {len(others) - _CHOICES} more" if len(others) > _CHOICES else ""
+            text += "; also " + ", ".join(f"`{other}`" for other in others[:_CHOICES]) + more
+        return text
+
+    def _made(self, path: str, call: str) -> str:
         self._shown.add(path)
-        return f" → `{path.removeprefix(TYPES)}`"
+        variable = "" if call.startswith("bpy.ops.") else f"{self._variable(path)} = "
+        return f"`{variable}{call}` → `{path.removeprefix(TYPES)}`"
+
+    def _variable(self, path: str) -> str:
+        """What a script calls an instance: ``modifier``, ``object_data``, ``tree``, or the name's last word."""
+        if self._is_object_data(path):
+            return "object_data"
+        hump = _HUMP.search(path)
+        return hump[0].lower() if hump else "it"
 
     def _tree(self, node: str) -> Iterator[str]:
-        """The tree that takes a node, and how nodes are joined."""
+        """The tree that takes a node."""
         symbol = self._reader.symbol(node)
-        trees = [f"{TYPES}{tree}" for tree in (symbol.trees if symbol else ())]
-        for tree, (call, _, _) in self._reader.creations(trees[:1]).items():
-            yield f"`tree = {call}`" + self._known(tree)
-            yield from self._goes(tree)
-        for call, _, _ in self._reader.creations([f"{TYPES}NodeLink"]).values():
-            yield f"join nodes: `{call}`"
+        trees = [f"{TYPES}{tree}" for tree in (symbol.trees if symbol else ())][:1]
+        for tree, creation in self._reader.creations(trees).items():
+            if tree not in self._shown:
+                yield self._made(tree, creation.call)
+                yield from self._goes(tree)
 
     # Where it goes
 
     def _goes(self, path: str) -> Iterator[str]:
-        if self._is_object_data(path):
-            calls = self._reader.creations([f"{TYPES}Object"])
-            made = next((call for call, _, _ in calls.values()), "")
-            yield f"`obj = {made}`, `bpy.context.collection.objects.link(obj)`"
-        places = [*self._reader.pointing_at(path.removeprefix(TYPES))]
-        places += [place for place in self._named_pointers() if place.target == "Object"]
-        if places := self._heaviest(place for place in places if _is_set(place))[:2]:
-            yield "it goes to " + ", ".join(f"`{self._expression(place)}`" for place in places)
+        variable = self._variable(path)
+        if variable == "object_data":
+            name = path.removeprefix(TYPES)
+            for creation in self._reader.creations([f"{TYPES}Object"]).values():
+                call = creation.call.replace('"Object"', f'"{name}"')
+                yield f"`obj = {call}`; `bpy.context.collection.objects.link(obj)`"
+            variable = "obj"
+            places = [place for place in self._named_pointers() if place.target == "Object"]
+        else:
+            places = self._reader.pointing_at(path.removeprefix(TYPES))
+        heaviest = self._heaviest(place for place in places if _is_set(place))
+        if heaviest:
+            yield f"`{self._expression(heaviest[0])} = {variable}`"
 
     def _is_object_data(self, path: str) -> bool:
         return any(entry.path in self._object_data for entry in self._reader.lineage(path))
@@ -114,8 +187,8 @@ class Steps:
     def _object_data(self) -> set[str]:
         """The classes that an object can be of, by the names of its types."""
         types = self._reader.symbol(f"{TYPES}Object.type")
-        names = {key(item.identifier) for item in types.enum_items} if types else set[str]()
-        names |= {key(item.name) for item in types.enum_items} if types else set[str]()
+        items = types.enum_items if types else ()
+        names = {key(name) for item in items for name in (item.identifier, item.name)}
         return {path for path, name in self._reader.data_classes() if key(name) in names}
 
     def _named_pointers(self) -> list[SymbolEntry]:
@@ -123,73 +196,102 @@ class Steps:
         entries = [entry for name in self._stems() for entry in self._reader.by_name(name)]
         return [entry for entry in entries if entry.kind == "property" and entry.type == "pointer"]
 
-    def _stems(self) -> set[str]:
+    def _stems(self) -> list[str]:
         """The topic's keys, in the singular too."""
-        return {name for each in self._names.keys for name in (each, each.removesuffix("s")) if len(name) > 3}
+        names = (name for each in sorted(self._names.keys) for name in (each, each.removesuffix("s")))
+        return [name for name in dict.fromkeys(names) if len(name) > 3]
 
     # What is set
 
     def _set(self, path: str) -> Iterator[str]:
+        """A thing's own settings and functions, then the settings that it points to, and those below, where they belong
+        to the topic or are its cache.
+        """
+        variable = self._variable(path)
+        symbol = self._reader.symbol(path)
+        if self._creations[path].call.startswith("bpy.ops.") and symbol is not None and symbol.reached:
+            variable = symbol.reached
         if own := self._settings(path):
-            yield f"set {own}"
-        yield from self._held_settings(path, "")
-
-    def _held_settings(self, path: str, above: str) -> Iterator[str]:
-        """The settings that a thing points to, where they belong to the topic or are its cache."""
-        pointers = [
-            entry
-            for entry in self._reader.members(path).values()
-            if entry.type == "pointer" and self._belongs(f"{TYPES}{entry.target}")
-        ]
-        for entry in pointers[:_HOLDERS]:
-            target = f"{TYPES}{entry.target}"
-            self._shown.add(target)
-            if settings := self._settings(target):
-                yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
-            yield from self._held_settings(target, f"{above}.{entry.name}")
+            yield f"set on `{variable}`: {own}"
+        members = self._reader.members(path).values()
+        functions = [entry for entry in members if entry.kind == "function" and self._weight(entry) >= 1]
+        if functions:
+            calls = (f"`{variable}.{_call_of(entry)}`" for entry in self._heaviest(functions)[:_FUNCTIONS])
+            yield "call " + ", ".join(calls)
+        waiting, left = [(path, variable)], _HOLDERS
+        while waiting and left:
+            path, above = waiting.pop(0)
+            for entry in self._heaviest(self._reader.members(path).values()):
+                target = f"{TYPES}{entry.target}"
+                # What is a thing's own cannot be replaced; another data-block can.
+                is_own = not _is_set(entry) or self._reader.descends(target, f"{TYPES}ID")
+                if entry.type != "pointer" or not is_own or not self._belongs(target):
+                    continue
+                self._shown.add(target)
+                waiting.append((target, f"{above}.{entry.name}"))
+                if left and (settings := self._settings(target)):
+                    left -= 1
+                    yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
 
     def _belongs(self, path: str) -> bool:
-        return path not in self._shown and (path in self._names.classes or path == f"{TYPES}{_CACHE}")
+        return path not in self._shown and (path in self._names.classes or path == _CACHE)
 
     def _settings(self, path: str) -> str:
         entries = [
             entry
             for entry in self._reader.members(path).values()
-            if entry.kind == "property" and entry.type not in {"pointer", "collection"} and _is_set(entry)
+            if entry.kind == "property"
+            and entry.type not in {"pointer", "collection"}
+            and entry.name not in _PLAIN
+            and _is_set(entry)
         ]
-        return ", ".join(entry.line.partition(" — ")[0] for entry in self._heaviest(entries)[:_SETTINGS])
+        return ", ".join(_short(entry) for entry in self._heaviest(entries)[:_SETTINGS])
 
-    def _use(self) -> Iterator[str]:
-        """Settings that are there without being made, and functions called as the topic is."""
-        functions = [path for name in self._stems() for path in self._reader.functions_named(name)]
-        entries = self._heaviest(entry for path in functions if (entry := self._reader.entry(path)))
-        weights = self._reader.weights([entry.path for entry in entries])
-        for entry in entries[:2]:
-            if weights.get(entry.path, 0) >= 1:
-                owner = "obj" if entry.owner == STRUCT else entry.owner.removeprefix(TYPES)
-                yield f"`{owner}.{entry.line.partition(' — ')[0].strip('`')}`"
-        there = [path for path in self._names.classes if path not in self._shown and self._names.names(path)]
-        creations = self._reader.creations(there)
-        for path in [path for path in there if path not in creations][:2]:
-            symbol, settings = self._reader.symbol(path), self._settings(path)
-            if symbol is not None and symbol.reached and settings:
+    # What is there without being made
+
+    def _there(self) -> Iterator[str]:
+        """Settings with the topic's name that are reached without being made: ``RenderSettings``."""
+        left = 2
+        for path in self._classes:
+            if path in self._shown or path in self._creations or not self._counts(path) or not left:
+                continue
+            symbol = self._reader.symbol(path)
+            reached = symbol.reached if symbol and self._names.names(path) else ""
+            if not reached or any(part in reached for part in _INTERFACE):
+                continue
+            if settings := self._settings(path):
+                left -= 1
                 self._shown.add(path)
-                yield f"set on `{symbol.reached}` (`{symbol.name}`): {settings}"
+                yield f"set on `{reached}` (`{path.removeprefix(TYPES)}`): {settings}"
+
+    def _functions(self) -> Iterator[str]:
+        """Functions that every thing has and that are called as the topic is: ``keyframe_insert``."""
+        paths = [path for name in self._stems() for path in self._reader.functions_named(name)]
+        entries = (self._reader.entry(path) for path in paths if path.startswith(f"{STRUCT}."))
+        for entry in self._heaviest(entry for entry in entries if entry)[:_FUNCTIONS]:
+            yield f"`obj.{_call_of(entry)}` — {entry.line.partition(' — ')[2]}"
 
     # What runs it
 
     def _run(self) -> Iterator[str]:
-        operators = [path for path in self._names.operators if not _has(path, (*_MAKES, *_REMOVES))][:_RUNS]
-        if f"{TYPES}{_CACHE}" in self._shown:
+        weights = self._reader.weights(list(self._names.operators))
+        operators = [
+            path
+            for path in self._names.operators
+            if not _has(path, (*_MAKES, *_REMOVES))
+            and weights.get(path, 0) >= (1 if path.split(".")[2] in self._names.keys else _USED_ELSEWHERE)
+        ]
+        if _CACHE in self._shown:
             operators = [*self._bakes(), *operators]
         for path in operators[:_RUNS]:
             entry = self._reader.entry(path)
             if entry is not None:
-                yield f"`{path}()` — {entry.line.partition(' — ')[2]}"
+                said = entry.line.partition(" — ")[2].removeprefix("(undocumented operator)")
+                yield f"`{path}()`" + (f" — {said}" if said else "")
 
     def _bakes(self) -> Iterator[str]:
         """The heaviest operator of the page that explains the cache."""
-        for target in self._reader.links_from(f"{TYPES}{_CACHE}", "manual"):
+        for target in self._reader.links_from(_CACHE, "manual"):
             paths = self._reader.symbols_of_page(target.partition("#")[0])
             entries = (self._reader.entry(path) for path in paths if not _has(path, (*_MAKES, *_REMOVES)))
             operators = [entry for entry in entries if entry and entry.kind == "operator"]
@@ -200,8 +302,11 @@ class Steps:
     def _heaviest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
         """Entries by weight; those of equal weight keep their order."""
         found = list(entries)
-        weights = self._reader.weights([entry.path for entry in found])
+        weights: Mapping[str, float] = self._reader.weights([entry.path for entry in found])
         return sorted(found, key=lambda entry: -weights.get(entry.path, 0.0))
+
+    def _weight(self, entry: SymbolEntry) -> float:
+        return self._reader.weights([entry.path]).get(entry.path, 0.0)
 
     def _expression(self, entry: SymbolEntry) -> str:
         owner = self._reader.symbol(entry.owner)
@@ -214,3 +319,14 @@ def _is_set(entry: SymbolEntry) -> bool:
 
 def _has(path: str, verbs: Sequence[str]) -> bool:
     return not set(path.rpartition(".")[2].split("_")).isdisjoint(verbs)
+
+
+def _short(entry: SymbolEntry) -> str:
+    """A property with its default and its first values, without its type: ``quality` = 5``."""
+    name, _, rest = entry.line.partition(" — ")[0].partition(" ")
+    rest = rest.removeprefix(entry.type).strip()
+    return f"{name} {rest.partition('] ')[2] if rest.startswith('[') else rest}".strip()
+
+
+def _call_of(entry: SymbolEntry) -> str:
+    return entry.line.partition("`")[2].partition("`")[0]
