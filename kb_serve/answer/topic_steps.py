@@ -83,13 +83,22 @@ class Steps:
         groups: dict[str, list[str]] = defaultdict(list)
         # A modifier with the topic's name makes the settings that it holds.
         for path in sorted(self._classes, key=lambda path: not self._is_own_modifier(path)):
-            if path in self._creations and (self._counts(path) or self._is_own_modifier(path)):
-                groups[self._creations[path].maker].append(path)
+            creation = self._creations.get(path)
+            if creation and not any(part in creation.call for part in _INTERFACE):
+                groups[creation.maker].append(path)
+        # The first group is the heaviest class's; of the others, many light classes outweigh a single one.
+        first, others = [*groups.values()][:1], [*groups.values()][1:]
         done = 0
-        for paths in groups.values():
-            if paths[0] not in self._shown and done < _MAKERS:
+        for paths in (*first, *sorted(others, key=lambda paths: -self._weight_of(paths))):
+            is_main = self._is_own_modifier(paths[0]) or self._counts(*paths)
+            if is_main and paths[0] not in self._shown and done < _MAKERS:
                 yield from self._make_one(paths, is_first=not done)
                 done += 1
+        if not done:
+            yield from (self._operator(path) for path in self._adds())
+
+    def _adds(self) -> list[str]:
+        return [path for path in self._names.operators if _has(path, _MAKES) and not _has(path, _REMOVES)][:2]
 
     def _make_one(self, paths: Sequence[str], *, is_first: bool) -> Iterator[str]:
         main = paths[0]
@@ -105,10 +114,14 @@ class Steps:
         if is_first:
             yield from self._own_tree(main)
 
-    def _counts(self, path: str) -> bool:
-        """Whether a class weighs enough beside the topic's heaviest."""
-        weights = self._names.classes
-        return weights[path] >= _LEAST_SHARE * max(weights[each] for each in self._classes)
+    def _counts(self, *paths: str) -> bool:
+        """Whether classes weigh enough, together, beside the topic's heaviest."""
+        return self._weight_of(paths) >= _LEAST_SHARE * max(
+            map(self._names.classes.__getitem__, self._classes)
+        )
+
+    def _weight_of(self, paths: Iterable[str]) -> float:
+        return sum(map(self._names.classes.__getitem__, paths))
 
     def _is_own_modifier(self, path: str) -> bool:
         name = path.removeprefix(TYPES)
@@ -214,6 +227,10 @@ class Steps:
         if own := self._settings(path):
             yield f"set on `{variable}`: {own}"
         members = self._reader.members(path).values()
+        held = [entry for entry in members if entry.type == "collection" and self._weight(entry) >= 1]
+        if held:
+            items = (f"`.{entry.name}` (`{entry.target}`)" for entry in self._heaviest(held)[:_FUNCTIONS])
+            yield f"in `{variable}`: " + ", ".join(items)
         functions = [entry for entry in members if entry.kind == "function" and self._weight(entry) >= 1]
         if functions:
             calls = (f"`{variable}.{_call_of(entry)}`" for entry in self._heaviest(functions)[:_FUNCTIONS])
@@ -250,13 +267,13 @@ class Steps:
     # What is there without being made
 
     def _there(self) -> Iterator[str]:
-        """Settings with the topic's name that are reached without being made: ``RenderSettings``."""
+        """The topic's settings that are reached without being made: ``RenderSettings``."""
         left = 2
         for path in self._classes:
             if path in self._shown or path in self._creations or not self._counts(path) or not left:
                 continue
             symbol = self._reader.symbol(path)
-            reached = symbol.reached if symbol and self._names.names(path) else ""
+            reached = symbol.reached if symbol else ""
             if not reached or any(part in reached for part in _INTERFACE):
                 continue
             if settings := self._settings(path):
@@ -283,11 +300,12 @@ class Steps:
         ]
         if _CACHE in self._shown:
             operators = [*self._bakes(), *operators]
-        for path in operators[:_RUNS]:
-            entry = self._reader.entry(path)
-            if entry is not None:
-                said = entry.line.partition(" — ")[2].removeprefix("(undocumented operator)")
-                yield f"`{path}()`" + (f" — {said}" if said else "")
+        yield from map(self._operator, operators[:_RUNS])
+
+    def _operator(self, path: str) -> str:
+        entry = self._reader.entry(path)
+        said = entry.line.partition(" — ")[2].removeprefix("(undocumented operator)") if entry else ""
+        return f"`{path}()`" + (f" — {said}" if said else "")
 
     def _bakes(self) -> Iterator[str]:
         """The heaviest operator of the page that explains the cache."""
@@ -329,4 +347,4 @@ def _short(entry: SymbolEntry) -> str:
 
 
 def _call_of(entry: SymbolEntry) -> str:
-    return entry.line.partition("`")[2].partition("`")[0]
+    return entry.line.partition("`")[2].partition("`")[0].replace("(self, ", "(")
