@@ -32,7 +32,7 @@ similar ones that do
 its pages, classes and operators
 
 The answer shows the best hit in full and lists others by `id`; query an id to see it. A long answer \
-ends with the part to go on with: repeat the call with that `part`. Parts are the same for every \
+ends with the part to go on with: repeat the call with it, as `part=23`. Parts are the same for every \
 `max_tokens`, which bounds how many of them one answer shows. `blender="4.5"` queries another \
 version's base, if it was built here. `notes` report corrections, missing sources and \
 differences between versions: read them."""

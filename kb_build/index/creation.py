@@ -100,8 +100,9 @@ class _Calls:
         for cls in self._descendants(base.path):
             if choice := cls.name if by_name else _choice(cls, base, items):
                 yield cls.path, Creation(f"{head}({_arguments(maker, cls, choice)})", maker.path, choice)
-        if not by_name:
-            first = next(iter(items), "") if holder.owner == f"{TYPES}BlendData" else ""
+        # Where a type must be told, only data-blocks are also made of the base class.
+        if not items or (not by_name and holder.owner == f"{TYPES}BlendData"):
+            first = next(iter(items), "")
             yield base.path, Creation(f"{head}({_arguments(maker, base, first)})", maker.path)
 
     def _descendants(self, path: str) -> Iterator[Symbol]:
@@ -119,7 +120,13 @@ class _Calls:
                 made.setdefault(key(name), symbol)
                 made[key(module + name)] = symbol
         for symbol in self._symbols.values():
-            if symbol.kind == "class" and symbol.group == "data" and (operator := made.get(key(symbol.name))):
+            operator = made.get(key(symbol.name))
+            if (
+                operator
+                and symbol.kind == "class"
+                and symbol.group == "data"
+                and symbol.path not in self._below
+            ):
                 yield symbol.path, Creation(f"{operator.path}()", operator.path)
 
 
@@ -127,10 +134,13 @@ def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
     """The item of the maker's enumeration that stands for a subclass: ``CLOTH`` for ClothModifier."""
     name = key(cls.name.removesuffix(base.name).removeprefix(base.name))
     label = key(cls.label.removesuffix(base.label))
+    by_identifier = {key(identifier): identifier for identifier in items}
+    for wanted in (key(cls.name), name):
+        if wanted in by_identifier:
+            return by_identifier[wanted]
+    # Several classes may have one label, as the modifiers of meshes and of drawings.
     for identifier, text in items.items():
-        if key(identifier) in {name, key(cls.name)}:
-            return identifier
-        if text and key(text) in {label, key(cls.label)}:
+        if text and key(text) in {label, key(cls.label)} and key(identifier) in key(cls.name):
             return identifier
     return ""
 

@@ -191,7 +191,9 @@ class _Finder:
         the words around both agree.
         """
         label = set(_stems(symbol.label))
-        headings = set(_stems(*place.chains[term.section][1:])) - _PLAIN_HEADINGS
+        owner = self._symbols.get(symbol.owner)
+        plain = _PLAIN_HEADINGS | set(_stems(owner.label if owner else ""))
+        headings = set(_stems(*place.chains[term.section][1:])) - plain
         its_own = any(address.startswith(address_of(cls)) for cls in self._lineage(symbol.owner))
         if symbol.kind == "socket" or (its_own and (len(label) > 1 or not headings)):
             return symbol.label != symbol.name or symbol.kind == "socket" or bool(symbol.description)

@@ -57,16 +57,16 @@ def cut(blocks: Iterable[AnswerBlock]) -> list[AnswerPart]:
     """The parts of an answer, each of at most ``PART_TOKENS``; an empty answer is one empty part."""
     parts: list[AnswerPart] = []
     for block in blocks:
-        glue, text = "\n\n", ""
+        glue, text = "\n\n", None
         for before, piece in _pieces(block.text):
-            if not text:
+            if text is None:
                 text = piece
             elif _bytes(text) + len(before) + _bytes(piece) <= _PART_BYTES:
                 text += before + piece
             else:
                 parts.append(AnswerPart(text, block.name, glue))
                 glue, text = before, piece
-        if text:
+        if text is not None:
             parts.append(AnswerPart(text, block.name, glue))
     return parts or [AnswerPart("", "", "")]
 

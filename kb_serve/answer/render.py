@@ -241,7 +241,7 @@ class MarkdownRenderer:
             ("Properties", [entry for entry in members if entry.kind in {"property", "data"}]),
             (
                 "Functions",
-                [e for e in members if e.kind == "function" and not _is_machinery(e)],
+                [e for e in members if e.kind == "function" and not e.name.startswith("bl_rna_get_subclass")],
             ),
         )
         for title, entries in groups:

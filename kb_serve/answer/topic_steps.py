@@ -94,11 +94,6 @@ class Steps:
             if is_main and paths[0] not in self._shown and done < _MAKERS:
                 yield from self._make_one(paths, is_first=not done)
                 done += 1
-        if not done:
-            yield from (self._operator(path) for path in self._adds())
-
-    def _adds(self) -> list[str]:
-        return [path for path in self._names.operators if _has(path, _MAKES) and not _has(path, _REMOVES)][:2]
 
     def _make_one(self, paths: Sequence[str], *, is_first: bool) -> Iterator[str]:
         main = paths[0]
