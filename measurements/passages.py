@@ -29,7 +29,9 @@ _SHOWN = 300
 
 def passages(reader: BaseReader) -> Iterator[tuple[str, str, str]]:
     """(symbol, heading, passage) for every symbol that has one."""
-    for path, slug, number, line in reader.rows("SELECT path, slug, section, line FROM passages ORDER BY path"):
+    for path, slug, number, line in reader.rows(
+        "SELECT path, slug, section, line FROM passages ORDER BY path"
+    ):
         page = reader.page(slug)
         if page is not None:
             section = page.sections[number]
@@ -60,7 +62,8 @@ def main(blender: str | None, draw: int, seed: int) -> None:
             if (path, digest(text)) not in known:
                 symbol = reader.symbol(path)
                 label = f"{symbol.label}: {symbol.description}" if symbol else ""
-                click.echo(f"{path},{digest(text)}\n  {label[:_SHOWN]}\n  [{heading}] {' '.join(text.split())[:_SHOWN]}")
+                said = " ".join(text.split())[:_SHOWN]
+                click.echo(f"{path},{digest(text)}\n  {label[:_SHOWN]}\n  [{heading}] {said}")
         return
     judged = [known[path, key] for path, _, text in pairs if (path, key := digest(text)) in known]
     click.echo(f"{len(pairs):,} symbols with a passage; {len(judged)} judged, {sum(judged)} right", nl=False)
