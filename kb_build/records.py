@@ -144,13 +144,16 @@ class Section:
     """A titled part of a page: the unit of retrieval.
 
     ``text`` is Markdown without the heading itself; definition lists, field lists, notes, tables and code are
-    kept, pictures become their captions. ``level`` is 1 for the page's title section.
+    kept, pictures become their captions. ``level`` is 1 for the page's title section. ``marks`` are the places in it
+    that addresses of symbols lead to (``bpy-types-clothsettings-quality``), each with its line of ``text`` counted
+    from 0; -1 is the heading.
     """
 
     anchor: str
     title: str
     level: int
     text: str
+    marks: tuple[tuple[str, int], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,6 +215,9 @@ def _plain(value: Any) -> Any:
     """A field's value, the records in it taken apart."""
     if isinstance(value, tuple):
         return [_plain(part) for part in cast("tuple[Any, ...]", value)]
+    if isinstance(value, Section):  # thousands, and most have no marks
+        plain = {"anchor": value.anchor, "title": value.title, "level": value.level, "text": value.text}
+        return {**plain, "marks": value.marks} if value.marks else plain
     return asdict(value) if is_dataclass(value) and not isinstance(value, type) else value
 
 
@@ -252,11 +258,17 @@ def symbol_from_json(data: dict[str, Any]) -> Symbol:
     )
 
 
+def _section(row: dict[str, Any]) -> Section:
+    marks = tuple((str(name), int(line)) for name, line in row.get("marks", ()))
+    values: dict[str, Any] = {**row, "marks": marks}
+    return Section(**values)
+
+
 def page_from_json(data: dict[str, Any]) -> Page:
     """The inverse of :func:`to_json` for pages. Raises TypeError on unknown fields."""
     values: dict[str, Any] = {
         **data,
-        "sections": tuple(Section(**row) for row in data.get("sections", [])),
+        "sections": tuple(map(_section, data.get("sections", []))),
         "breadcrumbs": tuple(data.get("breadcrumbs", ())),
         "children": tuple(data.get("children", ())),
         "links": tuple(data.get("links", ())),

@@ -71,6 +71,19 @@ CREATE TABLE sections (
 -- source and target are ids; a manual link's target may carry an anchor.
 CREATE TABLE links (source TEXT NOT NULL, target TEXT NOT NULL, kind TEXT NOT NULL);
 
+-- The place in the manual that is about a symbol: a section's number and a line of its text, -1 for the heading.
+CREATE TABLE passages (
+    path TEXT PRIMARY KEY, slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL
+) WITHOUT ROWID;
+
+-- The call that makes an instance of a class, the function or operator that it calls, and the type that it names.
+CREATE TABLE creation (
+    path TEXT PRIMARY KEY, call TEXT NOT NULL, maker TEXT NOT NULL, choice TEXT NOT NULL
+) WITHOUT ROWID;
+
+-- How much a symbol counts among its like (index.weights); the others count nothing.
+CREATE TABLE weights (path TEXT PRIMARY KEY, weight REAL NOT NULL) WITHOUT ROWID;
+
 -- Symbols that this Blender does not have and another has: the first and last version of their latest time before this
 -- one, and the first known not to have them any more. What only newer versions have has that time, and an empty gone.
 -- ``name`` is the last part of the path: a member, parameter, item or socket.

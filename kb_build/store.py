@@ -13,7 +13,9 @@ import sqlite_utils
 
 from kb_build.errors import StoreError
 from kb_build.index.analysis import content_words, key, short_path, topic_key
+from kb_build.index.creation import creation_calls
 from kb_build.index.documents import Document, is_code, make_units, topic_documents, weight_of
+from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
     TOPIC_B,
     UNIT_B,
@@ -25,6 +27,7 @@ from kb_build.index.postings import (
     vocabulary,
 )
 from kb_build.index.query_expansions import query_expansions
+from kb_build.index.weights import symbol_weights
 from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
@@ -244,13 +247,21 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
         expansions = query_expansions(contents.summaries)
-        units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, expansions)
+        passages = find_passages(contents.symbols, contents.pages, contents.links)
+        units = make_units(
+            contents.symbols, contents.pages, contents.links, contents.summaries, expansions, passages
+        )
         with connection:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
             _write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
+            _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
+            calls = creation_calls(contents.symbols)
+            _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
+            weights = symbol_weights(contents.symbols, passages, expansions, {})
+            _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

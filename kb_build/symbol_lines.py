@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+from itertools import dropwhile, takewhile
 from typing import TYPE_CHECKING
 
 from kb_build.records import NOT_TAKEN
@@ -135,18 +137,42 @@ def member_line(symbol: Symbol) -> str:
     return " ".join([_head(symbol), *notes]) + (f" — {said}" if said else "")
 
 
-def definitions_in(text: str) -> Iterator[tuple[str, Iterator[str]]]:
-    """(term line, the lines indented below it, read when wanted) of every definition in a section's Markdown."""
-    lines = text.split("\n")
-    for number, line in enumerate(lines):
+def term_lines(text: str) -> Iterator[tuple[int, str]]:
+    """(line, term) of every definition in a section's Markdown."""
+    for number, line in enumerate(text.split("\n")):
         term = line.strip()
         if term.startswith("**") and term.rstrip(":").endswith("**"):
-            yield term, _indented_after(lines, number)
+            yield number, term.strip("*: ")
 
 
-def _indented_after(lines: Sequence[str], number: int) -> Iterator[str]:
-    depth = len(lines[number]) - len(lines[number].lstrip())
-    for line in lines[number + 1 :]:
-        if line.strip() and len(line) - len(line.lstrip()) <= depth:
-            return
-        yield line
+def passage_text(text: str, line: int) -> str:
+    """What stands at a line of a section's Markdown: a term's definition, or a paragraph; at -1 its first paragraph."""
+    lines = text.split("\n")
+    if line < 0:
+        blocks = list(dropwhile(lambda block: not _is_prose(block), text.split("\n\n")))
+        announces = blocks and blocks[0].endswith(":")
+        return "\n\n".join(blocks[: 2 if announces else 1])
+    if line >= len(lines):
+        return ""
+    if lines[line].startswith(">"):
+        quoted = takewhile(lambda each: each.startswith(">"), lines[line:])
+        return passage_text("\n".join(each.removeprefix(">").removeprefix(" ") for each in quoted), 0)
+    depth = _depth(lines[line])
+    if not lines[line].strip().startswith("**"):
+        return "\n".join(takewhile(str.strip, lines[line:]))
+    while (
+        line + 1 < len(lines) and lines[line + 1].startswith("**", depth) and _depth(lines[line + 1]) == depth
+    ):
+        line += 1  # several terms share the definition
+    below = takewhile(lambda each: not each.strip() or _depth(each) > depth, lines[line + 1 :])
+    return textwrap.dedent("\n".join(below)).strip()
+
+
+def _is_prose(paragraph: str) -> bool:
+    return paragraph[:1] not in {"", ">", "|", "-", "*", "`", "$", "#"} and not paragraph.startswith(
+        "Figure: "
+    )
+
+
+def _depth(line: str) -> int:
+    return len(line) - len(line.lstrip())

@@ -33,9 +33,11 @@ _BLENDER = click.option("--blender", metavar="VERSION", help="Blender version. D
 @_BLENDER
 @click.option("--limit", type=int, default=8, show_default=True, help="Maximum number of hits.")
 @click.option(
-    "--max-tokens", type=int, default=1500, show_default=True, help="Maximum length of one part, in tokens."
+    "--max-tokens", type=int, default=1500, show_default=True, help="Maximum length of the answer, in tokens."
 )
-@click.option("--part", type=int, default=1, show_default=True, help="Which part of a long answer.")
+@click.option(
+    "--part", type=int, default=1, show_default=True, help="The part of a long answer to begin with."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the answer as JSON.")
 @click.option("--raw", is_flag=True, help="Print the whole record of the best hit as JSON.")
 def docs(  # noqa: PLR0913 - one for each option

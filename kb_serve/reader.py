@@ -7,7 +7,7 @@ import zlib
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
@@ -72,6 +72,14 @@ class Successor:
     how: str
     version: str
     source: str
+
+
+class Creation(NamedTuple):
+    """How an instance is made: the call, the function or operator that is called, and the type that it names."""
+
+    call: str
+    maker: str
+    choice: str
 
 
 _ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, line"
@@ -266,6 +274,35 @@ class BaseReader:
             for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)
         ]
 
+    def passage(self, path: str) -> tuple[str, int, int] | None:
+        """(slug, number of the section, line of its text) of the place in the manual that is about a symbol."""
+        rows = self.rows("SELECT slug, section, line FROM passages WHERE path = ?", path)
+        return rows[0] if rows else None
+
+    def weights(self, paths: Collection[str]) -> dict[str, float]:
+        """How much symbols count among their like; those that count nothing are left out."""
+        return dict(self.rows_of("SELECT path, weight FROM weights WHERE path", paths))
+
+    def member_weights(self, owners: Collection[str]) -> dict[str, list[float]]:
+        """The weights of the members of classes, by class."""
+        sql = """SELECT owner, weight FROM symbols JOIN weights ON weights.path = symbols.path
+            WHERE kind IN ('property', 'function') AND owner"""
+        weights: dict[str, list[float]] = {}
+        for owner, weight in self.rows_of(sql, owners):
+            weights.setdefault(owner, []).append(weight)
+        return weights
+
+    def creations(self, paths: Collection[str]) -> dict[str, Creation]:
+        """Class → how an instance is made, for those that have a call."""
+        rows = self.rows_of("SELECT path, call, maker, choice FROM creation WHERE path", paths)
+        return {row[0]: Creation(*row[1:]) for row in rows}
+
+    def functions_named(self, prefix: str) -> list[str]:
+        """Paths of the functions of data classes whose names begin with a key."""
+        sql = """SELECT DISTINCT path FROM names JOIN symbols ON symbols.path = names.id
+            WHERE form = 2 AND key >= ? AND key < ? AND kind = 'function' AND owner LIKE 'bpy.types.%'"""
+        return [row[0] for row in self.rows(sql, prefix, prefix + "\uffff")] if prefix else []
+
     def _page_entry(self, slug: str) -> PageEntry | None:
         rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE slug = ?", slug)
         return PageEntry(*rows[0]) if rows else None
@@ -279,11 +316,9 @@ class BaseReader:
         """The symbols that a page explains, by Blender's own table."""
         return [row[0] for row in self.rows("SELECT symbol FROM explained WHERE slug = ?", slug)]
 
-    def classes_named(self, prefix: str) -> list[str]:
-        """Paths of the data classes whose names begin with a key: ``fluid`` → FluidModifier, …"""
-        sql = """SELECT DISTINCT path FROM names JOIN symbols ON symbols.path = names.id
-            WHERE form = 2 AND key >= ? AND key < ? AND kind = 'class' AND grp = 'data'"""
-        return [row[0] for row in self.rows(sql, prefix, prefix + "\uffff")] if prefix else []
+    def data_classes(self) -> list[tuple[str, str]]:
+        """(path, name) of every data class."""
+        return self.rows("SELECT path, name FROM symbols WHERE kind = 'class' AND grp = 'data'")
 
     def operators_of(self, module: str) -> list[str]:
         """Paths of the operators in a module of ``bpy.ops``, named by its key."""

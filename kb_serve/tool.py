@@ -32,8 +32,9 @@ similar ones that do
 its pages, classes and operators
 
 The answer shows the best hit in full and lists others by `id`; query an id to see it. A long answer \
-comes in parts: repeat the call with `part=2`, `part=3`. `max_tokens` bounds one part. `blender="4.5"` \
-queries another version's base, if it was built here. `notes` report corrections, missing sources and \
+ends with the part to go on with: repeat the call with it, as `part=23`. Parts are the same for every \
+`max_tokens`, which bounds how many of them one answer shows. `blender="4.5"` queries another \
+version's base, if it was built here. `notes` report corrections, missing sources and \
 differences between versions: read them."""
 
 
@@ -47,8 +48,8 @@ class DocsArguments(BaseModel):
         default=None, description="Blender version, as 5.1. Default: the one in use, else the newest built."
     )
     limit: int = Field(default=8, ge=1, description="Maximum number of hits.")
-    max_tokens: int = Field(default=1500, ge=150, description="Maximum length of one part of the answer.")
-    part: int = Field(default=1, ge=1, description="Which part of a long answer, from 1.")
+    max_tokens: int = Field(default=1500, ge=150, description="Maximum length of the answer.")
+    part: int = Field(default=1, ge=1, description="The part of a long answer to begin with.")
 
 
 class DocsHit(BaseModel):
@@ -73,8 +74,9 @@ class DocsReply(BaseModel):
     text: str = Field(description="The answer in Markdown.")
     hits: list[DocsHit] = Field(description="The symbols and pages found, best first.")
     notes: list[str] = Field(description="Corrections, missing sources, differences between versions.")
-    part: int
-    parts: int = Field(description="How many parts the answer has.")
+    part: int = Field(description="The part that the text begins with.")
+    parts: int = Field(description="How many parts the whole answer has; a part is a few lines.")
+    next_part: int = Field(description="The part to ask for next, 0 when this was all.")
     blender: str = Field(description="The Blender version that the answer holds for.")
 
 

@@ -7,6 +7,7 @@ import re
 import textwrap
 from dataclasses import dataclass, field, replace
 from functools import cache
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from docutils import nodes
@@ -33,6 +34,7 @@ _DIRECTIVE = re.compile(rf"\.\. (?:{'|'.join(_DECLARATIONS)})::[ \t]*(.*)")
 _OWN = "docstring-"  # Sphinx has these directives too, in a registry that all of docutils shares
 _SPHINX = re.compile(rf"^(\s*\.\. )(?={'|'.join((*_DECLARATIONS, *_REMARKS))}::)", re.MULTILINE)
 _CALL = re.compile(r"\w+\s*\(")
+_INCLUDED = re.compile(r"\s*\.\. (?:literal)?include:: *(\S+)")
 _REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "ref", "exc", "const", "obj", "doc")
 _QUIET = 5
 
@@ -148,6 +150,9 @@ def _block(node: nodes.Node) -> str:  # noqa: PLR0911 - one return a kind of nod
     """One body element as Markdown."""
     if isinstance(node, nodes.paragraph):
         return _inline(node)
+    if isinstance(node, nodes.literal_block) and (included := _INCLUDED.match(node.astext())):
+        template = PurePosixPath(included[1])  # other files are not there
+        return f"Example: `templates_py/{template.stem}`" if template.parent.name == "templates_py" else ""
     if isinstance(node, nodes.literal_block | nodes.doctest_block):
         return f"```python\n{node.astext()}\n```"
     if isinstance(node, nodes.bullet_list | nodes.enumerated_list):

@@ -11,8 +11,8 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
-from kb_build.symbol_lines import definitions_in
+from kb_build.index.passages import Passage, find_passages
+from kb_build.symbol_lines import passage_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -25,7 +25,6 @@ FIELDS = ("name", "heading", "context", "body", "related", "expansions")
 # Rarely asked for: how to write the manual, single add-ons, features kept for old files.
 RARELY_ASKED = ("contribute/", "addons/", "freestyle.", "legacy")
 RARELY_ASKED_WEIGHT = 0.7
-_LONGEST_TERM = 90  # letters; longer ones are sentences in bold
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,38 +65,28 @@ def _topic_of(symbol: Symbol) -> str:
     return symbol.owner if symbol.kind in {"property", "function", "socket", "data"} else ""
 
 
-def definitions(page: Page) -> Iterator[tuple[str, str]]:
-    """(key of the term, text) for every definition-list entry of a page."""
-    for section in page.sections:
-        for term, below in definitions_in(section.text):
-            if len(term) < _LONGEST_TERM:
-                yield key(term.strip("*:").partition("(")[0]), " ".join(line.strip() for line in below)
-
-
 def chapter_of(slug: str) -> str:
     """The first two parts of a slug: ``physics/cloth/settings/index`` → ``physics/cloth``."""
     return "/".join(slug.split("/")[:2])
 
 
 def _manual_texts(
-    symbols: Sequence[Symbol], pages: Sequence[Page], links: Sequence[Link]
+    symbols: Sequence[Symbol], pages: Sequence[Page], links: Sequence[Link], passages: Mapping[str, Passage]
 ) -> tuple[dict[str, tuple[str, ...]], dict[str, list[str]]]:
     """(symbol → its texts in the manual, page → names of the symbols it explains), by Blender's own table of links."""
     by_path = {symbol.path: symbol for symbol in symbols}
     by_slug = {page.slug: page for page in pages}
-    defined: dict[str, dict[str, str]] = {}
     manual_texts: dict[str, tuple[str, ...]] = {}
     explains: dict[str, list[str]] = defaultdict(list)
+    for path, (slug, number, line) in passages.items():
+        section = by_slug[slug].sections[number]
+        manual_texts[path] = (passage_text(section.text, line),)
     for link in links:
-        slug = link.target.partition("#")[0]
-        page, symbol = by_slug.get(slug), by_path.get(link.source)
-        if link.kind != "manual" or page is None or symbol is None:
-            continue
-        if slug not in defined:
-            defined[slug] = dict(reversed([*definitions(page)]))
-        manual_texts[symbol.path] = (page.title, defined[slug].get(key(symbol.label), ""))
-        if symbol.kind != "class":
-            explains[slug].append(f"{symbol.label} {symbol.name}")
+        page, symbol = by_slug.get(link.target.partition("#")[0]), by_path.get(link.source)
+        if link.kind == "manual" and page is not None and symbol is not None:
+            manual_texts[symbol.path] = (page.title, *manual_texts.get(symbol.path, ()))
+            if symbol.kind != "class":
+                explains[page.slug].append(f"{symbol.label} {symbol.name}")
     return manual_texts, explains
 
 
@@ -195,15 +184,20 @@ def topic_documents(units: Sequence[Document]) -> Iterator[Document]:
         yield replace(head, ref=topic, body=(*head.body, *texts), expansions=(*head.expansions, *expansions))
 
 
-def make_units(
+def make_units(  # noqa: PLR0913, PLR0917 - everything a unit may draw on
     symbols: Sequence[Symbol],
     pages: Sequence[Page],
     links: Sequence[Link],
     summaries: Mapping[str, PageSummary],
     expansions: Mapping[str, str],
+    passages: Mapping[str, Passage] | None = None,
 ) -> list[Document]:
-    """Every unit, pages first. ``summaries`` are by slug; ``expansions``: see query_expansions."""
-    manual_texts, explains = _manual_texts(symbols, pages, links)
+    """Every unit, pages first. ``summaries`` are by slug; ``expansions``: see query_expansions; ``passages``: see
+    find_passages, which is asked where none are given.
+    """
+    if passages is None:
+        passages = find_passages(symbols, pages, links)
+    manual_texts, explains = _manual_texts(symbols, pages, links, passages)
     explained_on = {link.source: link.target.partition("#")[0] for link in links if link.kind == "manual"}
     of_pages = _expansions_of_pages(explained_on, expansions)
     return [

@@ -1,4 +1,8 @@
-"""Fits an answer into a number of tokens, part by part."""
+"""Cuts an answer into parts that are the same for every budget, and shows as many as fit.
+
+A part is a few lines. An answer begins with the part that was asked for and goes on as far as the budget allows; it
+names the part to go on with. So part 12 begins at the same word, however much of it is asked for at a time.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +11,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-_WORTH_FILLING = 0.25  # of a part: where less is left, a block begins in the next part
+PART_TOKENS = 80
 _BYTES_PER_TOKEN = 3  # fewer than tokenizers reach with English, Markdown and names: the budget holds
+_PART_BYTES = PART_TOKENS * _BYTES_PER_TOKEN
+
+
+def _bytes(text: str) -> int:
+    return len(text) if text.isascii() else len(text.encode(errors="replace"))
 
 
 def tokens(text: str) -> int:
     """An upper estimate of a text's tokens: one for every three bytes."""
-    return math.ceil(len(text.encode(errors="replace")) / _BYTES_PER_TOKEN)
+    return math.ceil(_bytes(text) / _BYTES_PER_TOKEN)
 
 
 def clip(text: str, budget: int) -> str:
@@ -35,44 +44,65 @@ class AnswerBlock:
     name: str = ""
 
 
-def _split(text: str, room: int) -> tuple[str, str]:
-    """(what fits into ``room`` tokens, the rest), cut between lines; between words where one line is too long."""
-    limit = room * _BYTES_PER_TOKEN
-    start = text[: limit + 1]  # a character takes at least a byte: all that fits is in here
-    position = used = 0
-    for line in start.split("\n"):
-        used += len(line.encode(errors="replace")) + 1
-        if used > limit:
-            break
-        position += len(line) + 1
-    if position:
-        return text[: position - 1], text[position:]
-    head = start.encode(errors="replace")[:limit].decode(errors="ignore")
-    at = head.rfind(" ")
-    head = head[:at] if at > len(head) // 2 else head
-    return head, text[len(head) :].lstrip(" ")
+@dataclass(frozen=True, slots=True)
+class AnswerPart:
+    """A few lines of a block. ``glue`` is what stands between them and the part before."""
+
+    text: str
+    name: str
+    glue: str
 
 
-def paginate(blocks: Sequence[AnswerBlock], budget: int) -> list[tuple[str, list[str]]]:
-    """(text, names of the blocks that are left) for every part, each within ``budget`` tokens.
+def cut(blocks: Iterable[AnswerBlock]) -> list[AnswerPart]:
+    """The parts of an answer, each of at most ``PART_TOKENS``; an empty answer is one empty part."""
+    parts: list[AnswerPart] = []
+    for block in blocks:
+        glue, text = "\n\n", None
+        for before, piece in _pieces(block.text):
+            if text is None:
+                text = piece
+            elif _bytes(text) + len(before) + _bytes(piece) <= _PART_BYTES:
+                text += before + piece
+            else:
+                parts.append(AnswerPart(text, block.name, glue))
+                glue, text = before, piece
+        if text is not None:
+            parts.append(AnswerPart(text, block.name, glue))
+    return parts or [AnswerPart("", "", "")]
 
-    Blocks keep their order. One that does not fit continues in the next part, or moves there whole if there was
-    little room.
+
+def _pieces(text: str) -> Iterator[tuple[str, str]]:
+    """(what stands before it, a line), or where a line is longer than a part, its words up to there."""
+    for line in text.split("\n"):
+        before, rest = "\n", line
+        while _bytes(rest) > _PART_BYTES:
+            head = rest.encode(errors="replace")[:_PART_BYTES].decode(errors="ignore")
+            space = head.rfind(" ")
+            if space > len(head) // 2:
+                yield before, head[:space]
+                before, rest = " ", rest[space + 1 :]
+            else:
+                yield before, head
+                before, rest = "", rest[len(head) :]
+        yield before, rest
+
+
+def shown(parts: Sequence[AnswerPart], first: int, budget: int) -> tuple[str, int]:
+    """(text, number of the part after it) of as many parts from ``first``, counted from 0, as fit into ``budget``
+    tokens: one at least.
     """
-    parts: list[tuple[str, list[str]]] = []
-    current = ""
-    for number, block in enumerate(blocks):
-        later = [other.name for other in blocks[number:] if other.name]
-        rest = block.text
-        while rest:
-            room = budget - tokens(f"{current}\n\n") if current else budget
-            if len(rest) <= room * _BYTES_PER_TOKEN and tokens(rest) <= room:
-                current = f"{current}\n\n{rest}" if current else rest
-                break
-            if room >= _WORTH_FILLING * budget:
-                head, rest = _split(rest, room)
-                current = f"{current}\n\n{head}" if current else head
-            parts.append((current, later))
-            current = ""
-    parts.append((current, []))
-    return parts
+    pieces = [parts[first].text]
+    used = _bytes(pieces[0])
+    number = first + 1
+    for part in parts[number:]:
+        used += len(part.glue) + _bytes(part.text)
+        if used > budget * _BYTES_PER_TOKEN:
+            break
+        pieces += (part.glue, part.text)
+        number += 1
+    return "".join(pieces).strip("\n"), number
+
+
+def names_of(parts: Iterable[AnswerPart]) -> list[str]:
+    """The names of the blocks that parts belong to, each once."""
+    return [name for name in dict.fromkeys(part.name for part in parts) if name]

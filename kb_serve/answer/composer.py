@@ -9,14 +9,14 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
-from kb_serve.answer.budget import AnswerBlock, clip, paginate, tokens
-from kb_serve.answer.render import MarkdownRenderer, first_sentence
+from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
+from kb_serve.answer.render import MarkdownRenderer, first_sentence, said_of
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
 from kb_serve.rank.merging import QueryRanker, RankedId, Ranking
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
 
@@ -26,7 +26,10 @@ MAX_LIMIT = 50
 MAX_TOKENS = 1_500
 LEAST_TOKENS = 150
 _FOOTER_TOKENS = 70
+_NOTES_TOKENS = 500
 _ASKED_TOKENS = 20
+_EXCERPT_TOKENS = 300  # of the best of several candidates
+_LEAST_SAID = 30
 _LINE_TOKENS = 60
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
@@ -45,7 +48,9 @@ class Hit:
 
 @dataclass(frozen=True, slots=True)
 class DocsAnswer:
-    """What ``blender_docs`` returns. ``text`` is Markdown: part ``part`` of ``parts``, within the token budget."""
+    """What ``blender_docs`` returns. ``text`` is Markdown: what fits of the ``parts``, from ``part`` on, within the
+    token budget; ``next_part`` is the one to go on with, 0 at the end.
+    """
 
     kind: AnswerKind
     text: str
@@ -53,16 +58,26 @@ class DocsAnswer:
     notes: tuple[str, ...] = ()
     part: int = 1
     parts: int = 1
+    next_part: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class _Draft:
-    """The whole answer, before it is cut into parts."""
+    """The whole answer."""
 
     kind: AnswerKind
     hits: tuple[Hit, ...]
     notes: tuple[str, ...]
-    blocks: tuple[AnswerBlock, ...]
+    parts: Sequence[AnswerPart]
+
+
+def _draft(
+    kind: AnswerKind, hits: tuple[Hit, ...], notes: Sequence[str], blocks: Iterable[AnswerBlock]
+) -> _Draft:
+    """Notes stand above the answer."""
+    above = clip("\n".join(f"> {note}" for note in notes), _NOTES_TOKENS)
+    lead = (AnswerBlock(above, "notes"),) if above else ()
+    return _Draft(kind, hits, tuple(notes), cut((*lead, *blocks)))
 
 
 class AnswerComposer:
@@ -103,12 +118,12 @@ class AnswerComposer:
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
             known = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
-            return _Draft("none", (), notes, (known,))
+            return _draft("none", (), notes, (known,))
         if ranking.named:
             blocks = tuple(self._whole(hits[0], ranking.ranked[0])) + self._others(hits[1:])
-            return _Draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
+            return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
         blocks = (*self._excerpt(ranking, hits[0]), *self._others(hits[1:]))
-        return _Draft("candidates", hits, notes, blocks)
+        return _draft("candidates", hits, notes, blocks)
 
     def _source_notes(self, ranking: Ranking, hits: Sequence[Hit]) -> Iterator[str]:
         """Notes on the documentation behind the answer: pages of other versions, missing sources."""
@@ -142,9 +157,16 @@ class AnswerComposer:
             yield from self._renderer.page(hit.id, row.anchor)
 
     def _excerpt(self, ranking: Ranking, hit: Hit) -> Iterator[AnswerBlock]:
-        """The beginning of the best hit: its description, or the heading and the section that matches."""
-        first = ranking.ranked[0]
-        yield from list(self._whole(hit, first))[:2]
+        """The beginning of the best hit: its description, or the heading and the section that matches, and as much
+        more as is short. Sections that only say in which panel something is are not counted.
+        """
+        said = 0
+        for number, block in enumerate(self._whole(hit, ranking.ranked[0])):
+            size = tokens(block.text)
+            if number > 1 and said + size > _EXCERPT_TOKENS and said > _LEAST_SAID:
+                return
+            said += size if number and not _is_box(block.text) else 0
+            yield block
 
     def _others(self, hits: Sequence[Hit]) -> tuple[AnswerBlock, ...]:
         if not hits:
@@ -164,14 +186,20 @@ class AnswerComposer:
             text = text.removeprefix(f"`{entry.name}`").strip()
             return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS)
         page = self._reader.page_entry(hit.id)
-        text = first_sentence(page.summary) if page else ""
+        text = first_sentence(said_of(page, self._reader.page_children(hit.id))) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
 
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:
         overview = self._topics.overview(topic)
         ids = dict.fromkeys((topic, *overview.members, *(row.id for row in ranking.ranked)))
         hits = tuple(self._hit(RankedId(i, 1.0 - 0.02 * n, "topic")) for n, i in enumerate(list(ids)[:limit]))
-        return _Draft("page", hits, tuple(self._source_notes(ranking, hits)), overview.blocks)
+        return _draft("page", hits, tuple(self._source_notes(ranking, hits)), overview.blocks)
+
+
+def _is_box(text: str) -> bool:
+    """Whether a section holds nothing below its heading but a box, as the one that names its panel."""
+    body = text.partition("\n\n")[2]
+    return all(line.startswith(">") for line in body.split("\n") if line)
 
 
 def _is_page(hit: Hit) -> bool:
@@ -179,24 +207,22 @@ def _is_page(hit: Hit) -> bool:
 
 
 def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> DocsAnswer:
-    """Cuts a draft into parts, and adds to each what is left and how to get it. Raises BadQuery."""
-    notes = clip("\n".join(f"> {note}" for note in draft.notes), max_tokens // 3)
-    room = max_tokens - _FOOTER_TOKENS - (tokens(notes) + 1 if notes else 0)
-    pages = paginate(draft.blocks, room)
-    if part > len(pages):
-        raise BadQuery(
-            f"part={part} does not exist: this answer has {len(pages)} part(s) of {max_tokens} tokens."
-        )
-    text, left = pages[part - 1]
-    pieces = [notes, text] if notes and part == 1 else [text]
-    if part < len(pages):
-        pieces.append(_footer(query, part, len(pages), left))
-    return DocsAnswer(draft.kind, "\n\n".join(pieces), draft.hits, draft.notes, part, len(pages))
+    """As many parts of a draft as fit, from ``part`` on; what is left, and how to get it. Raises BadQuery."""
+    parts = draft.parts
+    if part > len(parts):
+        raise BadQuery(f"part={part} does not exist: this answer has {len(parts)} part(s).")
+    text, after = shown(parts, part - 1, max_tokens)
+    if after == len(parts):
+        return DocsAnswer(draft.kind, text, draft.hits, draft.notes, part, len(parts))
+    text, after = shown(parts, part - 1, max_tokens - _FOOTER_TOKENS)
+    footer = _footer(query, range(part, after + 1), len(parts), names_of(parts[after:]))
+    return DocsAnswer(draft.kind, f"{text}\n\n{footer}", draft.hits, draft.notes, part, len(parts), after + 1)
 
 
-def _footer(query: str, part: int, parts: int, left: Sequence[str]) -> str:
+def _footer(query: str, seen: range, parts: int, left: Sequence[str]) -> str:
     """What is left, and the call that gets it; with a blank line above it within ``_FOOTER_TOKENS``."""
-    head = f"_Part {part} of {parts}. Left: "
-    tail = f'. Next: blender_docs("{clip(query, _ASKED_TOKENS)}", part={part + 1})_'
-    names = clip(", ".join(dict.fromkeys(left)), _FOOTER_TOKENS - 1 - tokens(head + tail))
+    span = f"Part {seen[0]}" if len(seen) == 1 else f"Parts {seen[0]} to {seen[-1]}"
+    head = f"_{span} of {parts}. Left: "
+    tail = f'. Next: blender_docs("{clip(query, _ASKED_TOKENS)}", part={seen[-1] + 1})_'
+    names = clip(", ".join(left), _FOOTER_TOKENS - 1 - tokens(head + tail))
     return head + names + tail

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from kb_build.records import NOT_TAKEN
 from kb_build.symbol_lines import (
     default_text,
-    definitions_in,
     first_sentence,
     literal,
+    passage_text,
     subscripts_text,
     type_text,
 )
 from kb_serve.answer.budget import AnswerBlock
-from kb_serve.reader import STRUCT, TYPES, BaseReader, SymbolEntry
+from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -37,6 +37,14 @@ _SHOWN_FLAGS = (
     "classmethod",
     "hidden-by-default",
 )
+_MACHINERY = {
+    "bl_rna_get_subclass",
+    "bl_rna_get_subclass_py",
+    "bl_system_properties_get",
+    "input_template",
+    "output_template",
+    "is_registered_node_type",
+}
 
 
 def _range_text(low: float | None, high: float | None) -> str:
@@ -123,6 +131,11 @@ def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
             )
 
 
+def _is_machinery(entry: SymbolEntry) -> bool:
+    """Whether a member is one that every class has, for Blender's own use, or a class within a class."""
+    return entry.kind == "class" or entry.name in _MACHINERY
+
+
 @dataclass(frozen=True, slots=True)
 class MarkdownRenderer:
     """Renders symbols and pages as Markdown blocks, the most useful first."""
@@ -133,6 +146,8 @@ class MarkdownRenderer:
         """A symbol: a class with a list of its members, an operator or function with its parameters."""
         yield AnswerBlock(self._head(symbol), "description")
         if symbol.kind == "class":
+            yield from self._passage(symbol.path)
+        if symbol.kind == "class":
             yield from self._class(symbol)
         elif symbol.kind in {"operator", "function"}:
             yield from _parameters(symbol)
@@ -140,9 +155,8 @@ class MarkdownRenderer:
             yield from self._module(symbol)
         if symbol.enum_items:
             yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
-        definition = self.manual_definition(symbol)
-        if definition:
-            yield AnswerBlock(definition, "the manual's definition")
+        if symbol.kind != "class":
+            yield from self._passage(symbol.path)
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""
@@ -155,13 +169,14 @@ class MarkdownRenderer:
         if len(others) > 1:
             head += "\n\nSections: " + ", ".join(others)
         yield AnswerBlock(head, "heading")
-        for section in sorted(page.sections, key=lambda section: not anchor or section.anchor != anchor):
+        for section in sorted(page.sections, key=lambda section: not _leads_to(anchor, section)):
             mark = "#" * min(6, section.level + 2)
             if section.text:
                 yield AnswerBlock(f"{mark} {section.title}\n\n{section.text}", section.title)
         if page.children:
             lines = [
-                f"- `{child.slug}` ({child.title}) {first_sentence(child.summary)}"
+                f"- `{child.slug}` ({child.title}) "
+                + first_sentence(said_of(child, self.reader.page_children(child.slug)))
                 for child in self.reader.page_children(slug)
             ]
             yield AnswerBlock("**Pages below**\n" + "\n".join(lines), "pages below")
@@ -222,16 +237,16 @@ class MarkdownRenderer:
                 return page.url + (f"#{anchor}" if anchor else "")
         return ""
 
-    def manual_definition(self, symbol: Symbol) -> str:
-        """What the linked manual page says under the symbol's label; empty for nothing."""
-        if not symbol.label:
-            return ""
-        for target in self.reader.links_from(symbol.path, "manual"):
-            page = self.reader.page(target.partition("#")[0])
-            text = definition_of(symbol.label, page.sections) if page else ""
-            if text:
-                return f"**In the manual** ({page.title if page else ''})\n{text}"
-        return ""
+    def _passage(self, path: str) -> Iterator[AnswerBlock]:
+        """What the manual says about a symbol."""
+        found = self.reader.passage(path)
+        page = self.reader.page(found[0]) if found else None
+        if found is None or page is None:
+            return
+        section = page.sections[found[1]]
+        where = page.title if found[1] == 0 else f"{page.title} › {section.title}"
+        if text := passage_text(section.text, found[2]):
+            yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
 
     def _class(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         members = list(self.reader.members(symbol.path).values())
@@ -250,16 +265,21 @@ class MarkdownRenderer:
             lines = ["- " + entry.line for entry in entries]
             if lines:
                 yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), title.lower())
-        for ancestor in lineage:
-            names = [e.name for e in self.reader.members(ancestor.path).values() if e.kind != "class"]
-            names = [name for name in names if not name.startswith("bl_rna_get_subclass")]
-            if names and ancestor.path != STRUCT:
-                yield AnswerBlock(
-                    f"**Inherited from `{ancestor.name}`**: {', '.join(names)}", f"members of {ancestor.name}"
-                )
+        if inherited := list(self._inherited(symbol.path, lineage)):
+            yield AnswerBlock(f"inherited: + {', '.join(inherited)}", "inherited members")
         below = [entry.name for entry in self.reader.subclasses(symbol.path) if entry.group in {"data", ""}]
         if below:
             yield AnswerBlock(f"**Subclasses**: {', '.join(below)}", "subclasses")
+
+    def _inherited(self, path: str, lineage: Sequence[SymbolEntry]) -> Iterator[str]:
+        """``12 of `Node` `` for every base class that adds members."""
+        seen = set(self.reader.members(path))
+        for ancestor in lineage:
+            members = self.reader.members(ancestor.path)
+            new = [name for name, entry in members.items() if name not in seen and not _is_machinery(entry)]
+            seen |= members.keys()
+            if new and ancestor.path != STRUCT:
+                yield f"{len(new)} of `{ancestor.name}`"
 
     def _module(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         members = [entry for entry in self.reader.members(symbol.path).values() if entry.group != "ui"]
@@ -268,11 +288,14 @@ class MarkdownRenderer:
             yield AnswerBlock("**Contents**\n" + "\n".join(lines), "contents")
 
 
-def definition_of(label: str, sections: Iterable[Section]) -> str:
-    """The definition of the term ``label`` in a manual page; empty for none."""
-    wanted = label.lower()
-    for section in sections:
-        for term, below in definitions_in(section.text):
-            if term.strip("*: ").lower() == wanted:
-                return "\n".join(below)
-    return ""
+def _leads_to(anchor: str, section: Section) -> bool:
+    return bool(anchor) and (section.anchor == anchor or any(name == anchor for name, _ in section.marks))
+
+
+def said_of(page: PageEntry, below: Sequence[PageEntry]) -> str:
+    """A page's summary; of a page that only lists others, which these are."""
+    said = page.summary.removeprefix(page.title).lstrip(". ")
+    if said and not said.startswith("Contents: "):
+        return page.summary
+    titles = ", ".join(child.title for child in below)
+    return f"Contents: {titles}" if titles else ""

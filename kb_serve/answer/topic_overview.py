@@ -1,22 +1,29 @@
-"""Overviews of topics (``cloth``, ``rigid body``, ``uv``): their pages, classes and operators."""
+"""Overviews of topics (``cloth``, ``uv``): how it is done, then the names by weight, and the pages."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
 from kb_serve.answer.budget import AnswerBlock
-from kb_serve.answer.render import first_sentence
+from kb_serve.answer.render import first_sentence, said_of
+from kb_serve.answer.topic_steps import Steps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from kb_serve.reader import BaseReader, PageEntry, SymbolEntry
 
 ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _MAX_WORDS = 4
-_MOST = 200  # entries of one list
+_FIRST = 10  # entries of a list; the others follow all lists
+_MEMBERS = 6
+_NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
+_ASIDE = 0.2  # nodes are found by their own names
+_ON_ITS_MODULE = 2.0
+_UNUSUAL = 0.2  # presets, and what interface code calls
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +32,20 @@ class TopicOverview:
 
     blocks: tuple[AnswerBlock, ...]
     members: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class TopicNames:
+    """The classes and operators of a topic, each with a weight, the heaviest first."""
+
+    keys: frozenset[str]
+    words: tuple[frozenset[str], ...]
+    classes: dict[str, float] = field(default_factory=dict[str, float])
+    operators: dict[str, float] = field(default_factory=dict[str, float])
+
+    def names(self, name: str) -> bool:
+        """Whether a name holds the topic's words."""
+        return any(words <= set(terms(name)) for words in self.words)
 
 
 class Topics:
@@ -68,58 +89,102 @@ class Topics:
         below = self._subtree(slug)
         return len(below) + sum(len(self._reader.symbols_of_page(child)) for child in below)
 
-    def _subtree(self, slug: str, depth: int = 3) -> list[str]:
-        slugs = [slug]
+    def _subtree(self, slug: str, depth: int = 3) -> dict[str, int]:
+        """A page and those below it, each with its depth."""
+        slugs = {slug: 0}
         for child in self._children(slug) if depth else ():
-            slugs += self._subtree(child.slug, depth - 1)
+            for below, far in self._subtree(child.slug, depth - 1).items():
+                slugs.setdefault(below, far + 1)
         return slugs
 
     def overview(self, slug: str) -> TopicOverview:
-        """The page's summary, the pages below it, and the classes and operators that belong to it."""
+        """How it is done, then the classes and operators that belong to the topic by weight, and the pages below."""
         page = self._reader.page_entry(slug)
         assert page is not None
-        words = set(terms(page.title))
-        names = {key(page.title), key(slug.removesuffix("/index").rpartition("/")[2])}
-        explained = [path for below in self._subtree(slug) for path in self._reader.symbols_of_page(below)]
-        named = [path for name in sorted(names) for path in self._reader.classes_named(name)]
-        named += [path for name in sorted(names) for path in self._reader.operators_of(name)]
-        entries = [
-            entry for path in dict.fromkeys((*explained, *named)) if (entry := self._reader.entry(path))
-        ]
-        classes = [entry for entry in entries if entry.kind == "class" and entry.group == "data"]
-        classes.sort(key=lambda entry: self._order(entry, words))
-        operators = [entry for entry in entries if entry.kind == "operator"]
-        operators.sort(key=lambda entry: key(entry.owner.rpartition(".")[2]) not in names)
-        blocks = [AnswerBlock(f"## {page.title}\n\n{page.summary}\n\n{page.url}", "summary")]
-        blocks += _list_of("Classes", [_line(entry) for entry in classes])
-        blocks += _list_of("Operators", [_line(entry) for entry in operators])
-        blocks += _list_of("Pages", list(self._page_lines(slug)))
+        names = self._names(slug, page.title)
+        head = "\n\n".join(filter(None, (f"## {page.title}", self._said(page), page.url)))
+        classes, operators = self._entries(names.classes), self._entries(names.operators)
+        blocks = [AnswerBlock(head, "summary"), *Steps(self._reader, names).blocks()]
+        lists = (
+            ("Classes", [_line(entry) for entry in classes]),
+            ("Operators", [_line(entry) for entry in operators]),
+            ("Pages", [*self._page_lines(slug)]),
+        )
+        for title, lines in lists:
+            blocks += _list_of(title, lines[:_FIRST])
+        for title, lines in lists:
+            blocks += _list_of(f"More {title.lower()}", lines[_FIRST:])
         return TopicOverview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
 
-    def _order(self, entry: SymbolEntry, words: set[str]) -> tuple[bool, bool, int]:
-        """Sorts classes with the topic's name first, and modifiers before their settings."""
-        return (
-            not words <= set(terms(entry.name)),
-            not entry.name.endswith("Modifier"),
-            -len(self._reader.members(entry.path)),
+    def _said(self, page: PageEntry) -> str:
+        """What the page says; of a page that only lists others, what its introduction says."""
+        below = self._children(page.slug)
+        said = said_of(page, below)
+        if said.startswith("Contents: ") and below[0].title == "Introduction":
+            return said_of(below[0], ()) or said
+        return said
+
+    def _names(self, slug: str, title: str) -> TopicNames:
+        """The classes and operators of a topic: those that its pages explain, and those with its name."""
+        last = slug.removesuffix("/index").rpartition("/")[2]
+        names = TopicNames(
+            frozenset({key(title), key(last)}),
+            tuple(words for words in {frozenset(terms(title)), frozenset(terms(last))} if words),
         )
+        nearness: dict[str, float] = {}
+        for below, depth in self._subtree(slug).items():
+            for path in self._reader.symbols_of_page(below):
+                nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
+        for path, words in self._classes.items():
+            if any(wanted <= words for wanted in names.words):
+                nearness[path] = _NAMED * nearness.get(path, _ASIDE if "Node" in path else _FAR)
+        for module in names.keys:
+            for path in self._reader.operators_of(module):
+                nearness[path] = _ON_ITS_MODULE * _NEAR
+        weights = self._weights(nearness)
+        for path, near in sorted(nearness.items(), key=lambda row: (-row[1] * weights[row[0]], row[0])):
+            entry = self._reader.entry(path)
+            if entry is not None and entry.kind == "operator":
+                names.operators[path] = near * weights[path] * (_UNUSUAL if "preset" in entry.name else 1)
+            elif entry is not None and entry.kind == "class" and entry.group == "data":
+                names.classes[path] = near * weights[path]
+        names.operators = dict(sorted(names.operators.items(), key=lambda row: -row[1]))
+        return names
+
+    @cached_property
+    def _classes(self) -> dict[str, frozenset[str]]:
+        """Every data class with the words of its name."""
+        return {path: frozenset(terms(name)) for path, name in self._reader.data_classes()}
+
+    def _weights(self, paths: Iterator[str] | dict[str, float]) -> dict[str, float]:
+        """What symbols count: themselves, and of a class the heaviest of its members."""
+        own = self._reader.weights(list(paths))
+        totals: dict[str, float] = {}
+        for path in paths:
+            totals[path] = 0.5 + own.get(path, 0.0)
+        members = self._reader.member_weights([path for path in paths if path in self._classes])
+        for path, heaviest in members.items():
+            totals[path] += sum(sorted(heaviest, reverse=True)[:_MEMBERS]) / _MEMBERS
+        return totals
+
+    def _entries(self, paths: Sequence[str] | dict[str, float]) -> list[SymbolEntry]:
+        return [entry for path in paths if (entry := self._reader.entry(path))]
 
     def _page_lines(self, slug: str, depth: int = 2) -> Iterator[str]:
         for child in self._children(slug):
-            yield f"`{child.slug}` ({child.title}) {first_sentence(child.summary)}"
+            below = self._children(child.slug)
+            yield f"`{child.slug}` ({child.title}) {first_sentence(said_of(child, below))}"
             if depth > 1:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
 
 
 def _line(entry: SymbolEntry) -> str:
-    return f"`{entry.path}` — {first_sentence(entry.line.partition(' — ')[2]) or entry.label}"
+    said = first_sentence(entry.line.partition(" — ")[2]) or entry.label
+    return f"`{entry.path}`" + (f" — {said}" if said != entry.name else "")
 
 
-def _list_of(title: str, lines: list[str]) -> list[AnswerBlock]:
+def _list_of(title: str, lines: Sequence[str]) -> list[AnswerBlock]:
     if not lines:
         return []
-    items = "\n".join(
-        f"- {line}" if not line.startswith("  ") else f"  - {line.strip()}" for line in lines[:_MOST]
-    )
-    more = f"\n- … {len(lines) - _MOST} more" if len(lines) > _MOST else ""
-    return [AnswerBlock(f"**{title}**\n{items}{more}", title.lower())]
+    items = "\n".join(f"  - {line.strip()}" if line.startswith("  ") else f"- {line}" for line in lines)
+    return [AnswerBlock(f"**{title}**\n{items}", title.lower())]

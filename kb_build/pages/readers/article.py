@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from bs4 import Tag
@@ -69,6 +69,8 @@ class ArticleReader:
         self._folder = posixpath.dirname(slug)
         self._slug = slug
         self._open: list[str] = []  # blocks read since the last heading
+        self._names: list[str] = []  # addresses that lead to that heading
+        self._ahead: list[str] = []  # addresses that lead to what comes next
 
     def flow(self, node: Tag) -> None:
         """Read an element that may hold headings: the article itself, and the sections within."""
@@ -91,6 +93,7 @@ class ArticleReader:
 
     def _heading(self, node: Tag, parent: Tag) -> None:
         self._close()
+        self._names, self._ahead = [*self._ahead, attribute(parent, "id")], []
         named = parent.name == "section" or "section" in classes_of(parent)
         first = named and parent.find(list(HEADINGS)) is node
         title = md.fold(md.straight(plain_text(node)))
@@ -100,7 +103,8 @@ class ArticleReader:
     def _close(self) -> None:
         sections = self._article.sections
         if sections:
-            sections[-1] = replace(sections[-1], text=md.join([sections[-1].text, *self._open]))
+            last = sections[-1]
+            sections[-1] = md.section(last.anchor, last.title, last.level, self._open, self._names)
             self._open = []
 
     # Blocks ------------------------------------------------------------------------------------------------
@@ -129,6 +133,10 @@ class ArticleReader:
         return blocks
 
     def _block(self, node: Tag) -> list[str]:
+        names, self._ahead = [*self._ahead, attribute(node, "id")], []
+        return md.marked(self._of_element(node), names)
+
+    def _of_element(self, node: Tag) -> list[str]:
         classes = classes_of(node)
         for name in classes:
             if writer := self._BY_CLASS.get(name):
@@ -298,6 +306,7 @@ class ArticleReader:
         return self._inlines(node)
 
     def _span(self, node: Tag) -> str:
+        self._ahead += [attribute(node, "id")] if not node.contents else []
         for name in classes_of(node):
             if name == "math":
                 return md.formula(node.get_text().removeprefix(r"\(").removesuffix(r"\)"))

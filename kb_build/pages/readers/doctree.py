@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from docutils import nodes
@@ -65,8 +66,11 @@ class DoctreeReader:
             self._sections.append(Section(anchor="", title="", level=1, text=""))
         if any(preamble):
             first = self._sections[0]
-            text = md.join([*preamble, first.text])
-            self._sections[0] = Section(anchor=first.anchor, title=first.title, level=first.level, text=text)
+            lead = md.section("", "", 1, preamble, ())
+            below = (lead.text.count("\n") + 2) if first.text else 0
+            marks = [(name, line + below if line >= 0 else line) for name, line in first.marks]
+            text = md.join([lead.text, first.text])
+            self._sections[0] = replace(first, text=text, marks=(*lead.marks, *marks))
         return tuple(self._sections)
 
     def _section(self, node: nodes.section, level: int) -> None:
@@ -88,9 +92,7 @@ class DoctreeReader:
             else:
                 blocks += self._block(child)
         opened = self._sections[at]
-        self._sections[at] = Section(
-            anchor=opened.anchor, title=opened.title, level=level, text=md.join(blocks)
-        )
+        self._sections[at] = md.section(opened.anchor, opened.title, level, blocks, ids)
 
     # Blocks ------------------------------------------------------------------------------------------------
 
@@ -102,6 +104,9 @@ class DoctreeReader:
             return [md.fold(md.straight(node.astext()))]
         if not isinstance(node, nodes.Element) or isinstance(node, _SILENT):
             return []
+        return md.marked(self._of_element(node), node["ids"])
+
+    def _of_element(self, node: nodes.Element) -> list[str]:
         label = ADMONITIONS.get(type(node))
         if label is not None:
             return [md.quote(self._blocks(node.children), label)]

@@ -11,6 +11,8 @@ import re
 from bisect import insort
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.records import Section
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
@@ -22,19 +24,46 @@ _MOST_SPANS = 200
 # RST sources are typed in ASCII and made typographic by Sphinx when it writes HTML. ASCII is what people type
 # into a query, so both forms are brought back to it.
 _STRAIGHT = str.maketrans(
-    {"’": "'", "‘": "'", "“": '"', "”": '"', "–": "--", "—": "---", "…": "...", "\u200b": ""}
+    {"\ue000": "", "’": "'", "‘": "'", "“": '"', "”": '"', "–": "--", "—": "---", "…": "...", "\u200b": ""}
 )
 _LANGUAGES = {"default": "", "none": "", "text": "", "python3": "python", "py": "python"}
 _BACKTICKS = re.compile("`+")
 _LIST_MARKER = re.compile(r"(?:- |\d+\. )")
 # Stands for an icon until the line is folded: brackets that held nothing else go with it.
 ICON = "\ufffc"
+# Surrounds an address within a text under way, at the end of the line that it leads to.
+_MARK = "\ue000"
+_SYMBOL = re.compile(r"bpy-[a-z0-9-]{1,200}")
+_MARKED = re.compile(f"{_MARK}({_SYMBOL.pattern}){_MARK}")
 _HOLLOW = re.compile(rf"\s*\(\s*{ICON}\s*\)|{ICON}")
 
 
 def straight(text: str) -> str:
     """Prose with typographic quotes, dashes and dots replaced by their ASCII spelling."""
     return text.translate(_STRAIGHT)
+
+
+def marked(blocks: list[str], names: Iterable[str]) -> list[str]:
+    """Blocks whose first line is where the addresses ``names`` lead to; others than symbols' are left out."""
+    marks = "".join(f"{_MARK}{name}{_MARK}" for name in names if _SYMBOL.fullmatch(name))
+    if not marks or not blocks:
+        return blocks
+    line, end, rest = blocks[0].partition("\n")
+    return [f"{line}{marks}{end}{rest}", *blocks[1:]]
+
+
+def section(anchor: str, title: str, level: int, blocks: list[str], names: Iterable[str]) -> Section:
+    """A section of these blocks, to which the addresses ``names`` lead."""
+    found: dict[str, int] = {name: -1 for name in names if _SYMBOL.fullmatch(name)}
+    text = join(blocks)
+    if _MARK in text:
+        lines = text.split("\n")
+        for number, line in enumerate(lines):
+            if _MARK in line:
+                found |= dict.fromkeys(_MARKED.findall(line), number)
+                lines[number] = _MARKED.sub("", line)
+        text = "\n".join(lines)
+    return Section(anchor, title, level, text, tuple(found.items()))
 
 
 def fold(text: str) -> str:

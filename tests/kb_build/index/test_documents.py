@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.index.analysis import STOP_WORDS, terms
-from kb_build.index.documents import Document, chapter_of, definitions, make_units, topic_documents
+from kb_build.index.documents import Document, chapter_of, make_units, topic_documents
 from kb_build.index.postings import vocabulary
 from kb_build.records import EnumItem, Link, Page, Parameter, Section, Symbol
 
@@ -90,24 +90,6 @@ def test_a_topic_holds_the_texts_of_its_units() -> None:
     assert set(topics) == {OWNER.path, PAGE.slug}
     assert "Finer simulation" in " ".join(topics[OWNER.path].body)
     assert "How fine it is." in " ".join(topics[PAGE.slug].body)
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("**Quality Steps**\n    Finer.\n    Slower.\n\nAfter.", {"qualitysteps": "Finer. Slower. "}),
-        ("**A**:\n    One.\n**B (unit)**\n    Two.", {"a": "One.", "b": "Two."}),
-        ("  **In**\n      Deep.\n\n      Deeper.\n  Out.", {"in": "Deep.  Deeper."}),
-        ("A **bold** word.\n    Not a term.", {}),
-        ("**Nothing below**", {"nothingbelow": ""}),
-        ("", {}),
-    ],
-)
-def test_definition_lists_are_read_by_their_indent(text: str, expected: dict[str, str]) -> None:
-    page = Page("a", "manual", "5.1", "A", (Section("", "A", 1, text),))
-    assert {name: text.strip() for name, text in definitions(page)} == {
-        k: v.strip() for k, v in expected.items()
-    }
 
 
 @pytest.mark.parametrize(

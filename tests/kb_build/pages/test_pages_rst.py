@@ -73,6 +73,12 @@ def test_sections_keep_document_order_levels_and_anchors(manual: dict[str, Page]
     assert outline == [(1, "Introduction", "introduction"), (2, "Options", "options"), (2, "Options", "id1")]
 
 
+def test_addresses_of_symbols_are_kept_with_the_line_that_they_lead_to(manual: dict[str, Page]) -> None:
+    section = manual["physics/cloth/settings/index"].sections[0]
+    places = {name: section.text.split("\n")[line] if line >= 0 else "" for name, line in section.marks}
+    assert places == {"bpy-types-clothsettings": "", "bpy-types-clothsettings-quality": "**Quality Steps**"}
+
+
 def test_property_descriptions_stay_definitions(manual: dict[str, Page]) -> None:
     text = manual["physics/cloth/settings/index"].text
     assert "**Quality Steps**\n  How many times each frame is solved." in text

@@ -1,4 +1,4 @@
-"""Text is cut to fit, never lost."""
+"""Text is cut into parts that no budget changes, and shown as far as it fits; nothing is lost."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from kb_serve.answer.budget import AnswerBlock, clip, paginate, tokens
+from kb_serve.answer.budget import PART_TOKENS, AnswerBlock, clip, cut, names_of, shown, tokens
 
 WORDS = (
     "the",
@@ -26,6 +26,13 @@ def text_of(chance: random.Random, size: int) -> str:
     """Prose, long lines, blank lines, lists, and words without any blank."""
     pieces = [chance.choice([*WORDS, "\n", "\n\n", "- ", "  ", "y" * 400]) for _ in range(size)]
     return " ".join(pieces).strip() or "x"
+
+
+def blocks_of(chance: random.Random) -> list[AnswerBlock]:
+    return [
+        AnswerBlock(text_of(chance, chance.randrange(1, 120)), f"block {n}")
+        for n in range(chance.randrange(1, 12))
+    ]
 
 
 def squeezed(text: str) -> str:
@@ -49,9 +56,9 @@ def test_a_clipped_text_fits_and_is_a_beginning(budget: int) -> None:
             "\n" * 200,
             "ü" * 90,
         ):
-            shown = clip(text, budget)
-            assert tokens(shown) <= max(budget, 2)
-            assert shown == text or (shown.endswith("…") and text.startswith(shown.removesuffix(" …")))
+            part = clip(text, budget)
+            assert tokens(part) <= max(budget, 2)
+            assert part == text or (part.endswith("…") and text.startswith(part.removesuffix(" …")))
 
 
 def test_what_fits_is_not_clipped() -> None:
@@ -59,37 +66,43 @@ def test_what_fits_is_not_clipped() -> None:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_every_part_fits_and_nothing_is_lost(seed: int) -> None:
+def test_every_part_is_short_and_nothing_is_lost(seed: int) -> None:
+    blocks = blocks_of(random.Random(seed))
+    parts = cut(blocks)
+    assert max(tokens(part.text) for part in parts) <= PART_TOKENS
+    whole = "".join(part.glue + part.text for part in parts).removeprefix("\n\n")
+    assert whole == "\n\n".join(block.text for block in blocks)
+    assert names_of(parts) == [block.name for block in blocks]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_going_on_where_an_answer_ended_shows_everything_once_for_any_budget(seed: int) -> None:
     chance = random.Random(seed)
-    blocks = [
-        AnswerBlock(text_of(chance, chance.randrange(1, 120)), f"block {n}")
-        for n in range(chance.randrange(1, 12))
-    ]
-    budget = chance.randrange(10, 400)
-    parts = paginate(blocks, budget)
-    assert max(tokens(text) for text, _ in parts) <= budget
-    assert squeezed("".join(text for text, _ in parts)) == squeezed("".join(block.text for block in blocks))
-    assert parts[-1][1] == []
+    blocks = blocks_of(chance)
+    parts, number, told = cut(blocks), 0, ""
+    while number < len(parts):
+        budget = chance.randrange(PART_TOKENS, 400)
+        text, after = shown(parts, number, budget)
+        assert tokens(text) <= budget
+        assert after > number
+        told, number = told + text, after
+    assert squeezed(told) == squeezed("".join(block.text for block in blocks))
 
 
-def test_remaining_blocks_are_named_in_order() -> None:
-    blocks = [
-        AnswerBlock("a " * 60, "first"),
-        AnswerBlock("b " * 60, "second"),
-        AnswerBlock("c " * 60, "third"),
-    ]
-    assert [left for _, left in paginate(blocks, 45)] == [["second", "third"], ["third"], []]
+@pytest.mark.parametrize("seed", range(10))
+def test_a_part_begins_at_the_same_word_for_every_budget(seed: int) -> None:
+    chance = random.Random(seed)
+    parts = cut(blocks_of(chance))
+    first = chance.randrange(len(parts))
+    small, large = (shown(parts, first, budget)[0] for budget in (PART_TOKENS, 1_000))
+    assert large.startswith(small)
 
 
-def test_blocks_that_fit_share_a_part() -> None:
-    blocks = [AnswerBlock("one", "a"), AnswerBlock("two", "b"), AnswerBlock("three", "c")]
-    assert paginate(blocks, 100) == [("one\n\ntwo\n\nthree", [])]
-
-
-def test_a_block_is_not_begun_where_little_room_is_left() -> None:
-    blocks = [AnswerBlock("x" * 80), AnswerBlock("y\n" * 30)]
-    assert [text[:1] for text, _ in paginate(blocks, 32)] == ["x", "y"]
+def test_blocks_that_fit_are_shown_together() -> None:
+    parts = cut([AnswerBlock("one", "a"), AnswerBlock("two", "b"), AnswerBlock("three", "c")])
+    assert shown(parts, 0, 100) == ("one\n\ntwo\n\nthree", 3)
+    assert shown(parts, 1, 1) == ("two", 2)
 
 
 def test_nothing_is_one_empty_part() -> None:
-    assert paginate([], 10) == [("", [])]
+    assert shown(cut([]), 0, 10) == ("", 1)

@@ -26,34 +26,42 @@ QUERIES = (
     'mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]', "rna_enum_icon_items", "xyzzy plugh",
     "AttributeError: 'Action' object has no attribute 'fcurves'", "bpy.types.UILayout.label", "EEVEE bloom",
 )  # fmt: skip
-FOOTER = re.compile(r"\n\n_Part \d+ of \d+\. Left: .*\. Next: blender_docs\(.*\)_$", re.DOTALL)
+FOOTER = re.compile(r"\n\n_Parts? \d+(?: to \d+)? of \d+\. Left: .*\. Next: blender_docs\(.*\)_$", re.DOTALL)
 
 
 def body(answer: DocsAnswer) -> str:
-    """What a part says, without the notes before it and the footer behind it; white space left out."""
-    text = FOOTER.sub("", answer.text) if answer.part < answer.parts else answer.text
-    if answer.part == 1 and answer.notes:
-        text = text.partition("\n\n")[2]
-    return "".join(text.split())
+    """What an answer says, without the footer behind it; white space left out."""
+    return "".join(FOOTER.sub("", answer.text).split())
 
 
 def whole(kb: KnowledgeBase, query: str, max_tokens: int) -> list[DocsAnswer]:
-    first = kb.query(query, max_tokens=max_tokens)
-    return [first, *(kb.query(query, max_tokens=max_tokens, part=n) for n in range(2, first.parts + 1))]
+    """An answer and those to the calls that its footers name."""
+    answers = [kb.query(query, max_tokens=max_tokens)]
+    while answers[-1].next_part:
+        answers.append(kb.query(query, max_tokens=max_tokens, part=answers[-1].next_part))
+    return answers
 
 
 @pytest.mark.parametrize("query", QUERIES)
-def test_parts_fit_the_budget_and_are_complete_together(kb: KnowledgeBase, query: str) -> None:
+def test_answers_fit_the_budget_and_are_complete_together(kb: KnowledgeBase, query: str) -> None:
     chance = random.Random(query)
     everything = kb.query(query, max_tokens=1_000_000)
-    assert everything.parts == 1
+    assert everything.next_part == 0
     for budget in (LEAST_TOKENS, *(chance.randrange(LEAST_TOKENS, 3_000) for _ in range(4))):
-        parts = whole(kb, query, budget)
-        assert max(tokens(answer.text) for answer in parts) <= budget
-        assert "".join(map(body, parts)) == body(everything)
-        assert {(answer.kind, answer.hits, answer.notes, answer.parts) for answer in parts} == {
-            (everything.kind, everything.hits, everything.notes, len(parts))
+        answers = whole(kb, query, budget)
+        assert max(tokens(answer.text) for answer in answers) <= budget
+        assert "".join(map(body, answers)) == body(everything)
+        assert {(answer.kind, answer.hits, answer.notes, answer.parts) for answer in answers} == {
+            (everything.kind, everything.hits, everything.notes, everything.parts)
         }
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_a_part_is_the_same_for_every_budget(kb: KnowledgeBase, query: str) -> None:
+    part = 1 + kb.query(query).parts // 2
+    small, large = (kb.query(query, max_tokens=budget, part=part) for budget in (LEAST_TOKENS, 2_000))
+    assert small.parts == large.parts
+    assert body(large).startswith(body(small))
 
 
 def test_the_budget_holds_for_any_symbol_and_any_budget(kb: KnowledgeBase, reader: BaseReader) -> None:
@@ -71,11 +79,11 @@ def test_the_budget_holds_for_any_symbol_and_any_budget(kb: KnowledgeBase, reade
 @pytest.mark.parametrize("query", QUERIES)
 def test_the_footer_names_what_is_left_and_the_call_that_fetches_it(kb: KnowledgeBase, query: str) -> None:
     first = kb.query(query, max_tokens=LEAST_TOKENS)
-    if first.parts == 1:
+    if not first.next_part:
         assert "_Part" not in first.text
         return
-    assert f"_Part 1 of {first.parts}. Left: " in first.text
-    assert re.search(r"Next: blender_docs\(\".+\", part=2\)_$", first.text)
+    assert f" of {first.parts}. Left: " in first.text
+    assert re.search(rf"Next: blender_docs\(\".+\", part={first.next_part}\)_$", first.text)
     last = kb.query(query, max_tokens=LEAST_TOKENS, part=first.parts)
     assert "_Part" not in last.text
 
@@ -84,7 +92,7 @@ def test_the_footers_call_repeats_a_short_query(kb: KnowledgeBase) -> None:
     first = kb.query("bpy.types.Object", max_tokens=300)
     match = re.search(r'blender_docs\("(.+)", part=(\d+)\)', first.text)
     assert match is not None
-    assert kb.query(match[1], max_tokens=300, part=int(match[2])).part == 2
+    assert kb.query(match[1], max_tokens=300, part=int(match[2])).part == first.next_part
 
 
 @pytest.mark.parametrize(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 from asking import classes, of_data, paths
 
-from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Section, Symbol
-from kb_serve.answer.render import MarkdownRenderer, definition_of, facts
+from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
+from kb_serve.answer.render import MarkdownRenderer, facts, said_of
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -96,7 +97,7 @@ def test_a_function_shows_parameters_and_returns(kb: KnowledgeBase) -> None:
     assert "- (Vector)" in text
 
 
-def test_a_class_lists_its_own_members_and_names_inherited_ones(
+def test_a_class_lists_its_own_members_and_counts_inherited_ones(
     kb: KnowledgeBase, reader: BaseReader
 ) -> None:
     for path in classes(reader, count=80):
@@ -106,9 +107,11 @@ def test_a_class_lists_its_own_members_and_names_inherited_ones(
                 assert f"- {entry.line}" in text, entry.path
         lineage = list(reader.lineage(path))[1:]
         assert not lineage or "base classes: " + ", ".join(f"`{base.name}`" for base in lineage) in text
+        inherited = text.partition("inherited: + ")[2].partition("\n")[0]
+        assert len(inherited) < 40 * len(lineage)
         for ancestor in lineage[:-1]:
-            own = [e.name for e in reader.members(ancestor.path).values() if e.kind == "property"]
-            assert all(name in text for name in own)
+            own = [e for e in reader.members(ancestor.path).values() if e.kind == "property"]
+            assert not own or f" of `{ancestor.name}`" in inherited
 
 
 def test_a_base_class_names_its_subclasses(kb: KnowledgeBase) -> None:
@@ -203,20 +206,18 @@ def test_pages_below_are_listed(kb: KnowledgeBase) -> None:
     assert "- `physics/cloth/introduction` (Introduction)" in text
 
 
-DEFINITIONS = (
-    "Lead.\n\n**Distance**\n  The gap.\n\n  > **Note:** Half.\n\n**Size (m)**:\n  How big.\n\nAfter."
-)
+def test_a_symbol_has_the_manuals_words_from_its_own_place(kb: KnowledgeBase) -> None:
+    text = kb.query("ClothSettings.quality").text
+    assert "**In the manual** (Settings)\nHow many times each frame is solved." in text
+    assert "**In the manual**" not in kb.query("ClothSettings.air_damping").text
 
 
-@pytest.mark.parametrize(
-    ("label", "text"),
-    [("Distance", "  The gap.\n\n  > **Note:** Half.\n"), ("distance",
-     "  The gap.\n\n  > **Note:** Half.\n"), ("Lead", ""),
-     ("Gap", ""), ("", "")],
-)  # fmt: skip
-def test_manual_definitions_are_found_by_label(label: str, text: str) -> None:
-    sections = [Section("", "A", 1, "No list."), Section("b", "B", 2, DEFINITIONS)]
-    assert definition_of(label, sections).strip() == text.strip()
+def test_a_page_that_only_lists_others_says_which(kb: KnowledgeBase, reader: BaseReader) -> None:
+    page = reader.page_entry("physics/cloth/settings/index")
+    assert page is not None
+    below = reader.page_children(page.slug)
+    assert said_of(page, below).startswith("Contents: Collisions")
+    assert said_of(replace(page, summary="Of cloth."), below) == "Of cloth."
 
 
 def test_no_symbol_of_any_kind_fails_to_be_shown(renderer: MarkdownRenderer, reader: BaseReader) -> None:

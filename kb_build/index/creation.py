@@ -1,0 +1,164 @@
+"""The call that makes an instance of a class: ``obj.modifiers.new("Cloth", 'CLOTH')``.
+
+Found in RNA alone. A collection whose own class has ``new`` makes its items; an enumeration or a type's name among the
+call's arguments decides which subclass. What no collection makes is made by the operator of that name.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_build.index.analysis import key
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from kb_build.records import Parameter, Symbol
+
+TYPES = "bpy.types."
+_MAKERS = ("new", "create", "add")
+_ADDS = ("_add", "add")
+# Names by which scripts hold what is reached from the context.
+_HELD = (
+    ("bpy.context.object", "obj"),
+    ("bpy.context.scene", "scene"),
+    ("bpy.context.view_layer", "view_layer"),
+)
+_HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTree": "tree", "Curve": "curve"}
+
+
+class Creation(NamedTuple):
+    """How an instance is made: the call, the function or operator that is called, and what decides the type."""
+
+    call: str
+    maker: str
+    choice: str = ""
+
+
+def creation_calls(symbols: Iterable[Symbol]) -> dict[str, Creation]:
+    """Path of a class → how an instance is made, for every class that has such a call."""
+    return dict(_Calls(symbols).found())
+
+
+def held(reached: str) -> str:
+    """An expression with the short names that scripts give to the object and the scene."""
+    for prefix, name in _HELD:
+        if reached == prefix or reached.startswith((f"{prefix}.", f"{prefix}[")):
+            return name + reached[len(prefix) :]
+    return reached
+
+
+class _Calls:
+    def __init__(self, symbols: Iterable[Symbol]) -> None:
+        self._symbols = {symbol.path: symbol for symbol in symbols}
+        self._below: dict[str, list[Symbol]] = defaultdict(list)
+        for symbol in self._symbols.values():
+            if symbol.kind == "class" and symbol.base:
+                self._below[symbol.base].append(symbol)
+
+    def found(self) -> Iterator[tuple[str, Creation]]:
+        calls: dict[str, Creation] = dict(self._by_operators())
+        for holder in sorted(self._collections(), key=self._far):
+            for cls, creation in self._by_collection(holder):
+                known = calls.get(cls)
+                if known is None or known.maker.startswith("bpy.ops."):
+                    calls[cls] = creation
+        yield from calls.items()
+
+    def _collections(self) -> Iterator[Symbol]:
+        for symbol in self._symbols.values():
+            if symbol.kind == "property" and symbol.type == "collection" and symbol.collection:
+                yield symbol
+
+    def _far(self, holder: Symbol) -> tuple[bool, int, int]:
+        owner = holder.owner.removeprefix(TYPES)
+        return owner not in _HOLDERS, self._owner(holder).count("."), len(holder.path)
+
+    def _owner(self, holder: Symbol) -> str:
+        name = holder.owner.removeprefix(TYPES)
+        owner = self._symbols.get(holder.owner)
+        return _HOLDERS.get(name) or held(owner.reached if owner and owner.reached else name.lower())
+
+    def _by_collection(self, holder: Symbol) -> Iterator[tuple[str, Creation]]:
+        for name in _MAKERS:
+            maker = self._symbols.get(f"{TYPES}{holder.collection}.{name}")
+            if maker is not None and maker.returns:
+                break
+        else:
+            return
+        base = self._symbols.get(f"{TYPES}{maker.returns[0].type}") or self._symbols.get(
+            f"{TYPES}{holder.target}"
+        )
+        if base is None:
+            return
+        head = f"{self._owner(holder)}.{holder.name}.{maker.name}"
+        types = next((p for p in maker.parameters if p.name == "type"), None)
+        items = {item.identifier: item.name for item in types.enum_items} if types else {}
+        # What takes the name of any class is a string, or an enumeration whose items come at run time.
+        by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"})
+        for cls in self._descendants(base.path):
+            if choice := cls.name if by_name else _choice(cls, base, items):
+                yield cls.path, Creation(f"{head}({_arguments(maker, cls, choice)})", maker.path, choice)
+        # Where a type must be told, only data-blocks are also made of the base class.
+        if not items or (not by_name and holder.owner == f"{TYPES}BlendData"):
+            first = next(iter(items), "")
+            yield base.path, Creation(f"{head}({_arguments(maker, base, first)})", maker.path)
+
+    def _descendants(self, path: str) -> Iterator[Symbol]:
+        for cls in self._below.get(path, ()):
+            yield cls
+            yield from self._descendants(cls.path)
+
+    def _by_operators(self) -> Iterator[tuple[str, Creation]]:
+        """Operators called ``…_add`` whose module and name, or name alone, are those of a class."""
+        made: dict[str, Symbol] = {}
+        for symbol in self._symbols.values():
+            if symbol.kind == "operator" and symbol.name.endswith("add"):
+                module = symbol.owner.rpartition(".")[2]
+                name = symbol.name.removesuffix("_add")
+                made.setdefault(key(name), symbol)
+                made[key(module + name)] = symbol
+        for symbol in self._symbols.values():
+            operator = made.get(key(symbol.name))
+            if (
+                operator
+                and symbol.kind == "class"
+                and symbol.group == "data"
+                and symbol.path not in self._below
+            ):
+                yield symbol.path, Creation(f"{operator.path}()", operator.path)
+
+
+def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
+    """The item of the maker's enumeration that stands for a subclass: ``CLOTH`` for ClothModifier."""
+    name = key(cls.name.removesuffix(base.name).removeprefix(base.name))
+    label = key(cls.label.removesuffix(base.label))
+    by_identifier = {key(identifier): identifier for identifier in items}
+    for wanted in (key(cls.name), name):
+        if wanted in by_identifier:
+            return by_identifier[wanted]
+    # Several classes may have one label, as the modifiers of meshes and of drawings.
+    for identifier, text in items.items():
+        if text and key(text) in {label, key(cls.label)} and key(identifier) in key(cls.name):
+            return identifier
+    return ""
+
+
+def _arguments(maker: Symbol, cls: Symbol, choice: str) -> str:
+    return ", ".join(
+        _argument(parameter, cls, choice)
+        for parameter in maker.parameters
+        if parameter.required or (choice and parameter.name == "type")
+    )
+
+
+def _argument(parameter: Parameter, cls: Symbol, choice: str) -> str:
+    if parameter.name == "type" and choice:
+        return f"'{choice}'" if parameter.enum_items else f'"{choice}"'
+    if parameter.name == "name":
+        label = cls.label or cls.name
+        return f'"{label.removesuffix(" Modifier").removesuffix(" Constraint")}"'
+    if parameter.enum_items:
+        return f"'{parameter.enum_items[0].identifier}'"
+    return parameter.name

@@ -1,0 +1,345 @@
+"""How a topic's work is done, in order: the calls that make its things, where these go, what is set, what runs it.
+
+Computed from the schema and weights: a class that has a creation call is made; what points to it is where it goes; its
+own settings and those it points to are set; the operators of the topic that neither make nor remove anything run it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_serve.answer.budget import AnswerBlock
+from kb_serve.reader import STRUCT, TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from kb_serve.answer.topic_overview import TopicNames
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+_MAKERS = 3
+_CHOICES = 12  # types that one maker is shown with
+_SETTINGS = 8
+_HOLDERS = 4  # pointers of a thing whose settings are shown
+_FUNCTIONS = 3
+_RUNS = 4
+_MAKES = ("add", "new", "create", "insert")
+_REMOVES = (
+    "remove",
+    "delete",
+    "free",
+    "clear",
+    "preset",
+    "copy",
+    "paste",
+    "select",
+    "move",
+    "reset",
+    "toggle",
+    "hide",
+)
+_LEAST_SHARE = 0.25  # of the heaviest class's weight
+_USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
+_INTERFACE = ("tool_settings", "space_data", "preferences", "window", "studio_light")
+_PLAIN = ("name", "index")  # every thing has them
+_CACHE = f"{TYPES}PointCache"
+_NODE = f"{TYPES}Node"
+_HUMP = re.compile(r"[A-Z]+[a-z0-9]*$")
+
+
+class Steps:
+    """The steps of one topic."""
+
+    def __init__(self, reader: BaseReader, names: TopicNames) -> None:
+        self._reader = reader
+        self._names = names
+        self._shown: set[str] = set()
+        self._creations = reader.creations(list(names.classes))
+        # Where classes have the topic's name, the others of its pages are other topics' matter.
+        named = [path for path in names.classes if names.names(path)]
+        self._classes = named or list(names.classes)
+
+    def blocks(self) -> Iterator[AnswerBlock]:
+        """One block, a numbered list; none where nothing is made, set or run."""
+        work = (self._make(), self._there()) if self._is_made() else (self._there(), self._make())
+        steps = [*self._functions(), *(step for part in work for step in part), *self._run()]
+        if steps:
+            lines = (f"{number}. {step}" for number, step in enumerate(steps, 1))
+            yield AnswerBlock("**How it is done**\n" + "\n".join(lines), "how it is done")
+
+    # What is made
+
+    def _is_made(self) -> bool:
+        """Whether the topic's main class is made, or held by a modifier that is."""
+        return any(path in self._creations for path in self._classes[:1]) or any(
+            map(self._is_own_modifier, self._classes)
+        )
+
+    def _make(self) -> Iterator[str]:
+        groups: dict[str, list[str]] = defaultdict(list)
+        # A modifier with the topic's name makes the settings that it holds.
+        for path in sorted(self._classes, key=lambda path: not self._is_own_modifier(path)):
+            creation = self._creations.get(path)
+            if creation and not any(part in creation.call for part in _INTERFACE):
+                groups[creation.maker].append(path)
+        # The first group is the heaviest class's; of the others, many light classes outweigh a single one.
+        first, others = [*groups.values()][:1], [*groups.values()][1:]
+        done = 0
+        for paths in (*first, *sorted(others, key=lambda paths: -self._weight_of(paths))):
+            is_main = self._is_own_modifier(paths[0]) or self._counts(*paths)
+            if is_main and paths[0] not in self._shown and done < _MAKERS:
+                yield from self._make_one(paths, is_first=not done)
+                done += 1
+
+    def _make_one(self, paths: Sequence[str], *, is_first: bool) -> Iterator[str]:
+        main = paths[0]
+        if self._reader.descends(main, _NODE):
+            yield from self._tree(main)
+            yield from self._nodes(paths)
+            return
+        yield self._call(paths)
+        if self._creations[main].call.startswith("bpy.data."):
+            yield from self._goes(main)
+        if is_first or self._names.names(main):
+            yield from self._set(main)
+        if is_first:
+            yield from self._own_tree(main)
+
+    def _counts(self, *paths: str) -> bool:
+        """Whether classes weigh enough, together, beside the topic's heaviest."""
+        return self._weight_of(paths) >= _LEAST_SHARE * max(
+            map(self._names.classes.__getitem__, self._classes)
+        )
+
+    def _weight_of(self, paths: Iterable[str]) -> float:
+        return sum(map(self._names.classes.__getitem__, paths))
+
+    def _is_own_modifier(self, path: str) -> bool:
+        name = path.removeprefix(TYPES)
+        return name.endswith("Modifier") and key(name.removesuffix("Modifier")) in self._names.keys
+
+    def _nodes(self, paths: Sequence[str]) -> Iterator[str]:
+        """How nodes are made and joined."""
+        yield self._call(paths)
+        yield from (f"`{link.call}`" for link in self._reader.creations([f"{TYPES}NodeLink"]).values())
+
+    def _own_tree(self, path: str) -> Iterator[str]:
+        """The nodes of what holds a tree, as a material does."""
+        for entry in self._reader.members(path).values():
+            if entry.type != "pointer" or not entry.target.endswith("NodeTree") or self._is_object_data(path):
+                continue
+            nodes = self._heaviest(self._reader.descendants(f"{TYPES}{entry.target.removesuffix('Tree')}"))
+            self._creations |= self._reader.creations([node.path for node in nodes])
+            if made := [node.path for node in nodes if node.path in self._creations]:
+                self._shown.add(f"{TYPES}{entry.target}")
+                yield f"`tree = {self._variable(path)}.{entry.name}`"
+                yield from self._nodes(made)
+
+    def _call(self, paths: Sequence[str]) -> str:
+        """The call that makes the heaviest of the classes that one maker makes, and the types of the others."""
+        main = paths[0]
+        text = self._made(main, self._creations[main].call)
+        choices = [choice for path in paths[1:] if (choice := self._creations[path].choice)]
+        others = [choice for choice in choices if f"'{choice}'" not in self._creations[main].call]
+        if others:
+            more = f", … {len(others) - _CHOICES} more" if len(others) > _CHOICES else ""
+            text += "; also " + ", ".join(f"`{other}`" for other in others[:_CHOICES]) + more
+        return text
+
+    def _made(self, path: str, call: str) -> str:
+        self._shown.add(path)
+        variable = "" if call.startswith("bpy.ops.") else f"{self._variable(path)} = "
+        return f"`{variable}{call}` → `{path.removeprefix(TYPES)}`"
+
+    def _variable(self, path: str) -> str:
+        """What a script calls an instance: ``modifier``, ``object_data``, ``tree``, or the name's last word."""
+        if self._is_object_data(path):
+            return "object_data"
+        hump = _HUMP.search(path)
+        return hump[0].lower() if hump else "it"
+
+    def _tree(self, node: str) -> Iterator[str]:
+        """The tree that takes a node."""
+        symbol = self._reader.symbol(node)
+        trees = [f"{TYPES}{tree}" for tree in (symbol.trees if symbol else ())][:1]
+        for tree, creation in self._reader.creations(trees).items():
+            if tree not in self._shown:
+                yield self._made(tree, creation.call)
+                yield from self._goes(tree)
+
+    # Where it goes
+
+    def _goes(self, path: str) -> Iterator[str]:
+        variable = self._variable(path)
+        if variable == "object_data":
+            name = path.removeprefix(TYPES)
+            for creation in self._reader.creations([f"{TYPES}Object"]).values():
+                call = creation.call.replace('"Object"', f'"{name}"')
+                yield f"`obj = {call}`; `bpy.context.collection.objects.link(obj)`"
+            variable = "obj"
+            places = [place for place in self._named_pointers() if place.target == "Object"]
+        else:
+            places = self._reader.pointing_at(path.removeprefix(TYPES))
+        heaviest = self._heaviest(place for place in places if _is_set(place))
+        if heaviest:
+            yield f"`{self._expression(heaviest[0])} = {variable}`"
+
+    def _is_object_data(self, path: str) -> bool:
+        return any(entry.path in self._object_data for entry in self._reader.lineage(path))
+
+    @cached_property
+    def _object_data(self) -> set[str]:
+        """The classes that an object can be of, by the names of its types."""
+        types = self._reader.symbol(f"{TYPES}Object.type")
+        items = types.enum_items if types else ()
+        names = {key(name) for item in items for name in (item.identifier, item.name)}
+        return {path for path, name in self._reader.data_classes() if key(name) in names}
+
+    def _named_pointers(self) -> list[SymbolEntry]:
+        """Properties called as the topic is: ``Scene.camera``."""
+        entries = [entry for name in self._stems() for entry in self._reader.by_name(name)]
+        return [entry for entry in entries if entry.kind == "property" and entry.type == "pointer"]
+
+    def _stems(self) -> list[str]:
+        """The topic's keys, in the singular too."""
+        names = (name for each in sorted(self._names.keys) for name in (each, each.removesuffix("s")))
+        return [name for name in dict.fromkeys(names) if len(name) > 3]
+
+    # What is set
+
+    def _set(self, path: str) -> Iterator[str]:
+        """A thing's own settings and functions, then the settings that it points to, and those below, where they belong
+        to the topic or are its cache.
+        """
+        variable = self._variable(path)
+        symbol = self._reader.symbol(path)
+        if self._creations[path].call.startswith("bpy.ops.") and symbol is not None and symbol.reached:
+            variable = symbol.reached
+        if own := self._settings(path):
+            yield f"set on `{variable}`: {own}"
+        members = self._reader.members(path).values()
+        held = [entry for entry in members if entry.type == "collection" and self._weight(entry) >= 1]
+        if held:
+            items = (f"`.{entry.name}` (`{entry.target}`)" for entry in self._heaviest(held)[:_FUNCTIONS])
+            yield f"in `{variable}`: " + ", ".join(items)
+        functions = [entry for entry in members if entry.kind == "function" and self._weight(entry) >= 1]
+        if functions:
+            calls = (f"`{variable}.{_call_of(entry)}`" for entry in self._heaviest(functions)[:_FUNCTIONS])
+            yield "call " + ", ".join(calls)
+        waiting, left = [(path, variable)], _HOLDERS
+        while waiting and left:
+            path, above = waiting.pop(0)
+            for entry in self._heaviest(self._reader.members(path).values()):
+                target = f"{TYPES}{entry.target}"
+                # What is a thing's own cannot be replaced; another data-block can.
+                is_own = not _is_set(entry) or self._reader.descends(target, f"{TYPES}ID")
+                if entry.type != "pointer" or not is_own or not self._belongs(target):
+                    continue
+                self._shown.add(target)
+                waiting.append((target, f"{above}.{entry.name}"))
+                if left and (settings := self._settings(target)):
+                    left -= 1
+                    yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
+
+    def _belongs(self, path: str) -> bool:
+        return path not in self._shown and (path in self._names.classes or path == _CACHE)
+
+    def _settings(self, path: str) -> str:
+        entries = [
+            entry
+            for entry in self._reader.members(path).values()
+            if entry.kind == "property"
+            and entry.type not in {"pointer", "collection"}
+            and entry.name not in _PLAIN
+            and _is_set(entry)
+        ]
+        return ", ".join(_short(entry) for entry in self._heaviest(entries)[:_SETTINGS])
+
+    # What is there without being made
+
+    def _there(self) -> Iterator[str]:
+        """The topic's settings that are reached without being made: ``RenderSettings``."""
+        left = 2
+        for path in self._classes:
+            if path in self._shown or path in self._creations or not self._counts(path) or not left:
+                continue
+            symbol = self._reader.symbol(path)
+            reached = symbol.reached if symbol else ""
+            if not reached or any(part in reached for part in _INTERFACE):
+                continue
+            if settings := self._settings(path):
+                left -= 1
+                self._shown.add(path)
+                yield f"set on `{reached}` (`{path.removeprefix(TYPES)}`): {settings}"
+
+    def _functions(self) -> Iterator[str]:
+        """Functions that every thing has and that are called as the topic is: ``keyframe_insert``."""
+        paths = [path for name in self._stems() for path in self._reader.functions_named(name)]
+        entries = (self._reader.entry(path) for path in paths if path.startswith(f"{STRUCT}."))
+        for entry in self._heaviest(entry for entry in entries if entry)[:_FUNCTIONS]:
+            yield f"`obj.{_call_of(entry)}` — {entry.line.partition(' — ')[2]}"
+
+    # What runs it
+
+    def _run(self) -> Iterator[str]:
+        weights = self._reader.weights(list(self._names.operators))
+        operators = [
+            path
+            for path in self._names.operators
+            if not _has(path, (*_MAKES, *_REMOVES))
+            and weights.get(path, 0) >= (1 if path.split(".")[2] in self._names.keys else _USED_ELSEWHERE)
+        ]
+        if _CACHE in self._shown:
+            operators = [*self._bakes(), *operators]
+        yield from map(self._operator, operators[:_RUNS])
+
+    def _operator(self, path: str) -> str:
+        entry = self._reader.entry(path)
+        said = entry.line.partition(" — ")[2].removeprefix("(undocumented operator)") if entry else ""
+        return f"`{path}()`" + (f" — {said}" if said else "")
+
+    def _bakes(self) -> Iterator[str]:
+        """The heaviest operator of the page that explains the cache."""
+        for target in self._reader.links_from(_CACHE, "manual"):
+            paths = self._reader.symbols_of_page(target.partition("#")[0])
+            entries = (self._reader.entry(path) for path in paths if not _has(path, (*_MAKES, *_REMOVES)))
+            operators = [entry for entry in entries if entry and entry.kind == "operator"]
+            yield from (entry.path for entry in self._heaviest(operators)[:1])
+
+    # Order
+
+    def _heaviest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
+        """Entries by weight; those of equal weight keep their order."""
+        found = list(entries)
+        weights: Mapping[str, float] = self._reader.weights([entry.path for entry in found])
+        return sorted(found, key=lambda entry: -weights.get(entry.path, 0.0))
+
+    def _weight(self, entry: SymbolEntry) -> float:
+        return self._reader.weights([entry.path]).get(entry.path, 0.0)
+
+    def _expression(self, entry: SymbolEntry) -> str:
+        owner = self._reader.symbol(entry.owner)
+        return f"{owner.reached if owner and owner.reached else entry.owner.removeprefix(TYPES)}.{entry.name}"
+
+
+def _is_set(entry: SymbolEntry) -> bool:
+    return "read-only" not in entry.line.partition(" — ")[0]
+
+
+def _has(path: str, verbs: Sequence[str]) -> bool:
+    return not set(path.rpartition(".")[2].split("_")).isdisjoint(verbs)
+
+
+def _short(entry: SymbolEntry) -> str:
+    """A property with its default and its first values, without its type: ``quality` = 5``."""
+    name, _, rest = entry.line.partition(" — ")[0].partition(" ")
+    rest = rest.removeprefix(entry.type).strip()
+    return f"{name} {rest.partition('] ')[2] if rest.startswith('[') else rest}".strip()
+
+
+def _call_of(entry: SymbolEntry) -> str:
+    return entry.line.partition("`")[2].partition("`")[0].replace("(self, ", "(")

@@ -1,0 +1,75 @@
+"""The calls that make things are those that Blender takes, and weights tell what counts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.index.creation import Creation, creation_calls
+from kb_build.index.weights import symbol_weights
+from kb_build.records import Symbol
+
+if TYPE_CHECKING:
+    from kb_build.blender.extract_reader import Extract
+
+
+@pytest.fixture(scope="module")
+def calls(extract: Extract) -> dict[str, Creation]:
+    return creation_calls(extract.symbols)
+
+
+@pytest.mark.parametrize(
+    ("cls", "call"),
+    [
+        ("ClothModifier", "obj.modifiers.new(\"Cloth\", 'CLOTH')"),
+        ("SunLight", "bpy.data.lights.new(\"Sun Light\", 'SUN')"),
+        ("TrackToConstraint", "obj.constraints.new('TRACK_TO')"),
+        ("Material", 'bpy.data.materials.new("Material")'),
+        ("MeshUVLoopLayer", "mesh.uv_layers.new()"),
+        ("ShaderNodeMath", 'tree.nodes.new("ShaderNodeMath")'),
+        ("RigidBodyWorld", "bpy.ops.rigidbody.world_add()"),
+    ],
+)
+def test_a_class_is_made_as_scripts_make_it(calls: dict[str, Creation], cls: str, call: str) -> None:
+    assert calls[f"bpy.types.{cls}"].call == call
+
+
+def test_calls_are_functions_and_classes_that_exist(calls: dict[str, Creation], extract: Extract) -> None:
+    symbols = {symbol.path: symbol for symbol in extract.symbols}
+    assert len(calls) > 500
+    for path, creation in calls.items():
+        assert symbols[path].kind == "class"
+        assert symbols[creation.maker].kind in {"function", "operator"}
+        types = next((p for p in symbols[creation.maker].parameters if p.name == "type"), None)
+        items = {item.identifier for item in types.enum_items} if types else set[str]()
+        assert not creation.choice or creation.choice in items | {symbols[path].name}
+
+
+@pytest.mark.blender
+def test_blender_makes_a_modifier_of_the_class_for_every_call(calls: dict[str, Creation]) -> None:
+    bpy = pytest.importorskip("bpy")
+    objects = [bpy.data.objects.new("made", bpy.data.meshes.new("made"))]
+    objects.append(bpy.data.objects.new("drawn", bpy.data.grease_pencils.new("drawn")))
+    made = 0
+    try:
+        for path, creation in calls.items():
+            if creation.maker.endswith("ObjectModifiers.new"):
+                for obj in objects:
+                    try:
+                        modifier = eval(creation.call, {"obj": obj})
+                    except RuntimeError:  # a modifier of the other kind of object
+                        continue
+                    if modifier is not None:  # some are there once, or not at all for such an object
+                        assert modifier.bl_rna.identifier == path.rpartition(".")[2]
+                        made += 1
+        assert made > 40
+    finally:
+        for obj in objects:
+            bpy.data.objects.remove(obj)
+
+
+def test_what_is_used_asked_for_and_explained_weighs_more() -> None:
+    symbols = [Symbol(f"m.{name}", "property", "m") for name in ("used", "asked", "explained", "none")]
+    weights = symbol_weights(symbols, {"m.explained"}, {"m.asked": "one; two; three"}, {"m.used": 7})
+    assert weights == {"m.used": 6.0, "m.asked": 1.5, "m.explained": 1.0}
