@@ -229,9 +229,10 @@ class Calls(Narrowing):
     def _named_operator(self, node: ast.expr, kind: Type) -> None:
         text = literal_text(kind)
         if text and isinstance(node, ast.Constant):
-            path = f"bpy.ops.{text}"
+            module, of_class, name = text.partition("_OT_")
+            path = f"bpy.ops.{module.lower()}.{name}" if of_class else f"bpy.ops.{text}"
             known = self.api.symbols.symbol(path) is not None
-            self.resolve(node, "text", text, (path,) if known else (), () if known else ("bpy.ops",))
+            self.resolve(node, "text", path, (path,) if known else (), () if known else ("bpy.ops",))
 
     def _property(self, name: str, keywords: list[tuple[ast.keyword, Type]]) -> Type:
         """The value of a property that bpy.props declares."""

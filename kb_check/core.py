@@ -47,6 +47,7 @@ class Core:
         self.depth = 0
         self.steps_left = most_steps
         self.function: FunctionDefinition | None = None
+        self.statement: ast.stmt | None = None
 
     # What the parts give each other.
 
@@ -85,7 +86,8 @@ class Core:
     ) -> None:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
         self.resolutions[node] = Resolution(
-            node, kind, value, tuple(symbols), tuple(missing), tuple(possible), sure, self.tolerant > 0
+            node, kind, value, tuple(symbols), tuple(missing), tuple(possible), sure, self.tolerant > 0,
+            self.statement,
         )
 
     # Definitions.

@@ -84,6 +84,7 @@ class Expressions(Members):
         known = None
         if self.scope.state.chains and (text := chain_text(node)):
             known = self.scope.state.chains.get(text)
+        self.resolutions.pop(node, None)
         if owner is UNKNOWN:
             return known or UNKNOWN
         found = self.attribute(owner, node.attr)

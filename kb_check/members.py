@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_check.api import ARRAY, COLLECTION, GROUPS
 from kb_check.core import Core
-from kb_check.facts import LAYER_ITEM, OBJECT_DATA, T
+from kb_check.facts import LAYER_ITEM, T
 from kb_check.types import (
     FLOAT,
     STR,
@@ -42,10 +42,11 @@ if TYPE_CHECKING:
 # Classes whose instances have whatever a script or an operator gave them.
 _OPEN = (
     f"{T}PropertyGroup", f"{T}OperatorProperties", f"{T}AddonPreferences", f"{T}GizmoGroupProperties",
-    f"{T}KeyConfigPreferences", f"{T}IDPropertyWrapPtr",
+    f"{T}KeyConfigPreferences", f"{T}IDPropertyWrapPtr", f"{T}AnyType", f"{T}Gizmo",
+    "bpy.utils.previews.ImagePreviewCollection",
 )  # fmt: skip
+_EVERYWHERE = frozenset({"bl_rna", "rna_type", "__class__", "__doc__", "__dict__", "__module__", "__name__"})
 _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
-_OBJECT_CLASSES = {f"{T}{name}" for name in OBJECT_DATA.values()}
 
 
 @dataclass(slots=True)
@@ -103,7 +104,8 @@ class Members(Core):
                 union(self._held(member.type, Instance(cls), name) for cls, member in below[:9])
             )
             return
-        if not any(self.api.descends(kind.cls, cls) for cls in _OPEN) and self.api.is_class(kind.cls):
+        is_open = name in _EVERYWHERE or any(self.api.descends(kind.cls, cls) for cls in _OPEN)
+        if not is_open and self.api.is_class(kind.cls):
             found.missing.append(kind.cls)
         found.types.append(UNKNOWN)
 
@@ -138,7 +140,7 @@ class Members(Core):
         member = self.api.member(kind.path, name)
         if member is None:
             nested = self.api.symbols.symbol(f"{kind.path}.{name}")
-            if nested is None:
+            if nested is None and not name.startswith("_"):
                 found.missing.append(kind.path)
             found.types.append(UNKNOWN)
             return
@@ -154,7 +156,7 @@ class Members(Core):
             )
             return
         found.types.append(self._registered(kind.cls, name) or UNKNOWN)
-        if name not in {"bl_rna", "__name__", "__doc__", "mro", "__subclasses__"}:
+        if name not in _EVERYWHERE and not hasattr(type, name):
             found.missing.append(kind.cls)
 
     def _of_operator(self, kind: Operator, name: str, found: Lookup) -> None:
@@ -192,8 +194,9 @@ class Members(Core):
             inner.types += one.types
         # What a class of the script lacks may be set by whoever makes it: only its API bases are told.
         found.types.append(inner.type if inner.types else UNKNOWN)
-        if known and bases:
+        if known and bases and inner.missing:
             found.missing += inner.missing
+            found.sure = False
 
     def _of_value(self, kind: Type, name: str, found: Lookup) -> None:
         if isinstance(kind, Sequence) and kind.kind == "array" and (member := self.api.member(ARRAY, name)):

@@ -57,6 +57,7 @@ class Statements(Calls):
     def read_body(self, body: Rows[ast.stmt]) -> bool:
         """Reads statements one after the other; whether what follows them can be reached."""
         for statement in body:
+            self.statement = statement
             reader = _READERS.get(type(statement))
             if reader is not None and not reader(self, statement):
                 return False
@@ -117,6 +118,7 @@ class Statements(Calls):
             return
         if text and self.scope.state.chains:
             self.scope.forget(text)
+        self.resolutions.pop(target, None)
         if owner is UNKNOWN:
             return
         found = self.attribute(owner, target.attr)
@@ -214,10 +216,16 @@ class Statements(Calls):
 
     def _for(self, node: ast.For | ast.AsyncFor) -> bool:
         kind = self.iterated(self.evaluate(node.iter))
-        return self._loop(node.body, node.orelse, lambda: self.bind_target(node.target, kind))
+
+        def enter() -> None:
+            self.statement = node
+            self.bind_target(node.target, kind)
+
+        return self._loop(node.body, node.orelse, enter)
 
     def _while(self, node: ast.While) -> bool:
         def enter() -> None:
+            self.statement = node
             self.evaluate(node.test)
             self.narrow(node.test, holds=True)
 
@@ -432,7 +440,7 @@ class Statements(Calls):
     def run(self, number: int) -> None:
         """See :class:`core.Core`."""
         function = self.functions[number]
-        outer = self.scope, self.function, self.loops, self.tolerant
+        outer = self.scope, self.function, self.loops, self.tolerant, self.statement
         self.scope = Scope(function.scope)
         self.function, self.loops, self.tolerant = function, [], 0
         function.running, function.stale, function.runs = True, False, function.runs + 1
@@ -449,7 +457,7 @@ class Statements(Calls):
                     function.returned = declared
         finally:
             function.running = False
-            self.scope, self.function, self.loops, self.tolerant = outer
+            self.scope, self.function, self.loops, self.tolerant, self.statement = outer
 
     def stamp(self, function: FunctionDefinition) -> tuple[int, int]:
         """What changes when a function should be read again: its module's names, its class's attributes."""

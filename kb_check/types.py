@@ -253,7 +253,7 @@ class Resolution:
     operator, a socket, ``operator(keyword)`` for a keyword, the property or parameter for a value. ``missing`` are
     the owners that have no such member, ``possible`` the symbols of derived classes that do. ``value`` is the
     value or the name as written. ``sure`` is False where a convention was needed, ``guarded`` is True where the
-    script is ready for the opposite (``hasattr``, ``try``).
+    script is ready for the opposite (``hasattr``, ``try``). ``statement`` is the innermost one around it.
 
     Kinds: ``attribute`` and ``store`` (ast.Attribute), ``name`` (an imported or bare name), ``call`` (ast.Call),
     ``keyword`` (ast.keyword), ``value`` (a literal of an enumeration), ``item`` (ast.Subscript, or the literal key
@@ -268,3 +268,4 @@ class Resolution:
     possible: tuple[str, ...] = ()
     sure: bool = True
     guarded: bool = False
+    statement: ast.stmt | None = None

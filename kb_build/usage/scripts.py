@@ -1,0 +1,38 @@
+"""The Python files that a Blender brings, and how well each kind shows how things are done."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+# Folder below Blender's scripts → what is added to the cost of its examples.
+_FOLDERS = {
+    "templates_py": 0.0,
+    "presets": 0.5,
+    "startup": 1.0,
+    "modules": 1.0,
+    "addons_core": 1.5,
+    "addons": 1.5,
+}
+_DULL = ("/keyconfig/", "/keymap_data/", "/metarigs/", "/_bl_i18n_utils/", "/tests/", "/__pycache__/")
+_LARGEST = 1_000_000  # bytes
+
+
+def blender_scripts(folder: Path) -> Iterator[tuple[str, float, Path]]:
+    """(name, cost, path) of the scripts below Blender's folder of scripts; ``name`` is relative to it."""
+    for top, cost in _FOLDERS.items():
+        for path in sorted((folder / top).rglob("*.py")):
+            name = path.relative_to(folder).as_posix()
+            if not any(part in f"/{name}" for part in _DULL) and path.stat().st_size <= _LARGEST:
+                yield name, cost, path
+
+
+def read_script(path: Path) -> str:
+    """A script's text; empty for what cannot be read."""
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
