@@ -18,7 +18,7 @@ from kb_build.base_file import read_meta
 from kb_build.blender.extractor import extract_api
 from kb_build.digests import Digests
 from kb_build.errors import ExtractError, SourceError, StoreError
-from kb_build.fingerprint import base_fingerprint, own_version, runtime_digest
+from kb_build.fingerprint import base_fingerprint, extractor_digest, own_version, runtime_digest
 from kb_build.pages.sources import Origin, find_sources
 from simworlds.files import remove_unfinished_files
 from simworlds.forked import beside
@@ -28,7 +28,7 @@ from simworlds.settings import base_path, cache_folder, summaries_path
 from simworlds.terminal.progress import silent
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping, Sequence
+    from collections.abc import Callable, Generator, Mapping, Sequence
 
     from kb_build.blender.extract_reader import Extract
     from kb_build.pages.reading import PageReader
@@ -36,12 +36,17 @@ if TYPE_CHECKING:
     from kb_build.records import Page
     from kb_build.store import Contents
     from kb_build.summaries.types import SummaryReport, SummaryRun
+    from kb_build.usage.usage_index import Usage
     from kb_build.versions.removed_symbols import RemovedSymbols
     from simworlds.sandbox.runtime import Runtime
     from simworlds.terminal.progress import Progress
 
 SummaryMethod = Literal["extractive", "claude", "none"]
-_LOADED_AHEAD = ("kb_build.blender.extract_reader", "kb_build.summaries.methods")
+_LOADED_AHEAD = (
+    "kb_build.blender.extract_reader",
+    "kb_build.summaries.methods",
+    "kb_build.usage.usage_index",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,11 +126,13 @@ def build(
             ahead = threading.Thread(target=_load_ahead, daemon=True)
             ahead.start()
             extract = _extract(work)
-            pages = _pages(work, reader.result(), extract)
             ahead.join()
-        run = _summaries(work, pages)
+            with _script_usage(work, extract) as scripts:
+                pages = _pages(work, reader.result(), extract)
+                run = _summaries(work, pages)
+                usage = _usage(work, extract, pages, scripts)
         meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
-        _write(work, extract, pages, run, meta)
+        _write(work, extract, pages, run, meta, usage)
     return _report(work, began, meta, built=True, run=run)
 
 
@@ -250,6 +257,33 @@ def _extract(work: _Build) -> Extract:
     return extract
 
 
+@contextmanager
+def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Usage]]:
+    """Reads Blender's own scripts while pages are read; gives a function that waits for the uses of symbols there."""
+    from kb_build.usage.usage_index import script_usage  # noqa: PLC0415 - loaded ahead
+
+    digests = Digests(cache_folder(work.home) / "digests.json")
+    identity = f"{extract.version} {runtime_digest(work.runtime, digests)} {extractor_digest()}"
+    with script_usage(
+        extract.symbols,
+        Path(extract.scripts) if extract.scripts else None,
+        extract.version,
+        extract=identity,
+        cache=cache_folder(work.home),
+        jobs=work.options.jobs,
+    ) as result:
+        yield result
+
+
+def _usage(work: _Build, extract: Extract, pages: Sequence[Page], scripts: Callable[[], Usage]) -> Usage:
+    """The uses of symbols in Blender's scripts and in the guides."""
+    from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
+
+    work.progress("Reading Blender's scripts", 0, None)
+    guides = page_usage(extract.symbols, pages, extract.version)
+    return with_aliases(merged([scripts(), guides]), extract.symbols)
+
+
 def _pages(work: _Build, read: Mapping[str, list[Page]], extract: Extract) -> list[Page]:
     """All pages, one for each slug; of two with the same one, the manual's stays."""
     kept: dict[str, Page] = {}
@@ -309,8 +343,15 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
 
 
 def _write(
-    work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun | None, meta: dict[str, str]
+    work: _Build,
+    extract: Extract,
+    pages: Sequence[Page],
+    run: SummaryRun | None,
+    meta: dict[str, str],
+    usage: Usage,
 ) -> None:
+    from kb_build.blender.access_paths import with_access_paths  # noqa: PLC0415 - not when nothing changed
+
     work.progress(f"Writing {work.path.name}", 0, None)
     by_slug = run.by_slug if run else {}
     summaries = {slug: (summary.text, summary.method) for slug, summary in by_slug.items()}
@@ -318,7 +359,10 @@ def _write(
         # Loaded now: a process is not forked safely from one that has NumPy's threads.
         from kb_build.store import Contents, write_base  # noqa: PLC0415
 
-        contents: Contents = Contents(extract.symbols, pages, extract.links, meta, summaries, removed_symbols)
+        symbols = with_access_paths(extract.symbols, {path: uses.count for path, uses in usage.items()})
+        contents: Contents = Contents(
+            symbols, pages, extract.links, meta, summaries, removed_symbols, usage
+        )
         write_base(work.path, contents)
 
 

@@ -48,12 +48,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from kb_build.usage.examples import Uses
+
 
 @dataclass(frozen=True, slots=True)
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are slug → (text, method); ``removed_symbols`` is called last: it may still be computed meanwhile.
+    ``summaries`` are slug → (text, method); ``usage`` is symbol → its uses; ``removed_symbols`` is called last: it may still be computed meanwhile.
     """
 
     symbols: Sequence[Symbol]
@@ -62,6 +64,7 @@ class Contents:
     meta: Mapping[str, str]
     summaries: Mapping[str, tuple[str, str]] = field(default_factory=dict[str, tuple[str, str]])
     removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
+    usage: Mapping[str, Uses] = field(default_factory=dict[str, "Uses"])
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
@@ -143,6 +146,16 @@ def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: Remo
     _insert(connection, "removed_names", removed_symbols.names, 2)
     _insert(connection, "replacements", removed_symbols.replacements, 3)
     _insert(connection, "since", removed_symbols.since, 2)
+
+
+def _write_usage(connection: sqlite3.Connection, usage: Mapping[str, Uses]) -> None:
+    examples = (
+        (path, rank, example.file, example.line, example.code)
+        for path, uses in usage.items()
+        for rank, example in enumerate(uses.examples)
+    )
+    _insert(connection, "uses", examples, 5)
+    _insert(connection, "use_counts", ((path, uses.count, uses.files) for path, uses in usage.items()), 3)
 
 
 def _write_pages(
@@ -245,6 +258,7 @@ def _write(part: Path, contents: Contents) -> None:
             _write_pages(connection, contents.pages, contents.summaries)
             _write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
+            _write_usage(connection, contents.usage)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

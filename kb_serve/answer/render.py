@@ -128,6 +128,8 @@ class MarkdownRenderer:
         definition = self.manual_definition(symbol)
         if definition:
             yield AnswerBlock(definition, "the manual's definition")
+        if used := self.used(symbol.path):
+            yield AnswerBlock(used, "a use in Blender's scripts")
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""
@@ -215,6 +217,11 @@ class MarkdownRenderer:
             if text:
                 return f"**In the manual** ({page.title if page else ''})\n{text}"
         return ""
+
+    def used(self, path: str) -> str:
+        """The clearest use of a symbol in Blender's own scripts; empty for none."""
+        uses = self.reader.uses(path)
+        return f"**Used** ({uses[0].file}:{uses[0].line})\n```python\n{uses[0].code}\n```" if uses else ""
 
     def _class(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         members = list(self.reader.members(symbol.path).values())
