@@ -260,18 +260,15 @@ def _extract(work: _Build) -> Extract:
 @contextmanager
 def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Usage]]:
     """Reads Blender's own scripts while pages are read; gives a function that waits for the uses of symbols there."""
-    from kb_build.usage.usage_index import script_usage  # noqa: PLC0415 - loaded ahead
+    from kb_build.usage.scripts import blender_scripts  # noqa: PLC0415 - not when nothing changed
+    from kb_build.usage.usage_index import script_usage, usage_file  # noqa: PLC0415 - loaded ahead
 
+    scripts = list(blender_scripts(Path(extract.scripts))) if extract.scripts else []
     digests = Digests(cache_folder(work.home) / "digests.json")
     identity = f"{extract.version} {runtime_digest(work.runtime, digests)} {extractor_digest()}"
-    with script_usage(
-        extract.symbols,
-        Path(extract.scripts) if extract.scripts else None,
-        extract.version,
-        extract=identity,
-        cache=cache_folder(work.home),
-        jobs=work.options.jobs,
-    ) as result:
+    file = usage_file(cache_folder(work.home), identity, scripts)
+    jobs = work.options.jobs
+    with script_usage(extract.symbols, scripts, extract.version, file=file, jobs=jobs) as result:
         yield result
 
 
@@ -342,7 +339,7 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
     }
 
 
-def _write(
+def _write(  # noqa: PLR0913, PLR0917 - all that a base is made of
     work: _Build,
     extract: Extract,
     pages: Sequence[Page],
@@ -360,9 +357,7 @@ def _write(
         from kb_build.store import Contents, write_base  # noqa: PLC0415
 
         symbols = with_access_paths(extract.symbols, {path: uses.count for path, uses in usage.items()})
-        contents: Contents = Contents(
-            symbols, pages, extract.links, meta, summaries, removed_symbols, usage
-        )
+        contents: Contents = Contents(symbols, pages, extract.links, meta, summaries, removed_symbols, usage)
         write_base(work.path, contents)
 
 

@@ -55,7 +55,8 @@ if TYPE_CHECKING:
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are slug → (text, method); ``usage`` is symbol → its uses; ``removed_symbols`` is called last: it may still be computed meanwhile.
+    ``summaries`` are slug → (text, method); ``usage`` is symbol → its uses; ``removed_symbols`` is called last: it may
+    still be computed meanwhile.
     """
 
     symbols: Sequence[Symbol]

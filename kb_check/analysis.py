@@ -85,7 +85,9 @@ def analyse(code: str, api: Api, version: tuple[int, ...] = ()) -> Analysis:
     Bad input of every kind ends in an Analysis that says so, in bounded time.
     """
     if len(code) > MOST_CHARACTERS:
-        return _failed(f"the script is too large ({len(code):,} characters; up to {MOST_CHARACTERS:,} are read)")
+        return _failed(
+            f"the script is too large ({len(code):,} characters; up to {MOST_CHARACTERS:,} are read)"
+        )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

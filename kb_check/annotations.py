@@ -37,7 +37,7 @@ _LISTS = {
 _DEEPEST = 20
 
 
-def annotated(node: ast.expr, evaluate: Callable[[ast.expr], Type], depth: int = 0) -> Type:  # noqa: PLR0911
+def annotated(node: ast.expr, evaluate: Callable[[ast.expr], Type], depth: int = 0) -> Type:  # noqa: PLR0911 - one return a form
     """The type of a value with this annotation; ``evaluate`` gives the classes that names stand for."""
     if depth > _DEEPEST:
         return UNKNOWN
@@ -67,7 +67,7 @@ def annotated(node: ast.expr, evaluate: Callable[[ast.expr], Type], depth: int =
             return UNKNOWN
 
 
-def _generic(node: ast.Subscript, evaluate: Callable[[ast.expr], Type], depth: int) -> Type:
+def _generic(node: ast.Subscript, evaluate: Callable[[ast.expr], Type], depth: int) -> Type:  # noqa: PLR0911 - one return a form
     head = node.value
     name = head.id if isinstance(head, ast.Name) else head.attr if isinstance(head, ast.Attribute) else ""
     inside = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
@@ -84,5 +84,6 @@ def _generic(node: ast.Subscript, evaluate: Callable[[ast.expr], Type], depth: i
             return Sequence("tuple", annotated(inside[0], evaluate, depth))
         return Tuple(tuple(annotated(item, evaluate, depth) for item in inside))
     if name in {"dict", "Dict", "Mapping"} and len(inside) == 2:
-        return Mapping(*(annotated(item, evaluate, depth) for item in inside))
+        key, value = (annotated(item, evaluate, depth) for item in inside)
+        return Mapping(key, value)
     return UNKNOWN

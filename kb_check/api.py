@@ -50,9 +50,10 @@ if TYPE_CHECKING:
 COLLECTION = "bpy.types.bpy_prop_collection"
 GROUPS = "bpy.types.bpy_prop_collection_idprop"
 ARRAY = "bpy.types.bpy_prop_array"
-_STRUCT = "bpy.types.bpy_struct"
+STRUCT = "bpy.types.bpy_struct"
 _ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}
 _SCALARS: dict[str, Type] = {"boolean": BOOL, "int": INT, "float": FLOAT, "string": STR}
+_INTERFACE = f"{T}NodeTreeInterfaceSocket"
 _MOST_CLASSES = 2_000
 _WORD = re.compile(r"[A-Z][a-z0-9]*$")
 _SIMPLE = re.compile(r"[^a-z0-9]")
@@ -149,9 +150,7 @@ class Api:
         """What a class or module has itself, by name; without sockets."""
         found = self._own.get(owner)
         if found is None:
-            found = {
-                symbol.name: symbol for symbol in self.symbols.members(owner) if symbol.kind != "socket"
-            }
+            found = {symbol.name: symbol for symbol in self.symbols.members(owner) if symbol.kind != "socket"}
             self._own[owner] = found
         return found
 
@@ -284,7 +283,7 @@ class Api:
 
     def _of_collection(self, kind: Type, receiver: Collection, name: str) -> Type:
         match name:
-            case "get" if isinstance(kind, Unknown) or kind == Instance(_STRUCT) or len(members(kind)) > 1:
+            case "get" if isinstance(kind, Unknown) or kind == Instance(STRUCT) or len(members(kind)) > 1:
                 return receiver.element
             case "add" if receiver.container == GROUPS:
                 return receiver.element
@@ -318,6 +317,9 @@ class Api:
         """The class below ``base`` that a value stands for: Modifier and ``CLOTH`` → ClothModifier; empty for none."""
         if value.isidentifier() and self.descends(f"{T}{value}", base):
             return f"{T}{value}"
+        if base == _INTERFACE and value.startswith("NodeSocket"):
+            cls = f"{base}{value.removeprefix('NodeSocket')}"
+            return cls if self.is_class(cls) else ""
         if base not in self._value_classes:
             self._value_classes[base] = self._values_of(base)
         return self._value_classes[base].get(value, "")

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import ast
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
-from kb_check.facts import BMESH_RESULTS, T
+from kb_check.facts import BMESH_RESULTS, OPEN_CALLS, T
 from kb_check.narrowing import Narrowing
-from kb_check.scopes import FunctionDefinition
 from kb_check.types import (
     BOOL,
     FLOAT,
@@ -42,6 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kb_build.records import Parameter, Symbol
+    from kb_check.scopes import FunctionDefinition
 
 _DEEPEST_RUN = 60  # a function that is called further inside is read later
 _MOST_RUNS = 3
@@ -87,16 +87,16 @@ class Calls(Narrowing):
             return UNKNOWN
         if isinstance(callee, Union):
             return union(
-                self._call(member, node, arguments, keywords)
+                self._one_call(member, node, arguments, keywords)
                 for member in callee.members
                 if member is not NONE
             )
-        return self._call(callee, node, arguments, keywords)
+        return self._one_call(callee, node, arguments, keywords)
 
-    def _call(
+    def _one_call(
         self, callee: Type, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]
     ) -> Type:
-        caller = _CALLERS.get(type(callee))
+        caller = self._callers.get(type(callee))
         return caller(self, callee, node, arguments, keywords) if caller else UNKNOWN
 
     # The API.
@@ -148,7 +148,7 @@ class Calls(Narrowing):
 
     def _keywords(self, symbol: Symbol, keywords: list[tuple[ast.keyword, Type]]) -> None:
         parameters = {parameter.name: parameter for parameter in symbol.parameters}
-        is_open = any(_is_open(parameter) for parameter in symbol.parameters)
+        is_open = symbol.path in OPEN_CALLS or any(_is_open(parameter) for parameter in symbol.parameters)
         for keyword, _ in keywords:
             name = keyword.arg
             if name is None:
@@ -189,7 +189,9 @@ class Calls(Narrowing):
             given.setdefault(parameter.name, kind)
         if result.cls == f"{T}Object" and "object_data" in given:
             data = without_none(given["object_data"])
-            return replace(result, traits=(("data", data),)) if data is not UNKNOWN and data != NONE else result
+            return (
+                replace(result, traits=(("data", data),)) if data is not UNKNOWN and data != NONE else result
+            )
         found: list[Type] = []
         for name in ("type", "socket_type", "effect_type"):
             for value in literal_texts(given[name]) if name in given else ():
@@ -252,7 +254,18 @@ class Calls(Narrowing):
         items: list[tuple[str, Type]] = []
         for prefix, names in BMESH_RESULTS.items():
             element = union(Instance(f"bmesh.types.{name}") for name in names)
-            for suffix in ("", "s", "_inner", "_split", "_cut", "_out", "s_out", "_contig", "_interior", "_holes"):
+            for suffix in (
+                "",
+                "s",
+                "_inner",
+                "_split",
+                "_cut",
+                "_out",
+                "s_out",
+                "_contig",
+                "_interior",
+                "_holes",
+            ):
                 items.append((f"{prefix}{suffix}", Sequence("list", element)))
         return Mapping(STR, UNKNOWN, tuple(items))
 
@@ -296,7 +309,12 @@ class Calls(Narrowing):
             arguments = []
         values = arguments if callee.receiver is None else [callee.receiver, *arguments]
         self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
-        if function.stale and not function.running and self.depth < _DEEPEST_RUN and function.runs < _MOST_RUNS:
+        if (
+            function.stale
+            and not function.running
+            and self.depth < _DEEPEST_RUN
+            and function.runs < _MOST_RUNS
+        ):
             self.run(callee.number)
         return UNKNOWN if function.returned is None else function.returned
 
@@ -326,7 +344,7 @@ class Calls(Narrowing):
 
     # Python's own.
 
-    def _builtin(
+    def _builtin(  # noqa: PLR0911, PLR0912 - one case a function
         self,
         callee: Builtin,
         node: ast.Call,
@@ -340,10 +358,14 @@ class Calls(Narrowing):
             return _PLAIN_RESULTS[name]
         first = arguments[0] if arguments else UNKNOWN
         if name in _ITERATORS:
-            return Sequence(_ITERATORS[name], self.iterated(first)) if arguments else Sequence("list", UNKNOWN)
+            return (
+                Sequence(_ITERATORS[name], self.iterated(first)) if arguments else Sequence("list", UNKNOWN)
+            )
         match name:
             case "next":
-                return self.iterated(first) if len(arguments) < 2 else join(self.iterated(first), arguments[1])
+                return (
+                    self.iterated(first) if len(arguments) < 2 else join(self.iterated(first), arguments[1])
+                )
             case "enumerate":
                 return Sequence("iterator", Tuple((INT, self.iterated(first))))
             case "zip":
@@ -411,7 +433,7 @@ class Calls(Narrowing):
         kind = found.type
         return join(kind, arguments[2]) if len(arguments) > 2 else kind
 
-    def _method(self, receiver: Type, name: str, arguments: list[Type]) -> Type:  # noqa: PLR0911 - one return a type
+    def _method(self, receiver: Type, name: str, arguments: list[Type]) -> Type:  # noqa: PLR0911, PLR0912 - one case a method
         first = arguments[0] if arguments else UNKNOWN
         if isinstance(receiver, Plain):
             return _STRING_RESULTS.get(name, STR) if receiver.kind == "str" else UNKNOWN
@@ -459,17 +481,16 @@ class Calls(Narrowing):
                     scope.bind(name, grown)
                     return
 
+    _callers: ClassVar[dict[type, Callable[..., Type]]] = {
+        Operator: _operator,
+        Function: _function,
+        ClassObject: _class,
+        LocalClass: _local_class,
+        LocalFunction: _local_function,
+        Builtin: _builtin,
+    }
+
 
 def _is_open(parameter: Parameter) -> bool:
     """Whether a parameter takes any keyword."""
     return parameter.name.startswith("*") or parameter.type.startswith("**")
-
-
-_CALLERS: dict[type, Callable[..., Type]] = {
-    Operator: Calls._operator,
-    Function: Calls._function,
-    ClassObject: Calls._class,
-    LocalClass: Calls._local_class,
-    LocalFunction: Calls._local_function,
-    Builtin: Calls._builtin,
-}

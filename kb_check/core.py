@@ -73,7 +73,7 @@ class Core:
 
     # Results.
 
-    def resolve(
+    def resolve(  # noqa: PLR0913, PLR0917 - the fields of a resolution
         self,
         node: ast.AST,
         kind: str,
@@ -85,9 +85,9 @@ class Core:
         sure: bool = True,
     ) -> None:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
+        paths = (tuple(dict.fromkeys(found)) for found in (symbols, missing, possible))
         self.resolutions[node] = Resolution(
-            node, kind, value, tuple(symbols), tuple(missing), tuple(possible), sure, self.tolerant > 0,
-            self.statement,
+            node, kind, value, *paths, sure=sure, guarded=self.tolerant > 0, statement=self.statement
         )
 
     # Definitions.

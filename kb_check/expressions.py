@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from kb_check.core import DEEPEST, StepsExhausted
+from kb_check.facts import T
 from kb_check.members import Members
-from kb_check.scopes import Scope, State, chain_text, joined
+from kb_check.scopes import State, chain_text
 from kb_check.types import (
     BOOL,
     FLOAT,
@@ -16,12 +17,9 @@ from kb_check.types import (
     STR,
     UNKNOWN,
     Builtin,
-    ClassObject,
-    Collection,
     Instance,
     LocalFunction,
     Mapping,
-    Module,
     Plain,
     Sequence,
     Tuple,
@@ -40,14 +38,17 @@ if TYPE_CHECKING:
 
 _BUILTINS = frozenset(
     (  # noqa: SIM905
-        "abs all any bool dict enumerate filter float frozenset getattr hasattr int isinstance iter len list map max min "
-        "next open print range repr reversed round set setattr sorted str sum super tuple type zip delattr property "
+        "abs all any bool dict enumerate filter float frozenset getattr hasattr int isinstance iter len list map max "
+        "min next open print range repr reversed round set setattr sorted str sum super tuple type zip delattr property "
         "staticmethod classmethod object callable"
     ).split()
 )
 _CLASSES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "str", bytes: "bytes"}
-_MATH = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"})
+_MATH = frozenset(
+    {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
+)
 _LONGEST_LITERAL = 64
+_FEWEST_VALUES = 2  # of an enumeration that can be judged
 
 
 class Expressions(Members):
@@ -58,7 +59,7 @@ class Expressions(Members):
         self.steps_left -= 1
         if self.steps_left < 0:
             raise StepsExhausted
-        reader = _EVALUATORS.get(type(node))
+        reader = self._evaluators.get(type(node))
         if reader is None or self.depth > DEEPEST:
             return UNKNOWN
         self.depth += 1
@@ -222,9 +223,7 @@ class Expressions(Members):
                 if place == 0:
                     self.scope.state = before.copy()
                 self.narrow(value, holds=holds)
-        assigned = {
-            name: kind for name, kind in self.scope.state.names.items() if name not in before.names
-        }
+        assigned = {name: kind for name, kind in self.scope.state.names.items() if name not in before.names}
         self.scope.state = before
         before.names.update(assigned)
         if holds:
@@ -341,7 +340,9 @@ class Expressions(Members):
                 found = next((row for row in symbol.parameters if row.name == parameter), None)
                 items, computed = found.enum_items if found else (), False
             name = f"{path}({parameter})" if parameter else path
-            if not items or any(item.identifier == value for item in items):
+            # Where classes are the values, RNA lists none or a stand-in.
+            is_listed = any(item.identifier == value for item in items) or self.api.is_class(f"{T}{value}")
+            if len(items) < _FEWEST_VALUES or is_listed:
                 having.append(name)
             elif not computed:
                 lacking.append(name)
@@ -356,6 +357,34 @@ class Expressions(Members):
             return self.scope.state
         finally:
             self.scope.state = before
+
+    _evaluators: ClassVar[dict[type, Callable[..., Type]]] = {
+        ast.Name: _name,
+        ast.Attribute: _attribute,
+        ast.Subscript: _subscript,
+        ast.Constant: _constant,
+        ast.JoinedStr: _text,
+        ast.Tuple: _tuple,
+        ast.List: _tuple,
+        ast.Set: _set,
+        ast.Dict: _dict,
+        ast.BinOp: _binary,
+        ast.UnaryOp: _unary,
+        ast.Compare: _compare,
+        ast.BoolOp: _boolean,
+        ast.IfExp: _choice,
+        ast.NamedExpr: _walrus,
+        ast.Await: _awaited,
+        ast.Starred: _awaited,
+        ast.YieldFrom: _awaited,
+        ast.Yield: _yielded,
+        ast.Lambda: _lambda,
+        ast.ListComp: _comprehension,
+        ast.SetComp: _comprehension,
+        ast.GeneratorExp: _comprehension,
+        ast.DictComp: _dict_comprehension,
+        ast.Call: _call,
+    }
 
 
 def _constants(node: ast.expr) -> list[ast.Constant]:
@@ -398,7 +427,9 @@ def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa
         if isinstance(right, Instance) and right.cls in _MATH:
             # A matrix or a rotation turns what stands behind it.
             return right if isinstance(operator, ast.MatMult) else left
-        return Instance(left.cls) if right is not UNKNOWN or not isinstance(operator, ast.MatMult) else UNKNOWN
+        return (
+            Instance(left.cls) if right is not UNKNOWN or not isinstance(operator, ast.MatMult) else UNKNOWN
+        )
     if isinstance(right, Instance) and right.cls in _MATH and isinstance(left, Plain):
         return right
     if isinstance(left, Plain) and isinstance(right, Plain):
@@ -422,30 +453,3 @@ def _element(kind: Sequence | Tuple) -> Type:
 
 
 _KINDS: dict[type, str] = {ast.ListComp: "list", ast.SetComp: "set", ast.GeneratorExp: "iterator"}
-_EVALUATORS: dict[type, Callable[..., Type]] = {
-    ast.Name: Expressions._name,
-    ast.Attribute: Expressions._attribute,
-    ast.Subscript: Expressions._subscript,
-    ast.Constant: Expressions._constant,
-    ast.JoinedStr: Expressions._text,
-    ast.Tuple: Expressions._tuple,
-    ast.List: Expressions._tuple,
-    ast.Set: Expressions._set,
-    ast.Dict: Expressions._dict,
-    ast.BinOp: Expressions._binary,
-    ast.UnaryOp: Expressions._unary,
-    ast.Compare: Expressions._compare,
-    ast.BoolOp: Expressions._boolean,
-    ast.IfExp: Expressions._choice,
-    ast.NamedExpr: Expressions._walrus,
-    ast.Await: Expressions._awaited,
-    ast.Starred: Expressions._awaited,
-    ast.YieldFrom: Expressions._awaited,
-    ast.Yield: Expressions._yielded,
-    ast.Lambda: Expressions._lambda,
-    ast.ListComp: Expressions._comprehension,
-    ast.SetComp: Expressions._comprehension,
-    ast.GeneratorExp: Expressions._comprehension,
-    ast.DictComp: Expressions._dict_comprehension,
-    ast.Call: Expressions._call,
-}

@@ -33,6 +33,9 @@ CLASS_OF_VALUE = {
 # The properties that tell an instance's class by their value, best first.
 DISCRIMINANTS = ("type", "bl_idname", "data_type", "effector_type")
 
+# Functions that take keywords which their signatures do not list.
+OPEN_CALLS = frozenset({"bpy.types.Context.temp_override"})
+
 # What the entries of a result of bmesh.ops hold, by the beginning of their names.
 BMESH_RESULTS = {
     "vert": ("BMVert",), "edge": ("BMEdge",), "face": ("BMFace",), "geom": ("BMVert", "BMEdge", "BMFace"),
@@ -81,7 +84,9 @@ CONTEXT_MEMBERS = {
 }  # fmt: skip
 
 # Members whose value has the class of what they are read from, though they are declared wider.
-SAME_CLASS = frozenset({"original", "evaluated_get", "copy", "override_create", "make_local", "evaluated_object"})
+SAME_CLASS = frozenset(
+    {"original", "evaluated_get", "copy", "override_create", "make_local", "evaluated_object"}
+)
 
 # What sequences with a class of their own hold.
 ELEMENTS = {

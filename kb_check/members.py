@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import ast
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
-from kb_check.api import ARRAY, COLLECTION, GROUPS
+from kb_check.api import ARRAY, COLLECTION, STRUCT
 from kb_check.core import Core
 from kb_check.facts import LAYER_ITEM, T
 from kb_check.types import (
@@ -30,13 +29,13 @@ from kb_check.types import (
     Tuple,
     Type,
     Union,
-    Unknown,
     literal,
     literal_text,
     union,
 )
 
 if TYPE_CHECKING:
+    import ast
     from collections.abc import Callable
 
 # Classes whose instances have whatever a script or an operator gave them.
@@ -45,6 +44,7 @@ _OPEN = (
     f"{T}KeyConfigPreferences", f"{T}IDPropertyWrapPtr", f"{T}AnyType", f"{T}Gizmo",
     "bpy.utils.previews.ImagePreviewCollection",
 )  # fmt: skip
+_PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
 _EVERYWHERE = frozenset({"bl_rna", "rna_type", "__class__", "__doc__", "__dict__", "__module__", "__name__"})
 _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
 
@@ -82,7 +82,7 @@ class Members(Core):
         return found
 
     def _read(self, kind: Type, name: str, found: Lookup) -> None:
-        reader = _READERS.get(type(kind))
+        reader = self._attribute_readers.get(type(kind))
         if reader is not None:
             reader(self, kind, name, found)
         else:
@@ -126,13 +126,14 @@ class Members(Core):
         return None
 
     def _of_collection(self, kind: Collection, name: str, found: Lookup) -> None:
-        for container in (kind.container, COLLECTION, GROUPS):
-            if container == GROUPS and self.api.is_class(kind.container) and kind.container != GROUPS:
-                break
-            if member := self.api.member(container, name):
-                found.symbols.append(member.symbol.path)
-                found.types.append(self._held(member.type, kind, name))
-                return
+        own = self.api.member(kind.container, name)
+        if own is None or own.symbol.owner == STRUCT:
+            # What every struct has, as ``get``, a collection has of its own.
+            own = self.api.member(COLLECTION, name) or own
+        if own is not None:
+            found.symbols.append(own.symbol.path)
+            found.types.append(self._held(own.type, kind, name))
+            return
         found.missing.append(kind.path or kind.container)
         found.types.append(UNKNOWN)
 
@@ -169,7 +170,7 @@ class Members(Core):
             found.types.append(self.bound(own[0], kind) if self._is_class_method(own[0]) else own[0])
             return
         bases, known = self.api_bases(kind.number)
-        self._of_bases([ClassObject(base) for base in bases], known, name, found)
+        self._of_bases([ClassObject(base) for base in bases], name, found, known=known)
 
     def _is_class_method(self, kind: Type) -> bool:
         return isinstance(kind, LocalFunction) and self.functions[kind.number].is_class_method
@@ -179,9 +180,9 @@ class Members(Core):
             found.types.append(self.bound(own[0], kind))
             return
         bases, known = self.api_bases(kind.number)
-        self._of_bases([Instance(base) for base in bases], known, name, found)
+        self._of_bases([Instance(base) for base in bases], name, found, known=known)
 
-    def _of_bases(self, bases: list[Type], known: bool, name: str, found: Lookup) -> None:  # noqa: FBT001
+    def _of_bases(self, bases: list[Type], name: str, found: Lookup, *, known: bool) -> None:
         inner = Lookup()
         for base in bases:
             one = Lookup()
@@ -201,7 +202,8 @@ class Members(Core):
     def _of_value(self, kind: Type, name: str, found: Lookup) -> None:
         if isinstance(kind, Sequence) and kind.kind == "array" and (member := self.api.member(ARRAY, name)):
             found.symbols.append(member.symbol.path)
-        found.types.append(Builtin(name, kind))
+        if hasattr(_python_class(kind), name):
+            found.types.append(Builtin(name, kind))
 
     # Items.
 
@@ -277,10 +279,12 @@ class Members(Core):
         self.resolve(node, "item", str(value), (symbol.path,), sure=owner.sure)
         return self.api.socket_type(symbol)
 
-    def iterated(self, kind: Type) -> Type:
+    def iterated(self, kind: Type) -> Type:  # noqa: PLR0911 - one return a type
         """What a loop over a value gives."""
         if isinstance(kind, Union):
-            return union(self.iterated(member) for member in kind.members if not isinstance(member, NoneValue))
+            return union(
+                self.iterated(member) for member in kind.members if not isinstance(member, NoneValue)
+            )
         if isinstance(kind, Collection):
             return kind.element
         if isinstance(kind, Sequence):
@@ -302,22 +306,27 @@ class Members(Core):
             return [union(column) for column in zip(*rows, strict=True)]
         return [self.iterated(kind)] * count
 
+    _attribute_readers: ClassVar[dict[type, Callable[..., None]]] = {
+        Instance: _of_instance,
+        Collection: _of_collection,
+        Module: _of_module,
+        ClassObject: _of_class,
+        Operator: _of_operator,
+        LocalClass: _of_local_class,
+        LocalInstance: _of_local_instance,
+        Plain: _of_value,
+        Sequence: _of_value,
+        Tuple: _of_value,
+        Mapping: _of_value,
+    }
 
-def _unknown(_self: Members, _kind: Type, _name: str, found: Lookup) -> None:
-    found.types.append(UNKNOWN)
 
-
-_READERS: dict[type, Callable[..., None]] = {
-    Unknown: _unknown,
-    Instance: Members._of_instance,
-    Collection: Members._of_collection,
-    Module: Members._of_module,
-    ClassObject: Members._of_class,
-    Operator: Members._of_operator,
-    LocalClass: Members._of_local_class,
-    LocalInstance: Members._of_local_instance,
-    Plain: Members._of_value,
-    Sequence: Members._of_value,
-    Tuple: Members._of_value,
-    Mapping: Members._of_value,
-}
+def _python_class(kind: Type) -> type:
+    """The class of Python that a value is of."""
+    if isinstance(kind, Mapping):
+        return dict
+    if isinstance(kind, Plain):
+        return _PYTHON.get(kind.kind, str)
+    if isinstance(kind, Tuple):
+        return list  # or a tuple, which has less
+    return set if isinstance(kind, Sequence) and kind.kind == "set" else list

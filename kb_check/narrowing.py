@@ -31,7 +31,7 @@ _OBJECT = f"{T}Object"
 class Narrowing(Expressions):
     """Applies conditions to what names and chains hold."""
 
-    def narrow(self, test: ast.expr, *, holds: bool) -> None:
+    def narrow(self, test: ast.expr, *, holds: bool) -> None:  # noqa: PLR0912 - one case a form
         """See :class:`core.Core`."""
         match test:
             case ast.UnaryOp(op=ast.Not()):
@@ -57,13 +57,13 @@ class Narrowing(Expressions):
             case _:
                 pass
 
-    def _known(self, node: ast.expr) -> Type:
+    def _type_of(self, node: ast.expr) -> Type:
         return self.types.get(node, UNKNOWN)
 
-    def _set(self, node: ast.expr, kind: Type) -> None:
+    def _know(self, node: ast.expr, kind: Type) -> None:
         """What a name or a chain holds from here on; only for the way that is being read."""
         text = chain_text(node)
-        if not text or self._known(node) == kind:
+        if not text or self._type_of(node) == kind:
             return
         if isinstance(node, ast.Name) and node.id in self.scope.state.names:
             self.scope.state.names[node.id] = kind
@@ -72,9 +72,9 @@ class Narrowing(Expressions):
         self.types[node] = kind
 
     def _without_none(self, node: ast.expr) -> None:
-        kind = self._known(node)
+        kind = self._type_of(node)
         if isinstance(kind, Union):
-            self._set(node, without_none(kind))
+            self._know(node, without_none(kind))
 
     def _any_of(self, tests: list[ast.expr]) -> None:
         """``a.type == 'X' or a.type == 'Y'``: either."""
@@ -101,17 +101,17 @@ class Narrowing(Expressions):
             return
         texts: list[str] = []
         if isinstance(operator, (ast.In, ast.NotIn)):
-            kind = self._known(right)
+            kind = self._type_of(right)
             held = kind.items if isinstance(kind, Tuple) else (self.iterated(kind),)
             texts = [text for item in held for text in literal_texts(item)]
-        elif text := literal_text(self._known(right)):
+        elif text := literal_text(self._type_of(right)):
             texts = [text]
         if texts:
             self._told_apart(left.value, texts)
 
     def _told_apart(self, node: ast.expr, values: list[str]) -> None:
         """A value whose ``type`` is one of ``values``."""
-        kind = without_none(self._known(node))
+        kind = without_none(self._type_of(node))
         found: list[Type] = []
         for member in members(kind):
             if not isinstance(member, Instance):
@@ -125,7 +125,7 @@ class Narrowing(Expressions):
                 else:
                     found.append(member)
         if found and (result := union(found)) is not UNKNOWN:
-            self._set(node, result)
+            self._know(node, result)
 
     def _asked(self, name: str, call: ast.Call) -> None:
         """``isinstance(x, y)`` and ``hasattr(x, "y")``."""
@@ -133,16 +133,16 @@ class Narrowing(Expressions):
             return
         subject, answer = call.args
         if name == "isinstance":
-            wanted = self._known(answer)
+            wanted = self._type_of(answer)
             kinds = wanted.items if isinstance(wanted, Tuple) else members(wanted)
             found = [self._instance(kind) for kind in kinds]
             if UNKNOWN not in found:
-                self._set(subject, union(found))
+                self._know(subject, union(found))
             elif chain_text(subject):
-                self._set(subject, UNKNOWN)
-        elif name == "hasattr" and (attribute := literal_text(self._known(answer))):
+                self._know(subject, UNKNOWN)
+        elif name == "hasattr" and (attribute := literal_text(self._type_of(answer))):
             text = chain_text(subject)
-            owner = self._known(subject)
+            owner = self._type_of(subject)
             if text and owner is not UNKNOWN and owner is not NONE:
                 found_type = self.attribute(owner, attribute)
                 if found_type.missing or found_type.possible:

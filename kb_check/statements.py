@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from kb_check.annotations import annotated
 from kb_check.calls import Calls
@@ -15,7 +15,6 @@ from kb_check.types import (
     STR,
     UNKNOWN,
     ClassObject,
-    Collection,
     Function,
     Instance,
     LocalClass,
@@ -29,14 +28,15 @@ from kb_check.types import (
     Type,
     join,
     literal,
-    literal_text,
-    without_none,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence as Rows
+    from collections.abc import Callable
+    from collections.abc import Sequence as Rows
 
-_FORGIVING = frozenset({"AttributeError", "Exception", "BaseException", "KeyError", "TypeError", "RuntimeError", "ValueError"})
+_FORGIVING = frozenset(
+    {"AttributeError", "Exception", "BaseException", "KeyError", "TypeError", "RuntimeError", "ValueError"}
+)
 _API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
                           "bl_math", "idprop", "imbuf"})  # fmt: skip
 
@@ -58,7 +58,7 @@ class Statements(Calls):
         """Reads statements one after the other; whether what follows them can be reached."""
         for statement in body:
             self.statement = statement
-            reader = _READERS.get(type(statement))
+            reader = self._statement_readers.get(type(statement))
             if reader is not None and not reader(self, statement):
                 return False
         return True
@@ -101,7 +101,11 @@ class Statements(Calls):
 
     def _fill(self, target: ast.Subscript, owner: Type, key: Type, kind: Type) -> None:
         """An empty dictionary that a name holds learns what it is filled with."""
-        if isinstance(target.value, ast.Name) and isinstance(owner, Mapping) and target.value.id in self.scope.state.names:
+        if (
+            isinstance(target.value, ast.Name)
+            and isinstance(owner, Mapping)
+            and target.value.id in self.scope.state.names
+        ):
             value = kind if owner.value is UNKNOWN and not owner.items else join(owner.value, kind)
             known = key if owner.key is UNKNOWN else join(owner.key, key)
             self.scope.bind(target.value.id, Mapping(_general(known), value))
@@ -279,7 +283,9 @@ class Statements(Calls):
             if case.guard is not None:
                 self.evaluate(case.guard)
                 self.narrow(case.guard, holds=True)
-            whole = whole or (isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None and not case.guard)
+            whole = whole or (
+                isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None and not case.guard
+            )
             ways.append(self._way(self.scope.state, case.body))
         if not whole:
             ways.append(before)
@@ -395,7 +401,11 @@ class Statements(Calls):
                     function.is_static = True
                 case ast.Name(id="classmethod"):
                     function.is_class_method = True
-                case ast.Name(id="property") | ast.Attribute(attr="cached_property") | ast.Name(id="cached_property"):
+                case (
+                    ast.Name(id="property")
+                    | ast.Attribute(attr="cached_property")
+                    | ast.Name(id="cached_property")
+                ):
                     function.is_property = True
                 case ast.Attribute(attr="setter" | "getter" | "deleter"):
                     return True
@@ -445,6 +455,7 @@ class Statements(Calls):
         self.function, self.loops, self.tolerant = function, [], 0
         function.running, function.stale, function.runs = True, False, function.runs + 1
         function.seen = self.stamp(function)
+        self.statement = None
         try:
             self._bind_parameters(function)
             if isinstance(function.node, ast.Lambda):
@@ -452,6 +463,7 @@ class Statements(Calls):
             elif self.read_body(function.node.body) and function.returned is not None:
                 function.returned = join(function.returned, NONE)
             if not isinstance(function.node, ast.Lambda) and function.node.returns is not None:
+                self.statement = None
                 declared = annotated(function.node.returns, self.evaluate)
                 if declared is not UNKNOWN and function.returned in {UNKNOWN, None}:
                     function.returned = declared
@@ -475,7 +487,9 @@ class Statements(Calls):
                 defaults[argument.arg] = default
         for place, argument in enumerate((*positional, *arguments.kwonlyargs)):
             given = declared[place] if place < len(declared) else UNKNOWN
-            self.scope.bind(argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg)))
+            self.scope.bind(
+                argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg))
+            )
         if arguments.vararg is not None:
             self.scope.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
         if arguments.kwarg is not None:
@@ -508,7 +522,9 @@ class Statements(Calls):
             if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == name:
                 if self.api.member(cls, node.attr) is None and not self.api.below(cls, node.attr):
                     return UNKNOWN
-            elif isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == name:
+            elif (
+                isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == name
+            ):
                 return UNKNOWN
         return Instance(cls, sure=False)
 
@@ -534,6 +550,35 @@ class Statements(Calls):
                 return first + [self.api.read_type(parameter.type, symbol.path) for parameter in rest]
         return first
 
+    _statement_readers: ClassVar[dict[type, Callable[..., bool]]] = {
+        ast.Assign: _assign,
+        ast.AnnAssign: _assign_annotated,
+        ast.AugAssign: _assign_augmented,
+        ast.If: _if,
+        ast.For: _for,
+        ast.AsyncFor: _for,
+        ast.While: _while,
+        ast.Break: _break,
+        ast.Continue: _continue,
+        ast.With: _with,
+        ast.AsyncWith: _with,
+        ast.Try: _try,
+        ast.TryStar: _try,
+        ast.Match: _match,
+        ast.Expr: _expression,
+        ast.Return: _return,
+        ast.Raise: _raise,
+        ast.Assert: _assert,
+        ast.Delete: _delete,
+        ast.Global: _global,
+        ast.Nonlocal: _global,
+        ast.Import: _import,
+        ast.ImportFrom: _import_from,
+        ast.FunctionDef: _define_function,
+        ast.AsyncFunctionDef: _define_function,
+        ast.ClassDef: _define_class,
+    }
+
 
 def _general(kind: Type) -> Type:
     """A type without its literal value: what a name can hold besides its first value."""
@@ -557,35 +602,3 @@ def _forgives(handler: ast.ExceptHandler) -> bool:
         return True
     names = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
     return any(isinstance(name, ast.Name) and name.id in _FORGIVING for name in names)
-
-
-_ = (Collection, Mapping, literal_text, without_none)
-_READERS: dict[type, Callable[..., bool]] = {
-    ast.Assign: Statements._assign,
-    ast.AnnAssign: Statements._assign_annotated,
-    ast.AugAssign: Statements._assign_augmented,
-    ast.If: Statements._if,
-    ast.For: Statements._for,
-    ast.AsyncFor: Statements._for,
-    ast.While: Statements._while,
-    ast.Break: Statements._break,
-    ast.Continue: Statements._continue,
-    ast.With: Statements._with,
-    ast.AsyncWith: Statements._with,
-    ast.Try: Statements._try,
-    ast.Match: Statements._match,
-    ast.Expr: Statements._expression,
-    ast.Return: Statements._return,
-    ast.Raise: Statements._raise,
-    ast.Assert: Statements._assert,
-    ast.Delete: Statements._delete,
-    ast.Global: Statements._global,
-    ast.Nonlocal: Statements._global,
-    ast.Import: Statements._import,
-    ast.ImportFrom: Statements._import_from,
-    ast.FunctionDef: Statements._define_function,
-    ast.AsyncFunctionDef: Statements._define_function,
-    ast.ClassDef: Statements._define_class,
-}
-if hasattr(ast, "TryStar"):
-    _READERS[ast.TryStar] = Statements._try

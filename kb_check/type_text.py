@@ -53,7 +53,7 @@ def read_type(text: str, class_named: Callable[[str], str]) -> Type:
     return _read(tree.body, class_named)
 
 
-def _read(node: ast.expr, class_named: Callable[[str], str]) -> Type:
+def _read(node: ast.expr, class_named: Callable[[str], str]) -> Type:  # noqa: PLR0911 - one return a form
     match node:
         case ast.Name() | ast.Attribute():
             name = ast.unparse(node)
@@ -73,14 +73,16 @@ def _read(node: ast.expr, class_named: Callable[[str], str]) -> Type:
             return UNKNOWN
 
 
-def _generic(node: ast.Subscript, class_named: Callable[[str], str]) -> Type:
+def _generic(node: ast.Subscript, class_named: Callable[[str], str]) -> Type:  # noqa: PLR0911 - likewise
     head = ast.unparse(node.value)
     last = head.rpartition(".")[2]
     inside = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
     if isinstance(inside[0], ast.Constant) and isinstance(inside[0].value, int):  # ``float[3]``
         return Sequence("array", _PLAIN.get(head, UNKNOWN))
     if last == "Literal":
-        return STR if all(isinstance(i, ast.Constant) and isinstance(i.value, str) for i in inside) else UNKNOWN
+        return (
+            STR if all(isinstance(i, ast.Constant) and isinstance(i.value, str) for i in inside) else UNKNOWN
+        )
     if last == "Optional":
         return union((_read(inside[0], class_named), NONE))
     if last in {"tuple", "Tuple"}:

@@ -24,12 +24,31 @@ _LONGEST_LINE = 110
 _LONGEST_REWRITTEN = 150  # of a statement of more lines, written as one
 _MOST_COUNTED = 10  # uses of one symbol in one file: tables and generated code say little
 _NEAR = 12  # lines between a name's binding and its use
-_BUILTINS = frozenset(dir(builtins)) | {"bpy", "context", "bmesh", "mathutils", "self", "cls", "C", "D", "gpu"}
+_BUILTINS = frozenset(dir(builtins)) | {
+    "bpy",
+    "context",
+    "bmesh",
+    "mathutils",
+    "self",
+    "cls",
+    "C",
+    "D",
+    "gpu",
+}
 
 _LAYOUT = Instance("bpy.types.UILayout")
 
 # How clearly a use shows its symbol: 0 is best.
-_COSTS = {"store": 0.0, "call": 0.0, "item": 0.0, "made": 0.5, "attribute": 3.0, "name": 6.0, "text": 5.0, "given": 5.0}
+_COSTS = {
+    "store": 0.0,
+    "call": 0.0,
+    "item": 0.0,
+    "made": 0.5,
+    "attribute": 3.0,
+    "name": 6.0,
+    "text": 5.0,
+    "given": 5.0,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +195,9 @@ class _Script:
                 is_loop = line[1].startswith("for ")
                 code = f"{line[1]}\n{_indented(code) if is_loop else code}"
                 first = min(first, line[0])
-            elif line is None and any(self._analysis.types.get(n, UNKNOWN) is UNKNOWN for n in names if n.id == name):
+            elif line is None and any(
+                self._analysis.types.get(n, UNKNOWN) is UNKNOWN for n in names if n.id == name
+            ):
                 unknown += 1
             elif line is None:
                 unknown += 0.4

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
 # Folder below Blender's scripts → what is added to the cost of its examples.
 _FOLDERS = {
@@ -21,13 +22,22 @@ _DULL = ("/keyconfig/", "/keymap_data/", "/metarigs/", "/_bl_i18n_utils/", "/tes
 _LARGEST = 1_000_000  # bytes
 
 
-def blender_scripts(folder: Path) -> Iterator[tuple[str, float, Path]]:
-    """(name, cost, path) of the scripts below Blender's folder of scripts; ``name`` is relative to it."""
+@dataclass(frozen=True, slots=True)
+class Script:
+    """A script of Blender's: ``name`` is its path in Blender's folder of scripts, ``cost`` is added to its examples'."""
+
+    name: str
+    cost: float
+    path: Path
+
+
+def blender_scripts(folder: Path) -> Iterator[Script]:
+    """The scripts below Blender's folder of scripts that are worth reading."""
     for top, cost in _FOLDERS.items():
         for path in sorted((folder / top).rglob("*.py")):
             name = path.relative_to(folder).as_posix()
             if not any(part in f"/{name}" for part in _DULL) and path.stat().st_size <= _LARGEST:
-                yield name, cost, path
+                yield Script(name, cost, path)
 
 
 def read_script(path: Path) -> str:

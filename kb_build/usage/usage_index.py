@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.fingerprint import usage_digest
 from kb_build.usage.examples import Example, Uses, uses_in
-from kb_build.usage.scripts import blender_scripts, read_script
+from kb_build.usage.scripts import read_script
 from kb_check.api import Api
 from kb_check.symbols import SymbolList
 from simworlds.files import remove_unfinished_files, staged_file
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.records import Page, Symbol
+    from kb_build.usage.scripts import Script
 
 _KEPT = 12
 _CODE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -31,38 +32,35 @@ _GUIDE_COST = 0.0
 _SAME = "same-as:"
 
 Usage = dict[str, Uses]
-_Job = tuple[str, float, "Path"]
 
 
-def usage_file(cache: Path, extract: str, scripts: Sequence[_Job]) -> Path:
+def usage_file(cache: Path, extract: str, scripts: Sequence[Script]) -> Path:
     """Where the uses in these scripts are kept; the name depends on the scripts, the API and the code that reads them.
 
     ``extract`` names what Blender said of itself, with the digests of that Blender and of the extractor.
     """
     total = hashlib.sha256(f"{usage_digest()} {extract}".encode())
-    for name, _, path in scripts:
-        total.update(name.encode())
-        total.update(hashlib.sha256(read_script(path).encode(errors="replace")).digest())
+    for script in scripts:
+        total.update(script.name.encode())
+        total.update(hashlib.sha256(read_script(script.path).encode(errors="replace")).digest())
     return cache / "usage" / f"{total.hexdigest()[:32]}.json.gz"
 
 
 @contextlib.contextmanager
 def script_usage(
-    symbols: Sequence[Symbol], folder: Path | None, version: str, *, extract: str, cache: Path, jobs: int
+    symbols: Sequence[Symbol], scripts: Sequence[Script], version: str, *, file: Path, jobs: int
 ) -> Generator[Callable[[], Usage]]:
-    """Reads the scripts below ``folder`` in other processes meanwhile; gives a function that waits for the uses.
+    """Reads scripts in other processes meanwhile; gives a function that waits for the uses of symbols in them.
 
-    None for a Blender without scripts. What cannot be kept in ``cache`` is read again by the next build.
+    The uses are kept in ``file`` (see usage_file). Where that is not possible, the next build reads them again.
     """
-    scripts = list(blender_scripts(folder)) if folder is not None else []
-    path = usage_file(cache, extract, scripts)
-    kept = _kept(path)
+    kept = _kept(file)
     if kept is not None:
         yield lambda: kept
         return
     # Large files first, each to the next process: the shares take about equally long.
-    scripts.sort(key=lambda script: -script[2].stat().st_size)
-    shares = [scripts[start::jobs] for start in range(jobs)]
+    largest_first = sorted(scripts, key=lambda script: -script.path.stat().st_size)
+    shares = [largest_first[start::jobs] for start in range(jobs)]
     with contextlib.ExitStack() as stack:
         waiting = [
             stack.enter_context(beside(partial(_read, symbols, share, version))) for share in shares if share
@@ -70,7 +68,7 @@ def script_usage(
 
         def result() -> Usage:
             usage = merged([share() for share in waiting])
-            _keep(usage, path)
+            _keep(usage, file)
             return usage
 
         yield result
@@ -80,10 +78,10 @@ def _numbers(version: str) -> tuple[int, ...]:
     return tuple(int(part) for part in version.split(".") if part.isdigit())
 
 
-def _read(symbols: Sequence[Symbol], scripts: Iterable[_Job], version: str) -> Usage:
+def _read(symbols: Sequence[Symbol], scripts: Iterable[Script], version: str) -> Usage:
     api = Api(SymbolList(symbols))
     numbers = _numbers(version)
-    return merged(uses_in(read_script(path), name, api, numbers, cost) for name, cost, path in scripts)
+    return merged(uses_in(read_script(s.path), s.name, api, numbers, s.cost) for s in scripts)
 
 
 def page_usage(symbols: Sequence[Symbol], pages: Iterable[Page], version: str) -> Usage:
