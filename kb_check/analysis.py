@@ -88,6 +88,7 @@ def analyse(code: str, api: Api, version: tuple[int, ...] = ()) -> Analysis:
         return _failed(
             f"the script is too large ({len(code):,} characters; up to {MOST_CHARACTERS:,} are read)"
         )
+    code = code.removeprefix("\ufeff")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

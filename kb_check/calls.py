@@ -6,6 +6,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
+from kb_check.core import DEEPEST_RUN
 from kb_check.facts import BMESH_RESULTS, OPEN_CALLS, T
 from kb_check.narrowing import Narrowing
 from kb_check.types import (
@@ -30,6 +31,7 @@ from kb_check.types import (
     Tuple,
     Type,
     Union,
+    bounded,
     join,
     literal_text,
     literal_texts,
@@ -43,7 +45,6 @@ if TYPE_CHECKING:
     from kb_build.records import Parameter, Symbol
     from kb_check.scopes import FunctionDefinition
 
-_DEEPEST_RUN = 60  # a function that is called further inside is read later
 _MOST_RUNS = 3
 # Arguments that name a property of another argument or of the receiver: function → (text, owner; -1 the receiver).
 _NAMES_PROPERTY = {
@@ -295,6 +296,7 @@ class Calls(Narrowing):
         made = self.class_attribute(callee.number, "__init__")
         if made and isinstance(made[0], LocalFunction):
             self._pass(made[0].number, [instance, *arguments], {k.arg or "": t for k, t in keywords})
+            self._run_now(made[0].number)
         return instance
 
     def _local_function(
@@ -309,14 +311,19 @@ class Calls(Narrowing):
             arguments = []
         values = arguments if callee.receiver is None else [callee.receiver, *arguments]
         self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
+        self._run_now(callee.number)
+        return UNKNOWN if function.returned is None else function.returned
+
+    def _run_now(self, number: int) -> None:
+        """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""
+        function = self.functions[number]
         if (
             function.stale
             and not function.running
-            and self.depth < _DEEPEST_RUN
+            and self.depth < DEEPEST_RUN
             and function.runs < _MOST_RUNS
         ):
-            self.run(callee.number)
-        return UNKNOWN if function.returned is None else function.returned
+            self.run(number)
 
     def _pass(self, number: int, values: list[Type], keywords: dict[str, Type]) -> None:
         """Adds what a call passes to what a function is known to receive."""
@@ -330,6 +337,7 @@ class Calls(Narrowing):
 
     @staticmethod
     def _receive(function: FunctionDefinition, name: str, kind: Type) -> None:
+        kind = bounded(kind)
         before = function.received.get(name)
         if before is None or before is UNKNOWN:
             after = kind

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from kb_check.api import Api
 
+DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
 _MOST_BASES = 40
 
@@ -154,6 +155,8 @@ class Core:
         if function.is_static:
             return kind
         if function.is_property:
+            if function.returned is None and not function.running and self.depth < DEEPEST_RUN:
+                self.run(kind.number)
             return function.returned or UNKNOWN
         return LocalFunction(kind.number, receiver)
 

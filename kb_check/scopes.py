@@ -6,12 +6,31 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_check.types import UNKNOWN, Type, join
+from kb_check.types import (
+    UNKNOWN,
+    Builtin,
+    Function,
+    Instance,
+    LocalFunction,
+    Mapping,
+    Tuple,
+    Type,
+    Union,
+    bounded,
+    join,
+)
+from kb_check.types import Sequence as ListType
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _DEEPEST_CHAIN = 8
+_NESTED = (ListType, Tuple, Mapping, Union, Instance, Function, Builtin, LocalFunction)
+
+
+def _kept(kind: Type) -> Type:
+    """A type as a name holds it; the same object where it is simple."""
+    return bounded(kind) if isinstance(kind, _NESTED) else kind
 
 
 @dataclass(slots=True)
@@ -67,6 +86,7 @@ class Scope:
 
     def bind(self, name: str, kind: Type) -> None:
         """Binds a name, and forgets what was known of chains that begin with it."""
+        kind = _kept(kind)
         if name in self.elsewhere:
             scope = self.parent
             while scope is not None and scope.parent is not None and name not in scope.ever:
@@ -127,6 +147,7 @@ class ClassDefinition:
 
     def bind(self, name: str, kind: Type) -> None:
         """Adds to what an attribute holds."""
+        kind = _kept(kind)
         before = self.attributes.get(name)
         after = kind if before is None or before is UNKNOWN else join(before, kind)
         if after != before:

@@ -26,6 +26,7 @@ from kb_check.types import (
     Sequence,
     Tuple,
     Type,
+    bounded,
     join,
     literal,
 )
@@ -120,6 +121,7 @@ class Statements(Calls):
         elif isinstance(owner, ClassObject) and self.api.member(owner.cls, target.attr) is None:
             self.registered[owner.cls, target.attr] = kind
             return
+        is_expected = text in self.scope.state.chains
         if text and self.scope.state.chains:
             self.scope.forget(text)
         self.resolutions.pop(target, None)
@@ -127,8 +129,9 @@ class Statements(Calls):
             return
         found = self.attribute(owner, target.attr)
         if found.symbols or found.missing or found.possible:
+            missing = () if is_expected else found.missing
             self.resolve(
-                target, "store", target.attr, found.symbols, found.missing, found.possible, sure=found.sure
+                target, "store", target.attr, found.symbols, missing, found.possible, sure=found.sure
             )
         if found.symbols and value is not None:
             self.check_value(found.type, value)
@@ -312,7 +315,7 @@ class Statements(Calls):
     def _return(self, node: ast.Return) -> bool:
         kind = self.evaluate(node.value) if node.value is not None else NONE
         if self.function is not None:
-            before = self.function.returned
+            before, kind = self.function.returned, bounded(kind)
             self.function.returned = kind if before is None else join(before, kind)
         return False
 

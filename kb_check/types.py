@@ -6,13 +6,14 @@ Types are immutable and compare by value. ``None`` as a Python value is :data:`N
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import ast
     from collections.abc import Iterable, Iterator
 
+DEEPEST_TYPE = 6  # parts within each other of what a name holds
 MOST_MEMBERS = 8  # of a union; more are UNKNOWN
 
 
@@ -226,6 +227,35 @@ def union(kinds: Iterable[Type]) -> Type:
 def join(first: Type, second: Type) -> Type:
     """What a name holds after two ways led to the same place."""
     return first if first is second or first == second else union((first, second))
+
+
+def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:
+    """A type whose parts lie at most so deep within each other: a list that holds itself has no end."""
+    if isinstance(
+        kind, (Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalClass, LocalInstance)
+    ):
+        return kind
+    if depth == 0:
+        return UNKNOWN
+    below = depth - 1
+    match kind:
+        case Sequence():
+            return Sequence(kind.kind, bounded(kind.element, below))
+        case Tuple():
+            return Tuple(tuple(bounded(item, below) for item in kind.items))
+        case Mapping():
+            items = tuple((name, bounded(value, below)) for name, value in kind.items)
+            return Mapping(bounded(kind.key, below), bounded(kind.value, below), items)
+        case Union():
+            return union(bounded(member, below) for member in kind.members)
+        case Instance() if kind.traits:
+            return replace(kind, traits=tuple((name, bounded(trait, below)) for name, trait in kind.traits))
+        case Function() | Builtin() | LocalFunction() if kind.receiver is not None:
+            return replace(kind, receiver=bounded(kind.receiver, below))
+        case Collection():
+            return replace(kind, owner=bounded(kind.owner, below))
+        case _:
+            return kind
 
 
 def literal(kind: Type) -> str | int | float | bool | None:

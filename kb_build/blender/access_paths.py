@@ -97,7 +97,9 @@ def _rarity(path: str, uses: Mapping[str, int]) -> float:
 
 def _key(target: str, graph: _Graph) -> str:
     """The subscript of a collection: the name Blender gives by default, or an index."""
-    if graph.named.isdisjoint(_lineage(target, graph)):
+    lineage = list(_lineage(target, graph))
+    # A socket is called what its node calls it, not like its class.
+    if graph.named.isdisjoint(lineage) or "NodeSocket" in lineage:
         return "[0]"
     label = graph.label.get(target, "") or target
     return f'["{label.removesuffix(" Modifier").removesuffix(" Constraint")}"]'

@@ -117,7 +117,10 @@ class MarkdownRenderer:
     def symbol(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         """A symbol: a class with a list of its members, an operator or function with its parameters."""
         yield AnswerBlock(self._head(symbol), "description")
+        used = AnswerBlock(self.used(symbol.path), "a use in Blender's scripts")
         if symbol.kind == "class":
+            if used.text:
+                yield used  # the lists below it would leave no room
             yield from self._class(symbol)
         elif symbol.kind in {"operator", "function"}:
             yield from _parameters(symbol)
@@ -128,8 +131,8 @@ class MarkdownRenderer:
         definition = self.manual_definition(symbol)
         if definition:
             yield AnswerBlock(definition, "the manual's definition")
-        if used := self.used(symbol.path):
-            yield AnswerBlock(used, "a use in Blender's scripts")
+        if used.text and symbol.kind != "class":
+            yield used
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""
