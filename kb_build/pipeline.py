@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from kb_build.records import Page
     from kb_build.store import Contents
     from kb_build.summaries.types import SummaryReport, SummaryRun
+    from kb_build.usage.examples import SymbolUsage
     from kb_build.usage.usage_index import Usage
     from kb_build.versions.removed_symbols import RemovedSymbols
     from simworlds.sandbox.runtime import Runtime
@@ -121,18 +122,16 @@ def build(
     meta = None if options.force else _present(work.path, fingerprint)
     if meta is not None:
         return _report(work, began, meta, built=False)
-    with _paused_collector():
-        with _page_reader(work) as reader:
-            ahead = threading.Thread(target=_load_ahead, daemon=True)
-            ahead.start()
-            extract = _extract(work)
-            ahead.join()
-            with _script_usage(work, extract) as scripts:
-                pages = _pages(work, reader.result(), extract)
-                run = _summaries(work, pages)
-                usage = _usage(work, extract, pages, scripts)
-        meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
-        _write(work, extract, pages, run, meta, usage)
+    with _paused_collector(), _page_reader(work) as reader:
+        ahead = threading.Thread(target=_load_ahead, daemon=True)
+        ahead.start()
+        extract = _extract(work)
+        ahead.join()
+        with _script_usage(work, extract) as scripts:
+            pages = _pages(work, reader.result(), extract)
+            run = _summaries(work, pages)
+            meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
+            _write(work, extract, pages, run, meta, partial(_usage, extract, pages, scripts))
     return _report(work, began, meta, built=True, run=run)
 
 
@@ -272,13 +271,17 @@ def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Usag
         yield result
 
 
-def _usage(work: _Build, extract: Extract, pages: Sequence[Page], scripts: Callable[[], Usage]) -> Usage:
-    """The uses of symbols in Blender's scripts and in the guides."""
+def _usage(extract: Extract, pages: Sequence[Page], scripts: Callable[[], Usage]) -> SymbolUsage:
+    """The uses of symbols in Blender's scripts and in the guides, and the ways to instances that follow from them."""
+    from kb_build.blender.access_paths import reached_expressions  # noqa: PLC0415 - not when nothing changed
+    from kb_build.usage.examples import SymbolUsage  # noqa: PLC0415 - loaded ahead
     from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
 
-    work.progress("Reading Blender's scripts", 0, None)
-    guides = page_usage(extract.symbols, pages, extract.version)
-    return with_aliases(merged([scripts(), guides]), extract.symbols)
+    symbols = extract.symbols
+    guides = page_usage(symbols, pages, extract.version)
+    uses = with_aliases(merged([scripts(), guides]), symbols)
+    reached = reached_expressions(symbols, {path: found.count for path, found in uses.items()})
+    return SymbolUsage(uses, {f"bpy.types.{name}": expression for name, expression in reached.items()})
 
 
 def _pages(work: _Build, read: Mapping[str, list[Page]], extract: Extract) -> list[Page]:
@@ -327,7 +330,11 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
         "addons": list(extract.addons),
         "summaries": summary_facts(run),
         "page_warnings": {page.slug: list(page.warnings) for page in pages if page.warnings},
-        "runtime": {"kind": work.runtime.kind, "executable": str(work.runtime.executable)},
+        "runtime": {
+            "kind": work.runtime.kind,
+            "executable": str(work.runtime.executable),
+            "scripts": extract.scripts,
+        },
     }
     return {
         "blender": extract.version,
@@ -345,10 +352,8 @@ def _write(  # noqa: PLR0913, PLR0917 - all that a base is made of
     pages: Sequence[Page],
     run: SummaryRun | None,
     meta: dict[str, str],
-    usage: Usage,
+    usage: Callable[[], SymbolUsage],
 ) -> None:
-    from kb_build.blender.access_paths import with_access_paths  # noqa: PLC0415 - not when nothing changed
-
     work.progress(f"Writing {work.path.name}", 0, None)
     by_slug = run.by_slug if run else {}
     summaries = {slug: (summary.text, summary.method) for slug, summary in by_slug.items()}
@@ -356,8 +361,9 @@ def _write(  # noqa: PLR0913, PLR0917 - all that a base is made of
         # Loaded now: a process is not forked safely from one that has NumPy's threads.
         from kb_build.store import Contents, write_base  # noqa: PLC0415
 
-        symbols = with_access_paths(extract.symbols, {path: uses.count for path, uses in usage.items()})
-        contents: Contents = Contents(symbols, pages, extract.links, meta, summaries, removed_symbols, usage)
+        contents: Contents = Contents(
+            extract.symbols, pages, extract.links, meta, summaries, removed_symbols, usage
+        )
         write_base(work.path, contents)
 
 

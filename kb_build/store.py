@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -41,6 +41,7 @@ from kb_build.schema import (
     pack,
 )
 from kb_build.symbol_lines import member_line
+from kb_build.usage.examples import SymbolUsage, Uses
 from kb_build.versions.removed_symbols import RemovedSymbols
 from simworlds.files import staged_file
 
@@ -48,15 +49,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from kb_build.usage.examples import Uses
-
 
 @dataclass(frozen=True, slots=True)
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are slug → (text, method); ``usage`` is symbol → its uses; ``removed_symbols`` is called last: it may
-    still be computed meanwhile.
+    ``summaries`` are slug → (text, method). ``removed_symbols`` and ``usage`` are called last: they may still be
+    computed meanwhile.
     """
 
     symbols: Sequence[Symbol]
@@ -65,7 +64,7 @@ class Contents:
     meta: Mapping[str, str]
     summaries: Mapping[str, tuple[str, str]] = field(default_factory=dict[str, tuple[str, str]])
     removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
-    usage: Mapping[str, Uses] = field(default_factory=dict[str, "Uses"])
+    usage: Callable[[], SymbolUsage] = SymbolUsage
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
@@ -112,7 +111,9 @@ def _insert(
     connection.executemany(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", rows)  # noqa: S608
 
 
-def _write_symbols(connection: sqlite3.Connection, symbols: Sequence[Symbol]) -> None:
+def _write_symbols(
+    connection: sqlite3.Connection, symbols: Sequence[Symbol], reached: Mapping[str, str]
+) -> None:
     _insert(
         connection,
         "symbols",
@@ -120,7 +121,7 @@ def _write_symbols(connection: sqlite3.Connection, symbols: Sequence[Symbol]) ->
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label,
-                member_line(symbol), pack(to_json(symbol)),
+                member_line(symbol), pack(to_json(_with_path(symbol, reached))),
             )
             for number, symbol in enumerate(symbols)
         ),
@@ -128,6 +129,12 @@ def _write_symbols(connection: sqlite3.Connection, symbols: Sequence[Symbol]) ->
     )  # fmt: skip
     _insert(connection, "names", (row for symbol in symbols for row in symbol_names(symbol)), 3)
     _insert(connection, "enum_items", (row for symbol in symbols for row in enum_rows(symbol)), 4)
+
+
+def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
+    """A class with the expression that leads to an instance."""
+    path = reached.get(symbol.path) if symbol.kind == "class" else None
+    return replace(symbol, reached=path) if path else symbol
 
 
 def _places(pages: Sequence[Page]) -> dict[str, tuple[str, int]]:
@@ -255,11 +262,12 @@ def _write(part: Path, contents: Contents) -> None:
         expansions = load_query_expansions()
         units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, expansions)
         with connection:
-            _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
             _write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
-            _write_usage(connection, contents.usage)
+            usage = contents.usage()
+            _write_symbols(connection, contents.symbols, usage.reached)
+            _write_usage(connection, usage.uses)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

@@ -49,6 +49,8 @@ class Core:
         self.steps_left = most_steps
         self.function: FunctionDefinition | None = None
         self.statement: ast.stmt | None = None
+        self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
+        self._mixed: dict[tuple[int, int], tuple[tuple[str, ...], bool]] = {}
 
     # What the parts give each other.
 
@@ -86,10 +88,10 @@ class Core:
         sure: bool = True,
     ) -> None:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
-        paths = (tuple(dict.fromkeys(found)) for found in (symbols, missing, possible))
         self.resolutions[node] = Resolution(
-            node, kind, value, *paths, sure=sure, guarded=self.tolerant > 0, statement=self.statement
-        )
+            node, kind, value, _once(symbols), _once(missing), _once(possible),
+            sure, self.tolerant > 0, self.statement,
+        )  # fmt: skip
 
     # Definitions.
 
@@ -129,23 +131,30 @@ class Core:
         A class without any that others of the script derive from has those of the others: it is mixed into them.
         """
         bases, known = self._direct_bases(number)
-        if not bases and known:
+        if bases or not known:
+            return bases, known
+        key = number, len(self.classes)
+        found = self._mixed.get(key)
+        if found is None:
             for other in range(len(self.classes)):
                 if other != number and LocalClass(number) in self.ancestors(other):
                     more, _ = self._direct_bases(other)
                     bases += tuple(base for base in more if base not in bases)
-            known = not bases and known
-        return bases, known
+            found = self._mixed[key] = bases, not bases
+        return found
 
     def _direct_bases(self, number: int) -> tuple[tuple[str, ...], bool]:
-        bases: list[str] = []
-        known = True
-        for kind in self.ancestors(number):
-            if isinstance(kind, ClassObject):
-                bases.append(kind.cls)
-            elif not isinstance(kind, LocalClass):
-                known = False
-        return tuple(bases), known
+        found = self._bases.get(number)
+        if found is None:
+            bases: list[str] = []
+            known = True
+            for kind in self.ancestors(number):
+                if isinstance(kind, ClassObject):
+                    bases.append(kind.cls)
+                elif not isinstance(kind, LocalClass):
+                    known = False
+            found = self._bases[number] = tuple(bases), known
+        return found
 
     def bound(self, kind: Type, receiver: Type) -> Type:
         """A class attribute as it is read from an instance or a class: methods are bound."""
@@ -163,3 +172,8 @@ class Core:
     def instance_of(self, kind: Type) -> Type:
         """An instance of what a name in an annotation or in isinstance means."""
         return Instance(kind.cls) if isinstance(kind, ClassObject) else UNKNOWN
+
+
+def _once(paths: Sequence[str]) -> tuple[str, ...]:
+    """The same paths, each once."""
+    return tuple(paths) if len(paths) < 2 else tuple(dict.fromkeys(paths))

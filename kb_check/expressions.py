@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 _BUILTINS = frozenset(
     (  # noqa: SIM905
         "abs all any bool dict enumerate filter float frozenset getattr hasattr int isinstance iter len list map max "
-        "min next open print range repr reversed round set setattr sorted str sum super tuple type zip delattr property "
-        "staticmethod classmethod object callable"
+        "min next open print range repr reversed round set setattr sorted str sum super tuple type zip delattr "
+        "property staticmethod classmethod object callable"
     ).split()
 )
 _CLASSES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "str", bytes: "bytes"}

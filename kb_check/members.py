@@ -62,7 +62,7 @@ class Lookup:
     @property
     def type(self) -> Type:
         """The type of the attribute."""
-        return union(self.types)
+        return self.types[0] if len(self.types) == 1 else union(self.types)
 
 
 class Members(Core):

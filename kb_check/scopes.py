@@ -119,7 +119,8 @@ class Scope:
 class FunctionDefinition:
     """A function of the script. ``received`` joins what calls passed, ``returned`` what it returns.
 
-    ``seen`` is the state of the script's definitions at the last run.
+    ``seen`` is the state of the script's definitions at the last run; ``used`` are the attributes that it reads
+    from each name, once they were asked for.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -134,6 +135,7 @@ class FunctionDefinition:
     runs: int = 0
     stale: bool = True
     seen: tuple[int, int] = (-1, -1)
+    used: dict[str, set[str]] | None = None
 
 
 @dataclass(slots=True)

@@ -521,13 +521,10 @@ class Statements(Calls):
         cls = T + PARAMETERS.get(name, "")
         if not self.api.is_class(cls):
             return UNKNOWN
-        for node in ast.walk(function.node):
-            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == name:
-                if self.api.member(cls, node.attr) is None and not self.api.below(cls, node.attr):
-                    return UNKNOWN
-            elif (
-                isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == name
-            ):
+        if function.used is None:
+            function.used = _used_names(function.node)
+        for attribute in function.used.get(name, ()):
+            if not attribute or not (self.api.member(cls, attribute) or self.api.below(cls, attribute)):
                 return UNKNOWN
         return Instance(cls, sure=False)
 
@@ -588,6 +585,15 @@ def _general(kind: Type) -> Type:
     if isinstance(kind, Plain) and kind.value is not None:
         return Plain(kind.kind, None, kind.source)
     return kind
+
+
+def _used_names(function: ast.AST) -> dict[str, set[str]]:
+    """Name → the attributes that a function reads from it; an empty one where it is indexed."""
+    used: dict[str, set[str]] = {}
+    for node in ast.walk(function):
+        if isinstance(node, (ast.Attribute, ast.Subscript)) and isinstance(node.value, ast.Name):
+            used.setdefault(node.value.id, set()).add(node.attr if isinstance(node, ast.Attribute) else "")
+    return used
 
 
 def _differs(before: State, after: State) -> bool:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import heapq
 from collections import defaultdict
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
     from kb_build.records import Symbol
 
@@ -176,16 +176,3 @@ def reached_expressions(symbols: Iterable[Symbol], uses: Mapping[str, int] | Non
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
         expressions[cls] = f"{expressions.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"
     return expressions
-
-
-def with_access_paths(symbols: Sequence[Symbol], uses: Mapping[str, int]) -> tuple[Symbol, ...]:
-    """The same symbols, each class with the expression that leads to an instance (see reached_expressions)."""
-    expressions = reached_expressions(symbols, uses)
-    return tuple(
-        replace(symbol, reached=expressions[name])
-        if symbol.kind == "class"
-        and symbol.path.startswith(TYPES)
-        and (name := symbol.path.removeprefix(TYPES)) in expressions
-        else symbol
-        for symbol in symbols
-    )

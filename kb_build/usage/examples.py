@@ -12,7 +12,7 @@ from kb_check.analysis import analyse
 from kb_check.types import UNKNOWN, Instance, Operator
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from kb_check.analysis import Analysis
     from kb_check.api import Api
@@ -74,6 +74,14 @@ class Uses:
         self.count += other.count
         self.files += other.files
         self.examples = clearest([*self.examples, *other.examples])
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolUsage:
+    """What the uses of symbols tell: symbol → its uses, and class → the expression that leads to an instance."""
+
+    uses: Mapping[str, Uses] = field(default_factory=dict[str, Uses])
+    reached: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 def clearest(examples: Iterable[Example]) -> list[Example]:
@@ -168,7 +176,7 @@ class _Script:
         """The clearest of a symbol's uses: (cost of the way it is used, statement)."""
         found: list[Example] = []
         # The text of a statement is looked at for the likeliest ones only.
-        for step, statement in sorted(rows, key=lambda row: row[0])[: 4 * MOST_EXAMPLES]:
+        for step, statement in sorted(rows, key=lambda row: row[0])[: 3 * MOST_EXAMPLES]:
             if statement not in self._texts:
                 self._texts[statement] = self._text(statement)
             text = self._texts[statement]

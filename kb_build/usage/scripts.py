@@ -18,13 +18,18 @@ _FOLDERS = {
     "addons_core": 1.5,
     "addons": 1.5,
 }
-_DULL = ("/keyconfig/", "/keymap_data/", "/metarigs/", "/_bl_i18n_utils/", "/tests/", "/__pycache__/")
+# What says nothing of its own: tables, generated code, the tests and tools of Blender's developers, and what takes long
+# to read for what it shows.
+_DULL = (
+    "/keyconfig/", "/keymap_data/", "/metarigs/", "/rigify/rigs/", "/bl_pkg/", "/ui_translate/", "/_bl_i18n_utils/",
+    "/_rna_manual_reference.py", "/_bpy_internal/", "/io_scene_gltf2/", "/tests/", "/__pycache__/",
+)  # fmt: skip
 _LARGEST = 1_000_000  # bytes
 
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """A script of Blender's: ``name`` is its path in Blender's folder of scripts, ``cost`` is added to its examples'."""
+    """A script of Blender's: ``name`` is its path below the folder of scripts, ``cost`` is added to its examples'."""
 
     name: str
     cost: float

@@ -50,7 +50,7 @@ def test_what_cannot_be_parsed_says_why(api: Api, code: str) -> None:
         "import bpy\n" + "\n".join(f"def f{n}(x): return f{n + 1}(x)" for n in range(400)) + "\nf0(bpy)",
         "global x\nimport bpy.nothing\nfrom bpy import *\nfrom . import a\ndel x, x.y, x[0]",
         "match 1:\n    case {'a': x, **rest}: x\n    case [1, *others] | None: others\n    case _: pass",
-        "async def f():\n    async with a as b:\n        await b\n    async for c in d: yield c\n    return [e async for e in g]",
+        "async def f():\n    async with a as b:\n        await b\n    async for c in d: yield c",
         "try:\n    pass\nexcept* ValueError as e:\n    e\nwhile True:\n    break\nelse:\n    1",
         "",
         "\ufeffimport bpy",

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from contextlib import closing
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.blender.access_paths import reached_expressions, with_access_paths
+from kb_build.blender.access_paths import reached_expressions
 from kb_build.records import Symbol
 from kb_check.symbols import BaseSymbols
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from kb_build.blender.extract_reader import Extract
 
 TYPES = "bpy.types."
 
@@ -65,7 +68,7 @@ def test_takes_the_shortest_path(name: str, expression: str) -> None:
 def test_of_two_ways_the_one_is_taken_that_scripts_take() -> None:
     symbols = [
         *SMALL, cls("Layer"), cls("Layers"), name_of("Layer"), prop("Mesh.clone", "Layer"),
-        Symbol(f"{TYPES}Mesh.layers", "property", f"{TYPES}Mesh", type="collection", target="Layer", collection="Layers"),
+        replace(prop("Mesh.layers", "Layer", "collection"), collection="Layers"),
         prop("Layers.active", "Layer"),
     ]  # fmt: skip
     assert reached_expressions(symbols)["Layer"] == "bpy.context.object.data.layers.active"
@@ -73,12 +76,6 @@ def test_of_two_ways_the_one_is_taken_that_scripts_take() -> None:
     assert reached_expressions(symbols, used)["Layer"] == "bpy.context.object.data.clone"
     used = {f"{TYPES}Object.data": 90, f"{TYPES}Mesh.layers": 60}
     assert reached_expressions(symbols, used)["Layer"] == 'bpy.context.object.data.layers["Layer"]'
-
-
-def test_every_class_gets_its_path() -> None:
-    found = {symbol.path: symbol.reached for symbol in with_access_paths(SMALL, {})}
-    assert found[f"{TYPES}ClothModifier"] == 'bpy.context.object.modifiers["Cloth"]'
-    assert found[f"{TYPES}Far"] == found[f"{TYPES}Object.data"] == ""
 
 
 def test_an_unreachable_class_has_no_expression() -> None:
