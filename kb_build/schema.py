@@ -108,6 +108,13 @@ CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL) WITHOUT ROWID;
 
 -- Former names (sockets, node classes) that this Blender still takes, tried on an instance, and what they give.
 CREATE TABLE still_works (path TEXT PRIMARY KEY, taken_as TEXT NOT NULL) WITHOUT ROWID;
+-- How Blender's own scripts use a symbol: the clearest few uses, best first, each up to three lines of a file; how
+-- often it is used (up to ten times a file), and in how many files.
+CREATE TABLE uses (
+    path TEXT NOT NULL, rank INTEGER NOT NULL, file TEXT NOT NULL, line INTEGER NOT NULL, code TEXT NOT NULL,
+    PRIMARY KEY (path, rank)
+) WITHOUT ROWID;
+CREATE TABLE use_counts (path TEXT PRIMARY KEY, uses INTEGER NOT NULL, files INTEGER NOT NULL) WITHOUT ROWID;
 
 -- Page → symbols whose manual link leads there: classes and operators only.
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;

@@ -1,4 +1,4 @@
-"""``python -m measurements``: measures retrieval, the knowledge base, latency, servers, builds, Blender, verifier, audits."""
+"""``python -m measurements``: measures retrieval, the knowledge base, servers, builds, Blender, verifier and audits."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ from simworlds.settings import base_path, home_folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-PARTS = ("retrieval", "defaults", "old_code", "latency", "server", "builds", "blender", "verifier", "audits")
+PARTS = (
+    *("retrieval", "defaults", "old_code", "latency", "server", "builds", "usage", "blender", "verifier"),
+    "audits",
+)
 _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")
 
 

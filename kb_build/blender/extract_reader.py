@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from kb_build.blender.access_paths import reached_expressions
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.errors import ExtractError
@@ -41,6 +40,7 @@ _TREES = {
 class Extract:
     """One Blender's API. ``version`` is the full one (``"5.1.2"``), ``build`` its commit hash.
 
+    ``scripts`` is the folder of the Python files that it brings, empty for an unknown one.
     ``faults`` are the tracebacks of steps that failed inside Blender; what the other steps found is there.
     ``still_works``: (former path, the symbol that it gives now) of former names that this Blender still takes.
     """
@@ -53,6 +53,7 @@ class Extract:
     templates: tuple[Page, ...]
     faults: tuple[str, ...] = ()
     still_works: tuple[tuple[str, str], ...] = ()
+    scripts: str = ""
 
 
 @dataclass(slots=True)
@@ -288,9 +289,6 @@ def read_extract(path: Path) -> Extract:
     ]
     for extra in _subclass_lookups((cls for cls in classes if cls.group == "data"), prototypes):
         symbols.setdefault(extra.path, extra)
-    for name, expression in reached_expressions(symbols.values()).items():
-        if (class_path := f"bpy.types.{name}") in symbols:
-            symbols[class_path] = replace(symbols[class_path], reached=expression)
     minor = ".".join(raw.header["version"].split(".")[:2])
     return Extract(
         version=raw.header["version"],
@@ -301,4 +299,5 @@ def read_extract(path: Path) -> Extract:
         templates=tuple(_template(name, text, minor) for name, text in raw.templates),
         faults=tuple(raw.faults),
         still_works=tuple(raw.still_works),
+        scripts=raw.header.get("scripts") or "",
     )

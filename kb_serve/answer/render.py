@@ -145,9 +145,11 @@ class MarkdownRenderer:
     def symbol(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         """A symbol: a class with a list of its members, an operator or function with its parameters."""
         yield AnswerBlock(self._head(symbol), "description")
+        used = AnswerBlock(self.used(symbol.path), "a use in Blender's scripts")
         if symbol.kind == "class":
             yield from self._passage(symbol.path)
-        if symbol.kind == "class":
+            if used.text:
+                yield used  # the lists below it would leave no room
             yield from self._class(symbol)
         elif symbol.kind in {"operator", "function"}:
             yield from _parameters(symbol)
@@ -157,6 +159,8 @@ class MarkdownRenderer:
             yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
         if symbol.kind != "class":
             yield from self._passage(symbol.path)
+            if used.text:
+                yield used
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""
@@ -247,6 +251,11 @@ class MarkdownRenderer:
         where = page.title if found[1] == 0 else f"{page.title} › {section.title}"
         if text := passage_text(section.text, found[2]):
             yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
+
+    def used(self, path: str) -> str:
+        """The clearest use of a symbol in Blender's own scripts; empty for none."""
+        uses = self.reader.uses(path)
+        return f"**Used** ({uses[0].file}:{uses[0].line})\n```python\n{uses[0].code}\n```" if uses else ""
 
     def _class(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         members = list(self.reader.members(symbol.path).values())

@@ -86,6 +86,7 @@ def main(arguments):
         version=bpy.app.version_string.split()[0],
         build=text(bpy.app.build_hash),
         addons=sorted(bpy.context.preferences.addons.keys()),
+        scripts=bpy.utils.system_resource("SCRIPTS"),
     )
     for name, step in STEPS:
         try:
