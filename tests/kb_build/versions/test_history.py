@@ -142,17 +142,32 @@ def test_a_path_is_split_before_its_last_step(path: str, parts: tuple[str, str, 
 TABLE = b"path,items_of,4.2.1,4.3.0\n"
 
 
+# What is packed, and how many bytes of its end are lost.
 @pytest.mark.parametrize(
-    "data",
+    ("table", "lost"),
     [
-        b"", b"\x00\x01", TABLE, gzip.compress(TABLE + b"bpy,,1,0\n")[:-9], gzip.compress(b""),
-        gzip.compress(b"path,items_of\nbpy,\n"), gzip.compress(b"path,4.2.1\nbpy,1\n"),
-        gzip.compress(b"path,items_of,4.3.0,4.2.1\nbpy,,1,0\n"), gzip.compress(b"path,items_of,x\nbpy,,1\n"),
-        gzip.compress(TABLE + b"bpy,,1\n"), gzip.compress(TABLE + b"bpy,,1,yes\n"),
-        gzip.compress(TABLE + b"\xff,,1,1\n"),
+        (TABLE + b"bpy,,1,0\n", 9),
+        (b"", 0),
+        (b"path,items_of\nbpy,\n", 0),
+        (b"path,4.2.1\nbpy,1\n", 0),
+        (b"path,items_of,4.3.0,4.2.1\nbpy,,1,0\n", 0),
+        (b"path,items_of,x\nbpy,,1\n", 0),
+        (TABLE + b"bpy,,1\n", 0),
+        (TABLE + b"bpy,,1,yes\n", 0),
+        (TABLE + b"\xff,,1,1\n", 0),
     ],
-)  # fmt: skip
-def test_refuses_a_file_that_is_not_a_history_and_says_what_to_do(tmp_path: Path, data: bytes) -> None:
+)
+def test_refuses_a_packed_table_that_is_not_a_history(tmp_path: Path, table: bytes, lost: int) -> None:
+    packed = gzip.compress(table)
+    refuses(tmp_path, packed[: len(packed) - lost])
+
+
+@pytest.mark.parametrize("data", [b"", b"\x00\x01", TABLE])
+def test_refuses_a_file_that_is_not_packed(tmp_path: Path, data: bytes) -> None:
+    refuses(tmp_path, data)
+
+
+def refuses(tmp_path: Path, data: bytes) -> None:
     file = tmp_path / "api.csv.gz"
     file.write_bytes(data)
     with pytest.raises(StoreError, match="simworlds kb history"):
