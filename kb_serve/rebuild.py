@@ -122,7 +122,7 @@ def _as_before(meta: Mapping[str, str], version: str) -> list[str]:
     """The arguments that repeat a base's build, as far as its sources fit the version."""
     options, sources = json.loads(meta.get("options", "{}")), json.loads(meta.get("sources", "[]"))
     arguments = [] if options.get("pages", True) else ["--no-pages"]
-    arguments += ["--summaries", options.get("summaries", "extractive")]
+    arguments += ["--summaries", options.get("summaries", "shipped")]
     if options.get("model"):
         arguments += ["--model", options["model"]]
     for source in sources:
@@ -179,7 +179,7 @@ def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("version")
     parser.add_argument("--home", type=Path, required=True)
     parser.add_argument("--no-pages", action="store_true")
-    parser.add_argument("--summaries", choices=["extractive", "claude", "none"], default="extractive")
+    parser.add_argument("--summaries", choices=["shipped", "extractive", "claude", "none"], default="shipped")
     parser.add_argument("--model")
     for name in ("--blender-exe", "--manual", "--guides"):
         parser.add_argument(name, type=Path)
