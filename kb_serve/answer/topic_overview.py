@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.render import first_sentence, said_of
-from kb_serve.answer.topic_steps import Steps
+from kb_serve.answer.topic_steps import Steps, TopicNames
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -32,20 +32,6 @@ class TopicOverview:
 
     blocks: tuple[AnswerBlock, ...]
     members: tuple[str, ...]
-
-
-@dataclass(slots=True)
-class TopicNames:
-    """The classes and operators of a topic, each with a weight, the heaviest first."""
-
-    keys: frozenset[str]
-    words: tuple[frozenset[str], ...]
-    classes: dict[str, float] = field(default_factory=dict[str, float])
-    operators: dict[str, float] = field(default_factory=dict[str, float])
-
-    def names(self, name: str) -> bool:
-        """Whether a name holds the topic's words."""
-        return any(words <= set(terms(name)) for words in self.words)
 
 
 class Topics:
@@ -117,12 +103,13 @@ class Topics:
         return TopicOverview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
 
     def _said(self, page: PageEntry) -> str:
-        """What the page says; of a page that only lists others, what its introduction says."""
+        """What the page is about; of a page that only lists others, what its introduction says."""
         below = self._children(page.slug)
-        said = said_of(page, below)
-        if said.startswith("Contents: ") and below[0].title == "Introduction":
-            return said_of(below[0], ()) or said
-        return said
+        record = self._reader.page(page.slug)
+        is_hollow = record is None or not any(section.text for section in record.sections)
+        if is_hollow and below and below[0].title == "Introduction":
+            return said_of(below[0], ()) or said_of(page, below)
+        return said_of(page, below)
 
     def _names(self, slug: str, title: str) -> TopicNames:
         """The classes and operators of a topic: those that its pages explain, and those with its name."""

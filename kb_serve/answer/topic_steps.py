@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, terms
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.reader import STRUCT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kb_serve.answer.topic_overview import TopicNames
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _MAKERS = 3
@@ -49,6 +49,20 @@ _PLAIN = ("name", "index")  # every thing has them
 _CACHE = f"{TYPES}PointCache"
 _NODE = f"{TYPES}Node"
 _HUMP = re.compile(r"[A-Z]+[a-z0-9]*$")
+
+
+@dataclass(slots=True)
+class TopicNames:
+    """The classes and operators of a topic, each with a weight, the heaviest first."""
+
+    keys: frozenset[str]
+    words: tuple[frozenset[str], ...]
+    classes: dict[str, float] = field(default_factory=dict[str, float])
+    operators: dict[str, float] = field(default_factory=dict[str, float])
+
+    def names(self, name: str) -> bool:
+        """Whether a name holds the topic's words."""
+        return any(words <= set(terms(name)) for words in self.words)
 
 
 class Steps:
