@@ -356,4 +356,6 @@ def _short(entry: SymbolEntry) -> str:
 
 
 def _call_of(entry: SymbolEntry) -> str:
-    return entry.line.partition("`")[2].partition("`")[0].replace("(self, ", "(")
+    """A call as it can be written: without ``self``, and without the marks of how arguments are given."""
+    call = entry.line.partition("`")[2].partition("`")[0]
+    return call.replace("(self, ", "(").replace("*, ", "").replace(", /", "")
