@@ -179,7 +179,9 @@ def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("version")
     parser.add_argument("--home", type=Path, required=True)
     parser.add_argument("--no-pages", action="store_true")
-    parser.add_argument("--summaries", choices=["extractive", "claude", "none"], default="extractive")
+    parser.add_argument(
+        "--summaries", choices=["shipped", "extractive", "claude", "none"], default="extractive"
+    )
     parser.add_argument("--model")
     for name in ("--blender-exe", "--manual", "--guides"):
         parser.add_argument(name, type=Path)

@@ -184,6 +184,7 @@ class Steps:
             if tree not in self._shown:
                 yield self._made(tree, creation.call)
                 yield from self._goes(tree)
+                yield from self._parts(tree, self._variable(tree))
 
     # Where it goes
 
@@ -200,7 +201,13 @@ class Steps:
             places = self._reader.pointing_at(path.removeprefix(TYPES))
         heaviest = self._heaviest(place for place in places if _is_set(place))
         if heaviest:
-            yield f"`{self._expression(heaviest[0])} = {variable}`"
+            place = heaviest[0]
+            holder = self._reader.creations([place.owner]).get(place.owner)
+            if holder and holder.call.startswith("obj."):
+                yield self._made(place.owner, holder.call)
+                yield f"`{self._variable(place.owner)}.{place.name} = {variable}`"
+            else:
+                yield f"`{self._expression(place)} = {variable}`"
 
     def _is_object_data(self, path: str) -> bool:
         return any(entry.path in self._object_data for entry in self._reader.lineage(path))
@@ -240,6 +247,7 @@ class Steps:
         if held:
             items = (f"`.{entry.name}` (`{entry.target}`)" for entry in self._heaviest(held)[:_FUNCTIONS])
             yield f"in `{variable}`: " + ", ".join(items)
+        yield from self._parts(path, variable)
         functions = [entry for entry in members if entry.kind == "function" and self._weight(entry) >= 1]
         if functions:
             calls = (f"`{variable}.{_call_of(entry)}`" for entry in self._heaviest(functions)[:_FUNCTIONS])
@@ -258,6 +266,16 @@ class Steps:
                 if left and (settings := self._settings(target)):
                     left -= 1
                     yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
+
+    def _parts(self, path: str, variable: str) -> Iterator[str]:
+        """Calls that make parts of a thing through what it points to: ``tree.interface.new_socket(…)``."""
+        for cls in self._reader.lineage(path):
+            for entry in self._reader.members(cls.path).values():
+                target = f"{TYPES}{entry.target}"
+                if entry.type == "pointer" and not _is_set(entry) and target not in self._names.classes:
+                    for function in self._heaviest(self._reader.members(target).values())[:2]:
+                        if function.kind == "function" and function.name.startswith("new"):
+                            yield f"`{variable}.{entry.name}.{_call_of(function)}`"
 
     def _belongs(self, path: str) -> bool:
         return path not in self._shown and (path in self._names.classes or path == _CACHE)
