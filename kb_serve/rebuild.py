@@ -202,7 +202,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 if given.summaries != "claude":
                     raise
                 # Some of claude's summaries would have to be paid for.
-                build_base(given, "extractive")
+                build_base(given, "shipped")
     except KeyboardInterrupt:
         return 130
     except Exception as error:

@@ -170,8 +170,9 @@ def _block(node: nodes.Node) -> str:  # noqa: PLR0911 - one return a kind of nod
     if isinstance(node, nodes.paragraph):
         return _inline(node)
     if isinstance(node, nodes.literal_block) and (included := _INCLUDED.match(node.astext())):
-        template = PurePosixPath(included[1])  # other files are not there
-        return f"Example: `templates_py/{template.stem}`" if template.parent.name == "templates_py" else ""
+        file = PurePosixPath(included[1])  # not there, but templates are pages
+        is_template = file.parent.name == "templates_py"
+        return f"Example: `templates_py/{file.stem}`" if is_template else f"This includes `{included[1]}`"
     if isinstance(node, nodes.literal_block | nodes.doctest_block):
         return f"```python\n{node.astext()}\n```"
     if isinstance(node, nodes.bullet_list | nodes.enumerated_list):

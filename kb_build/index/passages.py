@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
@@ -44,6 +45,7 @@ class Passage(NamedTuple):
     line: int
 
 
+@cache
 def address_of(path: str) -> str:
     """The address that the manual gives a symbol: ``bpy-types-clothsettings-quality``."""
     return _ADDRESS.sub("-", path.lower()).strip("-")
@@ -209,8 +211,13 @@ class _Finder:
         return set(_stems(text[:_BEGINNING]))
 
 
+@cache
+def _stems_of(text: str) -> tuple[str, ...]:
+    return tuple(terms_of(text))
+
+
 def _stems(*texts: str) -> list[str]:
-    return [word for text in texts for word in terms_of(text)]
+    return [word for text in texts for word in _stems_of(text)]
 
 
 def _about(symbol: Symbol) -> set[str]:

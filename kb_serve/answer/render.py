@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
+_SHORT_PAGE = 80  # letters
 _UNITS = {
     "LENGTH": "metres", "ROTATION": "radians", "TIME": "frames", "TIME_ABSOLUTE": "seconds", "MASS": "kg",
     "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
@@ -177,13 +178,18 @@ class MarkdownRenderer:
             mark = "#" * min(6, section.level + 2)
             if section.text:
                 yield AnswerBlock(f"{mark} {section.title}\n\n{section.text}", section.title)
-        if page.children:
-            lines = [
-                f"- `{child.slug}` ({child.title}) "
-                + first_sentence(said_of(child, self.reader.page_children(child.slug)))
-                for child in self.reader.page_children(slug)
-            ]
-            yield AnswerBlock("**Pages below**\n" + "\n".join(lines), "pages below")
+        below = self.reader.page_children(slug)
+        if below:
+            yield AnswerBlock("**Pages below**\n" + "\n".join(map(self.page_line, below)), "pages below")
+        elif sum(len(section.text) for section in page.sections) < _SHORT_PAGE:  # it only says where to look
+            linked = [entry for link in page.links if (entry := self.reader.page_entry(link))]
+            if linked:
+                yield AnswerBlock("**See**\n" + "\n".join(map(self.page_line, linked)), "see")
+
+    def page_line(self, page: PageEntry) -> str:
+        """A page on one line: its address, its title, and what it says."""
+        said = said_of(page, self.reader.page_children(page.slug))
+        return f"- `{page.slug}` ({page.title}) {first_sentence(said)}".rstrip()
 
     def _head(self, symbol: Symbol) -> str:
         lines = [f"## `{symbol.path}`"]
@@ -213,7 +219,7 @@ class MarkdownRenderer:
         return f"{owner}.{symbol.signature}" if owner else symbol.signature
 
     def _place(self, symbol: Symbol) -> Iterator[str]:
-        """How to reach the symbol, the version that introduced it, and its manual page."""
+        """How to reach and to make the symbol, the version that introduced it, and its manual page."""
         cls = symbol if symbol.kind == "class" else self.reader.symbol(symbol.owner)
         reached = cls.reached if cls else ""
         if reached and symbol.kind in {"class", "property", "socket", "function"}:
@@ -225,6 +231,8 @@ class MarkdownRenderer:
         elif symbol.kind == "context":
             origin = [flag[5:] for flag in symbol.flags if flag.startswith("from:")]
             yield f"provided by: {', '.join(origin)}"
+        if symbol.kind == "class" and (creation := self.reader.creations([symbol.path]).get(symbol.path)):
+            yield f"made by `{creation.call}`"
         if symbol.trees:
             yield "node of: " + ", ".join(symbol.trees)
         if version := self.reader.since(symbol.path):

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
-from kb_serve.answer.budget import AnswerBlock
+from kb_serve.answer.budget import AnswerBlock, clip, tokens
 from kb_serve.answer.render import first_sentence, said_of
-from kb_serve.answer.topic_steps import Steps
+from kb_serve.answer.topic_steps import Steps, TopicNames
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader, PageEntry, SymbolEntry
 
 ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _MAX_WORDS = 4
-_FIRST = 10  # entries of a list; the others follow all lists
+_OVERVIEW_TOKENS = 1_200
+_FIRST = (10, 8, 6, 5, 4, 3)  # entries of each list, as many as fit; the others follow all lists
+_LINE_TOKENS = 50
 _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
 _ASIDE = 0.2  # nodes are found by their own names
@@ -32,20 +34,6 @@ class TopicOverview:
 
     blocks: tuple[AnswerBlock, ...]
     members: tuple[str, ...]
-
-
-@dataclass(slots=True)
-class TopicNames:
-    """The classes and operators of a topic, each with a weight, the heaviest first."""
-
-    keys: frozenset[str]
-    words: tuple[frozenset[str], ...]
-    classes: dict[str, float] = field(default_factory=dict[str, float])
-    operators: dict[str, float] = field(default_factory=dict[str, float])
-
-    def names(self, name: str) -> bool:
-        """Whether a name holds the topic's words."""
-        return any(words <= set(terms(name)) for words in self.words)
 
 
 class Topics:
@@ -110,19 +98,24 @@ class Topics:
             ("Operators", [_line(entry) for entry in operators]),
             ("Pages", [*self._page_lines(slug)]),
         )
+        spent = sum(tokens(block.text) for block in blocks)
+        most = next(
+            (most for most in _FIRST if spent + _size_of(lists, most) <= _OVERVIEW_TOKENS), _FIRST[-1]
+        )
         for title, lines in lists:
-            blocks += _list_of(title, lines[:_FIRST])
+            blocks += _list_of(title, lines[:most])
         for title, lines in lists:
-            blocks += _list_of(f"More {title.lower()}", lines[_FIRST:])
+            blocks += _list_of(f"More {title.lower()}", lines[most:])
         return TopicOverview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
 
     def _said(self, page: PageEntry) -> str:
-        """What the page says; of a page that only lists others, what its introduction says."""
+        """What the page is about; of a page that only lists others, what its introduction says."""
         below = self._children(page.slug)
-        said = said_of(page, below)
-        if said.startswith("Contents: ") and below[0].title == "Introduction":
-            return said_of(below[0], ()) or said
-        return said
+        record = self._reader.page(page.slug)
+        is_hollow = record is None or not any(section.text for section in record.sections)
+        if is_hollow and below and below[0].title == "Introduction":
+            return said_of(below[0], ()) or said_of(page, below)
+        return said_of(page, below)
 
     def _names(self, slug: str, title: str) -> TopicNames:
         """The classes and operators of a topic: those that its pages explain, and those with its name."""
@@ -173,7 +166,9 @@ class Topics:
     def _page_lines(self, slug: str, depth: int = 2) -> Iterator[str]:
         for child in self._children(slug):
             below = self._children(child.slug)
-            yield f"`{child.slug}` ({child.title}) {first_sentence(said_of(child, below))}"
+            yield clip(
+                f"`{child.slug}` ({child.title}) {first_sentence(said_of(child, below))}", _LINE_TOKENS
+            )
             if depth > 1:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
 
@@ -181,6 +176,10 @@ class Topics:
 def _line(entry: SymbolEntry) -> str:
     said = first_sentence(entry.line.partition(" — ")[2]) or entry.label
     return f"`{entry.path}`" + (f" — {said}" if said != entry.name else "")
+
+
+def _size_of(lists: Iterable[tuple[str, Sequence[str]]], most: int) -> int:
+    return sum(tokens(block.text) for title, lines in lists for block in _list_of(title, lines[:most]))
 
 
 def _list_of(title: str, lines: Sequence[str]) -> list[AnswerBlock]:

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, terms
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.reader import STRUCT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kb_serve.answer.topic_overview import TopicNames
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _MAKERS = 3
@@ -49,6 +49,20 @@ _PLAIN = ("name", "index")  # every thing has them
 _CACHE = f"{TYPES}PointCache"
 _NODE = f"{TYPES}Node"
 _HUMP = re.compile(r"[A-Z]+[a-z0-9]*$")
+
+
+@dataclass(slots=True)
+class TopicNames:
+    """The classes and operators of a topic, each with a weight, the heaviest first."""
+
+    keys: frozenset[str]
+    words: tuple[frozenset[str], ...]
+    classes: dict[str, float] = field(default_factory=dict[str, float])
+    operators: dict[str, float] = field(default_factory=dict[str, float])
+
+    def names(self, name: str) -> bool:
+        """Whether a name holds the topic's words."""
+        return any(words <= set(terms(name)) for words in self.words)
 
 
 class Steps:
@@ -170,6 +184,7 @@ class Steps:
             if tree not in self._shown:
                 yield self._made(tree, creation.call)
                 yield from self._goes(tree)
+                yield from self._parts(tree, self._variable(tree))
 
     # Where it goes
 
@@ -186,7 +201,13 @@ class Steps:
             places = self._reader.pointing_at(path.removeprefix(TYPES))
         heaviest = self._heaviest(place for place in places if _is_set(place))
         if heaviest:
-            yield f"`{self._expression(heaviest[0])} = {variable}`"
+            place = heaviest[0]
+            holder = self._reader.creations([place.owner]).get(place.owner)
+            if holder and holder.call.startswith("obj."):
+                yield self._made(place.owner, holder.call)
+                yield f"`{self._variable(place.owner)}.{place.name} = {variable}`"
+            else:
+                yield f"`{self._expression(place)} = {variable}`"
 
     def _is_object_data(self, path: str) -> bool:
         return any(entry.path in self._object_data for entry in self._reader.lineage(path))
@@ -226,6 +247,7 @@ class Steps:
         if held:
             items = (f"`.{entry.name}` (`{entry.target}`)" for entry in self._heaviest(held)[:_FUNCTIONS])
             yield f"in `{variable}`: " + ", ".join(items)
+        yield from self._parts(path, variable)
         functions = [entry for entry in members if entry.kind == "function" and self._weight(entry) >= 1]
         if functions:
             calls = (f"`{variable}.{_call_of(entry)}`" for entry in self._heaviest(functions)[:_FUNCTIONS])
@@ -244,6 +266,16 @@ class Steps:
                 if left and (settings := self._settings(target)):
                     left -= 1
                     yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
+
+    def _parts(self, path: str, variable: str) -> Iterator[str]:
+        """Calls that make parts of a thing through what it points to: ``tree.interface.new_socket(…)``."""
+        for cls in self._reader.lineage(path):
+            for entry in self._reader.members(cls.path).values():
+                target = f"{TYPES}{entry.target}"
+                if entry.type == "pointer" and not _is_set(entry) and target not in self._names.classes:
+                    for function in self._heaviest(self._reader.members(target).values())[:2]:
+                        if function.kind == "function" and function.name.startswith("new"):
+                            yield f"`{variable}.{entry.name}.{_call_of(function)}`"
 
     def _belongs(self, path: str) -> bool:
         return path not in self._shown and (path in self._names.classes or path == _CACHE)
@@ -342,4 +374,6 @@ def _short(entry: SymbolEntry) -> str:
 
 
 def _call_of(entry: SymbolEntry) -> str:
-    return entry.line.partition("`")[2].partition("`")[0].replace("(self, ", "(")
+    """A call as it can be written: without ``self``, and without the marks of how arguments are given."""
+    call = entry.line.partition("`")[2].partition("`")[0]
+    return call.replace("(self, ", "(").replace("*, ", "").replace(", /", "")

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_serve.answer.budget import tokens
 from kb_serve.answer.topic_overview import Topics
 
 if TYPE_CHECKING:
@@ -44,6 +47,37 @@ def test_an_overview_tells_the_page_its_classes_operators_and_pages_below(kb: Kn
         "`physics/cloth/settings/index` (Settings)", "  - `physics/cloth/settings/collisions` (Collisions)",
     ):  # fmt: skip
         assert part in answer.text
+
+
+@pytest.mark.parametrize(
+    ("query", "steps"),
+    [
+        ("cloth", ("obj.modifiers.new(\"Cloth\", 'CLOTH')", "on `modifier.settings`", "ptcache.bake_all()")),
+        (
+            "rigid body",
+            ("bpy.ops.rigidbody.object_add()", "on `bpy.context.object.rigid_body`", "bake_all()"),
+        ),
+    ],
+)
+def test_an_overview_begins_with_how_it_is_done_in_order(
+    kb: KnowledgeBase, query: str, steps: tuple[str, ...]
+) -> None:
+    text = kb.query(query, max_tokens=3_000).text
+    places = [text.index(part) for part in ("**How it is done**", *steps, "**Classes**", "**Operators**")]
+    assert places == sorted(places)
+
+
+def test_the_steps_of_every_topic_are_python_and_short(topics: Topics, reader: BaseReader) -> None:
+    steps = 0
+    for (slug,) in reader.rows("SELECT slug FROM pages WHERE source = 'manual'"):
+        for block in topics.overview(slug).blocks:
+            if block.name == "how it is done":
+                assert tokens(block.text) < 1_200
+                for code in re.findall(r"`([^`]*)`", block.text):
+                    if "(" in code or " = " in code:
+                        ast.parse(code)
+                        steps += 1
+    assert steps > 20
 
 
 def test_hits_of_an_overview_are_the_ids_it_names(kb: KnowledgeBase) -> None:
