@@ -73,8 +73,9 @@ def own_version() -> str:
 
 @cache
 def extractor_digest() -> str:
-    """Digest of the code that runs inside Blender."""
-    return _code((_PACKAGE / "blender" / "inside").glob("*.py"))
+    """Digest of the code that runs inside Blender, and of the history whose names it tries."""
+    code = _code((_PACKAGE / "blender" / "inside").glob("*.py"))
+    return _digest([code, *(path.read_bytes() for path in sorted((_DATA / "history").glob("*")))])
 
 
 @cache

@@ -317,7 +317,9 @@ def _write(
         # Loaded now: a process is not forked safely from one that has NumPy's threads.
         from kb_build.store import Contents, write_base  # noqa: PLC0415
 
-        contents: Contents = Contents(extract.symbols, pages, extract.links, meta, by_slug, removed_symbols)
+        contents: Contents = Contents(
+            extract.symbols, pages, extract.links, meta, by_slug, removed_symbols, extract.still_works
+        )
         write_base(work.path, contents)
 
 

@@ -21,13 +21,33 @@ PAGE_SOURCES: tuple[PageSource, ...] = get_args(PageSource)
 LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
 
 
+# Where an enum item is taken that RNA lists and every instance refused.
+NOT_TAKEN = "by none that was tried"
+
+
 @dataclass(frozen=True, slots=True)
 class EnumItem:
-    """One value of an enumeration."""
+    """One value of an enumeration.
+
+    ``where`` it is taken, as what follows the word "taken"; empty for everywhere: ``only with domain_type='LIQUID'``.
+    """
 
     identifier: str
     name: str = ""
     description: str = ""
+    where: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class NewValue:
+    """What newly made instances have: all of them, or those that ``made`` names, or those in the mode ``when``.
+
+    Of several without a mode the first is the usual one; ``made`` is then empty: all the others.
+    """
+
+    value: Default
+    made: tuple[str, ...] = ()
+    when: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +91,10 @@ class Symbol:
     ``collection`` the class of the collection itself, which carries ``new`` and ``remove``; ``group`` of a class
     is ``data``, ``ui`` or ``operator``; ``modes`` name the enum values under which a node shows a socket;
     ``trees`` the node trees that take a node; ``reached`` is an expression that leads to an instance.
+
+    ``default`` is RNA's, which a new instance need not have: ``new_values`` are what new ones had where some differed.
+    The flag ``compared`` says that new ones were read. ``subscripts`` are those by which a new node gives a socket,
+    in every mode, best first; with the flag ``name-when-shown`` its name does only while the node shows it.
     """
 
     path: str
@@ -101,6 +125,8 @@ class Symbol:
     collection: str = ""
     trees: tuple[str, ...] = ()
     reached: str = ""
+    new_values: tuple[NewValue, ...] = ()
+    subscripts: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -211,6 +237,10 @@ def symbol_from_json(data: dict[str, Any]) -> Symbol:
         "parameters": _parameters(data.get("parameters", [])),
         "returns": _parameters(data.get("returns", [])),
         "deprecation": Deprecation(**deprecation) if deprecation else None,
+        "new_values": tuple(
+            NewValue(**{**row, "made": tuple(row.get("made", ()))}) for row in data.get("new_values", [])
+        ),
+        "subscripts": tuple(data.get("subscripts", ())),
     }
     return Symbol(**values)
 

@@ -64,6 +64,7 @@ class Contents:
     meta: Mapping[str, str]
     summaries: Mapping[str, PageSummary] = field(default_factory=dict[str, "PageSummary"])
     removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
+    still_works: Sequence[tuple[str, str]] = ()
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
@@ -248,6 +249,7 @@ def _write(part: Path, contents: Contents) -> None:
             _write_pages(connection, contents.pages, contents.summaries)
             _write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
+            _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.records import NOT_TAKEN
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.records import Default, NewValue, Symbol
 
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
+_SHOWN_OTHERS = 4
+_SHOWN_LABELS = 3
 
 
 def literal(value: object) -> str:
@@ -39,27 +43,85 @@ def first_sentence(text: str) -> str:
     return (line[:end] if end > 0 else line).rstrip(".")
 
 
-def member_line(symbol: Symbol) -> str:
-    """Name, type, default, first values and first sentence of a member, as its owner lists it."""
+def usual_default(symbol: Symbol) -> Default:
+    """The value that a new instance usually has: what new ones had, else RNA's default."""
+    return next((new.value for new in symbol.new_values if not new.when), symbol.default)
+
+
+def default_text(symbol: Symbol) -> str:
+    """What new ones have, in which kinds and modes they differ, and RNA's default where it is another."""
+    usual = [new for new in symbol.new_values if not new.when]
+    modal = [new for new in symbol.new_values if new.when]
+    value = usual_default(symbol)
+    if value is None:
+        return ""
+    text = f"`{literal(value)}`"
+    if usual:
+        made = usual[0].made or (symbol.owner.rpartition(".")[2],)
+        text += f" (new {_labels(made)})"
+    for others, word in ((usual[1:], "{}"), (modal, "with {}")):
+        text += "".join(", " + _other(new, word) for new in others[:_SHOWN_OTHERS])
+        text += ", …" if len(others) > _SHOWN_OTHERS else ""
+    listed = {item.identifier for item in symbol.enum_items}
+    is_item = not listed or not isinstance(symbol.default, str) or symbol.default in listed
+    if usual and symbol.default not in (None, value) and is_item:
+        text += f"; RNA says `{literal(symbol.default)}`"
+    return text
+
+
+def _other(new: NewValue, word: str) -> str:
+    return f"`{literal(new.value)}` ({word.format(new.when or _labels(new.made))})"
+
+
+def _labels(labels: Sequence[str]) -> str:
+    more = len(labels) - _SHOWN_LABELS
+    return ", ".join(labels[:_SHOWN_LABELS]) + (f" and {more} more" if more > 0 else "")
+
+
+def identifier_of(socket: Symbol) -> str:
+    """A socket's identifier, which its name need not be."""
+    return next((flag[11:] for flag in socket.flags if flag.startswith("identifier:")), "")
+
+
+def subscripts_text(socket: Symbol) -> str:
+    """How a socket is reached on its node: subscripts that were tried, and the identifier where it is another name."""
+    side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
+    shown = [f"`{text}`" for text in socket.subscripts]
+    if "name-when-shown" in socket.flags:
+        shown.append(f'`{side}["{socket.label}"]` while it is shown')
+    identifier = identifier_of(socket)
+    if identifier not in ("", socket.label):
+        shown.append(f"identifier `{identifier}`")
+    return ", ".join(shown)
+
+
+def _head(symbol: Symbol) -> str:
     name = symbol.path[len(symbol.owner) + 1 :] if symbol.owner else symbol.path
     if symbol.kind in {"function", "operator"}:
         call = symbol.signature
-        arguments = call[call.index("(") :] if "(" in call else "()"
-        head = f"`{name}{arguments}`"
-    else:
-        head = f"`{name}`"
+        return f"`{name}{call[call.index('(') :] if '(' in call else '()'}`"
+    if symbol.kind == "socket" and (text := subscripts_text(symbol)):
+        return text
+    return f"`{name}`"
+
+
+def member_line(symbol: Symbol) -> str:
+    """Name, type, default, first values and first sentence of a member, as its owner lists it."""
     notes = [type_text(symbol)] if symbol.type else []
-    if symbol.default is not None and symbol.kind in {"property", "socket"}:
-        notes.append(f"= {literal(symbol.default)}")
-    if symbol.enum_items:
-        values = "|".join(item.identifier for item in symbol.enum_items[:_SHOWN_VALUES])
-        notes.append(values + ("|…" if len(symbol.enum_items) > _SHOWN_VALUES else ""))
+    default = usual_default(symbol)
+    if default is not None and symbol.kind in {"property", "socket"}:
+        notes.append(f"= {literal(default)}")
+        notes += [
+            f"({literal(new.value)} with {new.when})" for new in symbol.new_values if new.when
+        ][:_SHOWN_LABELS]
+    if values := [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]:
+        notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
     if "readonly" in symbol.flags:
         notes.append("read-only")
     if symbol.modes:
         notes.append("when " + " and ".join(symbol.modes))
     said = first_sentence(symbol.description) or (symbol.label if symbol.label != symbol.name else "")
-    return " ".join([head, *notes]) + (f" — {said}" if said else "")
+    return " ".join([_head(symbol), *notes]) + (f" — {said}" if said else "")
 
 
 def definitions_in(text: str) -> Iterator[tuple[str, Iterator[str]]]:

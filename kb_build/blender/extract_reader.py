@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.access_paths import reached_expressions
 from kb_build.blender.docstrings import parse_docstring
+from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.errors import ExtractError
 from kb_build.records import Default, Link, Page, Parameter, Section, Symbol, symbol_from_json
 
@@ -40,6 +41,7 @@ class Extract:
     """One Blender's API. ``version`` is the full one (``"5.1.2"``), ``build`` its commit hash.
 
     ``faults`` are the tracebacks of steps that failed inside Blender; what the other steps found is there.
+    ``still_works``: (former path, the symbol that it gives now) of former names that this Blender still takes.
     """
 
     version: str
@@ -49,6 +51,7 @@ class Extract:
     links: tuple[Link, ...]
     templates: tuple[Page, ...]
     faults: tuple[str, ...] = ()
+    still_works: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(slots=True)
@@ -59,13 +62,21 @@ class _Raw:
     manual: list[tuple[str, str]] = field(default_factory=list)
     templates: list[tuple[str, str]] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
+    still_works: list[tuple[str, str]] = field(default_factory=list)
 
 
-def _complete_items(row: dict[str, Any] | None, identifiers: list[str]) -> None:
-    """Replaces RNA's placeholder by the items that an instance listed."""
+def _add_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
+    """Adds the items that instances listed, with where each is taken."""
     if row is not None:
-        items = {item["identifier"]: item for item in row.get("enum_items", ())}
-        row["enum_items"] = [items.get(name, {"identifier": name}) for name in identifiers]
+        listed = row.get("enum_items", ())
+        row["enum_items"] = items_in_contexts(listed, asked["contexts"], asked.get("texts", {}))
+
+
+def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what new instances have where it is not RNA's default, and that they were compared."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), "compared"]
+        row["new_values"] = [*seen.get("values", ()), *seen.get("modes", ())]
 
 
 def _read(path: Path) -> _Raw:
@@ -93,7 +104,13 @@ def _read(path: Path) -> _Raw:
                 case "manual":
                     raw.manual.append((row["pattern"], row["page"]))
                 case "enum_items":
-                    _complete_items(raw.symbols.get(row["path"]), row["items"])
+                    _add_items(raw.symbols.get(row["path"]), row)
+                case "new_values":
+                    _add_values(raw.symbols.get(row["path"]), row)
+                case "still_works":
+                    raw.still_works.append((row["path"], row["taken_as"]))
+                case "making":
+                    pass
                 case "template":
                     raw.templates.append((row["name"], row["text"]))
                 case _:
@@ -259,4 +276,5 @@ def read_extract(path: Path) -> Extract:
         links=(*manual_links(symbols.values(), raw.manual), *_structure(symbols.values())),
         templates=tuple(_template(name, text, minor) for name, text in raw.templates),
         faults=tuple(raw.faults),
+        still_works=tuple(raw.still_works),
     )

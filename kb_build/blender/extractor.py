@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import re
+from collections import defaultdict
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from kb_build.digests import Digests
 from kb_build.errors import ExtractError
 from kb_build.fingerprint import extractor_digest, runtime_digest
+from kb_build.versions.history import ApiHistory
 from simworlds.files import remove_unfinished_files, staged_file
 from simworlds.releases import minor_of
 from simworlds.sandbox.errors import ProgramFailed
@@ -24,6 +29,9 @@ _EXTRACTOR = Program(
     "kb_build.blender.inside.extract_api", {"kb_build.blender.inside": Path(__file__).parent / "inside"}
 )
 _SECONDS = 600.0
+_CRASHES = 4
+_NODE = re.compile(r'bpy\.types\.(\w*Node\w*)(?:\.(inputs|outputs)\["(.*)"\])?')
+_MAKING = re.compile(rb'\{"record":"making","maker":"(\w+)"\}')
 
 
 def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: Progress = silent) -> Path:
@@ -54,16 +62,43 @@ def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: 
     return target
 
 
+def former_nodes(history: ApiHistory) -> dict[str, dict[str, list[str]]]:
+    """Every node class of any version: side → names that its sockets have had."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for path in history.masks:
+        if match := _NODE.fullmatch(path):
+            sides = found.setdefault(match[1], defaultdict(list))
+            if match[2]:
+                sides[match[2]].append(match[3])
+    return found
+
+
 def _run(runtime: Runtime, part: Path, log: Path) -> None:
-    try:
-        run_program(runtime, _EXTRACTOR, [str(part)], timeout=_SECONDS, log=log)
-    except ProgramFailed as error:
-        raise ExtractError(str(error)) from error
+    """Extracts; a maker of new things that crashes Blender is left out of the next attempt."""
+    former, skipped = former_nodes(ApiHistory.load()), list[str]()
+    with TemporaryDirectory(prefix="simworlds-") as folder:
+        given = Path(folder) / "given.json"
+        while True:
+            given.write_text(json.dumps({"former": former, "skipped": skipped}), encoding="utf-8")
+            try:
+                run_program(runtime, _EXTRACTOR, [str(part), str(given)], timeout=_SECONDS, log=log)
+                break
+            except ProgramFailed as error:
+                crashed = _maker_at_work(part)
+                if not crashed or crashed in skipped or len(skipped) == _CRASHES:
+                    raise ExtractError(str(error)) from error
+                skipped.append(crashed)
     if not _is_whole(part):
         raise ExtractError(
             f"Blender {runtime.version} ended without an error, but its extract is not complete. "
             f"Its output is in {log}; run the build again"
         )
+
+
+def _maker_at_work(extract: Path) -> str:
+    """The maker of new things that was the last to start; empty for none."""
+    makers = _MAKING.findall(extract.read_bytes()) if extract.is_file() else []
+    return makers[-1].decode() if makers else ""
 
 
 def _is_whole(extract: Path) -> bool:

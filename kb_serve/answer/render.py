@@ -5,7 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import definitions_in, first_sentence, literal, type_text
+from kb_build.symbol_lines import (
+    default_text,
+    definitions_in,
+    first_sentence,
+    literal,
+    subscripts_text,
+    type_text,
+)
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.reader import STRUCT, TYPES, BaseReader, SymbolEntry
 
@@ -41,8 +48,10 @@ def facts(symbol: Symbol) -> Iterator[str]:
     """The one-line facts of a property or socket."""
     if symbol.type:
         yield f"type: `{type_text(symbol)}`"
-    if symbol.default is not None:
-        yield f"default: `{literal(symbol.default)}`"
+    if symbol.kind == "socket" and (text := subscripts_text(symbol)):
+        yield text
+    if text := default_text(symbol):
+        yield f"default: {text}"
     if symbol.hard_min is not None or symbol.hard_max is not None:
         text = f"range: {_range_text(symbol.hard_min, symbol.hard_max)}"
         if (symbol.soft_min, symbol.soft_max) != (symbol.hard_min, symbol.hard_max):
@@ -65,7 +74,8 @@ def _items(items: Sequence[EnumItem]) -> str:
     for item in items:
         name = item.name if item.name != item.identifier else ""
         text = " — ".join(filter(None, (name, item.description)))
-        lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else ""))
+        where = f" (taken {item.where})" if item.where else ""
+        lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else "") + where)
     return "\n".join(lines)
 
 
@@ -184,6 +194,8 @@ class MarkdownRenderer:
         reached = cls.reached if cls else ""
         if reached and symbol.kind in {"class", "property", "socket", "function"}:
             last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
+            if symbol.subscripts:
+                last = f".{symbol.subscripts[0]}"
             tail = "(…)" if symbol.kind == "function" else ""
             yield f"reached as `{reached}{last}{tail}`"
         elif symbol.kind == "context":

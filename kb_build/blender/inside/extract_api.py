@@ -5,13 +5,15 @@ The first line names the Blender, the last one counts the lines before it: a fil
 A step that fails is a ``fault`` line with its traceback; the other steps still run.
 """
 
+import json
 import os
 import sys
 import traceback
 
 import bpy
 
-from . import context, instances, modules, nodes, operators, rna
+from . import context, modules, new_things, nodes, operators, rna
+from .instances import Observer
 from .wire import Writer
 
 
@@ -55,27 +57,36 @@ def write_rna(write, found):
 STEPS = (
     ("classes", write_rna),
     ("operators", lambda write, _found: operators.write_all(write)),
-    ("nodes", lambda write, found: nodes.write_all(write, found["structs"])),
+    ("start", lambda _write, found: new_things.look_at_start(found["observer"])),
+    (
+        "nodes",
+        lambda write, found: nodes.write_all(write, found["structs"], found["observer"], found["former"]),
+    ),
     ("modules", lambda write, _found: modules.write_all(write)),
     ("enums", write_enum_sets),
     ("links", write_manual_links),
     ("templates", write_templates),
-    ("instances", lambda write, _found: instances.write_all(write)),
-    # Last, because it changes the scene.
+    # Last, because they change the scene.
     ("context", lambda write, _found: context.write_all(write)),
+    ("new things", lambda write, found: new_things.write_all(write, found["observer"], found["skipped"])),
 )
 
 
 def main(arguments):
-    """Writes everything to the file that is the first argument; a failing step is reported in place."""
+    """Writes everything to the file that is the first argument; a failing step is reported in place.
+
+    The second is a JSON file: ``former``, see nodes.write_all, and ``skipped``, the makers of new things that
+    crashed this Blender before.
+    """
     write = Writer(arguments[0])
+    with open(arguments[1], encoding="utf-8") as file:
+        found = {"observer": Observer(), **json.load(file)}
     write(
         "blender",
         version=bpy.app.version_string.split()[0],
         build=text(bpy.app.build_hash),
         addons=sorted(bpy.context.preferences.addons.keys()),
     )
-    found = {}
     for name, step in STEPS:
         try:
             step(write, found)

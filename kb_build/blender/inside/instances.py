@@ -1,74 +1,332 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Enumerations that only an instance can list (colour management's views and looks, render engines, …)."""
+"""Reads instances: the values that a new one has, and the items that its enumerations take.
+
+RNA's own defaults are those of zeroed memory for one setting in six, and its lists of enum items are a superset, or
+empty, where the items depend on the instance. So whatever is made (see ``new_things``) is read here, with all structs
+that belong to it, and read again in each of its modes.
+"""
 
 import re
 
 import bpy
 
+from .rna import default_of, read_items
+from .wire import plain
+
 DEPTH = 3
+LONGEST_ARRAY = 32
+# How many instances of one class are put into every mode.
+VARIED = 4
+# Values more various than this describe the instances, not what is new in them.
+MOST_VALUES = 24
 # Up to Blender 4.3 it claims to be a Paint, which it is not in memory: reading what it inherits crashes.
 UNREADABLE = frozenset({"UvSculpt"})
+# Names and places that whoever makes the thing chooses, and what depends on the machine.
+CHOSEN = frozenset({
+    "type", "socket_type", "co", "co_ui", "handle_left", "handle_right", "location", "dimensions", "matrix",
+    "matrix_local", "matrix_world", "matrix_basis", "matrix_parent_inverse", "texspace_location", "texspace_size",
+    "head", "tail", "length", "data_path", "name_display", "action_slot_handle", "last_slot_identifier",
+    "target_id_type", "generated_width", "generated_height", "child_number", "frame_number",
+    "rotation_estimate", "scale_estimate", "empty_image_offset", "material_slot", "threads",
+})  # fmt: skip
+CHOSEN_OF = frozenset({
+    ("FieldSettings", "seed"), ("TimelineMarker", "frame"), ("ColorRampElement", "position"),
+    ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("NodeLink", "is_valid"),
+})  # fmt: skip
+# When these begin and end is up to whoever makes them.
+TIMED = frozenset({"Strip", "Sequence", "NlaStrip"})
+MACHINES_OWN = frozenset({"FILE_PATH", "DIR_PATH", "FILE_NAME"})
+# Setting these makes another thing of the instance, which is made by itself; some of the old ones are then freed.
+KINDS = frozenset({
+    ("Light", "type"), ("Texture", "type"), ("FluidModifier", "fluid_type"),
+    ("NodeTreeInterfaceSocket", "socket_type"), ("ActionSlot", "target_id_type"),
+})  # fmt: skip
 
 
-def refused_value_items(owner, name):
+def refused_value_items(owner, name, flag=False):
     """An enum's items as Blender names them when it refuses a value that cannot be one of them."""
     try:
-        setattr(owner, name, "\x01")
-    except TypeError as refusal:
+        setattr(owner, name, {"\x01"} if flag else "\x01")
+    except (TypeError, ValueError) as refusal:
         return re.findall(r"'([^']*)'", str(refusal).partition("not found in")[2])
     except (AttributeError, RuntimeError):
         pass
     return []
 
 
-def reachable(root, depth):
-    """The data behind a scene's or object's pointers, each class once."""
-    queue, seen = [(root, depth)], set(UNREADABLE)
-    while queue:
-        owner, left = queue.pop(0)
-        if owner.bl_rna.identifier in seen:
-            continue
-        seen.add(owner.bl_rna.identifier)
-        yield owner
-        if left:
-            for prop in owner.bl_rna.properties:
-                if prop.type == "POINTER" and prop.identifier != "rna_type":
-                    value = getattr(owner, prop.identifier, None)
-                    if isinstance(value, bpy.types.bpy_struct):
-                        queue.append((value, left - 1))
-
-
 def declaring_class(rna, name):
-    """The class that adds the property, seen from one of its descendants."""
-    while rna.base is not None and name in rna.base.properties:
+    """The class whose own property it is, seen from one of its descendants."""
+    pointer = rna.properties[name].as_pointer()
+    while rna.base is not None:
+        inherited = rna.base.properties.get(name)
+        if inherited is None or inherited.as_pointer() != pointer:
+            break
         rna = rna.base
     return rna.identifier
 
 
-def write_all(write):
-    """One ``enum_items`` record for each enumeration that RNA alone lists as empty, or as a lone placeholder."""
-    context = bpy.context
-    done = set()
-    for root in (
-        context.scene,
-        context.object,
-        context.view_layer,
-        context.preferences,
-        *bpy.data.materials[:1],
-    ):
-        if root is None:
-            continue
-        for owner in reachable(root, DEPTH):
-            for prop in owner.bl_rna.properties:
-                if (
-                    prop.type != "ENUM"
-                    or prop.is_readonly
-                    or prop.is_enum_flag
-                    or len(prop.enum_items_static) > 1
-                ):
+def same(left, right):
+    """Whether two values are equal, floats as far as single precision goes."""
+    if isinstance(left, list) and isinstance(right, list):
+        return len(left) == len(right) and all(same(*pair) for pair in zip(left, right))
+    if isinstance(left, (int, float)) and isinstance(right, (int, float)):
+        return left == right or abs(left - right) <= 2e-6 * max(abs(left), abs(right))
+    return left == right
+
+
+class Field:
+    """A property of a class whose value can be compared."""
+
+    def __init__(self, rna, prop):
+        self.name = prop.identifier
+        self.path = f"bpy.types.{declaring_class(rna, prop.identifier)}.{prop.identifier}"
+        self.default = default_of(prop)
+        self.is_enum = prop.type == "ENUM"
+        self.is_flag = self.is_enum and prop.is_enum_flag
+        cls = self.path.split(".")[-2]
+        self.is_chosen = (
+            self.name in CHOSEN
+            or (cls, self.name) in CHOSEN_OF
+            or (cls in TIMED and any(word in self.name for word in ("frame", "handle", "content", "channel", "duration")))
+        )
+        self.static = [row["identifier"] for row in read_items(prop.enum_items_static)] if self.is_enum else []
+        self.is_mode = (
+            self.is_enum and not self.is_flag and (cls, self.name) not in KINDS
+        )
+
+
+class Layout:
+    """What there is to read in the instances of a class."""
+
+    def __init__(self, rna):
+        named = rna.name_property.identifier if rna.name_property else "name"
+        left_out = {named, "name"}
+        self.fields = []
+        self.pointers = []
+        for prop in rna.properties:
+            name = prop.identifier
+            if prop.type == "POINTER":
+                if name != "rna_type":
+                    self.pointers.append(name)
+            elif (
+                prop.type != "COLLECTION"
+                and not prop.is_readonly
+                and name not in left_out
+                and not name.startswith("bl_")
+                and prop.subtype not in MACHINES_OWN
+                and not (getattr(prop, "is_array", False) and not 0 < prop.array_length <= LONGEST_ARRAY)
+            ):
+                self.fields.append(Field(rna, prop))
+        self.enums = [field for field in self.fields if field.is_enum]
+        self.modes = [field for field in self.fields if field.is_mode]
+
+
+class Contexts:
+    """Where an enumeration had the same items: (label, mode) pairs, and the values of the struct's other enums."""
+
+    def __init__(self):
+        self.made = []
+        self.states = {}
+
+    def add(self, pair, state):
+        """Adds an instance in a mode, and the values of its enums by name."""
+        if pair not in self.made:
+            self.made.append(pair)
+        for name, value in state.items():
+            self.states.setdefault(name, set()).add(value)
+
+    def row(self, items, name):
+        """The record of the enumeration ``name``."""
+        states = {other: sorted(values) for other, values in self.states.items() if other != name}
+        return {"items": list(items), "made": [list(pair) for pair in self.made], "states": states}
+
+
+class Observer:
+    """Collects what instances have, by property."""
+
+    def __init__(self):
+        self.fields = {}
+        # path → [(value, labels of what was made)]
+        self.values = {}
+        # path → [(value, mode, labels)]
+        self.in_modes = {}
+        # path → {items: Contexts}
+        self.items = {}
+        # path → {identifier: (name, description)}
+        self.texts = {}
+        self._layouts = {}
+        self._varied = {}
+
+    def layout(self, struct):
+        """The layout of the instance's class."""
+        rna = struct.bl_rna
+        known = self._layouts.get(rna.identifier)
+        if known is None:
+            known = self._layouts[rna.identifier] = Layout(rna)
+            self.fields.update((field.path, field) for field in known.fields)
+        return known
+
+    def parts(self, root, seen, depth=DEPTH):
+        """An instance and the structs that belong to it; other data-blocks do not."""
+        queue = [(root, depth)]
+        while queue:
+            struct, left = queue.pop(0)
+            key = (struct.as_pointer(), struct.bl_rna.identifier)
+            if key in seen or key[1] in UNREADABLE:
+                continue
+            seen.add(key)
+            yield struct
+            for name in self.layout(struct).pointers if left else ():
+                value = getattr(struct, name, None)
+                if isinstance(value, bpy.types.bpy_struct) and not isinstance(value, bpy.types.ID):
+                    queue.append((value, left - 1))
+
+    def look(self, label, root, vary=True):
+        """Reads a new instance and what belongs to it; ``label`` says what it is. ``vary``: in all modes, too."""
+        seen = set()
+        for struct in list(self.parts(root, seen)):
+            before = self.read(struct)
+            for field, value in before.items():
+                if not field.is_chosen:
+                    self.add(self.values.setdefault(field.path, []), value, label)
+            self.ask(struct, label, "")
+            name = struct.bl_rna.identifier
+            if vary and self._varied.get(name, 0) < VARIED:
+                self._varied[name] = self._varied.get(name, 0) + 1
+                self.vary(struct, label, before, seen)
+
+    def read(self, struct):
+        """field → value of each comparable property."""
+        values = {}
+        for field in self.layout(struct).fields:
+            if field.is_chosen and not field.is_mode:
+                continue
+            try:
+                value = plain(getattr(struct, field.name))
+            except Exception:
+                continue
+            # An empty enum is a number that stands for no item here.
+            if value != "" or not field.is_enum:
+                values[field] = value
+        return values
+
+    @staticmethod
+    def add(rows, value, label):
+        """Adds a label to the row of its value."""
+        for row in rows:
+            if same(row[0], value):
+                if label not in row[1]:
+                    row[1].append(label)
+                return
+        rows.append((value, [label]))
+
+    def ask(self, struct, label, mode):
+        """Notes which items the instance's enumerations take now."""
+        layout = self.layout(struct)
+        state = {field.name: getattr(struct, field.name) for field in layout.enums if not field.is_flag}
+        for field in layout.enums:
+            items = refused_value_items(struct, field.name, field.is_flag)
+            if items:
+                found = self.items.setdefault(field.path, {}).setdefault(tuple(items), Contexts())
+                found.add((label, mode), state)
+                known = self.texts.setdefault(field.path, {})
+                for item in items:
+                    if item not in known and item not in field.static:
+                        known[item] = self.text(struct, field.name, item)
+
+    @staticmethod
+    def text(struct, name, item):
+        """(name, description) of an item that only the instance has."""
+        layout = bpy.types.UILayout
+        try:
+            return layout.enum_item_name(struct, name, item), layout.enum_item_description(struct, name, item)
+        except Exception:
+            return "", ""
+
+    def vary(self, struct, label, before, seen):
+        """Puts the instance into each mode and notes what else changed; then puts everything back."""
+        for field in self.layout(struct).modes:
+            start = before.get(field)
+            for item in refused_value_items(struct, field.name):
+                if item == start:
                     continue
-                path = f"bpy.types.{declaring_class(owner.bl_rna, prop.identifier)}.{prop.identifier}"
-                items = refused_value_items(owner, prop.identifier) if path not in done else []
-                if items:
-                    done.add(path)
-                    write("enum_items", path=path, items=items)
+                try:
+                    setattr(struct, field.name, item)
+                except Exception:
+                    continue
+                if getattr(struct, field.name) != item:
+                    continue
+                mode = f"{field.name}={item!r}"
+                self.compare(struct, label, mode, field, before)
+                self.ask(struct, label, mode)
+                for part in list(self.parts(struct, seen)):
+                    if part.as_pointer() != struct.as_pointer():
+                        for inner, value in self.read(part).items():
+                            if not inner.is_chosen:
+                                rows = self.values.setdefault(inner.path, [])
+                                self.add(rows, value, f"{label} with {mode}")
+                        self.ask(part, label, mode)
+            before = self.restored(struct, before)
+
+    def compare(self, struct, label, mode, changed, before):
+        """Notes the properties that the mode has changed."""
+        for field, value in self.read(struct).items():
+            known = field in before and not field.is_chosen
+            if field is not changed and known and not same(value, before[field]):
+                rows = self.in_modes.setdefault(field.path, [])
+                for row in rows:
+                    if row[1] == mode and same(row[0], value):
+                        row[2].append(label)
+                        break
+                else:
+                    rows.append((value, mode, [label]))
+
+    def restored(self, struct, before):
+        """Gives an instance its first values back. Returns those that it has: some cannot be given."""
+        for _attempt in range(2):
+            present = self.read(struct)
+            changed = [field for field in present if not same(present[field], before.get(field))]
+            for field in changed:
+                try:
+                    value = before[field]
+                    setattr(struct, field.name, set(value) if field.is_flag else value)
+                except Exception:
+                    continue
+            if not changed:
+                break
+        return self.read(struct)
+
+    def write(self, write):
+        """One ``new_values`` record for each property that was read, one ``enum_items`` for each that was asked."""
+        for path in sorted(self.values):
+            write("new_values", path=path, values=self.usual(path), modes=self.modal(path))
+        for path in sorted(self.items):
+            self.write_items(write, path)
+
+    def usual(self, path):
+        """The values of new instances, the most frequent first, which needs no labels; none if all have RNA's."""
+        rows = sorted(self.values[path], key=lambda row: -len(row[1]))
+        if len(rows) > MOST_VALUES:
+            return []
+        if len(rows) == 1:
+            value, labels = rows[0]
+            known = same(value, self.fields[path].default)
+            return [] if known else [{"value": value, "made": labels if len(labels) == 1 else []}]
+        return [{"value": value, "made": labels if row else []} for row, (value, labels) in enumerate(rows)]
+
+    def modal(self, path):
+        """The values that a mode gives: those of every instance that was put into it."""
+        return [{"value": value, "when": mode, "made": labels} for value, mode, labels in self.in_modes.get(path, ())]
+
+    def write_items(self, write, path):
+        """The items in every context, unless they are always those that RNA lists."""
+        contexts = self.items[path]
+        field = self.fields[path]
+        if len(contexts) == 1 and set(next(iter(contexts))) == set(field.static):
+            return
+        write(
+            "enum_items",
+            path=path,
+            contexts=[found.row(items, field.name) for items, found in contexts.items()],
+            texts={name: list(text) for name, text in self.texts.get(path, {}).items()},
+        )

@@ -79,29 +79,81 @@ def mode_enums(node):
                 yield prop.identifier, values
 
 
-def vary_modes(node, rows, order):
-    """Sets every mode in turn; returns (side, identifier) → the modes that show the socket."""
-    modes = {}
-    for name, values in mode_enums(node):
-        before = getattr(node, name)
-        shown = {}
-        for value in values:
-            try:
-                setattr(node, name, value)
-            except (TypeError, AttributeError):
-                continue
-            for key, socket in keyed(sides(node)).items():
-                if key not in rows:
-                    rows[key] = describe(socket)
-                    order.append(key)
+def found(sockets, spelling):
+    """The socket that a subscript gives, as its pointer; 0 for none."""
+    try:
+        return sockets[spelling].as_pointer()
+    except (KeyError, IndexError):
+        return 0
+
+
+class Sockets:
+    """The sockets of one node in all its modes: what they are, when they are shown, and which subscripts give them."""
+
+    def __init__(self, node):
+        self.node = node
+        self.rows = {}
+        # key → (states in which it exists, …is shown, …its name gives it, …its identifier does) and its places
+        self.seen = {}
+        self.places = {}
+        self.look("")
+        self.hidden = {key for key, socket in keyed(sides(node)).items() if not available(socket)}
+        self.modes = self.vary()
+
+    def look(self, state):
+        """Reads the sockets in the node's present mode. Returns the keys of those that it shows."""
+        shown = []
+        for side, sockets in sides(self.node).items():
+            for place, socket in enumerate(sockets):
+                key = (side, socket.identifier)
+                if key not in self.rows:
+                    self.rows[key] = describe(socket)
+                    self.seen[key] = (set(), set(), set(), set())
+                    self.places[key] = set()
+                states = self.seen[key]
+                pointer = socket.as_pointer()
+                states[0].add(state)
+                self.places[key].add(place)
                 if available(socket):
+                    shown.append(key)
+                    states[1].add(state)
+                if found(sockets, socket.name) == pointer:
+                    states[2].add(state)
+                if found(sockets, socket.identifier) == pointer:
+                    states[3].add(state)
+        return shown
+
+    def vary(self):
+        """Sets every mode in turn; returns key → the modes that show the socket."""
+        modes = {}
+        for name, values in mode_enums(self.node):
+            before = getattr(self.node, name)
+            shown = {}
+            for value in values:
+                try:
+                    setattr(self.node, name, value)
+                except (TypeError, AttributeError):
+                    continue
+                for key in self.look(f"{name}={value}"):
                     shown.setdefault(key, []).append(value)
-        setattr(node, name, before)
-        tried = {value for row in shown.values() for value in row}
-        for key in rows:
-            if set(shown.get(key, ())) != tried and shown.get(key):
-                modes.setdefault(key, []).append(f"{name}={'|'.join(shown[key])}")
-    return modes
+            setattr(self.node, name, before)
+            tried = {value for row in shown.values() for value in row}
+            for key in self.rows:
+                if set(shown.get(key, ())) != tried and shown.get(key):
+                    modes.setdefault(key, []).append(f"{name}={'|'.join(shown[key])}")
+        return modes
+
+    def subscripts(self, key):
+        """(subscripts that always give a socket, the best first; whether its name does whenever it is shown)."""
+        side, identifier = key
+        present, shown, by_name, by_identifier = self.seen[key]
+        name = self.rows[key]["label"]
+        texts = [f'{side}["{name}"]'] if by_name == present else []
+        if by_identifier == present and identifier != name:
+            texts.append(f'{side}["{identifier}"]')
+        if len(self.places[key]) == 1:
+            texts.append(f"{side}[{next(iter(self.places[key]))}]")
+        return texts, by_name != present and bool(shown) and shown <= by_name
 
 
 def make(trees, identifier):
@@ -120,33 +172,49 @@ def make(trees, identifier):
     return first, taken
 
 
-def write_node(write, owner, node):
-    """The sockets of one node, in their order; of several with one name, Python's lookup finds the first."""
-    rows, order = {}, []
-    for key, socket in keyed(sides(node)).items():
-        rows[key] = describe(socket)
-        order.append(key)
-    hidden = {key for key, socket in keyed(sides(node)).items() if not available(socket)}
-    modes = vary_modes(node, rows, order)
-    named, index = set(), {"inputs": 0, "outputs": 0}
-    for side, identifier in order:
-        row = rows[side, identifier]
+def write_node(write, owner, node, former):
+    """The sockets of one node, in their order. ``former``: side → names that its sockets had in other Blenders."""
+    sockets = Sockets(node)
+    named, paths = set(), {}
+    for key, row in sockets.rows.items():
+        side, identifier = key
         spelling = row["label"] if row["label"] and (side, row["label"]) not in named else identifier
         if (side, spelling) in named:
             continue
         named.add((side, spelling))
+        paths[key] = f'{owner}.{side}["{spelling}"]'
+        subscripts, while_shown = sockets.subscripts(key)
+        flags = [f"identifier:{identifier}"]
+        flags += ["hidden-by-default"] if key in sockets.hidden else []
+        flags += ["name-when-shown"] if while_shown else []
         write(
             "symbol",
-            path=f'{owner}.{side}["{spelling}"]',
+            path=paths[key],
             kind="socket",
             owner=owner,
-            signature=f"{side}[{index[side]}]",
-            flags=[f"identifier:{identifier}"]
-            + (["hidden-by-default"] if (side, identifier) in hidden else []),
-            modes=modes.get((side, identifier), []),
+            flags=flags,
+            modes=sockets.modes.get(key, []),
+            subscripts=subscripts,
             **row,
         )
-        index[side] += 1
+    for side, names in former.items():
+        pointers = {socket.as_pointer(): socket.identifier for socket in sides(node)[side]}
+        for name in names:
+            identifier = pointers.get(found(sides(node)[side], name))
+            if (side, name) not in named and (side, identifier) in paths:
+                write("still_works", path=f'{owner}.{side}["{name}"]', taken_as=paths[side, identifier])
+
+
+def paired(node, tree):
+    """Gives the first node of a zone its last one, which decides its sockets; returns that, or None."""
+    if not hasattr(node, "pair_with_output"):
+        return None
+    try:
+        end = tree.nodes.new(node.bl_idname.replace("Input", "Output"))
+    except RuntimeError:
+        return None
+    node.pair_with_output(end)
+    return end
 
 
 def compositing_scene():
@@ -158,8 +226,21 @@ def compositing_scene():
     return scene
 
 
-def write_all(write, structs):
-    """The sockets of every node class that one of the built-in tree types takes."""
+def write_former_classes(write, trees, names):
+    """The node classes of other Blenders that this one still makes, under their new names."""
+    for identifier in names:
+        node, _taken = make(trees, identifier)
+        if node is not None:
+            if node.bl_idname != identifier:
+                write("still_works", path=f"bpy.types.{identifier}", taken_as=f"bpy.types.{node.bl_idname}")
+            node.id_data.nodes.remove(node)
+
+
+def write_all(write, structs, observer, former):
+    """The sockets of every node class that one of the built-in tree types takes; ``observer`` reads the nodes.
+
+    ``former``: node class → side → names of sockets that other Blenders had.
+    """
     trees = {}
     for name in TREES:
         try:
@@ -167,7 +248,6 @@ def write_all(write, structs):
         except TypeError:
             continue
     scene = compositing_scene()
-    made = 0
     for identifier in sorted(structs):
         cls = getattr(bpy.types, identifier, None)
         if cls is None or not issubclass(cls, bpy.types.Node) or cls is bpy.types.Node:
@@ -177,13 +257,15 @@ def write_all(write, structs):
             node, taken = make({"CompositorNodeTree": scene.node_tree}, identifier)
         if node is None:
             continue
-        made += 1
         owner = f"bpy.types.{identifier}"
+        observer.look(identifier, node)
+        end = paired(node, node.id_data)
         write("node", path=owner, trees=taken)
-        write_node(write, owner, node)
-        node.id_data.nodes.remove(node)
+        write_node(write, owner, node, former.get(identifier, {}))
+        for each in filter(None, (node, end)):
+            each.id_data.nodes.remove(each)
+    write_former_classes(write, trees, [name for name in former if name not in structs])
     for tree in trees.values():
         bpy.data.node_groups.remove(tree)
     if scene is not None:
         bpy.data.scenes.remove(scene)
-    return made

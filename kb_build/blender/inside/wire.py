@@ -53,5 +53,9 @@ class Writer:
         self._file.write(json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n")
         self.count += 1
 
+    def flush(self):
+        """Puts what was written on disk, whatever happens to this process."""
+        self._file.flush()
+
     def close(self):
         self._file.close()

@@ -1,0 +1,92 @@
+"""Enum items that depend on the instance: which are taken at all, and where."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+from kb_build.records import NOT_TAKEN
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+_NAMED = 3
+_NAMED_VALUES = 6
+
+# What was made, and the mode that it was put into; "" for that of a new one.
+Context = tuple[str, str]
+
+
+def items_in_contexts(
+    listed: Sequence[Mapping[str, Any]], contexts: Sequence[Mapping[str, Any]], texts: Mapping[str, Sequence[str]]
+) -> list[dict[str, Any]]:
+    """The items of an enumeration as rows for records.EnumItem, with ``where`` each is taken.
+
+    ``listed`` are RNA's own; ``contexts`` rows with ``items``, ``made``, the contexts that take just those, and
+    ``states``, the values that other enumerations of the instance had there; ``texts`` name and description of items that RNA does not list. A lone placeholder of RNA's is left out.
+    """
+    taken: dict[str, set[Context]] = defaultdict(set)
+    everywhere: set[Context] = set()
+    for row in contexts:
+        made = {(label, mode) for label, mode in row["made"]}
+        everywhere |= made
+        for item in row["items"]:
+            taken[item] |= made
+    rows = {item["identifier"]: dict(item) for item in listed}
+    if len(rows) == 1 and not taken.keys() & rows.keys():
+        rows.clear()
+    for item in taken:
+        name, description = texts.get(item, ("", ""))
+        rows.setdefault(item, {"identifier": item, "name": name, "description": description})
+    for item, row in rows.items():
+        if item not in taken:
+            row["where"] = NOT_TAKEN
+        elif everywhere - taken[item]:
+            with_item = [each["states"] for each in contexts if item in each["items"]]
+            without = [each["states"] for each in contexts if item not in each["items"]]
+            row["where"] = _deciding(with_item, without) or where_taken(taken[item], everywhere - taken[item])
+    return list(rows.values())
+
+
+def _deciding(
+    with_item: Sequence[Mapping[str, Sequence[str]]], without: Sequence[Mapping[str, Sequence[str]]]
+) -> str:
+    """The one enumeration whose value decides whether an item is taken; empty for none."""
+    for name in with_item[0]:
+        taken = sorted({value for states in with_item for value in states.get(name, ())})
+        refused = sorted({value for states in without for value in states.get(name, ())})
+        if taken and refused and not set(taken) & set(refused):
+            few_take = len(taken) <= len(refused)
+            return ("only with " if few_take else "not with ") + _setting(name, taken if few_take else refused)
+    return ""
+
+
+def _setting(name: str, values: Sequence[str]) -> str:
+    shown = "|".join(repr(value) for value in values[:_NAMED_VALUES])
+    return f"{name}={shown}" + ("|…" if len(values) > _NAMED_VALUES else "")
+
+
+def where_taken(taken: set[Context], refused: set[Context]) -> str:
+    """In which contexts an item is taken: a mode that decides it, or what was made."""
+    new_taken = {label for label, mode in taken if not mode}
+    new_refused = {label for label, mode in refused if not mode}
+    if not new_taken:
+        return "only with " + _modes(mode for _, mode in taken)
+    if not new_refused:
+        return "not with " + _modes(mode for _, mode in refused)
+    fewer_take = len(new_taken) <= len(new_refused)
+    return "only by " + _labels(new_taken) if fewer_take else "not by " + _labels(new_refused)
+
+
+def _modes(modes: Iterable[str]) -> str:
+    """``system='NONE'|'IMPERIAL'``; the modes of several properties are alternatives."""
+    values: dict[str, list[str]] = defaultdict(list)
+    for name, value in sorted(tuple(mode.split("=", 1)) for mode in set(modes)):
+        values[name].append(value)
+    shown = [f"{name}={'|'.join(found)}" for name, found in values.items()]
+    return " or ".join(shown[:_NAMED]) + (", …" if len(shown) > _NAMED else "")
+
+
+def _labels(labels: set[str]) -> str:
+    shown = sorted(labels, key=lambda label: (len(label), label))
+    return ", ".join(shown[:_NAMED]) + (", …" if len(shown) > _NAMED else "")

@@ -1,0 +1,499 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes one of everything, in the ways that scripts do, and has it read (see ``instances``).
+
+Each function below makes one kind of thing and yields (what it is, the thing). Labels are Blender's own names of the
+classes; where there are two ways of making a thing, that of the operator names the operator.
+"""
+
+import traceback
+
+import bpy
+
+MODIFIED = ("MESH", "CURVE", "LATTICE", "GREASEPENCIL", "VOLUME")
+
+
+def called(thing):
+    """What a thing is, by its class: ``cloth modifier``."""
+    return thing.bl_rna.name.lower()
+
+
+def choices(cls, name):
+    """The identifiers of an enum property of a class; none if this Blender has no such class."""
+    rna = getattr(getattr(bpy.types, cls, None), "bl_rna", None)
+    prop = rna.properties.get(name) if rna else None
+    return [item.identifier for item in prop.enum_items] if prop else []
+
+
+def argument_choices(collection, argument):
+    """The identifiers that an enum argument of a collection's ``new`` takes."""
+    function = collection.bl_rna.functions.get("new")
+    parameter = function.parameters.get(argument) if function else None
+    return [item.identifier for item in parameter.enum_items] if parameter else []
+
+
+def operator_choices(operator, argument):
+    """The identifiers that an enum argument of an operator takes."""
+    prop = operator.get_rna_type().properties.get(argument)
+    return [item.identifier for item in prop.enum_items] if prop else []
+
+
+def activate(obj):
+    """Makes an object the active one, and the only one selected."""
+    layer = bpy.context.view_layer
+    for other in layer.objects:
+        other.select_set(other == obj)
+    layer.objects.active = obj
+    return obj
+
+
+def add_object(data):
+    """A new, active object with this data."""
+    obj = bpy.data.objects.new("new", data)
+    bpy.context.scene.collection.objects.link(obj)
+    return activate(obj)
+
+
+def mesh_object():
+    """A new object with a triangle."""
+    mesh = bpy.data.meshes.new("new")
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+    return add_object(mesh)
+
+
+def object_of(kind):
+    """A new object of a type that ``object.add`` knows; None where this Blender does not."""
+    if kind == "MESH":
+        return mesh_object()
+    try:
+        bpy.ops.object.add(type=kind)
+    except (TypeError, RuntimeError):
+        return None
+    return bpy.context.object
+
+
+def remove(obj):
+    """Removes an object that is no longer needed: every other one makes the scene slower."""
+    bpy.data.objects.remove(obj)
+
+
+def data_blocks():
+    """Every data-block that ``bpy.data`` makes from a name, each of its types; objects with each as their data."""
+    for prop in bpy.data.bl_rna.properties:
+        collection = getattr(bpy.data, prop.identifier, None) if prop.type == "COLLECTION" else None
+        function = prop.srna.functions.get("new") if collection is not None and prop.srna else None
+        if function is None or prop.identifier in {"objects", "scenes", "node_groups"}:
+            continue
+        arguments = [item.identifier for item in function.parameters if not item.is_output]
+        for kind in argument_choices(collection, "type") or [None]:
+            given = {"width": 8, "height": 8} if "width" in arguments else {}
+            try:
+                block = collection.new("new", type=kind) if kind else collection.new("new", **given)
+            except (TypeError, RuntimeError):
+                continue
+            yield called(block), block
+    yield "empty object", add_object(None)
+    yield "mesh object", mesh_object()
+    yield "scene", bpy.data.scenes.new("new")
+
+
+def added_by_operators():
+    """Objects as the Add menu makes them, with their data."""
+    ways = [(getattr(bpy.ops.object, name), argument) for name, argument in (
+        ("light_add", "type"), ("lightprobe_add", "type"), ("metaball_add", "type"), ("grease_pencil_add", "type"),
+        ("effector_add", "type"), ("camera_add", ""), ("speaker_add", ""), ("text_add", ""), ("volume_add", ""),
+        ("armature_add", ""), ("add", "type"), ("empty_add", ""), ("pointcloud_add", ""),
+        ("curves_random_add", ""),
+    )]  # fmt: skip
+    ways += [(getattr(bpy.ops.mesh, f"primitive_{name}_add"), "") for name in ("cube", "plane", "uv_sphere")]
+    ways += [(getattr(bpy.ops.curve, f"primitive_{name}_add"), "") for name in ("bezier_curve", "nurbs_path")]
+    ways += [(bpy.ops.surface.primitive_nurbs_surface_sphere_add, "")]
+    for operator, argument in ways:
+        try:
+            kinds = operator_choices(operator, argument) if argument else [None]
+        except KeyError:
+            continue
+        for kind in kinds:
+            before = len(bpy.data.objects)
+            try:
+                operator(**({argument: kind} if kind else {}))
+            except (AttributeError, TypeError, RuntimeError):
+                continue
+            obj = bpy.context.object
+            if obj is None or len(bpy.data.objects) == before:
+                continue
+            by = f"by {operator.idname_py()}({f'type={kind!r}' if kind else ''})"
+            if operator.idname_py() == "object.effector_add":
+                yield f"{kind.lower().replace('_', ' ')} force field", obj.field
+            else:
+                yield f"object {by}", obj
+                if obj.data is not None:
+                    yield f"{called(obj.data)} {by}", obj.data
+            remove(obj)
+
+
+def modifiers():
+    """Every modifier, on the first kind of object that takes it."""
+    objects = [obj for obj in map(object_of, MODIFIED) if obj is not None]
+    for kind in choices("Modifier", "type"):
+        for obj in objects:
+            activate(obj)
+            try:
+                modifier = obj.modifiers.new("new", kind)
+            except (TypeError, RuntimeError):
+                continue
+            if modifier is None:
+                continue
+            yield called(modifier), modifier
+            if kind == "FLUID":
+                yield from fluids(modifier)
+            elif kind == "DYNAMIC_PAINT":
+                yield from dynamic_paint(modifier)
+            elif kind == "PARTICLE_SYSTEM":
+                continue
+            obj.modifiers.remove(modifier)
+            break
+    obj = object_of("GREASEPENCIL") or object_of("GPENCIL")
+    old = getattr(obj, "grease_pencil_modifiers", None) if obj else None
+    for kind in choices("GpencilModifier", "type") if old is not None else ():
+        try:
+            yield kind.lower(), old.new("new", kind)
+        except (TypeError, RuntimeError):
+            continue
+    effects = getattr(obj, "shader_effects", None) if obj else None
+    for kind in choices("ShaderFx", "type") if effects is not None else ():
+        effect = effects.new("new", kind)
+        yield called(effect), effect
+
+
+def fluids(modifier):
+    """Domain, flow and effector of a fluid."""
+    for kind in ("FLOW", "EFFECTOR", "DOMAIN"):
+        modifier.fluid_type = kind
+        yield f"fluid {kind.lower()}", getattr(modifier, f"{kind.lower()}_settings")
+
+
+def dynamic_paint(modifier):
+    """Canvas with a surface, and brush."""
+    for kind in ("CANVAS", "BRUSH"):
+        bpy.ops.dpaint.type_toggle(type=kind)
+        settings = getattr(modifier, f"{kind.lower()}_settings")
+        yield f"dynamic paint {kind.lower()}", settings
+        if kind == "CANVAS" and len(settings.canvas_surfaces):
+            yield "dynamic paint surface", settings.canvas_surfaces[0]
+
+
+def constraints():
+    """Every constraint of objects, and those that only bones take."""
+    obj = add_object(None)
+    bpy.ops.object.armature_add()
+    bone = bpy.context.object.pose.bones[0]
+    for kind in choices("Constraint", "type"):
+        for owner in (obj, bone):
+            try:
+                constraint = owner.constraints.new(kind)
+            except (TypeError, RuntimeError):
+                continue
+            yield called(constraint), constraint
+            break
+
+
+def particles():
+    """Particle systems that emit, and hair, with their textures."""
+    obj = mesh_object()
+    for kind in ("EMITTER", "HAIR"):
+        obj.modifiers.new("new", "PARTICLE_SYSTEM")
+        system = obj.particle_systems[-1]
+        label = "particle system" if kind == "EMITTER" else "hair particle system"
+        settings = system.settings
+        if kind == "HAIR":
+            settings.type = kind
+        yield label, system
+        yield f"{label}'s settings", settings
+        yield "particle texture slot", settings.texture_slots.add()
+        yield f"{label}'s modifier", obj.modifiers[-1]
+    # What emits can be chosen only where there are particles.
+    fluid = obj.modifiers.new("new", "FLUID")
+    fluid.fluid_type = "FLOW"
+    yield "fluid flow with particles", fluid.flow_settings
+    fluid.fluid_type = "EFFECTOR"
+    yield "fluid effector with particles", fluid.effector_settings
+
+
+def force_fields():
+    """Force fields of objects that have surfaces and points, as some shapes need; the Add menu makes those of empties."""
+    for kind in ("MESH", "CURVE"):
+        obj = object_of(kind)
+        bpy.ops.object.forcefield_toggle()
+        yield f"force field of a {kind.lower()} object", obj.field
+
+
+def rigid_bodies():
+    """The rigid body world, bodies and constraints."""
+    bpy.ops.rigidbody.world_add()
+    yield "rigid body world", bpy.context.scene.rigidbody_world
+    for kind in ("ACTIVE", "PASSIVE"):
+        obj = mesh_object()
+        bpy.ops.rigidbody.object_add(type=kind)
+        yield f"{kind.lower()} rigid body", obj.rigid_body
+    for kind in choices("RigidBodyConstraint", "type"):
+        obj = add_object(None)
+        bpy.ops.rigidbody.constraint_add(type=kind)
+        yield f"{kind.lower().replace('_', ' ')} rigid body constraint", obj.rigid_body_constraint
+
+
+def strips():
+    """Every strip that needs no file, with every modifier of strips."""
+    scene = bpy.context.scene
+    editor = scene.sequence_editor_create()
+    workspace = bpy.context.workspace
+    if hasattr(workspace, "sequencer_scene"):
+        # Without it, Blender crashes when a strip gets a modifier.
+        workspace.sequencer_scene = scene
+    all_strips = editor.strips if hasattr(editor, "strips") else editor.sequences
+    making = all_strips.bl_rna.functions["new_effect"].parameters
+    end = "length" if "length" in making else "frame_end"
+    first, second = (
+        all_strips.new_effect(name="new", type="COLOR", channel=channel, frame_start=1, **{end: 9})
+        for channel in (1, 2)
+    )
+    yield called(first), first
+    inputs = ("seq1", "seq2") if "seq1" in making else ("input1", "input2")
+    for number, item in enumerate(making["type"].enum_items):
+        kind = item.identifier
+        for given in ({}, {inputs[0]: first}, {inputs[0]: first, inputs[1]: second}):
+            try:
+                strip = all_strips.new_effect(
+                    name="new", type=kind, channel=3 + number, frame_start=1, **{end: 9}, **given
+                )
+            except Exception:
+                continue
+            yield called(strip), strip
+            break
+    mask = bpy.data.masks.new("new")
+    for kind, more in (
+        ("new_scene", {"scene": bpy.data.scenes.new("new")}), ("new_mask", {"mask": mask}), ("new_meta", {}),
+        ("new_image", {"filepath": "none.png"}), ("new_sound", {"filepath": "none.wav"}),
+    ):  # fmt: skip
+        try:
+            strip = getattr(all_strips, kind)(name="new", channel=1, frame_start=20, **more)
+        except Exception:
+            continue
+        yield called(strip), strip
+    for kind in argument_choices(first.modifiers, "type") if hasattr(first, "modifiers") else ():
+        try:
+            modifier = first.modifiers.new("new", kind)
+        except (TypeError, RuntimeError):
+            continue
+        if modifier is not None:
+            yield called(modifier), modifier
+
+
+def curves_of(action):
+    """An action's F-curves, wherever this Blender keeps them."""
+    if hasattr(action, "fcurves"):
+        return action.fcurves
+    return action.layers[0].strips[0].channelbags[0].fcurves
+
+
+def animation():
+    """F-curves with keyframes of each way of inserting, their modifiers, drivers, and the NLA."""
+    obj = add_object(None)
+    obj.keyframe_insert("location", frame=1)
+    data = obj.animation_data
+    yield "animation data", data
+    curve = curves_of(data.action)[0]
+    yield "f-curve", curve
+    yield "keyframe of keyframe_insert()", curve.keyframe_points[0]
+    yield "keyframe of keyframe_points.insert()", curve.keyframe_points.insert(5, 1.0)
+    curve.keyframe_points.add(1)
+    yield "keyframe of keyframe_points.add()", curve.keyframe_points[-1]
+    for kind in choices("FModifier", "type"):
+        try:
+            modifier = curve.modifiers.new(kind)
+        except (TypeError, RuntimeError):
+            continue
+        if modifier is not None:
+            yield called(modifier), modifier
+            curve.modifiers.remove(modifier)
+    driven = obj.driver_add("scale", 0)
+    yield "f-curve of driver_add()", driven
+    yield "driver", driven.driver
+    variable = driven.driver.variables.new()
+    yield "driver variable", variable
+    yield "driver target", variable.targets[0]
+    track = data.nla_tracks.new()
+    yield "nla track", track
+    yield "nla strip", track.strips.new("new", 1, data.action)
+    if hasattr(data.action, "layers"):
+        yield "action layer", data.action.layers[0]
+        yield "action slot", data.action.slots[0]
+    yield "keying set", bpy.context.scene.keying_sets.new()
+
+
+def armatures():
+    """Bones in edit mode, in object mode and in the pose; collections of bones."""
+    bpy.ops.object.armature_add()
+    obj = bpy.context.object
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = obj.data.edit_bones.new("new")
+    bone.tail = (0, 0, 1)
+    yield "edit bone", bone
+    bpy.ops.object.mode_set(mode="OBJECT")
+    yield "bone", obj.data.bones["new"]
+    yield "pose bone", obj.pose.bones["new"]
+    if hasattr(obj.data, "collections"):
+        yield "bone collection", obj.data.collections.new("new")
+
+
+def splines():
+    """Splines of each type with their points, and elements of metaballs."""
+    curve = bpy.data.curves.new("new", "CURVE")
+    for kind in argument_choices(curve.splines, "type"):
+        try:
+            spline = curve.splines.new(kind)
+        except (TypeError, RuntimeError):
+            continue
+        yield f"{kind.lower()} spline", spline
+        points = spline.bezier_points if kind == "BEZIER" else spline.points
+        try:
+            points.add(1)
+        except RuntimeError:
+            continue
+        yield called(points[-1]), points[-1]
+    ball = bpy.data.metaballs.new("new")
+    for kind in choices("MetaElement", "type"):
+        yield f"{kind.lower()} meta element", ball.elements.new(type=kind)
+
+
+def mesh_parts():
+    """What meshes and their objects carry: layers, attributes, groups, shape keys, slots."""
+    obj = mesh_object()
+    mesh = obj.data
+    yield "uv layer", mesh.uv_layers.new(name="new")
+    for kind in argument_choices(mesh.attributes, "type"):
+        yield f"{kind.lower()} attribute", mesh.attributes.new(f"new {kind}", kind, "POINT")
+    yield "vertex group", obj.vertex_groups.new(name="new")
+    yield "basis shape key", obj.shape_key_add(name="new")
+    yield "shape key", obj.shape_key_add(name="new")
+    yield "shape keys", mesh.shape_keys
+    mesh.materials.append(bpy.data.materials.new("new"))
+    yield "material slot", obj.material_slots[0]
+    if hasattr(obj, "asset_mark"):
+        obj.asset_mark()
+        yield "asset data", obj.asset_data
+
+
+def drawings():
+    """Layers of grease pencils, of annotations and of masks; colours of palettes."""
+    for name in ("grease_pencils", "grease_pencils_v3", "annotations"):
+        collection = getattr(bpy.data, name, None)
+        if collection is None:
+            continue
+        block = collection.new("new")
+        layer = block.layers.new("new")
+        yield called(layer), layer
+        frame = layer.frames.new(1)
+        yield called(frame), frame
+    material = bpy.data.materials.new("new")
+    bpy.data.materials.create_gpencil_data(material)
+    yield "grease pencil material", material.grease_pencil
+    layer = bpy.data.masks.new("new").layers.new()
+    yield "mask layer", layer
+    spline = layer.splines.new()
+    yield "mask spline", spline
+    spline.points.add(1)
+    yield "mask point", spline.points[0]
+    yield "palette color", bpy.data.palettes.new("new").colors.new()
+
+
+def scenes():
+    """What belongs to scenes: view layers, markers, Freestyle's line sets and the modifiers of its styles."""
+    scene = bpy.data.scenes.new("new")
+    layer = scene.view_layers.new("new")
+    yield "view layer", layer
+    yield "timeline marker", scene.timeline_markers.new("new")
+    yield "render view", scene.render.views.new("new")
+    yield "line set", layer.freestyle_settings.linesets.new("new")
+    yield "freestyle module", layer.freestyle_settings.modules.new()
+    style = bpy.data.linestyles.new("new")
+    for name in ("alpha", "color", "geometry", "thickness"):
+        collection = getattr(style, f"{name}_modifiers")
+        for kind in argument_choices(collection, "type"):
+            modifier = collection.new("new", kind)
+            yield called(modifier), modifier
+    aovs = getattr(layer, "aovs", None)
+    if aovs is not None:
+        yield "aov", aovs.add()
+    lightgroups = getattr(layer, "lightgroups", None)
+    if lightgroups is not None:
+        yield "light group", lightgroups.add()
+
+
+def node_trees():
+    """Node trees, the sockets of their interfaces, and what hangs on them."""
+    for kind in ("ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree"):
+        tree = bpy.data.node_groups.new("new", kind)
+        yield called(tree), tree
+        interface = getattr(tree, "interface", None)
+        if interface is None:
+            continue
+        for name in dir(bpy.types):
+            if name.startswith("NodeSocket") and name.count("Socket") == 1 and name != "NodeSocket":
+                try:
+                    socket = interface.new_socket("new", in_out="INPUT", socket_type=name)
+                except (TypeError, RuntimeError):
+                    continue
+                if socket is not None:
+                    yield called(socket), socket
+        yield "panel of a node interface", interface.new_panel("new")
+    ramp = bpy.data.textures.new("new", "CLOUDS")
+    ramp.use_color_ramp = True
+    yield "color ramp", ramp.color_ramp
+    yield "color ramp element", ramp.color_ramp.elements.new(0.5)
+
+
+MAKERS = (
+    data_blocks, added_by_operators, modifiers, constraints, particles, force_fields, rigid_bodies, strips, animation, armatures,
+    splines, mesh_parts, drawings, scenes, node_trees,
+)  # fmt: skip
+
+
+def look_at_start(observer):
+    """Reads what Blender starts with: the scene, and the data in it."""
+    scene = bpy.context.scene
+    if scene is None:
+        return
+    observer.look("start-up scene", scene)
+    observer.look("start-up view layer", bpy.context.view_layer)
+    for block in (scene.world, *bpy.data.materials[:1], *bpy.data.lights[:1], *bpy.data.cameras[:1]):
+        if block is not None:
+            observer.look(f"start-up {called(block)}", block)
+
+
+def scratch_scene():
+    """An empty scene to make things in, the one of the window where there is a window."""
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    scene = bpy.data.scenes.new("scratch")
+    if bpy.context.window is not None:
+        bpy.context.window.scene = scene
+
+
+def write_all(write, observer, skipped):
+    """Makes everything but what the makers ``skipped`` make, and writes what ``observer`` has seen.
+
+    A maker that fails is a ``fault``; which one is at work is on record, should Blender crash.
+    """
+    scratch_scene()
+    for make in MAKERS:
+        if make.__name__ in skipped:
+            write("fault", step="new things", traceback=f"Blender crashed in {make.__name__}")
+            continue
+        write("making", maker=make.__name__)
+        write.flush()
+        try:
+            for label, thing in make():
+                observer.look(label, thing)
+        except Exception:
+            write("fault", step="new things", traceback=traceback.format_exc())
+    observer.write(write)
