@@ -48,6 +48,12 @@ def usual_default(symbol: Symbol) -> Default:
     return next((new.value for new in symbol.new_values if not new.when), symbol.default)
 
 
+def is_uncompared(symbol: Symbol) -> bool:
+    """Whether the default is RNA's alone, of a property whose new value may be another one."""
+    is_own = symbol.kind == "property" and symbol.path.startswith("bpy.types.")
+    return is_own and not {"compared", "readonly"} & set(symbol.flags)
+
+
 def default_text(symbol: Symbol) -> str:
     """What new ones have, in which kinds and modes they differ, and RNA's default where it is another."""
     usual = [new for new in symbol.new_values if not new.when]
@@ -56,6 +62,8 @@ def default_text(symbol: Symbol) -> str:
     if value is None:
         return ""
     text = f"`{literal(value)}`"
+    if is_uncompared(symbol):
+        text += " (RNA's; no new one was compared)"
     if usual:
         made = usual[0].made or (symbol.owner.rpartition(".")[2],)
         text += f" (new {_labels(made)})"

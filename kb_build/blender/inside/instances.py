@@ -16,11 +16,13 @@ from .wire import plain
 DEPTH = 3
 LONGEST_ARRAY = 32
 # How many instances of one class are put into every mode.
-VARIED = 4
+VARIED = 3
 # Values more various than this describe the instances, not what is new in them.
 MOST_VALUES = 24
 # Up to Blender 4.3 it claims to be a Paint, which it is not in memory: reading what it inherits crashes.
 UNREADABLE = frozenset({"UvSculpt"})
+# Pointers to what is around an instance. Blender 4.5 crashes when an unpaired node is asked for its pair.
+AROUND = frozenset({"rna_type", "parent", "paired_output"})
 # Names and places that whoever makes the thing chooses, and what depends on the machine.
 CHOSEN = frozenset({
     "type", "socket_type", "co", "co_ui", "handle_left", "handle_right", "location", "dimensions", "matrix",
@@ -31,7 +33,7 @@ CHOSEN = frozenset({
 })  # fmt: skip
 CHOSEN_OF = frozenset({
     ("FieldSettings", "seed"), ("TimelineMarker", "frame"), ("ColorRampElement", "position"),
-    ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("NodeLink", "is_valid"),
+    ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("Driver", "expression"),
 })  # fmt: skip
 # When these begin and end is up to whoever makes them.
 TIMED = frozenset({"Strip", "Sequence", "NlaStrip"})
@@ -39,7 +41,7 @@ MACHINES_OWN = frozenset({"FILE_PATH", "DIR_PATH", "FILE_NAME"})
 # Setting these makes another thing of the instance, which is made by itself; some of the old ones are then freed.
 KINDS = frozenset({
     ("Light", "type"), ("Texture", "type"), ("FluidModifier", "fluid_type"),
-    ("NodeTreeInterfaceSocket", "socket_type"), ("ActionSlot", "target_id_type"),
+    ("NodeTreeInterfaceSocket", "socket_type"), ("ActionSlot", "target_id_type"), ("Spline", "type"),
 })  # fmt: skip
 
 
@@ -106,7 +108,7 @@ class Layout:
         for prop in rna.properties:
             name = prop.identifier
             if prop.type == "POINTER":
-                if name != "rna_type":
+                if name not in AROUND:
                     self.pointers.append(name)
             elif (
                 prop.type != "COLLECTION"
@@ -125,19 +127,22 @@ class Contexts:
     """Where an enumeration had the same items: (label, mode) pairs, and the values of the struct's other enums."""
 
     def __init__(self):
-        self.made = []
-        self.states = {}
+        self.made = {}
+        self.states = []
 
     def add(self, pair, state):
         """Adds an instance in a mode, and the values of its enums by name."""
-        if pair not in self.made:
-            self.made.append(pair)
-        for name, value in state.items():
-            self.states.setdefault(name, set()).add(value)
+        self.made[pair] = None
+        self.states.append(state)
 
     def row(self, items, name):
         """The record of the enumeration ``name``."""
-        states = {other: sorted(values) for other, values in self.states.items() if other != name}
+        seen = {}
+        for state in self.states:
+            for other, value in state.items():
+                if other != name:
+                    seen.setdefault(other, set()).add(value)
+        states = {other: sorted(values) for other, values in seen.items()}
         return {"items": list(items), "made": [list(pair) for pair in self.made], "states": states}
 
 
@@ -166,34 +171,40 @@ class Observer:
             self.fields.update((field.path, field) for field in known.fields)
         return known
 
-    def parts(self, root, seen, depth=DEPTH):
-        """An instance and the structs that belong to it; other data-blocks do not."""
-        queue = [(root, depth)]
+    def belonging(self, struct):
+        """The structs behind an instance's pointers, without other data-blocks."""
+        values = [getattr(struct, name, None) for name in self.layout(struct).pointers]
+        return [
+            value
+            for value in values
+            if isinstance(value, bpy.types.bpy_struct)
+            and not isinstance(value, bpy.types.ID)
+            and value.bl_rna.identifier not in UNREADABLE
+        ]
+
+    def parts(self, root):
+        """An instance, and the structs that belong to it, directly and through each other."""
+        queue, seen = [(root, DEPTH)], set()
         while queue:
             struct, left = queue.pop(0)
             key = (struct.as_pointer(), struct.bl_rna.identifier)
-            if key in seen or key[1] in UNREADABLE:
-                continue
-            seen.add(key)
-            yield struct
-            for name in self.layout(struct).pointers if left else ():
-                value = getattr(struct, name, None)
-                if isinstance(value, bpy.types.bpy_struct) and not isinstance(value, bpy.types.ID):
-                    queue.append((value, left - 1))
+            if key not in seen:
+                seen.add(key)
+                yield struct
+                queue += [(part, left - 1) for part in self.belonging(struct)] if left else []
 
     def look(self, label, root, vary=True):
         """Reads a new instance and what belongs to it; ``label`` says what it is. ``vary``: in all modes, too."""
-        seen = set()
-        for struct in list(self.parts(root, seen)):
+        for struct in list(self.parts(root)):
             before = self.read(struct)
             for field, value in before.items():
                 if not field.is_chosen:
                     self.add(self.values.setdefault(field.path, []), value, label)
-            self.ask(struct, label, "")
+            self.ask(struct, label, "", self.layout(struct).enums)
             name = struct.bl_rna.identifier
             if vary and self._varied.get(name, 0) < VARIED:
                 self._varied[name] = self._varied.get(name, 0) + 1
-                self.vary(struct, label, before, seen)
+                self.vary(struct, label, before)
 
     def read(self, struct):
         """field → value of each comparable property."""
@@ -214,17 +225,15 @@ class Observer:
     def add(rows, value, label):
         """Adds a label to the row of its value."""
         for row in rows:
-            if same(row[0], value):
-                if label not in row[1]:
-                    row[1].append(label)
+            if row[0] == value or same(row[0], value):
+                row[1][label] = None
                 return
-        rows.append((value, [label]))
+        rows.append((value, {label: None}))
 
-    def ask(self, struct, label, mode):
-        """Notes which items the instance's enumerations take now."""
-        layout = self.layout(struct)
-        state = {field.name: getattr(struct, field.name) for field in layout.enums if not field.is_flag}
-        for field in layout.enums:
+    def ask(self, struct, label, mode, enums):
+        """Notes which items these enumerations of the instance take now."""
+        state = {field.name: getattr(struct, field.name) for field in self.layout(struct).modes} if enums else {}
+        for field in enums:
             items = refused_value_items(struct, field.name, field.is_flag)
             if items:
                 found = self.items.setdefault(field.path, {}).setdefault(tuple(items), Contexts())
@@ -243,8 +252,13 @@ class Observer:
         except Exception:
             return "", ""
 
-    def vary(self, struct, label, before, seen):
+    def vary(self, struct, label, before):
         """Puts the instance into each mode and notes what else changed; then puts everything back."""
+        known = {part.as_pointer() for part in self.belonging(struct)}
+        enums = self.layout(struct).enums
+        if self._varied[struct.bl_rna.identifier] > 1:
+            # The first one of its class has shown which of them depend on the mode.
+            enums = [field for field in enums if self.is_computed(field)]
         for field in self.layout(struct).modes:
             start = before.get(field)
             for item in refused_value_items(struct, field.name):
@@ -258,14 +272,10 @@ class Observer:
                     continue
                 mode = f"{field.name}={item!r}"
                 self.compare(struct, label, mode, field, before)
-                self.ask(struct, label, mode)
-                for part in list(self.parts(struct, seen)):
-                    if part.as_pointer() != struct.as_pointer():
-                        for inner, value in self.read(part).items():
-                            if not inner.is_chosen:
-                                rows = self.values.setdefault(inner.path, [])
-                                self.add(rows, value, f"{label} with {mode}")
-                        self.ask(part, label, mode)
+                self.ask(struct, label, mode, enums)
+                for part in self.belonging(struct):
+                    if part.as_pointer() not in known:
+                        self.look(f"{label} with {mode}", part)
             before = self.restored(struct, before)
 
     def compare(self, struct, label, mode, changed, before):
@@ -311,19 +321,23 @@ class Observer:
         if len(rows) == 1:
             value, labels = rows[0]
             known = same(value, self.fields[path].default)
-            return [] if known else [{"value": value, "made": labels if len(labels) == 1 else []}]
-        return [{"value": value, "made": labels if row else []} for row, (value, labels) in enumerate(rows)]
+            return [] if known else [{"value": value, "made": list(labels) if len(labels) == 1 else []}]
+        return [{"value": value, "made": list(labels) if row else []} for row, (value, labels) in enumerate(rows)]
 
     def modal(self, path):
         """The values that a mode gives: those of every instance that was put into it."""
         return [{"value": value, "when": mode, "made": labels} for value, mode, labels in self.in_modes.get(path, ())]
 
+    def is_computed(self, field):
+        """Whether an enumeration had other items than RNA lists, somewhere."""
+        return any(set(items) != set(field.static) for items in self.items.get(field.path, ()))
+
     def write_items(self, write, path):
         """The items in every context, unless they are always those that RNA lists."""
-        contexts = self.items[path]
         field = self.fields[path]
-        if len(contexts) == 1 and set(next(iter(contexts))) == set(field.static):
+        if not self.is_computed(field):
             return
+        contexts = self.items[path]
         write(
             "enum_items",
             path=path,

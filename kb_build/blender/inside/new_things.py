@@ -38,11 +38,8 @@ def operator_choices(operator, argument):
 
 
 def activate(obj):
-    """Makes an object the active one, and the only one selected."""
-    layer = bpy.context.view_layer
-    for other in layer.objects:
-        other.select_set(other == obj)
-    layer.objects.active = obj
+    """Makes an object the active one."""
+    bpy.context.view_layer.objects.active = obj
     return obj
 
 
@@ -84,13 +81,21 @@ def data_blocks():
         if function is None or prop.identifier in {"objects", "scenes", "node_groups"}:
             continue
         arguments = [item.identifier for item in function.parameters if not item.is_output]
-        for kind in argument_choices(collection, "type") or [None]:
+        choice = "mode" if prop.identifier == "brushes" else "type"
+        for kind in argument_choices(collection, choice) or [None]:
             given = {"width": 8, "height": 8} if "width" in arguments else {}
             try:
-                block = collection.new("new", type=kind) if kind else collection.new("new", **given)
+                block = collection.new("new", **({choice: kind} if kind else given))
             except (TypeError, RuntimeError):
                 continue
             yield called(block), block
+            if prop.identifier == "cameras":
+                yield "background image", block.background_images.new()
+            if hasattr(collection, "create_gpencil_data"):
+                collection.create_gpencil_data(block)
+                gpencil = getattr(block, "gpencil_settings", None) or getattr(block, "grease_pencil", None)
+                if gpencil is not None:
+                    yield called(gpencil), gpencil
     yield "empty object", add_object(None)
     yield "mesh object", mesh_object()
     yield "scene", bpy.data.scenes.new("new")
@@ -341,6 +346,7 @@ def armatures():
     bpy.ops.object.mode_set(mode="OBJECT")
     yield "bone", obj.data.bones["new"]
     yield "pose bone", obj.pose.bones["new"]
+    yield "pose", obj.pose
     if hasattr(obj.data, "collections"):
         yield "bone collection", obj.data.collections.new("new")
 
@@ -394,9 +400,6 @@ def drawings():
         yield called(layer), layer
         frame = layer.frames.new(1)
         yield called(frame), frame
-    material = bpy.data.materials.new("new")
-    bpy.data.materials.create_gpencil_data(material)
-    yield "grease pencil material", material.grease_pencil
     layer = bpy.data.masks.new("new").layers.new()
     yield "mask layer", layer
     spline = layer.splines.new()
@@ -468,6 +471,10 @@ def look_at_start(observer):
     for block in (scene.world, *bpy.data.materials[:1], *bpy.data.lights[:1], *bpy.data.cameras[:1]):
         if block is not None:
             observer.look(f"start-up {called(block)}", block)
+    observer.look("factory preferences", bpy.context.preferences, vary=False)
+    view = next((area for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D"), None)
+    if view is not None:
+        observer.look("start-up 3d view", view.spaces.active, vary=False)
 
 
 def scratch_scene():
@@ -493,7 +500,8 @@ def write_all(write, observer, skipped):
         write.flush()
         try:
             for label, thing in make():
-                observer.look(label, thing)
+                if thing is not None:
+                    observer.look(label, thing)
         except Exception:
             write("fault", step="new things", traceback=traceback.format_exc())
     observer.write(write)

@@ -207,7 +207,8 @@ def write_node(write, owner, node, former):
 
 def paired(node, tree):
     """Gives the first node of a zone its last one, which decides its sockets; returns that, or None."""
-    if not hasattr(node, "pair_with_output"):
+    unfinished = "Closure" in node.bl_idname and bpy.app.version < (5, 0)  # they crash Blender 4.5
+    if unfinished or not hasattr(node, "pair_with_output"):
         return None
     try:
         end = tree.nodes.new(node.bl_idname.replace("Input", "Output"))
@@ -258,8 +259,8 @@ def write_all(write, structs, observer, former):
         if node is None:
             continue
         owner = f"bpy.types.{identifier}"
-        observer.look(identifier, node)
         end = paired(node, node.id_data)
+        observer.look(identifier, node)
         write("node", path=owner, trees=taken)
         write_node(write, owner, node, former.get(identifier, {}))
         for each in filter(None, (node, end)):

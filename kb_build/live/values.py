@@ -1,0 +1,118 @@
+"""Compares a base's defaults with new things in a running Blender, made by other code than the extractor's."""
+
+from __future__ import annotations
+
+import json
+import random
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from kb_build.records import symbol_from_json
+from kb_build.schema import open_read_only, unpack
+from kb_build.symbol_lines import literal
+from simworlds.sandbox.program import Program
+from simworlds.sandbox.runtime import run_program
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from kb_build.records import Default, Symbol
+    from simworlds.sandbox.runtime import Runtime
+
+_PROGRAM = Program("kb_build.live.inside.new_instances", {"kb_build.live.inside": Path(__file__).parent / "inside"})
+_SECONDS = 120.0
+_TYPES = "bpy.types."
+_PRECISION = 1e-5
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedValues:
+    """The outcome: how many (thing, property) pairs were compared; those whose RNA default differs; wrong ones."""
+
+    compared: int
+    differing: int
+    wrong: tuple[str, ...]
+
+
+def compare_values(
+    base: Path, runtime: Runtime, *, sample: int | None = None, seed: int | None = None
+) -> ComparedValues:
+    """Makes new things in ``runtime`` and compares what they hold with what ``base`` says.
+
+    ``sample`` pairs are drawn at random, all by default. Raises ProgramFailed when Blender does not finish,
+    StoreError or NoBase when the base cannot be read.
+    """
+    with TemporaryDirectory(prefix="simworlds-") as folder:
+        target = Path(folder) / "rows.json"
+        run_program(runtime, _PROGRAM, [str(target)], timeout=_SECONDS, log=Path(folder) / "log")
+        rows: list[dict[str, Any]] = json.loads(target.read_text(encoding="utf-8"))
+    symbols = _properties(base)
+    pairs = sorted(
+        {
+            (row["label"], row["class"], name): (symbol, value)
+            for row in rows
+            for name, value in row["values"].items()
+            if value is not None
+            and not row["label"].startswith(f"{name}=")
+            and (symbol := _declared(symbols, row["class"], name)) is not None
+            and told_value(symbol, row["label"]) is not None
+            and not (symbol.type == "enum" and value == "")  # a number that stands for no item
+        }.items()
+    )
+    if sample is not None:
+        pairs = random.Random(seed).sample(pairs, min(sample, len(pairs)))
+    differing, wrong = 0, list[str]()
+    for (label, cls, name), (symbol, value) in pairs:
+        differing += not same_value(symbol.default, value)
+        told = told_value(symbol, label)
+        if not same_value(told, value):
+            wrong.append(f"{cls}.{name} of a new {label}: {literal(value)}, told {literal(told)}")
+    return ComparedValues(len(pairs), differing, tuple(wrong))
+
+
+def told_value(symbol: Symbol, label: str) -> Default:
+    """What a base tells of a new thing: by its name, by the mode that names it, else the usual value."""
+    for new in symbol.new_values:
+        if label == new.when or (label in new.made and not new.when):
+            return new.value
+    return next((new.value for new in symbol.new_values if not new.when), symbol.default)
+
+
+def same_value(told: Default, value: Default) -> bool:
+    """Whether two values are equal, floats as far as single precision goes."""
+    if isinstance(told, list) and isinstance(value, list):
+        return len(told) == len(value) and all(same_value(*pair) for pair in zip(told, value, strict=True))
+    if isinstance(told, int | float) and isinstance(value, int | float):
+        return abs(told - value) <= _PRECISION * max(abs(told), abs(value), _PRECISION)
+    return told == value
+
+
+def _properties(base: Path) -> dict[str, Symbol | str]:
+    """The compared properties by path, and class → base class."""
+    connection = open_read_only(base)
+    try:
+        rows: Iterable[tuple[str, str, str, bytes]] = connection.execute(
+            "SELECT path, kind, base, record FROM symbols WHERE kind IN ('class', 'property')"
+        )
+        known: dict[str, Symbol | str] = {}
+        for path, kind, above, record in rows:
+            if kind == "class":
+                known[path] = above
+            elif path.startswith(_TYPES):
+                known[path] = symbol_from_json(unpack(record))
+    finally:
+        connection.close()
+    return known
+
+
+def _declared(symbols: Mapping[str, Symbol | str], cls: str, name: str) -> Symbol | None:
+    """The property of a class, or of the nearest class above it, if its default was compared."""
+    owner: Any = _TYPES + cls
+    while isinstance(owner, str) and owner in symbols:
+        found = symbols.get(f"{owner}.{name}")
+        if found is not None and not isinstance(found, str):
+            return found if "compared" in found.flags else None
+        owner = symbols[owner]
+    return None
