@@ -21,6 +21,8 @@ VARIED = 3
 MOST_VALUES = 24
 # Up to Blender 4.3 it claims to be a Paint, which it is not in memory: reading what it inherits crashes.
 UNREADABLE = frozenset({"UvSculpt"})
+# Its modes crash Blender 3.4.
+UNVARIED = frozenset({"BrushGpencilSettings"})
 # Pointers to what is around an instance. Blender 4.5 crashes when an unpaired node is asked for its pair.
 AROUND = frozenset({"rna_type", "parent", "paired_output"})
 # Names and places that whoever makes the thing chooses, and what depends on the machine.
@@ -202,7 +204,7 @@ class Observer:
                     self.add(self.values.setdefault(field.path, []), value, label)
             self.ask(struct, label, "", self.layout(struct).enums)
             name = struct.bl_rna.identifier
-            if vary and self._varied.get(name, 0) < VARIED:
+            if vary and name not in UNVARIED and self._varied.get(name, 0) < VARIED:
                 self._varied[name] = self._varied.get(name, 0) + 1
                 self.vary(struct, label, before)
 
