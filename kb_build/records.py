@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import asdict, dataclass, fields, is_dataclass
-from typing import Any, Literal, cast, get_args
+from typing import TYPE_CHECKING, Any, Literal, cast, get_args
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Scalar = str | int | float | bool | None
 Default = Scalar | list[Any]
@@ -224,25 +227,29 @@ def _parameters(rows: list[dict[str, Any]]) -> tuple[Parameter, ...]:
     return tuple(parameters)
 
 
+def _new_values(rows: list[dict[str, Any]]) -> tuple[NewValue, ...]:
+    return tuple(NewValue(row["value"], tuple(row.get("made", ())), row.get("when", "")) for row in rows)
+
+
+# How the fields that JSON has as lists or objects are read.
+_SYMBOL_FIELDS: dict[str, Callable[[Any], Any]] = {
+    **dict.fromkeys(("array", "flags", "modes", "trees", "subscripts"), tuple),
+    "enum_items": _enum_items,
+    "parameters": _parameters,
+    "returns": _parameters,
+    "deprecation": lambda row: Deprecation(**row),
+    "new_values": _new_values,
+}
+
+
 def symbol_from_json(data: dict[str, Any]) -> Symbol:
     """The inverse of :func:`to_json` for symbols. Raises TypeError on unknown fields."""
-    deprecation = data.get("deprecation")
-    values: dict[str, Any] = {
-        **data,
-        "array": tuple(data.get("array", ())),
-        "flags": tuple(data.get("flags", ())),
-        "modes": tuple(data.get("modes", ())),
-        "trees": tuple(data.get("trees", ())),
-        "enum_items": _enum_items(data.get("enum_items", [])),
-        "parameters": _parameters(data.get("parameters", [])),
-        "returns": _parameters(data.get("returns", [])),
-        "deprecation": Deprecation(**deprecation) if deprecation else None,
-        "new_values": tuple(
-            NewValue(**{**row, "made": tuple(row.get("made", ()))}) for row in data.get("new_values", [])
-        ),
-        "subscripts": tuple(data.get("subscripts", ())),
-    }
-    return Symbol(**values)
+    return Symbol(
+        **{
+            name: _SYMBOL_FIELDS[name](value) if name in _SYMBOL_FIELDS else value
+            for name, value in data.items()
+        }
+    )
 
 
 def page_from_json(data: dict[str, Any]) -> Page:

@@ -119,9 +119,9 @@ def member_line(symbol: Symbol) -> str:
     default = usual_default(symbol)
     if default is not None and symbol.kind in {"property", "socket"}:
         notes.append(f"= {literal(default)}")
-        notes += [
-            f"({literal(new.value)} with {new.when})" for new in symbol.new_values if new.when
-        ][:_SHOWN_LABELS]
+        notes += [f"({literal(new.value)} with {new.when})" for new in symbol.new_values if new.when][
+            :_SHOWN_LABELS
+        ]
     if values := [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]:
         notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
     if "readonly" in symbol.flags:

@@ -18,12 +18,15 @@ Context = tuple[str, str]
 
 
 def items_in_contexts(
-    listed: Sequence[Mapping[str, Any]], contexts: Sequence[Mapping[str, Any]], texts: Mapping[str, Sequence[str]]
+    listed: Sequence[Mapping[str, Any]],
+    contexts: Sequence[Mapping[str, Any]],
+    texts: Mapping[str, Sequence[str]],
 ) -> list[dict[str, Any]]:
     """The items of an enumeration as rows for records.EnumItem, with ``where`` each is taken.
 
     ``listed`` are RNA's own; ``contexts`` rows with ``items``, ``made``, the contexts that take just those, and
-    ``states``, the values that other enumerations of the instance had there; ``texts`` name and description of items that RNA does not list. A lone placeholder of RNA's is left out.
+    ``states``, the values that other enumerations of the instance had there; ``texts`` name and description of
+    items that RNA does not list. A lone placeholder of RNA's is left out.
     """
     taken: dict[str, set[Context]] = defaultdict(set)
     everywhere: set[Context] = set()
@@ -57,7 +60,9 @@ def _deciding(
         refused = sorted({value for states in without for value in states.get(name, ())})
         if taken and refused and not set(taken) & set(refused):
             few_take = len(taken) <= len(refused)
-            return ("only with " if few_take else "not with ") + _setting(name, taken if few_take else refused)
+            return ("only with " if few_take else "not with ") + _setting(
+                name, taken if few_take else refused
+            )
     return ""
 
 

@@ -7,6 +7,7 @@ import json
 import re
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.access_paths import reached_expressions
@@ -79,6 +80,31 @@ def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
         row["new_values"] = [*seen.get("values", ()), *seen.get("modes", ())]
 
 
+def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
+    """Adds one line of the extract."""
+    match record:
+        case "symbol":
+            raw.symbols.setdefault(row["path"], row)
+        case "blender":
+            raw.header = row
+        case "node":
+            raw.trees[row["path"]] = row["trees"]
+        case "manual":
+            raw.manual.append((row["pattern"], row["page"]))
+        case "enum_items":
+            _add_items(raw.symbols.get(row["path"]), row)
+        case "new_values":
+            _add_values(raw.symbols.get(row["path"]), row)
+        case "still_works":
+            raw.still_works.append((row["path"], row["taken_as"]))
+        case "making":
+            pass
+        case "template":
+            raw.templates.append((row["name"], row["text"]))
+        case _:
+            raw.faults.append(f"{row.get('step')}: {row.get('traceback')}")
+
+
 def _read(path: Path) -> _Raw:
     raw, lines, ended = _Raw(), 0, -1
     with path.open(encoding="utf-8") as file:
@@ -94,27 +120,7 @@ def _read(path: Path) -> _Raw:
                 ended = row["lines"]
                 break
             lines += 1
-            match record:
-                case "symbol":
-                    raw.symbols.setdefault(row["path"], row)
-                case "blender":
-                    raw.header = row
-                case "node":
-                    raw.trees[row["path"]] = row["trees"]
-                case "manual":
-                    raw.manual.append((row["pattern"], row["page"]))
-                case "enum_items":
-                    _add_items(raw.symbols.get(row["path"]), row)
-                case "new_values":
-                    _add_values(raw.symbols.get(row["path"]), row)
-                case "still_works":
-                    raw.still_works.append((row["path"], row["taken_as"]))
-                case "making":
-                    pass
-                case "template":
-                    raw.templates.append((row["name"], row["text"]))
-                case _:
-                    raw.faults.append(f"{row.get('step')}: {row.get('traceback')}")
+            _keep(raw, record, row)
     if ended != lines:
         raise ExtractError(
             f"{path}: {lines} records and no end; Blender stopped half-way. "
@@ -206,20 +212,38 @@ def _subclass_lookups(classes: Iterable[Symbol], prototypes: list[Symbol]) -> It
 
 def manual_links(symbols: Iterable[Symbol], table: list[tuple[str, str]]) -> Iterator[Link]:
     """Applies Blender's table (fnmatch pattern over lower-case ids → page) to every symbol; first match wins."""
-    by_prefix: dict[str, list[tuple[int, re.Pattern[str], str]]] = defaultdict(list)
-    for rank, (pattern, page) in enumerate(table):
+    # Nearly all patterns are a name with a star after it: only the others need regular expressions.
+    starred: dict[str, int] = {}
+    others: dict[str, list[int]] = defaultdict(list)
+    for rank, (pattern, _) in enumerate(table):
         lowered = pattern.lower()
         prefix = _INDEXABLE.split(lowered, maxsplit=1)[0]
-        by_prefix[prefix].append((rank, re.compile(fnmatch.translate(lowered)), page))
-    lengths = sorted({len(prefix) for prefix in by_prefix})
+        if lowered == f"{prefix}*":
+            starred.setdefault(prefix, rank)
+        else:
+            others[prefix].append(rank)
+
+    @cache
+    def matcher(rank: int) -> re.Pattern[str]:
+        return re.compile(fnmatch.translate(table[rank][0].lower()))
+
+    lengths = sorted({len(prefix) for prefix in (*starred, *others)})
     for symbol in symbols:
         if not symbol.path.startswith("bpy.") or symbol.kind == "socket":
             continue
         path = symbol.path.lower()
-        rows = (row for n in lengths if n <= len(path) for row in by_prefix.get(path[:n], ()))
-        best = min((row for row in rows if row[1].match(path)), default=None, key=lambda row: row[0])
-        if best:
-            yield Link(symbol.path, best[2].removesuffix(".html").replace(".html#", "#"), "manual")
+        prefixes = [path[:length] for length in lengths if length <= len(path)]
+        ranks = [starred[prefix] for prefix in prefixes if prefix in starred]
+        ranks += [
+            rank
+            for prefix in prefixes
+            if prefix in others
+            for rank in others[prefix]
+            if matcher(rank).match(path)
+        ]
+        if ranks:
+            page = table[min(ranks)][1]
+            yield Link(symbol.path, page.removesuffix(".html").replace(".html#", "#"), "manual")
 
 
 def _structure(symbols: Iterable[Symbol]) -> Iterator[Link]:

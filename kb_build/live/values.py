@@ -16,12 +16,14 @@ from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import run_program
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
     from kb_build.records import Default, Symbol
     from simworlds.sandbox.runtime import Runtime
 
-_PROGRAM = Program("kb_build.live.inside.new_instances", {"kb_build.live.inside": Path(__file__).parent / "inside"})
+_PROGRAM = Program(
+    "kb_build.live.inside.new_instances", {"kb_build.live.inside": Path(__file__).parent / "inside"}
+)
 _SECONDS = 120.0
 _TYPES = "bpy.types."
 _PRECISION = 1e-5
@@ -62,7 +64,7 @@ def compare_values(
         }.items()
     )
     if sample is not None:
-        pairs = random.Random(seed).sample(pairs, min(sample, len(pairs)))
+        pairs = random.Random(seed).sample(pairs, min(sample, len(pairs)))  # noqa: S311 - a sample
     differing, wrong = 0, list[str]()
     for (label, cls, name), (symbol, value) in pairs:
         differing += not same_value(symbol.default, value)

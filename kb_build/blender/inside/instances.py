@@ -72,7 +72,7 @@ def declaring_class(rna, name):
 def same(left, right):
     """Whether two values are equal, floats as far as single precision goes."""
     if isinstance(left, list) and isinstance(right, list):
-        return len(left) == len(right) and all(same(*pair) for pair in zip(left, right))
+        return len(left) == len(right) and all(same(*pair) for pair in zip(left, right, strict=True))
     if isinstance(left, (int, float)) and isinstance(right, (int, float)):
         return left == right or abs(left - right) <= 2e-6 * max(abs(left), abs(right))
     return left == right
@@ -91,12 +91,15 @@ class Field:
         self.is_chosen = (
             self.name in CHOSEN
             or (cls, self.name) in CHOSEN_OF
-            or (cls in TIMED and any(word in self.name for word in ("frame", "handle", "content", "channel", "duration")))
+            or (
+                cls in TIMED
+                and any(word in self.name for word in ("frame", "handle", "content", "channel", "duration"))
+            )
         )
-        self.static = [row["identifier"] for row in read_items(prop.enum_items_static)] if self.is_enum else []
-        self.is_mode = (
-            self.is_enum and not self.is_flag and (cls, self.name) not in KINDS
+        self.static = (
+            [row["identifier"] for row in read_items(prop.enum_items_static)] if self.is_enum else []
         )
+        self.is_mode = self.is_enum and not self.is_flag and (cls, self.name) not in KINDS
 
 
 class Layout:
@@ -234,7 +237,9 @@ class Observer:
 
     def ask(self, struct, label, mode, enums):
         """Notes which items these enumerations of the instance take now."""
-        state = {field.name: getattr(struct, field.name) for field in self.layout(struct).modes} if enums else {}
+        state = (
+            {field.name: getattr(struct, field.name) for field in self.layout(struct).modes} if enums else {}
+        )
         for field in enums:
             items = refused_value_items(struct, field.name, field.is_flag)
             if items:
@@ -324,11 +329,16 @@ class Observer:
             value, labels = rows[0]
             known = same(value, self.fields[path].default)
             return [] if known else [{"value": value, "made": list(labels) if len(labels) == 1 else []}]
-        return [{"value": value, "made": list(labels) if row else []} for row, (value, labels) in enumerate(rows)]
+        return [
+            {"value": value, "made": list(labels) if row else []} for row, (value, labels) in enumerate(rows)
+        ]
 
     def modal(self, path):
         """The values that a mode gives: those of every instance that was put into it."""
-        return [{"value": value, "when": mode, "made": labels} for value, mode, labels in self.in_modes.get(path, ())]
+        return [
+            {"value": value, "when": mode, "made": labels}
+            for value, mode, labels in self.in_modes.get(path, ())
+        ]
 
     def is_computed(self, field):
         """Whether an enumeration had other items than RNA lists, somewhere."""

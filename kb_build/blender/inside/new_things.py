@@ -225,7 +225,7 @@ def particles():
 
 
 def force_fields():
-    """Force fields of objects that have surfaces and points, as some shapes need; the Add menu makes those of empties."""
+    """Force fields of objects that have surfaces and points, which some shapes need."""
     for kind in ("MESH", "CURVE"):
         obj = object_of(kind)
         bpy.ops.object.forcefield_toggle()
@@ -456,8 +456,8 @@ def node_trees():
 
 
 MAKERS = (
-    data_blocks, added_by_operators, modifiers, constraints, particles, force_fields, rigid_bodies, strips, animation, armatures,
-    splines, mesh_parts, drawings, scenes, node_trees,
+    data_blocks, added_by_operators, modifiers, constraints, particles, force_fields, rigid_bodies, strips, animation,
+    armatures, splines, mesh_parts, drawings, scenes, node_trees,
 )  # fmt: skip
 
 
@@ -472,7 +472,9 @@ def look_at_start(observer):
         if block is not None:
             observer.look(f"start-up {called(block)}", block)
     observer.look("factory preferences", bpy.context.preferences, vary=False)
-    view = next((area for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D"), None)
+    view = next(
+        (area for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D"), None
+    )
     if view is not None:
         observer.look("start-up 3d view", view.spaces.active, vary=False)
 

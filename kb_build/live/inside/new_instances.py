@@ -8,52 +8,6 @@ import json
 
 import bpy
 
-# What is made → the expression that makes it; ``obj`` is a new object with a mesh, ``scene`` a new scene.
-SIMPLE = (
-    ("sun light", 'bpy.data.lights.new("x", "SUN")'),
-    ("point light", 'bpy.data.lights.new("x", "POINT")'),
-    ("spot light", 'bpy.data.lights.new("x", "SPOT")'),
-    ("area light", 'bpy.data.lights.new("x", "AREA")'),
-    ("camera", 'bpy.data.cameras.new("x")'),
-    ("material", 'bpy.data.materials.new("x")'),
-    ("world", 'bpy.data.worlds.new("x")'),
-    ("mesh", 'bpy.data.meshes.new("x")'),
-    ("curve", 'bpy.data.curves.new("x", "CURVE")'),
-    ("text curve", 'bpy.data.curves.new("x", "FONT")'),
-    ("metaball", 'bpy.data.metaballs.new("x")'),
-    ("lattice", 'bpy.data.lattices.new("x")'),
-    ("armature", 'bpy.data.armatures.new("x")'),
-    ("speaker", 'bpy.data.speakers.new("x")'),
-    ("collection", 'bpy.data.collections.new("x")'),
-    ("image", 'bpy.data.images.new("x", 8, 8)'),
-    ("freestyle line style", 'bpy.data.linestyles.new("x")'),
-    ("clouds texture", 'bpy.data.textures.new("x", "CLOUDS")'),
-    ("wood texture", 'bpy.data.textures.new("x", "WOOD")'),
-    ("voronoi texture", 'bpy.data.textures.new("x", "VORONOI")'),
-    ("scene", "scene"),
-    ("scene", "scene.render"),
-    ("scene", "scene.eevee"),
-    ("scene", "scene.unit_settings"),
-    ("scene", "scene.tool_settings"),
-    ("view layer", 'scene.view_layers.new("x")'),
-    ("uv layer", 'obj.data.uv_layers.new(name="x")'),
-    ("vertex group", 'obj.vertex_groups.new(name="x")'),
-    ("basis shape key", 'obj.shape_key_add(name="x")'),
-    ("bezier spline", 'bpy.data.curves.new("x", "CURVE").splines.new("BEZIER")'),
-    ("nurbs spline", 'bpy.data.curves.new("x", "CURVE").splines.new("NURBS")'),
-    ("ball meta element", 'bpy.data.metaballs.new("x").elements.new()'),
-    ("driver", 'obj.driver_add("location", 0).driver'),
-    ("nla track", "obj.animation_data_create().nla_tracks.new()"),
-    ("active rigid body", 'call(bpy.ops.rigidbody.object_add, type="ACTIVE") and obj.rigid_body'),
-    ("passive rigid body", 'call(bpy.ops.rigidbody.object_add, type="PASSIVE") and obj.rigid_body'),
-    ("hinge rigid body constraint", 'call(bpy.ops.rigidbody.constraint_add, type="HINGE") and obj.rigid_body_constraint'),
-    ("motor rigid body constraint", 'call(bpy.ops.rigidbody.constraint_add, type="MOTOR") and obj.rigid_body_constraint'),
-    ("wind force field", 'call(bpy.ops.object.effector_add, type="WIND") and bpy.context.object.field'),
-    ("vortex force field", 'call(bpy.ops.object.effector_add, type="VORTEX") and bpy.context.object.field'),
-    ("turbulence force field", 'call(bpy.ops.object.effector_add, type="TURBULENCE") and bpy.context.object.field'),
-    ("sun light by object.light_add(type='SUN')", 'call(bpy.ops.object.light_add, type="SUN") and bpy.context.object.data'),
-    ("area light by object.light_add(type='AREA')", 'call(bpy.ops.object.light_add, type="AREA") and bpy.context.object.data'),
-)
 # Modifiers' and particle systems' own settings that are read, too.
 INNER = (
     "settings", "collision_settings", "point_cache", "domain_settings", "flow_settings", "effector_settings",
@@ -61,12 +15,7 @@ INNER = (
 )  # fmt: skip
 
 
-def call(operator, **arguments):
-    """Runs an operator."""
-    return operator(**arguments) == {"FINISHED"}
-
-
-def cube(scene):
+def triangle():
     """A new active object with a mesh."""
     obj = bpy.data.objects.new("x", bpy.data.meshes.new("x"))
     obj.data.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
@@ -106,26 +55,72 @@ def read(label, thing, rows):
             read(label, inner, rows)
 
 
-def simple(rows):
-    """The things of the table."""
-    for label, expression in SIMPLE:
-        scene = bpy.data.scenes.new("x")
-        try:
-            thing = eval(expression, {"bpy": bpy, "call": call, "scene": scene, "obj": cube(scene)})
-        except Exception as error:
-            print(f"{label}: {error}")
-            continue
-        if thing:
-            read(label, thing, rows)
+def plain_things():
+    """(what it is, a new one) of data-blocks and what belongs to them."""
+    data = bpy.data
+    for kind in ("SUN", "POINT", "SPOT", "AREA"):
+        yield f"{kind.lower()} light", data.lights.new("x", kind)
+    for kind in ("CLOUDS", "WOOD", "VORONOI"):
+        yield f"{kind.lower()} texture", data.textures.new("x", kind)
+    for kind in ("BEZIER", "NURBS"):
+        yield f"{kind.lower()} spline", data.curves.new("x", "CURVE").splines.new(kind)
+    yield "camera", data.cameras.new("x")
+    yield "material", data.materials.new("x")
+    yield "world", data.worlds.new("x")
+    yield "mesh", data.meshes.new("x")
+    yield "curve", data.curves.new("x", "CURVE")
+    yield "text curve", data.curves.new("x", "FONT")
+    yield "metaball", data.metaballs.new("x")
+    yield "ball meta element", data.metaballs.new("x").elements.new()
+    yield "lattice", data.lattices.new("x")
+    yield "armature", data.armatures.new("x")
+    yield "speaker", data.speakers.new("x")
+    yield "collection", data.collections.new("x")
+    yield "image", data.images.new("x", 8, 8)
+    yield "freestyle line style", data.linestyles.new("x")
+    scene = data.scenes.new("x")
+    for thing in (scene, scene.render, scene.eevee, scene.unit_settings, scene.tool_settings):
+        yield "scene", thing
+    yield "view layer", scene.view_layers.new("x")
+    obj = triangle()
+    yield "uv layer", obj.data.uv_layers.new(name="x")
+    yield "vertex group", obj.vertex_groups.new(name="x")
+    yield "basis shape key", obj.shape_key_add(name="x")
+    yield "driver", obj.driver_add("location", 0).driver
+    yield "nla track", obj.animation_data.nla_tracks.new()
+
+
+def things_by_operators():
+    """(what it is, a new one) of physics and of objects from the Add menu."""
+    ops = bpy.ops
+    for kind in ("ACTIVE", "PASSIVE"):
+        obj = triangle()
+        ops.rigidbody.object_add(type=kind)
+        yield f"{kind.lower()} rigid body", obj.rigid_body
+    for kind in ("HINGE", "MOTOR", "FIXED"):
+        obj = triangle()
+        ops.rigidbody.constraint_add(type=kind)
+        yield f"{kind.lower()} rigid body constraint", obj.rigid_body_constraint
+    for kind in ("WIND", "VORTEX", "TURBULENCE"):
+        ops.object.effector_add(type=kind)
+        yield f"{kind.lower()} force field", bpy.context.object.field
+    for kind in ("SUN", "AREA"):
+        ops.object.light_add(type=kind)
+        light = bpy.context.object.data
+        yield f"{kind.lower()} light by object.light_add(type={kind!r})", light
 
 
 def stacked(rows):
     """Modifiers and constraints of every kind that a mesh object takes, fluids, and particle systems."""
-    obj = cube(None)
+    obj = triangle()
     for cls, stack in (("Modifier", obj.modifiers), ("Constraint", obj.constraints)):
         for item in getattr(bpy.types, cls).bl_rna.properties["type"].enum_items:
             try:
-                thing = stack.new(name="x", type=item.identifier) if cls == "Modifier" else stack.new(item.identifier)
+                thing = (
+                    stack.new(name="x", type=item.identifier)
+                    if cls == "Modifier"
+                    else stack.new(item.identifier)
+                )
             except (TypeError, RuntimeError):
                 continue
             if thing is None:
@@ -166,7 +161,9 @@ def nodes(rows):
 def main(arguments):
     """Writes the rows to the file that is the argument."""
     rows = []
-    for part in (nodes, simple, stacked):
-        part(rows)
+    nodes(rows)
+    for label, thing in (*plain_things(), *things_by_operators()):
+        read(label, thing, rows)
+    stacked(rows)
     with open(arguments[0], "w", encoding="utf-8") as file:
         json.dump(rows, file)
