@@ -96,8 +96,8 @@ class Symbol:
     ``trees`` the node trees that take a node; ``reached`` is an expression that leads to an instance.
 
     ``default`` is RNA's, which a new instance need not have: ``new_values`` are what new ones had where some differed.
-    The flag ``compared`` says that new ones were read. ``subscripts`` are those by which a new node gives a socket,
-    in every mode, best first; with the flag ``name-when-shown`` its name does only while the node shows it.
+    The flag ``compared`` says that new ones were read. ``subscripts`` give a socket in every mode in which its node
+    has it, best first; with the flag ``name-when-shown`` its name does only while the node shows it.
     """
 
     path: str

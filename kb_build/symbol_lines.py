@@ -91,10 +91,13 @@ def identifier_of(socket: Symbol) -> str:
     return next((flag[11:] for flag in socket.flags if flag.startswith("identifier:")), "")
 
 
-def subscripts_text(socket: Symbol) -> str:
-    """How a socket is reached on its node: subscripts that were tried, and the identifier where it is another name."""
+def subscripts_text(socket: Symbol, most: int | None = None) -> str:
+    """How a socket is reached on its node: subscripts that were tried, and the identifier where it is another name.
+
+    Not more than ``most`` of those that always work.
+    """
     side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
-    shown = [f"`{text}`" for text in socket.subscripts]
+    shown = [f"`{text}`" for text in socket.subscripts[:most]]
     if "name-when-shown" in socket.flags:
         shown.append(f'`{side}["{socket.label}"]` while it is shown')
     identifier = identifier_of(socket)
@@ -108,7 +111,7 @@ def _head(symbol: Symbol) -> str:
     if symbol.kind in {"function", "operator"}:
         call = symbol.signature
         return f"`{name}{call[call.index('(') :] if '(' in call else '()'}`"
-    if symbol.kind == "socket" and (text := subscripts_text(symbol)):
+    if symbol.kind == "socket" and (text := subscripts_text(symbol, most=1)):
         return text
     return f"`{name}`"
 

@@ -42,9 +42,8 @@ def items_in_contexts(
         name, description = texts.get(item, ("", ""))
         rows.setdefault(item, {"identifier": item, "name": name, "description": description})
     for item, row in rows.items():
-        if item not in taken:
-            row["where"] = NOT_TAKEN
-        elif everywhere - taken[item]:
+        row["where"] = "" if item in taken else NOT_TAKEN
+        if everywhere - taken.get(item, everywhere):
             with_item = [each["states"] for each in contexts if item in each["items"]]
             without = [each["states"] for each in contexts if item not in each["items"]]
             row["where"] = _deciding(with_item, without) or where_taken(taken[item], everywhere - taken[item])

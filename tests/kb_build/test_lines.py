@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.records import EnumItem, Symbol
-from kb_build.symbol_lines import first_sentence, literal, member_line, type_text
+from kb_build.records import NOT_TAKEN, EnumItem, NewValue, Symbol
+from kb_build.symbol_lines import default_text, first_sentence, literal, member_line, type_text
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
@@ -55,6 +55,52 @@ def test_of_many_enum_items_the_first_are_shown() -> None:
 def test_a_socket_is_listed_as_python_reaches_it() -> None:
     symbol = Symbol(f'{OWNER}.inputs["B c"]', "socket", OWNER, type="value", default=0.5)
     assert member_line(symbol) == '`inputs["B c"]` value = 0.5'
+
+
+def test_a_socket_whose_name_another_has_is_listed_by_its_place() -> None:
+    flags = ("identifier:A_Color", "name-when-shown")
+    symbol = Symbol(
+        f'{OWNER}.inputs["A_Color"]', "socket", OWNER, label="A", flags=flags, subscripts=("inputs[6]",)
+    )
+    assert member_line(symbol).startswith(
+        '`inputs[6]`, `inputs["A"]` while it is shown, identifier `A_Color`'
+    )
+
+
+def test_a_line_shows_what_a_new_one_has_and_what_a_mode_changes() -> None:
+    values = (NewValue(False), NewValue(True, ("domain",), "domain_type='LIQUID'"))
+    assert line(type="boolean", default=True, new_values=values) == (
+        "`x` boolean = False (True with domain_type='LIQUID')"
+    )
+
+
+def test_items_that_no_instance_takes_are_not_listed() -> None:
+    items = (EnumItem("A"), EnumItem("B", where=NOT_TAKEN), EnumItem("C", where="only with m='X'"))
+    assert line(type="enum", enum_items=items) == "`x` enum A|C"
+
+
+@pytest.mark.parametrize(
+    ("fields", "expected"),
+    [
+        ({"default": 5}, "`5` (RNA's; no new one was compared)"),
+        ({"default": 5, "flags": ("readonly",)}, "`5`"),
+        ({"default": 5, "flags": ("compared",)}, "`5`"),
+        ({"default": 1, "new_values": (NewValue(0, ("cloth modifier",)),)},
+         "`0` (new cloth modifier); RNA says `1`"),
+        ({"default": 0, "new_values": (NewValue(250),)}, "`250` (new A); RNA says `0`"),
+        ({"default": 10, "new_values": (NewValue(10), NewValue(1, ("sun", "star")))},
+         "`10` (new A), `1` (sun, star)"),
+        ({"default": 0, "new_values": (NewValue(0), NewValue(1, tuple("abcde")))},
+         "`0` (new A), `1` (a, b, c and 2 more)"),
+        ({"default": 0, "new_values": (NewValue(1, ("a",), "m='X'"),)}, "`0`, `1` (with m='X')"),
+        ({"default": "NONE", "enum_items": (EnumItem("None"),), "new_values": (NewValue("None"),)},
+         "`'None'` (new A)"),
+        ({"default": None}, ""),
+    ],
+)  # fmt: skip
+def test_a_default_tells_whose_it_is(fields: dict[str, object], expected: str) -> None:
+    given = {"flags": ("compared",), **fields} if "new_values" in fields else fields
+    assert default_text(Symbol(f"{OWNER}.x", "property", OWNER, **given)) == expected  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

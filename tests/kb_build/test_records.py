@@ -12,6 +12,7 @@ import pytest
 from kb_build.records import (
     Deprecation,
     EnumItem,
+    NewValue,
     Page,
     Parameter,
     Section,
@@ -27,11 +28,13 @@ if TYPE_CHECKING:
 FULL = Symbol(
     path='bpy.types.A.inputs["B.c"]', kind="socket", owner="bpy.types.A", label="B", description="d", type="float",
     subtype="FACTOR", unit="LENGTH", target="T", array=(4, 4), default=[1, [2.5, "x"], None, True], hard_min=-1.0,
-    hard_max=2, soft_min=0.0, soft_max=1.5, flags=("readonly",), enum_items=(EnumItem("ONE", "One", "1"), EnumItem("")),
+    hard_max=2, soft_min=0.0, soft_max=1.5, flags=("readonly",),
+    enum_items=(EnumItem("ONE", "One", "1", "w"), EnumItem("")),
     enum_computed=True, base="bpy.types.B", group="data", signature="f(a)",
     parameters=(Parameter("a", "enum", "d", ["X"], True, (EnumItem("X"),), "L", 0.0, 1.0, "MASS"),),
     returns=(Parameter(""),), deprecation=Deprecation("gone", "5.0", "6.0"), modes=("m=A|B",), collection="C",
-    trees=("ShaderNodeTree",), reached="bpy.context",
+    trees=("ShaderNodeTree",), reached="bpy.context", subscripts=("inputs[1]",),
+    new_values=(NewValue([1, 2], ("a", "b")), NewValue(0, when="m='A'")),
 )  # fmt: skip
 
 

@@ -52,13 +52,6 @@ def describe(socket):
     return row
 
 
-def keyed(sockets):
-    """(side, identifier) → socket for both sides of a node."""
-    return {
-        (side, socket.identifier): socket for side, collection in sockets.items() for socket in collection
-    }
-
-
 def sides(node):
     """A node's two socket collections."""
     return {"inputs": node.inputs, "outputs": node.outputs}
@@ -97,8 +90,9 @@ class Sockets:
         self.seen = {}
         self.places = {}
         self.look("")
-        self.hidden = {key for key, socket in keyed(sides(node)).items() if not available(socket)}
         self.modes = self.vary()
+        # Those that a new node does not show, or does not have.
+        self.hidden = {key for key, (_, shown, _, _) in self.seen.items() if "" not in shown}
 
     def look(self, state):
         """Reads the sockets in the node's present mode. Returns the keys of those that it shows."""

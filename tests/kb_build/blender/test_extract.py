@@ -12,7 +12,7 @@ import pytest
 
 from kb_build.blender.extract_reader import call_text, manual_links, python_value, read_extract
 from kb_build.errors import ExtractError
-from kb_build.records import Parameter, Symbol
+from kb_build.records import EnumItem, NewValue, Parameter, Symbol
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,18 +70,39 @@ def test_the_first_of_two_records_with_one_path_counts(tmp_path: Path) -> None:
     assert [row.label for row in extract.symbols if row.path == "bpy.types.A"] == ["one"]
 
 
-def test_items_of_an_instance_replace_a_placeholder(tmp_path: Path) -> None:
-    placeholder = [{"identifier": "NONE", "name": "None"}]
+def test_items_of_an_instance_join_those_that_rna_lists(tmp_path: Path) -> None:
+    contexts = [{"items": ["NONE", "AgX"], "made": [["scene", ""]], "states": {}}]
+    asked = {"contexts": contexts, "texts": {"AgX": ["AgX look", "Soft"]}}
     extract = read(
         tmp_path,
-        symbol("bpy.types.A.view", "property", type="enum", enum_items=placeholder),
-        {"record": "enum_items", "path": "bpy.types.A.view", "items": ["NONE", "AgX"]},
-        {"record": "enum_items", "path": "bpy.types.Gone.view", "items": ["X"]},
+        symbol("bpy.types.A.view", "property", enum_items=[{"identifier": "NONE", "name": "None"}]),
+        {"record": "enum_items", "path": "bpy.types.A.view", **asked},
+        {"record": "enum_items", "path": "bpy.types.Gone.view", **asked},
     )
-    assert [(item.identifier, item.name) for item in extract.symbols[0].enum_items] == [
-        ("NONE", "None"),
-        ("AgX", ""),
-    ]
+    assert extract.symbols[0].enum_items == (EnumItem("NONE", "None"), EnumItem("AgX", "AgX look", "Soft"))
+
+
+def test_values_of_new_things_stand_beside_rnas_default(tmp_path: Path) -> None:
+    values = [{"value": 10}, {"value": 1, "made": ["sun"]}]
+    modes = [{"value": 5, "when": "type='B'", "made": ["lamp"]}]
+    extract = read(
+        tmp_path,
+        symbol("bpy.types.A.energy", "property", default=0),
+        symbol("bpy.types.A.same", "property", default=0),
+        symbol("bpy.types.A.unread", "property", default=0),
+        {"record": "new_values", "path": "bpy.types.A.energy", "values": values, "modes": modes},
+        {"record": "new_values", "path": "bpy.types.A.same"},
+        {"record": "new_values", "path": "bpy.types.Gone.energy", "values": values},
+    )
+    energy, same, unread = extract.symbols
+    assert energy.default == 0
+    assert energy.new_values == (NewValue(10), NewValue(1, ("sun",)), NewValue(5, ("lamp",), "type='B'"))
+    assert (same.new_values, same.flags, unread.flags) == ((), ("compared",), ())
+
+
+def test_former_names_that_still_work_are_kept(tmp_path: Path) -> None:
+    row = {"record": "still_works", "path": "bpy.types.Old", "taken_as": "bpy.types.New"}
+    assert read(tmp_path, STRUCT, row).still_works == (("bpy.types.Old", "bpy.types.New"),)
 
 
 def test_a_template_becomes_a_page_with_its_code(tmp_path: Path) -> None:

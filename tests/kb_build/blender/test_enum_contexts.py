@@ -1,0 +1,71 @@
+"""Where the items of an enumeration are taken, told in as few words as decide it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from kb_build.blender.enum_contexts import items_in_contexts
+from kb_build.records import NOT_TAKEN
+
+
+def context(items: str, *made: tuple[str, str], **states: str) -> dict[str, Any]:
+    """A row: one letter an item, the contexts, and the values that the other enumerations had."""
+    found = {name: list(values) for name, values in states.items()}
+    return {"items": list(items), "made": list(made), "states": found}
+
+
+def where(listed: str, *contexts: dict[str, Any]) -> dict[str, str]:
+    rows = items_in_contexts([{"identifier": item} for item in listed], contexts, {})
+    return {row["identifier"]: row["where"] for row in rows}
+
+
+def test_what_is_taken_everywhere_needs_no_words() -> None:
+    assert where("AB", context("AB", ("lamp", ""))) == {"A": "", "B": ""}
+
+
+def test_another_enumeration_decides() -> None:
+    metric = context("AB", ("scene", ""), ("scene", "other='Y'"), system="M", other="XY")
+    imperial = context("AC", ("scene", "system='I'"), system="I", other="X")
+    found = where("ABC", metric, imperial)
+    assert found == {"A": "", "B": "only with system='M'", "C": "only with system='I'"}
+
+
+def test_the_shorter_side_of_what_decides_is_told() -> None:
+    many = context("AB", ("image", ""), kind="PQR")
+    one = context("A", ("image", "kind='S'"), kind="S")
+    assert where("AB", many, one)["B"] == "not with kind='S'"
+
+
+@pytest.mark.parametrize(
+    ("contexts", "expected"),
+    [
+        ((context("AB", ("mesh", "")), context("A", ("lamp", ""))), "only by mesh"),
+        (
+            (context("AB", ("mesh", ""), ("curve", "")), context("A", ("lamp", ""))),
+            "not by lamp",
+        ),
+        ((context("AB", ("mesh", "m='X'")), context("A", ("mesh", ""))), "only with m='X'"),
+        (
+            (context("AB", ("mesh", "")), context("A", ("mesh", "m='X'"), ("mesh", "m='Y'"))),
+            "not with m='X'|'Y'",
+        ),
+    ],
+)
+def test_else_what_was_made_or_its_mode(contexts: tuple[dict[str, Any], ...], expected: str) -> None:
+    assert where("AB", *contexts)["B"] == expected
+
+
+def test_what_every_instance_refuses_is_kept_but_said() -> None:
+    assert where("AB", context("A", ("lamp", ""))) == {"A": "", "B": NOT_TAKEN}
+
+
+def test_a_lone_placeholder_goes() -> None:
+    assert where("N", context("AB", ("flow", ""))) == {"A": "", "B": ""}
+    assert where("N", context("NA", ("flow", ""))) == {"N": "", "A": ""}
+
+
+def test_items_of_instances_bring_their_texts() -> None:
+    rows = items_in_contexts([], [context("A", ("lamp", ""))], {"A": ("Name", "Words")})
+    assert rows == [{"identifier": "A", "name": "Name", "description": "Words", "where": ""}]
