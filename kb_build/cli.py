@@ -161,10 +161,13 @@ def _base(version: str) -> Path:
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
     help="Identifiers that must resolve: a Sphinx objects.inv, or a text file with one on each line.",
 )
+@click.option(
+    "--live/--no-live", default=True, help="Whether to start Blender to compare values (default: yes)."
+)
 @click.option("--json", "as_json", is_flag=True, help="The findings as JSON.")
 @reports_errors
-def verify(version: str | None, reference: Path | None, as_json: bool) -> None:
-    """Check that a base is whole.
+def verify(version: str | None, reference: Path | None, live: bool, as_json: bool) -> None:
+    """Check that a base is whole, and that new things in Blender have the values that it tells.
 
     VERSION is 5.1, or a base's path (default: the newest base). The exit code is 1 when something is wrong.
     """
@@ -173,7 +176,7 @@ def verify(version: str | None, reference: Path | None, as_json: bool) -> None:
     bases = list(built_bases(home_folder()).values())
     if version is None and not bases:
         raise KBBuildError("there is no knowledge base yet. Build one first: simworlds kb build")
-    verification = verify_base(_base(version) if version else bases[-1], reference)
+    verification = verify_base(_base(version) if version else bases[-1], reference, live=live)
     click.echo(json.dumps(verification.as_json(), indent=2) if as_json else "\n".join(verification.lines()))
     sys.exit(0 if verification.sound else 1)
 

@@ -30,9 +30,11 @@ _ONLOOKERS = frozenset(
         "base_file.py",
         "base_report.py",
         "cli.py",
+        "new_instances.py",
         "diff.py",
         "history_builder.py",
         "reference_list.py",
+        "values.py",
         "verify.py",
     }
 )

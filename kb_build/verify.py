@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.base_file import open_base, read_meta
 from kb_build.index.analysis import key
+from kb_build.live.values import compare_values, runtime_at_hand
 from kb_build.records import page_from_json, symbol_from_json
 from kb_build.reference_list import WANTED, ReferenceResolution, read_reference, resolve
 from kb_build.schema import FORM_PATH, POSTING_BYTES, UNITS, unpack
+from simworlds.sandbox.errors import ProgramFailed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -102,9 +104,10 @@ def _shortened(rows: tuple[str, ...], what: str) -> Iterator[str]:
         yield f"… and {len(rows) - _SHOWN:,} more {what} (--json lists them)"
 
 
-def verify_base(path: Path, reference: Path | None = None) -> BaseVerification:
+def verify_base(path: Path, reference: Path | None = None, *, live: bool = False) -> BaseVerification:
     """Runs every check on the base at ``path``; ``reference`` is a file for read_reference.
 
+    ``live``: also compares the values of new things with those in the Blender that the base was built from.
     Raises StoreError when there is no base there that this SimWorlds understands, KBBuildError for a
     reference that cannot be read.
     """
@@ -117,6 +120,8 @@ def verify_base(path: Path, reference: Path | None = None) -> BaseVerification:
         if not checks[0].faults:
             base = _Base(connection, meta)
             checks += [_guarded(name, check, base) for name, check in _CHECKS]
+            if live and not any(check.faults for check in checks):
+                checks.append(_guarded("new values", lambda _: _new_values(path, meta), base))
             if identifiers is not None:
                 resolution = resolve(identifiers, base.bases)
     return BaseVerification(path, meta.get("blender", "?"), tuple(checks), resolution)
@@ -142,6 +147,21 @@ class _Base:
     def rows(self, sql: str, *values: object) -> Iterator[Any]:
         """The rows of one query."""
         return self._connection.execute(sql, values)
+
+
+def _new_values(path: Path, meta: dict[str, str]) -> BaseCheck:
+    """New things in the running Blender have the values that the base tells."""
+    runtime = runtime_at_hand(meta)
+    if runtime is None:
+        reason = (
+            f"Blender {meta.get('blender')}, from which it was built, is not at hand: nothing was compared"
+        )
+        return BaseCheck("new values", 0, notes=(reason,))
+    try:
+        found = compare_values(path, runtime)
+    except ProgramFailed as error:
+        return BaseCheck("new values", 0, notes=(f"not compared: {error}",))
+    return BaseCheck("new values", found.compared, found.wrong)
 
 
 def _file(connection: sqlite3.Connection) -> BaseCheck:

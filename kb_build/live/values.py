@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,13 +14,12 @@ from kb_build.records import symbol_from_json
 from kb_build.schema import open_read_only, unpack
 from kb_build.symbol_lines import literal
 from simworlds.sandbox.program import Program
-from simworlds.sandbox.runtime import run_program
+from simworlds.sandbox.runtime import Runtime, installed_bpy, run_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from kb_build.records import Default, Symbol
-    from simworlds.sandbox.runtime import Runtime
 
 _PROGRAM = Program(
     "kb_build.live.inside.new_instances", {"kb_build.live.inside": Path(__file__).parent / "inside"}
@@ -72,6 +72,17 @@ def compare_values(
         if not same_value(told, value):
             wrong.append(f"{cls}.{name} of a new {label}: {literal(value)}, told {literal(told)}")
     return ComparedValues(len(pairs), differing, tuple(wrong))
+
+
+def runtime_at_hand(meta: Mapping[str, str]) -> Runtime | None:
+    """The Blender that a base was built from, if it is still there: nothing is installed for a comparison."""
+    built_from = json.loads(meta.get("runtime") or "{}")
+    executable, version = Path(built_from.get("executable", "")), meta.get("blender", "")
+    if version and installed_bpy() == version:
+        return Runtime(Path(sys.executable), "environment", version)
+    if built_from.get("kind") in {"executable", "managed"} and executable.is_file():
+        return Runtime(executable, built_from["kind"], version)
+    return None
 
 
 def told_value(symbol: Symbol, label: str) -> Default:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.records import NOT_TAKEN
 from kb_build.symbol_lines import (
     default_text,
     definitions_in,
@@ -72,10 +73,14 @@ def facts(symbol: Symbol) -> Iterator[str]:
 def _items(items: Sequence[EnumItem]) -> str:
     lines: list[str] = []
     for item in items:
+        if item.where == NOT_TAKEN:
+            continue
         name = item.name if item.name != item.identifier else ""
         text = " — ".join(filter(None, (name, item.description)))
         where = f" (taken {item.where})" if item.where else ""
         lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else "") + where)
+    if refused := [f"`{item.identifier!r}`" for item in items if item.where == NOT_TAKEN]:
+        lines.append(f"- listed by RNA, taken {NOT_TAKEN}: {', '.join(refused)}")
     return "\n".join(lines)
 
 

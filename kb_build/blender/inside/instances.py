@@ -198,18 +198,21 @@ class Observer:
                 yield struct
                 queue += [(part, left - 1) for part in self.belonging(struct)] if left else []
 
-    def look(self, label, root, vary=True):
-        """Reads a new instance and what belongs to it; ``label`` says what it is. ``vary``: in all modes, too."""
+    def look(self, label, root, vary=True, place=""):
+        """Reads a new instance and what belongs to it; ``label`` says what it is.
+
+        ``vary``: in all modes, too. ``place``: where it is, if that decides which items enumerations take.
+        """
         for struct in list(self.parts(root)):
             before = self.read(struct)
             for field, value in before.items():
                 if not field.is_chosen:
                     self.add(self.values.setdefault(field.path, []), value, label)
-            self.ask(struct, label, "", self.layout(struct).enums)
+            self.ask(struct, label + place, "")
             name = struct.bl_rna.identifier
             if vary and name not in UNVARIED and self._varied.get(name, 0) < VARIED:
                 self._varied[name] = self._varied.get(name, 0) + 1
-                self.vary(struct, label, before)
+                self.vary(struct, label, place, before)
 
     def read(self, struct):
         """field → value of each comparable property."""
@@ -235,8 +238,9 @@ class Observer:
                 return
         rows.append((value, {label: None}))
 
-    def ask(self, struct, label, mode, enums):
-        """Notes which items these enumerations of the instance take now."""
+    def ask(self, struct, label, mode, enums=None):
+        """Notes which items the instance's enumerations take now: all, or these."""
+        enums = self.layout(struct).enums if enums is None else enums
         state = (
             {field.name: getattr(struct, field.name) for field in self.layout(struct).modes} if enums else {}
         )
@@ -259,7 +263,7 @@ class Observer:
         except Exception:
             return "", ""
 
-    def vary(self, struct, label, before):
+    def vary(self, struct, label, place, before):
         """Puts the instance into each mode and notes what else changed; then puts everything back."""
         known = {part.as_pointer() for part in self.belonging(struct)}
         enums = self.layout(struct).enums
@@ -279,7 +283,7 @@ class Observer:
                     continue
                 mode = f"{field.name}={item!r}"
                 self.compare(struct, label, mode, field, before)
-                self.ask(struct, label, mode, enums)
+                self.ask(struct, label + place, mode, enums)
                 for part in self.belonging(struct):
                     if part.as_pointer() not in known:
                         self.look(f"{label} with {mode}", part)

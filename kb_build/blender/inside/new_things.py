@@ -151,6 +151,11 @@ def modifiers():
             yield called(modifier), modifier
             if kind == "FLUID":
                 yield from fluids(modifier)
+            elif kind == "DATA_TRANSFER":
+                modifier.object = mesh_object()
+                modifier.use_vert_data = True
+                modifier.data_types_verts = {"VGROUP_WEIGHTS"}
+                yield "data transfer modifier for vertex groups", modifier
             elif kind == "DYNAMIC_PAINT":
                 yield from dynamic_paint(modifier)
             elif kind == "PARTICLE_SYSTEM":
@@ -188,18 +193,32 @@ def dynamic_paint(modifier):
 
 
 def constraints():
-    """Every constraint of objects, and those that only bones take."""
+    """Every constraint of objects, and of bones with a bone as target."""
     obj = add_object(None)
     bpy.ops.object.armature_add()
-    bone = bpy.context.object.pose.bones[0]
+    armature = bpy.context.object
+    bone = armature.pose.bones[0]
     for kind in choices("Constraint", "type"):
+        label = ""
         for owner in (obj, bone):
             try:
                 constraint = owner.constraints.new(kind)
             except (TypeError, RuntimeError):
                 continue
-            yield called(constraint), constraint
-            break
+            if owner == bone and hasattr(constraint, "subtarget"):
+                constraint.target = armature
+                constraint.subtarget = bone.name
+            label = "constraint of a bone" if label else called(constraint)
+            yield label, constraint
+
+
+def children():
+    """Objects with parents, whose type decides how they can be parented."""
+    for kind in ("MESH", "CURVE", "LATTICE", "ARMATURE"):
+        parent = object_of(kind)
+        child = add_object(None)
+        child.parent = parent
+        yield f"child of {kind.lower()} object", child
 
 
 def particles():
@@ -456,8 +475,8 @@ def node_trees():
 
 
 MAKERS = (
-    data_blocks, added_by_operators, modifiers, constraints, particles, force_fields, rigid_bodies, strips, animation,
-    armatures, splines, mesh_parts, drawings, scenes, node_trees,
+    data_blocks, added_by_operators, modifiers, constraints, particles, children, force_fields, rigid_bodies, strips,
+    animation, armatures, splines, mesh_parts, drawings, scenes, node_trees,
 )  # fmt: skip
 
 

@@ -151,19 +151,22 @@ class Sockets:
 
 
 def make(trees, identifier):
-    """(node, names of the tree types that take it), the node in the first of them; (None, []) if none does."""
-    first, taken = None, []
+    """Tree type → the new node, for each that takes it."""
+    nodes = {}
     for name, tree in trees.items():
         try:
             node = tree.nodes.new(identifier)
         except RuntimeError:
             continue
-        taken.append(name)
-        if first is None:
-            first = node
-        else:
-            tree.nodes.remove(node)
-    return first, taken
+        nodes[name] = node
+    return nodes
+
+
+def remove(nodes):
+    """Removes nodes from their trees."""
+    for node in nodes:
+        if node is not None:
+            node.id_data.nodes.remove(node)
 
 
 def write_node(write, owner, node, former):
@@ -224,11 +227,10 @@ def compositing_scene():
 def write_former_classes(write, trees, names):
     """The node classes of other Blenders that this one still makes, under their new names."""
     for identifier in names:
-        node, _taken = make(trees, identifier)
-        if node is not None:
-            if node.bl_idname != identifier:
-                write("still_works", path=f"bpy.types.{identifier}", taken_as=f"bpy.types.{node.bl_idname}")
-            node.id_data.nodes.remove(node)
+        nodes = make(trees, identifier).values()
+        for made in {node.bl_idname for node in nodes} - {identifier}:
+            write("still_works", path=f"bpy.types.{identifier}", taken_as=f"bpy.types.{made}")
+        remove(nodes)
 
 
 def write_all(write, structs, observer, former):
@@ -247,18 +249,21 @@ def write_all(write, structs, observer, former):
         cls = getattr(bpy.types, identifier, None)
         if cls is None or not issubclass(cls, bpy.types.Node) or cls is bpy.types.Node:
             continue
-        node, taken = make(trees, identifier)
-        if node is None and scene is not None:
-            node, taken = make({"CompositorNodeTree": scene.node_tree}, identifier)
-        if node is None:
+        nodes = make(trees, identifier)
+        if not nodes and scene is not None:
+            nodes = make({"CompositorNodeTree": scene.node_tree}, identifier)
+        if not nodes:
             continue
         owner = f"bpy.types.{identifier}"
+        node, *others = nodes.values()
         end = paired(node, node.id_data)
-        observer.look(identifier, node)
-        write("node", path=owner, trees=taken)
+        # Which items its enumerations take depends on the tree; what a new one has does not.
+        observer.look(identifier, node, place=f" in a {node.id_data.bl_idname}" if others else "")
+        for other in others:
+            observer.ask(other, f"{identifier} in a {other.id_data.bl_idname}", "")
+        write("node", path=owner, trees=list(nodes))
         write_node(write, owner, node, former.get(identifier, {}))
-        for each in filter(None, (node, end)):
-            each.id_data.nodes.remove(each)
+        remove((*nodes.values(), end))
     write_former_classes(write, trees, [name for name in former if name not in structs])
     for tree in trees.values():
         bpy.data.node_groups.remove(tree)
