@@ -167,8 +167,9 @@ def _base(version: str) -> Path:
 @click.option("--json", "as_json", is_flag=True, help="The findings as JSON.")
 @reports_errors
 def verify(version: str | None, reference: Path | None, live: bool, as_json: bool) -> None:
-    """Check that a base is whole, and that new things in Blender have the values that it tells.
+    """Check that a base is whole and true.
 
+    What it tells of new things is compared with the Blender that it was built from, if that is at hand.
     VERSION is 5.1, or a base's path (default: the newest base). The exit code is 1 when something is wrong.
     """
     from kb_build.verify import verify_base  # noqa: PLC0415 - only here

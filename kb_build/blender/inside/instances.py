@@ -87,6 +87,7 @@ class Field:
         self.default = default_of(prop)
         self.is_enum = prop.type == "ENUM"
         self.is_flag = self.is_enum and prop.is_enum_flag
+        self.is_many = self.is_flag or getattr(prop, "is_array", False)
         cls = self.path.split(".")[-2]
         self.is_chosen = (
             self.name in CHOSEN
@@ -207,7 +208,7 @@ class Observer:
             before = self.read(struct)
             for field, value in before.items():
                 if not field.is_chosen:
-                    self.add(self.values.setdefault(field.path, []), value, label)
+                    self.add(self.values.setdefault(field.path, []), plain(value), label)
             self.ask(struct, label + place, "")
             name = struct.bl_rna.identifier
             if vary and name not in UNVARIED and self._varied.get(name, 0) < VARIED:
@@ -215,18 +216,18 @@ class Observer:
                 self.vary(struct, label, place, before)
 
     def read(self, struct):
-        """field → value of each comparable property."""
+        """field → value of each comparable property, arrays and sets as lists."""
         values = {}
         for field in self.layout(struct).fields:
             if field.is_chosen and not field.is_mode:
                 continue
             try:
-                value = plain(getattr(struct, field.name))
+                value = getattr(struct, field.name)
             except Exception:
                 continue
             # An empty enum is a number that stands for no item here.
             if value != "" or not field.is_enum:
-                values[field] = value
+                values[field] = plain(value) if field.is_many else value
         return values
 
     @staticmethod
@@ -293,29 +294,30 @@ class Observer:
         """Notes the properties that the mode has changed."""
         for field, value in self.read(struct).items():
             known = field in before and not field.is_chosen
-            if field is not changed and known and not same(value, before[field]):
+            if field is not changed and known and value != before[field] and not same(value, before[field]):
                 rows = self.in_modes.setdefault(field.path, [])
                 for row in rows:
                     if row[1] == mode and same(row[0], value):
                         row[2].append(label)
                         break
                 else:
-                    rows.append((value, mode, [label]))
+                    rows.append((plain(value), mode, [label]))
 
     def restored(self, struct, before):
         """Gives an instance its first values back. Returns those that it has: some cannot be given."""
-        for _attempt in range(2):
-            present = self.read(struct)
-            changed = [field for field in present if not same(present[field], before.get(field))]
-            for field in changed:
-                try:
-                    value = before[field]
-                    setattr(struct, field.name, set(value) if field.is_flag else value)
-                except Exception:
-                    continue
-            if not changed:
-                break
-        return self.read(struct)
+        present = self.read(struct)
+        changed = [
+            field
+            for field, value in present.items()
+            if value != before.get(field) and not same(value, before.get(field))
+        ]
+        for field in changed:
+            try:
+                value = before[field]
+                setattr(struct, field.name, set(value) if field.is_flag else value)
+            except Exception:
+                continue
+        return self.read(struct) if changed else present
 
     def write(self, write):
         """One ``new_values`` record for each property that was read, one ``enum_items`` for each that was asked."""
