@@ -81,7 +81,7 @@ def _run(runtime: Runtime, part: Path, log: Path) -> None:
         while True:
             given.write_text(json.dumps({"former": former, "skipped": skipped}), encoding="utf-8")
             try:
-                run_program(runtime, _EXTRACTOR, [str(part), str(given)], timeout=_SECONDS, log=log)
+                run_program(runtime, _EXTRACTOR, [str(given), str(part)], timeout=_SECONDS, log=log)
                 break
             except ProgramFailed as error:
                 crashed = _maker_at_work(part)

@@ -165,6 +165,24 @@ def test_a_blender_that_fails_half_way_is_named_with_its_output_kept(
     assert files_below(tmp_path / "home" / "extracts") == [log.name]
 
 
+def test_what_crashes_blender_is_left_out_of_the_next_attempt(built: Built, tmp_path: Path) -> None:
+    extract = next((built.home / "extracts").glob("*.jsonl"))
+    body = (
+        "for word; do given=$last; last=$word; done\n"
+        f'if grep -q \'"skipped": ..strips\' $given; then cp {extract} $last; exit; fi\n'
+        """echo '{"record":"making","maker":"strips"}' > $last; exit 11"""
+    )
+    options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)
+    assert build("5.1", options=options, home=tmp_path / "home").built
+
+
+def test_a_blender_that_crashes_again_is_named(tmp_path: Path) -> None:
+    body = """for word; do last=$word; done; echo '{"record":"making","maker":"strips"}' > $last; exit 11"""
+    options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)
+    with pytest.raises(ExtractError, match="exit code 11|status 11|11"):
+        build("5.1", options=options, home=tmp_path / "home")
+
+
 def test_an_extract_without_classes_is_refused_and_not_kept(tmp_path: Path) -> None:
     lines = '{"record":"blender","version":"5.1.2","build":"x"}\\n{"record":"end","lines":1}\\n'
     body = f"for word; do last=$word; done; printf '{lines}' > \"$last\""

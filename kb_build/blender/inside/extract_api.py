@@ -73,13 +73,14 @@ STEPS = (
 
 
 def main(arguments):
-    """Writes everything to the file that is the first argument; a failing step is reported in place.
+    """Writes everything to the file that is the last argument; a failing step is reported in place.
 
-    The second is a JSON file: ``former``, see nodes.write_all, and ``skipped``, the makers of new things that
+    The first is a JSON file: ``former``, see nodes.write_all, and ``skipped``, the makers of new things that
     crashed this Blender before.
     """
-    write = Writer(arguments[0])
-    with open(arguments[1], encoding="utf-8") as file:
+    given, output = arguments
+    write = Writer(output)
+    with open(given, encoding="utf-8") as file:
         found = {"observer": Observer(), **json.load(file)}
     write(
         "blender",
