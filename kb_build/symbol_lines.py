@@ -91,6 +91,14 @@ def identifier_of(socket: Symbol) -> str:
     return next((flag[11:] for flag in socket.flags if flag.startswith("identifier:")), "")
 
 
+def new_subscript(socket: Symbol) -> str:
+    """The subscript that gives a socket of a new node: its name where that works; empty for none."""
+    if "name-when-shown" in socket.flags and "hidden-by-default" not in socket.flags:
+        side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
+        return f'{side}["{socket.label}"]'
+    return socket.subscripts[0] if socket.subscripts else ""
+
+
 def subscripts_text(socket: Symbol, most: int | None = None) -> str:
     """How a socket is reached on its node: subscripts that were tried, and the identifier where it is another name.
 
@@ -99,7 +107,8 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
     side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
     shown = [f"`{text}`" for text in socket.subscripts[:most]]
     if "name-when-shown" in socket.flags:
-        shown.append(f'`{side}["{socket.label}"]` while it is shown')
+        by_name = f'`{side}["{socket.label}"]` while it is shown'
+        shown = [*shown, by_name] if "hidden-by-default" in socket.flags else [by_name, *shown]
     identifier = identifier_of(socket)
     if identifier not in ("", socket.label):
         shown.append(f"identifier `{identifier}`")

@@ -11,6 +11,7 @@ from kb_build.symbol_lines import (
     definitions_in,
     first_sentence,
     literal,
+    new_subscript,
     subscripts_text,
     type_text,
 )
@@ -199,8 +200,8 @@ class MarkdownRenderer:
         reached = cls.reached if cls else ""
         if reached and symbol.kind in {"class", "property", "socket", "function"}:
             last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
-            if symbol.subscripts:
-                last = f".{symbol.subscripts[0]}"
+            if symbol.kind == "socket" and (subscript := new_subscript(symbol)):
+                last = f".{subscript}"
             tail = "(…)" if symbol.kind == "function" else ""
             yield f"reached as `{reached}{last}{tail}`"
         elif symbol.kind == "context":

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.records import NOT_TAKEN, EnumItem, NewValue, Symbol
-from kb_build.symbol_lines import default_text, first_sentence, literal, member_line, type_text
+from kb_build.symbol_lines import (
+    default_text,
+    first_sentence,
+    literal,
+    member_line,
+    new_subscript,
+    type_text,
+)
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
@@ -58,13 +66,22 @@ def test_a_socket_is_listed_as_python_reaches_it() -> None:
 
 
 def test_a_socket_whose_name_another_has_is_listed_by_its_place() -> None:
-    flags = ("identifier:A_Color", "name-when-shown")
+    flags = ("identifier:A_Color", "name-when-shown", "hidden-by-default")
     symbol = Symbol(
         f'{OWNER}.inputs["A_Color"]', "socket", OWNER, label="A", flags=flags, subscripts=("inputs[6]",)
     )
     assert member_line(symbol).startswith(
         '`inputs[6]`, `inputs["A"]` while it is shown, identifier `A_Color`'
     )
+
+
+def test_a_socket_that_a_new_node_shows_is_reached_by_its_name() -> None:
+    flags, subscripts = ("identifier:A_Float", "name-when-shown"), ("inputs[2]",)
+    symbol = Symbol(f'{OWNER}.inputs["A"]', "socket", OWNER, label="A", flags=flags, subscripts=subscripts)
+    assert new_subscript(symbol) == 'inputs["A"]'
+    assert new_subscript(replace(symbol, flags=(*flags, "hidden-by-default"))) == "inputs[2]"
+    assert new_subscript(replace(symbol, flags=(), subscripts=())) == ""
+    assert member_line(symbol) == '`inputs["A"]` while it is shown, `inputs[2]`, identifier `A_Float`'
 
 
 def test_a_line_shows_what_a_new_one_has_and_what_a_mode_changes() -> None:

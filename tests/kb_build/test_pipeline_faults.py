@@ -169,7 +169,7 @@ def test_what_crashes_blender_is_left_out_of_the_next_attempt(built: Built, tmp_
     extract = next((built.home / "extracts").glob("*.jsonl"))
     body = (
         "for word; do given=$last; last=$word; done\n"
-        f'if grep -q \'"skipped": ..strips\' $given; then cp {extract} $last; exit; fi\n'
+        f"if grep -q '\"skipped\": ..strips' $given; then cp {extract} $last; exit; fi\n"
         """echo '{"record":"making","maker":"strips"}' > $last; exit 11"""
     )
     options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)
@@ -179,7 +179,7 @@ def test_what_crashes_blender_is_left_out_of_the_next_attempt(built: Built, tmp_
 def test_a_blender_that_crashes_again_is_named(tmp_path: Path) -> None:
     body = """for word; do last=$word; done; echo '{"record":"making","maker":"strips"}' > $last; exit 11"""
     options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)
-    with pytest.raises(ExtractError, match="exit code 11|status 11|11"):
+    with pytest.raises(ExtractError, match="it ended with exit code 11"):
         build("5.1", options=options, home=tmp_path / "home")
 
 

@@ -4,6 +4,7 @@
 Sockets that a node shows only in some of its modes (``ShaderNodeMix.data_type``) carry those modes.
 """
 
+import itertools
 import re
 
 import bpy
@@ -80,24 +81,40 @@ def found(sockets, spelling):
         return 0
 
 
-class Sockets:
-    """The sockets of one node in all its modes: what they are, when they are shown, and which subscripts give them."""
+def put(node, name, value):
+    """Sets a node's mode; False where this node does not take it."""
+    try:
+        setattr(node, name, value)
+    except (TypeError, AttributeError):
+        return False
+    return True
 
-    def __init__(self, node):
-        self.node = node
+
+class Sockets:
+    """A node's sockets in all its modes: what they are, when they are shown, and which subscripts give them.
+
+    ``nodes`` are of one class, one in each type of tree: which modes there are depends on it.
+    """
+
+    def __init__(self, nodes):
+        self.nodes = nodes
         self.rows = {}
         # key → (states in which it exists, …is shown, …its name gives it, …its identifier does) and its places
         self.seen = {}
         self.places = {}
-        self.look("")
-        self.modes = self.vary()
+        for node in nodes:
+            self.look(node, "")
         # Those that a new node does not show, or does not have.
-        self.hidden = {key for key, (_, shown, _, _) in self.seen.items() if "" not in shown}
+        new = {key for key, (_, shown, _, _) in self.seen.items() if shown}
+        self.modes = self.vary()
+        self.vary_pairs()
+        self.hidden = self.rows.keys() - new
 
-    def look(self, state):
+    def look(self, node, mode):
         """Reads the sockets in the node's present mode. Returns the keys of those that it shows."""
         shown = []
-        for side, sockets in sides(self.node).items():
+        state = (node.id_data.bl_idname, mode)
+        for side, sockets in sides(node).items():
             for place, socket in enumerate(sockets):
                 key = (side, socket.identifier)
                 if key not in self.rows:
@@ -120,29 +137,44 @@ class Sockets:
     def vary(self):
         """Sets every mode in turn; returns key → the modes that show the socket."""
         modes = {}
-        for name, values in mode_enums(self.node):
-            before = getattr(self.node, name)
+        for name, values in mode_enums(self.nodes[0]):
             shown = {}
-            for value in values:
-                try:
-                    setattr(self.node, name, value)
-                except (TypeError, AttributeError):
-                    continue
-                for key in self.look(f"{name}={value}"):
-                    shown.setdefault(key, []).append(value)
-            setattr(self.node, name, before)
-            tried = {value for row in shown.values() for value in row}
+            for node in self.nodes:
+                before = getattr(node, name)
+                for value in values:
+                    if put(node, name, value):
+                        for key in self.look(node, f"{name}={value}"):
+                            shown.setdefault(key, set()).add(value)
+                put(node, name, before)
+            tried = set().union(*shown.values())
             for key in self.rows:
-                if set(shown.get(key, ())) != tried and shown.get(key):
-                    modes.setdefault(key, []).append(f"{name}={'|'.join(shown[key])}")
+                if key in shown and shown[key] != tried:
+                    kept = [value for value in values if value in shown[key]]
+                    modes.setdefault(key, []).append(f"{name}={'|'.join(kept)}")
         return modes
+
+    def vary_pairs(self):
+        """Looks for sockets that no mode shows by itself in the modes of two properties at once."""
+        node = self.nodes[0]
+        enums = list(mode_enums(node))
+        if len(enums) < 2 or all(shown for _, shown, _, _ in self.seen.values()):
+            return
+        for (first, values), (second, others) in itertools.combinations(enums, 2):
+            before = getattr(node, first), getattr(node, second)
+            for value, other in itertools.product(values, others):
+                unseen = {key for key, (_, shown, _, _) in self.seen.items() if not shown}
+                if unseen and put(node, first, value) and put(node, second, other):
+                    for key in unseen.intersection(self.look(node, f"{first}={value},{second}={other}")):
+                        self.modes[key] = [f"{first}={value}", f"{second}={other}"]
+            put(node, first, before[0])
+            put(node, second, before[1])
 
     def subscripts(self, key):
         """(subscripts that always give a socket, the best first; whether its name does whenever it is shown)."""
         side, identifier = key
         present, shown, by_name, by_identifier = self.seen[key]
         name = self.rows[key]["label"]
-        texts = [f'{side}["{name}"]'] if by_name == present else []
+        texts = [f'{side}["{name}"]'] if name and by_name == present else []
         if by_identifier == present and identifier != name:
             texts.append(f'{side}["{identifier}"]')
         if len(self.places[key]) == 1:
@@ -169,9 +201,10 @@ def remove(nodes):
             node.id_data.nodes.remove(node)
 
 
-def write_node(write, owner, node, former):
-    """The sockets of one node, in their order. ``former``: side → names that its sockets had in other Blenders."""
-    sockets = Sockets(node)
+def write_node(write, owner, nodes, former):
+    """The sockets of a node (see Sockets). ``former``: side → names that its sockets had in other Blenders."""
+    sockets = Sockets(nodes)
+    node = nodes[0]
     named, paths = set(), {}
     for key, row in sockets.rows.items():
         side, identifier = key
@@ -262,7 +295,7 @@ def write_all(write, structs, observer, former):
         for other in others:
             observer.ask(other, f"{identifier} in a {other.id_data.bl_idname}", "")
         write("node", path=owner, trees=list(nodes))
-        write_node(write, owner, node, former.get(identifier, {}))
+        write_node(write, owner, list(nodes.values()), former.get(identifier, {}))
         remove((*nodes.values(), end))
     write_former_classes(write, trees, [name for name in former if name not in structs])
     for tree in trees.values():

@@ -366,8 +366,8 @@ def test_subscripts_are_python_that_finds_the_socket(extract: Extract, tmp_path:
     expected: dict[str, str] = {}
     claims: dict[str, tuple[str, str, list[tuple[str, str | int]]]] = {}
     for symbol in extract.symbols:
-        unpaired = symbol.owner.endswith("Input")  # in a zone, which the script below does not make
-        if symbol.kind == "socket" and not unpaired and "hidden-by-default" not in symbol.flags:
+        in_zone = symbol.owner.endswith(("Input", "Output"))  # their sockets depend on pairs and trees
+        if symbol.kind == "socket" and not in_zone and "hidden-by-default" not in symbol.flags:
             identifier = symbol.owner.removeprefix("bpy.types.")
             side = symbol.path[len(symbol.owner) + 1 :].partition("[")[0]
             row = claims.setdefault(symbol.owner, (identifier, trees[symbol.owner], []))
@@ -383,7 +383,11 @@ def test_subscripts_are_python_that_finds_the_socket(extract: Extract, tmp_path:
 def test_an_ambiguous_name_is_told_apart_by_place(symbols: dict[str, Symbol]) -> None:
     color = symbols['bpy.types.ShaderNodeMix.inputs["A_Color"]']
     assert color.subscripts == ("inputs[6]",)
-    assert "name-when-shown" in color.flags
+    assert {"name-when-shown", "hidden-by-default"} <= set(color.flags)
+    rotation = symbols['bpy.types.ShaderNodeMix.inputs["A_Rotation"]']
+    assert rotation.modes == ("data_type=ROTATION",)  # which only geometry nodes have
+    steps = symbols['bpy.types.ShaderNodeMapRange.inputs["Steps_FLOAT3"]']
+    assert steps.modes == ("interpolation_type=STEPPED", "data_type=FLOAT_VECTOR")
     factor = symbols['bpy.types.ShaderNodeMixRGB.inputs["Factor"]']
     assert factor.subscripts == ('inputs["Factor"]', 'inputs["Fac"]', "inputs[0]")
 
