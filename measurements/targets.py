@@ -74,6 +74,13 @@ _ROWS = (
     Target("task5", "task: hit@5", "share", 0.60, True, "FTS5 0.24 · MiniLM embeddings 0.56"),
     Target("names1", "exact, member, expression: hit@1", "share", 0.97, True),
     Target("members", "class members found first by full path", "share", None, True, "official 0 of 400"),
+    Target("old_gone", "code of other versions: removed names said to be gone", "share", 0.98, True),
+    Target("old_version", "… in the right version", "share", 0.95, True),
+    Target("old_first", "… what takes their place comes first", "share", 0.80, True),
+    Target("old_five", "… or among the first five", "share", 0.92, True),
+    Target("old_nothing", "… told that nothing does, without a stand-in", "share", 0.90, True),
+    Target("old_never", "names that no version had: told so", "share", 0.90, True),
+    Target("old_works", "names that work: left alone", "share", 1.0, True),
     Target("longest", "longest answer (estimated high)", "tokens", 1500, False, "official 121 KB"),
     Target("exact_p50", "in process, by exact name: p50", "ms", 0.5),
     Target(
