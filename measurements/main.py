@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PARTS = (
-    *("retrieval", "defaults", "old_code", "latency", "server", "builds", "usage", "blender", "verifier"),
-    "audits",
+    *("retrieval", "defaults", "signatures", "old_code", "usage", "latency", "server", "builds"),
+    *("blender", "verifier", "audits"),
 )
 _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")
 
