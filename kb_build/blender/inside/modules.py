@@ -4,10 +4,12 @@
 import importlib
 import inspect
 import pkgutil
+import sys
 import types
 
 import bpy
 
+from . import bmesh_operators
 from .rna import ATTRIBUTE_TYPES, METHOD_TYPES
 from .wire import plain
 
@@ -208,14 +210,22 @@ class Walk:
         elif isinstance(value, types.FunctionType):
             if home == name or name.startswith(home + ".") or home.startswith("_bpy"):
                 self.function(path, name, value)
-        elif isinstance(value, types.BuiltinFunctionType) or type(value).__name__ == "BMeshOpFunc":
-            self.function(path, name, value)
+        elif isinstance(value, types.BuiltinFunctionType):
+            if not self.is_imported(name, value):
+                self.function(path, name, value)
+        elif type(value).__name__ == "BMeshOpFunc":
+            self.function(path, name, value, bmesh_operators.parameters(value))
         elif type(value).__module__ == "typing" or home in {"typing", "collections.abc"}:
             return
         elif self.holds_documented_members(value):
             self.module(path, value)
         else:
             self.data(path, name, module, attribute, value)
+
+    def is_imported(self, name, value):
+        """Whether a module has a C function from elsewhere: from Python's own modules, or from one before this."""
+        home = value.__module__
+        return home != name and (home in sys.stdlib_module_names or home in self.modules)
 
     def holds_documented_members(self, value):
         """Blender's module-like objects: handlers, build options, unit categories, translations, …"""
@@ -224,8 +234,8 @@ class Walk:
             isinstance(value, tuple) and cls is not tuple and hasattr(cls, "n_fields")
         )
 
-    def function(self, path, owner, value):
-        """A function of a module. bmesh operators describe themselves in their own way."""
+    def function(self, path, owner, value, parameters=()):
+        """A function of a module; ``parameters`` are what is known of them besides the docstring."""
         text = inspect.getdoc(value) or ""
         self.write(
             "symbol",
@@ -234,6 +244,7 @@ class Walk:
             owner=owner,
             docstring=text,
             signature=signature(value),
+            parameters=parameters,
         )
 
     def data(self, path, owner, module, attribute, value):
