@@ -14,10 +14,10 @@ from docutils.frontend import get_default_settings
 from docutils.parsers.rst import Directive, Parser, directives, roles
 from docutils.utils import new_document
 
-from kb_build.records import Default, Parameter
+from kb_build.records import Default, EnumItem, Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 _DECLARATIONS = (
     *("function", "method", "classmethod", "staticmethod"),
@@ -33,6 +33,10 @@ _DIRECTIVE = re.compile(rf"\.\. (?:{'|'.join(_DECLARATIONS)})::[ \t]*(.*)")
 _OWN = "docstring-"  # Sphinx has these directives too, in a registry that all of docutils shares
 _SPHINX = re.compile(rf"^(\s*\.\. )(?={'|'.join((*_DECLARATIONS, *_REMARKS))}::)", re.MULTILINE)
 _CALL = re.compile(r"\w+\s*\(")
+_CONTINUED = re.compile(r"\s*\\\s*\n\s*")
+_LITERAL = re.compile(r"\bLiteral(\[[^\[\]]*\])")
+_LISTED = re.compile(r"\b(?:enum|string|str) in ([\[{(][^\[\]{}()]*[\]})])", re.IGNORECASE)
+_BMESH_ELEMENTS = {"vert": "BMVert", "verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
 _REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "ref", "exc", "const", "obj", "doc")
 _QUIET = 5
 
@@ -68,6 +72,21 @@ class _Fields:
     return_type: str = ""
     own_type: str = ""
     other: list[str] = field(default_factory=list)
+    arguments: frozenset[str] = frozenset()
+    last: str = ""
+
+    def set_type(self, name: str, kind: str) -> None:
+        """Takes ``:type name:``.
+
+        Some docstrings misspell the name there, or repeat another one. The type then belongs to the argument
+        described just before it; where there is none, it belongs to nothing.
+        """
+        misplaced = name in self.types or (bool(self.arguments) and name not in self.arguments)
+        if misplaced and self.last and self.last not in self.types:
+            name = self.last
+        elif misplaced and name not in self.texts and name not in self.types:
+            return
+        self.types[name] = kind
 
 
 def _literal_role(
@@ -91,7 +110,7 @@ class _Declaration(Directive):
     option_spec: ClassVar[Any] = {"noindex": directives.flag}
 
     def run(self) -> list[nodes.Node]:
-        lines = re.sub(r"\s*\\\s*\n\s*", " ", self.arguments[0]).split("\n")
+        lines = _CONTINUED.sub(" ", self.arguments[0]).split("\n")
         calls = [lines[0].strip(), *(line.strip() for line in lines[1:] if _CALL.match(line.strip()))]
         node = _Declared(kind=self.name.removeprefix(_OWN), calls=calls)
         if remarks := [line for line in lines[1:] if not _CALL.match(line.strip())]:
@@ -186,11 +205,12 @@ def _read_field(name: str, body: str, fields: _Fields) -> None:
         kind, _, argument = argument.rpartition(" ")
         argument = argument.lstrip("*")
         fields.texts[argument] = body
+        fields.last = argument
         if kind:
             fields.types[argument] = kind
     elif keyword == "type":
         if argument:
-            fields.types[argument.strip().lstrip("*")] = body.replace("`", "")
+            fields.set_type(argument.strip().lstrip("*"), body.replace("`", ""))
         else:
             fields.own_type = body.replace("`", "")
     elif keyword in {"return", "returns"}:
@@ -212,17 +232,58 @@ def _literal(expression: ast.expr | None) -> Default:
     return list(value) if isinstance(value, tuple) else value
 
 
+def _definition(signature: str) -> ast.FunctionDef | None:
+    """A call's text as Python reads a definition with these arguments; None where it is not Python."""
+    call = signature[signature.index("(") :] if "(" in signature else "("
+    for text in (call, call.partition(" -> ")[0]):
+        try:
+            definition = ast.parse(f"def _{text}: ...").body[0]
+        except (SyntaxError, ValueError):
+            continue
+        assert isinstance(definition, ast.FunctionDef)
+        return definition
+    return None
+
+
+def _annotation(expression: ast.expr | None) -> str:
+    """A type as an annotation gives it, the quotes around a whole one left out."""
+    if expression is None:
+        return ""
+    if isinstance(expression, ast.Constant) and isinstance(expression.value, str):
+        return expression.value
+    return ast.unparse(expression)
+
+
+def _values(text: str, pattern: re.Pattern[str]) -> list[str]:
+    """The strings of the list that this pattern finds; [] for several lists, and for other values."""
+    lists = pattern.findall(text)
+    try:
+        held = ast.parse(lists[0], mode="eval").body if len(lists) == 1 else None
+    except SyntaxError:
+        return []
+    values = [ast.literal_eval(item) for item in getattr(held, "elts", ()) if isinstance(item, ast.Constant)]
+    whole = len(values) == len(getattr(held, "elts", ())) and all(isinstance(value, str) for value in values)
+    return values if whole else []
+
+
+def _with_values(parameter: Parameter) -> Parameter:
+    """The strings that a type or a description allows, as values: ``Literal['A', 'B']``, ``string in ['A']``."""
+    kind = parameter.type
+    if values := _values(kind, _LITERAL):
+        kind = _LITERAL.sub("enum", kind)
+    else:
+        values = _values(kind, _LISTED) or _values(parameter.description, _LISTED)
+    return replace(parameter, type=kind, enum_items=tuple(map(EnumItem, values))) if values else parameter
+
+
 def call_parameters(signature: str) -> list[Parameter]:
     """The arguments in a call's text, ``(a, *, b=1)``; [] when it is not Python.
 
     A default that is a literal is given as its value; one that is an expression stands in the signature alone.
     """
-    try:
-        module = ast.parse(f"def _{signature[signature.index('(') :].partition(' -> ')[0]}: ...")
-    except (SyntaxError, ValueError):
+    definition = _definition(signature)
+    if definition is None:
         return []
-    definition = module.body[0]
-    assert isinstance(definition, ast.FunctionDef)
     arguments = definition.args
     positional = [*arguments.posonlyargs, *arguments.args]
     defaults: list[ast.expr | None] = [None] * (len(positional) - len(arguments.defaults))
@@ -231,7 +292,7 @@ def call_parameters(signature: str) -> list[Parameter]:
     parameters = [
         Parameter(
             name=argument.arg,
-            type=ast.unparse(argument.annotation) if argument.annotation else "",
+            type=_annotation(argument.annotation),
             default=_literal(default),
             required=default is None,
         )
@@ -242,15 +303,29 @@ def call_parameters(signature: str) -> list[Parameter]:
     return parameters
 
 
-def _split(text: str) -> tuple[str, str]:
-    """(signature, body) of a docstring: its own directive line, or a bare call on the first line."""
+def _split(text: str) -> tuple[list[str], str]:
+    """(calls, body) of a docstring: its own directive with one call a line, or a bare call on the first line."""
     first, _, rest = text.partition("\n")
-    match = _DIRECTIVE.match(first.strip())
-    if match:
-        return match.group(1).strip(), textwrap.dedent(rest)
     if first.startswith("BMeshOpFunc "):
-        return first.removeprefix("BMeshOpFunc ").strip(), rest
-    return "", text
+        # The mesh is the only argument that goes by position.
+        call = (
+            first.removeprefix("BMeshOpFunc ")
+            .strip()
+            .replace("(bmesh,", "(bmesh, /, *,")
+            .replace("(bmesh)", "(bmesh, /)")
+        )
+        return [call], rest
+    if not _DIRECTIVE.match(first.strip()):
+        return [], text
+    while first.endswith("\\"):
+        line, _, rest = rest.partition("\n")
+        first = f"{first[:-1].rstrip()} {line.strip()}"
+    match = _DIRECTIVE.match(first.strip())
+    calls = [match.group(1).strip()] if match else []
+    while calls and _CALL.match(calls[0]) and rest[:1].isspace() and _CALL.match(rest.lstrip(" \t")):
+        line, _, rest = rest.partition("\n")
+        calls.append(line.strip())
+    return calls, textwrap.dedent(rest)
 
 
 def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
@@ -259,13 +334,23 @@ def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
     for name in fields.texts | fields.types:
         parameters.setdefault(name, Parameter(name=name))
     return tuple(
-        replace(
-            parameter,
-            description=fields.texts.get(parameter.name, ""),
-            type=fields.types.get(parameter.name, "") or parameter.type,
+        _with_values(
+            replace(
+                parameter,
+                description=fields.texts.get(parameter.name, ""),
+                type=fields.types.get(parameter.name, "") or parameter.type,
+            )
         )
         for parameter in parameters.values()
     )
+
+
+def _bmesh_result(slot: Parameter) -> Parameter:
+    """A slot as the result it is: its empty value tells the kind of container, its name what a list holds."""
+    if isinstance(slot.default, list):
+        elements = _BMESH_ELEMENTS.get(slot.name, "BMVert | BMEdge | BMFace")
+        return Parameter(name=slot.name, type=f"list[{elements}]")
+    return Parameter(name=slot.name, type="" if slot.default is None else type(slot.default).__name__)
 
 
 def _bmesh_results(body: str) -> tuple[str, tuple[Parameter, ...]]:
@@ -273,8 +358,7 @@ def _bmesh_results(body: str) -> tuple[str, tuple[Parameter, ...]]:
     head, arrow, tail = body.rpartition("-> dict(")
     if not arrow:
         return body, ()
-    slots = call_parameters(f"({tail.strip()}")
-    return head, tuple(Parameter(name=slot.name, default=slot.default) for slot in slots)
+    return head, tuple(map(_bmesh_result, call_parameters(f"({tail.strip()}")))
 
 
 @cache
@@ -284,37 +368,57 @@ def parse_docstring(text: str, signature: str = "") -> Docstring:
     ``signature`` is what Python's own introspection found; a directive line in the docstring wins over it.
     Malformed markup loses its meaning, never its text.
     """
-    call, body = _split(text)
-    call = call or signature
+    calls, body = _split(text)
     body, slots = _bmesh_results(body) if text.startswith("BMeshOpFunc ") else (body, ())
     parser, settings = _parser()
     document = new_document("docstring", settings)
     parser.parse(_SPHINX.sub(rf"\1{_OWN}", body), document)
-    parsed = _interpreted(document.children, call, slots)
+    parsed = _overloaded(document.children, calls or [signature], slots)
     constructor = next((member.docstring for member in parsed.members if member.name == "__init__"), None)
-    if constructor and not call:
+    if constructor and not parsed.signature:
         return replace(parsed, signature=constructor.signature, parameters=constructor.parameters)
     return parsed
 
 
-def _member(node: _Declared) -> Member:
-    """A member with the longest of its signatures; the description mentions the others."""
-    call, *others = sorted(node["calls"], key=len, reverse=True)
-    parsed = _interpreted(node.children, call)
+def _overloaded(
+    children: Sequence[nodes.Node], calls: Sequence[str], slots: tuple[Parameter, ...] = ()
+) -> Docstring:
+    """Reads what has the longest of these signatures; the description mentions the others."""
+    call, *others = sorted(calls, key=len, reverse=True)
+    parsed = _interpreted(children, call, slots)
     if others:
         also = "Also " + ", ".join(f"`{other}`" for other in others) + "."
         parsed = replace(parsed, description=f"{parsed.description}\n\n{also}".strip())
-    return Member(node["kind"], call.partition("(")[0].strip(), parsed)
+    return parsed
+
+
+def _member(node: _Declared) -> Member:
+    parsed = _overloaded(node.children, node["calls"])
+    return Member(node["kind"], parsed.signature.partition("(")[0].strip(), parsed)
+
+
+def _unquoted(children: Sequence[nodes.Node]) -> Iterator[nodes.Node]:
+    """The body elements, those included that stand too far to the right: a field there is a field."""
+    for node in children:
+        if isinstance(node, nodes.block_quote) and any(
+            isinstance(n, nodes.field_list) for n in node.children
+        ):
+            yield from _unquoted(node.children)
+        else:
+            yield node
 
 
 def _interpreted(
     children: Sequence[nodes.Node], written: str, slots: tuple[Parameter, ...] = ()
 ) -> Docstring:
     """Reads the body of a docstring, or of a method within it; ``slots`` are results known beforehand."""
-    fields = _Fields()
+    definition = _definition(written)
+    named = {parameter.name for parameter in call_parameters(written)}
+    open_ended = definition is None or definition.args.kwarg is not None
+    fields = _Fields(arguments=frozenset() if open_ended else frozenset(named))
     described: list[nodes.Node] = []
     members: list[Member] = []
-    for node in children:
+    for node in _unquoted(children):
         if isinstance(node, nodes.field_list):
             for row in node.children:
                 _read_field(row.children[0].astext(), _blocks(row.children[1].children), fields)
@@ -322,9 +426,13 @@ def _interpreted(
             members.append(_member(node))
         else:
             described.append(node)
+    return_type = fields.return_type
+    if not return_type and definition is not None and not slots:
+        annotation = _annotation(definition.returns)
+        return_type = annotation if annotation != "None" else ""
     returns = slots
-    if fields.returns or fields.return_type:
-        returns = (Parameter(name="", type=fields.return_type, description=fields.returns),)
+    if fields.returns or return_type:
+        returns = (_with_values(Parameter(name="", type=return_type, description=fields.returns)),)
     return Docstring(
         description="\n\n".join(part for part in (_blocks(described), *fields.other) if part),
         signature=written,

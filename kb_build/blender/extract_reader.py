@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _INDEXABLE = re.compile(r"[\[*?]")
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
+_BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -135,28 +136,52 @@ def call_text(name: str, parameters: Iterable[Parameter]) -> str:
     return f"{name}({', '.join(shown)})"
 
 
+def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> tuple[Parameter, ...]:
+    """The parameters of a docstring with what Blender said of them when it was asked, where the docstring is mute."""
+    by_name = {parameter.name: parameter for parameter in known}
+    completed: list[Parameter] = []
+    for parameter in parameters:
+        more = by_name.get(parameter.name, parameter)
+        completed.append(
+            replace(
+                parameter,
+                type=parameter.type or more.type,
+                description=parameter.description or more.description,
+                enum_items=parameter.enum_items or more.enum_items,
+            )
+        )
+    return tuple(completed)
+
+
+def _with_sets(call: str, parameters: Iterable[Parameter]) -> str:
+    """bmesh writes an empty set as ``{}``, which Python would take for a dictionary."""
+    for parameter in parameters:
+        if parameter.type.startswith("set["):
+            call = call.replace(f"{parameter.name}={{}}", f"{parameter.name}=set()")
+    return call
+
+
 def _symbol(row: dict[str, Any]) -> Symbol:
     """One line of the extract, its docstring read and its call spelled out."""
     docstring = row.pop("docstring", "")
-    written = row.get("signature", "")
+    written = _BOUND.sub("(", row.get("signature", ""), count=1)
     symbol = symbol_from_json(row)
-    if docstring:
+    if docstring or written:
         parsed = parse_docstring(docstring, written)
-        call = parsed.signature
+        parameters = _completed(parsed.parameters, symbol.parameters)
+        call = _with_sets(parsed.signature, symbol.parameters)
         symbol = replace(
             symbol,
             description=parsed.description,
             type=parsed.type or symbol.type,
             signature=symbol.name + call[call.index("(") :] if "(" in call else "",
-            parameters=parsed.parameters,
+            parameters=parameters,
             returns=parsed.returns,
         )
-    elif symbol.kind == "function" and not written:
+    elif symbol.kind == "function":
         symbol = replace(symbol, signature=call_text(symbol.name, symbol.parameters))
     elif symbol.kind == "operator":
         symbol = replace(symbol, signature=call_text(symbol.path, symbol.parameters))
-    elif written.startswith("("):
-        symbol = replace(symbol, signature=symbol.name + written)
     return symbol
 
 

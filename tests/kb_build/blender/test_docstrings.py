@@ -219,7 +219,7 @@ def test_remarks_that_only_sphinx_knows_are_kept(text: str, expected: str) -> No
 
 
 MARKUP = re.compile(
-    r"^\s*\.\. (\|\w+\| replace:: .*|[\w-]+:: ?(python|glsl)?)|^\s*:(arg|param|type|returns?|rtype)\b"
+    r"\bLiteral(?=\[)|^\s*\.\. (\|\w+\| replace:: .*|[\w-]+:: ?(python|glsl)?)|^\s*:(arg|param|type|returns?|rtype)\b"
     r"|:\w+:(?=`)|<https?:[^>]*>|https?:\S+|^BMeshOpFunc |-> dict",
     re.MULTILINE,
 )
