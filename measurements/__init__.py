@@ -1,1 +1,1 @@
-"""Measures this project: retrieval, latency, servers, builds, Blender, the verifier and audits."""
+"""Measures this project: retrieval, signatures, latency, servers, builds, Blender, the verifier and audits."""

@@ -15,13 +15,14 @@ from kb_build.errors import ExtractError
 from kb_build.records import Default, Link, Page, Parameter, Section, Symbol, symbol_from_json
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
 _INDEXABLE = re.compile(r"[\[*?]")
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
+_SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -185,6 +186,16 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     return symbol
 
 
+def _with_shared_values(symbol: Symbol, symbols: Mapping[str, Symbol]) -> Symbol:
+    """Lists the values of arguments whose docstring names one of Blender's shared enumerations."""
+    parameters: list[Parameter] = []
+    for parameter in symbol.parameters:
+        names = set(_SHARED_ENUM.findall(f"{parameter.type} {parameter.description}"))
+        shared = symbols.get(names.pop()) if len(names) == 1 and not parameter.enum_items else None
+        parameters.append(replace(parameter, enum_items=shared.enum_items) if shared else parameter)
+    return replace(symbol, parameters=tuple(parameters))
+
+
 def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
     """Methods described only in the docstring of their class, as Freestyle's; the reference lists them."""
     for row in rows:
@@ -262,6 +273,9 @@ def read_extract(path: Path) -> Extract:
     symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}
     for member in described:
         symbols.setdefault(member.path, member)
+    for symbol in [*symbols.values()]:
+        if any("rna_enum_" in parameter.description + parameter.type for parameter in symbol.parameters):
+            symbols[symbol.path] = _with_shared_values(symbol, symbols)
     prototypes = [
         symbol
         for name in ("bl_rna_get_subclass", "bl_rna_get_subclass_py")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
+_LONGEST_DEFAULT = 60  # letters
 _UNITS = {
     "LENGTH": "metres", "ROTATION": "radians", "TIME": "frames", "TIME_ABSOLUTE": "seconds", "MASS": "kg",
     "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
@@ -69,18 +71,44 @@ def _items(items: Sequence[EnumItem]) -> str:
     return "\n".join(lines)
 
 
-def _parameter_line(parameter: Parameter) -> str:
+def _written_defaults(call: str) -> dict[str, str]:
+    """The defaults in a call's text by argument, as Python source; {} where it is not Python."""
+    try:
+        definition = ast.parse(f"def _{call[call.index('(') :]}: ...").body[0]
+    except (SyntaxError, ValueError):
+        return {}
+    assert isinstance(definition, ast.FunctionDef)
+    arguments = definition.args
+    by_position = [*arguments.posonlyargs, *arguments.args]
+    pairs = [
+        *zip(reversed(by_position), reversed(arguments.defaults), strict=False),
+        *zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True),
+    ]
+    return {argument.arg: ast.unparse(default) for argument, default in pairs if default is not None}
+
+
+def _default_text(parameter: Parameter, written: str) -> str:
+    """An argument's default as Python source; empty for none. ``written`` is what the signature has."""
+    told = None if isinstance(parameter.default, list) else parameter.default
+    if told is None and written and len(written) <= _LONGEST_DEFAULT:
+        return written
+    return "" if parameter.default is None else literal(parameter.default)
+
+
+def _parameter_line(parameter: Parameter, written: str = "") -> str:
+    """One argument or result. ``written`` is its default as the signature has it."""
     head = f"- `{parameter.name}`" if parameter.name else "-"
     notes = [parameter.type or ""]
     if parameter.required:
         notes.append("required")
-    elif parameter.default is not None:
-        notes.append(f"default `{literal(parameter.default)}`")
+    elif default := _default_text(parameter, written):
+        notes.append(f"default `{default}`")
     if parameter.hard_min is not None or parameter.hard_max is not None:
         notes.append(f"range {_range_text(parameter.hard_min, parameter.hard_max)}")
     if parameter.unit:
         notes.append(_UNITS.get(parameter.unit, parameter.unit.lower()))
-    text = f"{head} ({', '.join(note for note in notes if note)})"
+    noted = ", ".join(note for note in notes if note)
+    text = f"{head} ({noted})" if noted else head
     if parameter.description:
         text += f": {parameter.description}"
     elif parameter.label:
@@ -94,7 +122,8 @@ def _parameter_line(parameter: Parameter) -> str:
 
 def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
     if symbol.parameters:
-        lines = "\n".join(map(_parameter_line, symbol.parameters))
+        defaults = _written_defaults(symbol.signature) if symbol.kind == "function" else {}
+        lines = "\n".join(_parameter_line(item, defaults.get(item.name, "")) for item in symbol.parameters)
         yield AnswerBlock(f"**Parameters**\n{lines}", "parameters")
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))

@@ -14,6 +14,7 @@ WANTED = (
     ("expected a float", "float"), ("expected an int", "int"), ("expected True/False", "bool"),
     ("expected a mathutils.Matrix", "Matrix"),
 )  # fmt: skip
+UNUSABLE = ("not working yet", "is not supported")
 ELEMENTS = re.compile(r"expected (?:an? )?\(((?:BM\w+/?)+)\)")
 NO_VALUE = "?"  # in no enumeration
 LENGTH = re.compile(r"sequence length is \d+, expected (\d+)")
@@ -50,14 +51,13 @@ def generic(name, inner):
     return f"{name}[{inner}]" if inner else name
 
 
-def mapping(ask, vertex):
-    """The type of a keyword that wants a dictionary, by the values it wants in it."""
-    message = ask({vertex: Unknown()})
+def mapping(message):
+    """The type of a keyword that wants a dictionary, from what it says of a wrong value for a vertex."""
     for word in ("float", "int", "bool"):
         if f"with {word} values" in message:
             return f"dict[BMVert | BMEdge | BMFace, {word}]"
-    held = elements(message)
-    return f"dict[BMVert | BMEdge | BMFace, {held}]" if held else "dict"
+    kind = elements(message)
+    return f"dict[BMVert | BMEdge | BMFace, {kind}]" if kind else ""
 
 
 def set_of(ask):
@@ -81,7 +81,8 @@ def keyword_parameter(operator, mesh, vertex, keyword):
     elif "expected a bmesh sequence, list" in message:
         kind = generic("Sequence", elements(ask([Unknown()])))
     elif "expected a dict" in message:
-        kind = mapping(ask, vertex)
+        message = ask({vertex: Unknown()})
+        kind = mapping(message)
     elif "expected a set" in message:
         kind, allowed = set_of(ask)
     elif "single element" in message:
@@ -91,17 +92,29 @@ def keyword_parameter(operator, mesh, vertex, keyword):
     row = {"name": keyword, "type": kind}
     if allowed:
         row["enum_items"] = [{"identifier": value} for value in allowed]
-    if "not working yet" in message:
+    if any(text in message for text in UNUSABLE):
         row["description"] = "Python cannot pass this keyword: every value raises NotImplementedError."
     return row
 
 
+def mesh_parameter(operator):
+    """The first argument, which has no default; a list of one. Empty if the operator asks for something else."""
+    match = re.search(r"\((\w+)[,)]", operator.__doc__ or "")
+    try:
+        operator(Unknown())
+    except TypeError as error:
+        if match and "BMesh positional argument" in str(error):
+            return [{"name": match[1], "type": "BMesh", "required": True}]
+    return []
+
+
 def parameters(operator):
-    """The keywords of one operator, in the terms of ``records.Parameter``."""
+    """The arguments of one operator, in the terms of ``records.Parameter``."""
     mesh = bmesh.new()
     try:
         vertex = mesh.verts.new()
         keywords = KEYWORD.findall((operator.__doc__ or "").partition("->")[0])
-        return [keyword_parameter(operator, mesh, vertex, keyword) for keyword in keywords]
+        rows = [keyword_parameter(operator, mesh, vertex, keyword) for keyword in keywords]
+        return mesh_parameter(operator) + rows
     finally:
         mesh.free()

@@ -115,13 +115,106 @@ def test_other_fields_are_kept_as_text() -> None:
 
 def test_a_bmesh_operator_tells_its_slots() -> None:
     text = (
-        "BMeshOpFunc bmesh.ops.create_cube(bm, size=0, matrix=Matrix(), calc_uvs=False)"
-        "\n\nCreates a cube.\n\n-> dict(verts=[])"
+        "BMeshOpFunc bmesh.ops.create_cube(bmesh, size=0, matrix=Matrix(), calc_uvs=False)"
+        "\n\nCreates a cube.\n\n-> dict(verts=[], geom_cut=[], vert_map={})"
     )
     parsed = parse_docstring(text)
-    assert parsed.signature.startswith("bmesh.ops.create_cube(")
-    assert [parameter.name for parameter in parsed.parameters][:2] == ["bm", "size"]
-    assert [result.name for result in parsed.returns] == ["verts"]
+    assert parsed.signature == "bmesh.ops.create_cube(bmesh, /, *, size=0, matrix=Matrix(), calc_uvs=False)"
+    assert [parameter.name for parameter in parsed.parameters][:2] == ["bmesh", "size"]
+    assert [(result.name, result.type, result.default) for result in parsed.returns] == [
+        ("verts", "list[BMVert]", None),
+        ("geom_cut", "list[BMVert | BMEdge | BMFace]", None),
+        ("vert_map", "dict", None),
+    ]
+
+
+def test_a_bmesh_operator_without_keywords_still_takes_the_mesh_by_position() -> None:
+    parsed = parse_docstring("BMeshOpFunc bmesh.ops.x(bmesh)\n  -> dict()")
+    assert (parsed.signature, parsed.returns) == ("bmesh.ops.x(bmesh, /)", ())
+
+
+@pytest.mark.parametrize(
+    ("kind", "words", "expected_type", "values"),
+    [
+        ("Literal['A', 'B']", "", "enum", ["A", "B"]),
+        ("set[Literal['A', 'B']] | None", "", "set[enum] | None", ["A", "B"]),
+        ("Literal['A'] | Literal['B']", "", "Literal['A'] | Literal['B']", []),
+        ("Literal[0, 1]", "", "Literal[0, 1]", []),
+        ("Literal[A]", "", "Literal[A]", []),
+        ("str", "string in ['B', 'A'].", "str", ["B", "A"]),
+        ("enum in {'X', 'Y'}", "", "enum in {'X', 'Y'}", ["X", "Y"]),
+        ("float", "A value in [0.0, 1.0].", "float", []),
+        ("str", "string in [a, b]", "str", []),
+        ("str", "Either 'A' or 'B'.", "str", []),
+    ],
+)  # fmt: skip
+def test_listed_strings_are_the_values_of_an_argument(
+    kind: str, words: str, expected_type: str, values: list[str]
+) -> None:
+    (parameter,) = parse_docstring(f".. function:: f(a)\n\n   :arg a: {words}\n   :type a: {kind}").parameters
+    assert (parameter.type, [item.identifier for item in parameter.enum_items]) == (expected_type, values)
+
+
+def test_the_values_of_a_result_are_listed() -> None:
+    (result,) = parse_docstring(".. function:: f()\n\n   :rtype: Literal['A', 'B']").returns
+    assert (result.type, [item.identifier for item in result.enum_items]) == ("enum", ["A", "B"])
+
+
+@pytest.mark.parametrize(
+    ("fields", "expected"),
+    [
+        (":arg a: A.\n:type x: int\n:arg b: B.", [("a", "int"), ("b", "")]),
+        (":arg a: A.\n:type a: int\n:arg b: B.\n:type a: str", [("a", "int"), ("b", "str")]),
+        (":type x: int\n:arg a: A.", [("a", ""), ("b", "")]),
+        (":type b: int\n:type a: str", [("a", "str"), ("b", "int")]),
+        (":arg c: C.\n:type c: int", [("a", ""), ("b", ""), ("c", "int")]),
+    ],
+)
+def test_a_type_under_a_wrong_name_makes_no_argument(fields: str, expected: list[tuple[str, str]]) -> None:
+    parsed = parse_docstring(f".. function:: f(a, b)\n\n{fields}")
+    assert [(parameter.name, parameter.type) for parameter in parsed.parameters] == expected
+
+
+def test_a_type_counts_where_the_call_takes_any_keyword() -> None:
+    parsed = parse_docstring(".. function:: f(**more)\n\n:type size: int")
+    assert [(parameter.name, parameter.type) for parameter in parsed.parameters] == [
+        ("more", ""),
+        ("size", "int"),
+    ]
+
+
+def test_fields_that_are_indented_too_far_count() -> None:
+    text = ".. function:: f(a)\n\n   Text.\n\n   :arg a: The a.\n   :type a: int\n   :rtype: str\n\n.. note:: After."
+    parsed = parse_docstring(text)
+    assert parsed.parameters == (Parameter("a", "int", "The a.", required=True),)
+    assert parsed.returns == (Parameter("", "str"),)
+    assert "Text." in parsed.description
+
+
+def test_overloads_and_continued_lines_of_a_function() -> None:
+    text = ".. function:: f(a)\n              f(a, \\\n                b=2)\n\n   Text."
+    parsed = parse_docstring(text.replace("\\\n                ", ""))
+    assert (parsed.signature, parsed.description) == ("f(a, b=2)", "Text.\n\nAlso `f(a)`.")
+    parsed = parse_docstring(".. function:: f(a, \\\n      b=2)\n\n   Text.")
+    assert (parsed.signature, parsed.description) == ("f(a, b=2)", "Text.")
+
+
+@pytest.mark.parametrize(
+    ("signature", "types", "result"),
+    [
+        ("(a: int, b: 'Vector' = None) -> 'Matrix'", ["int", "Vector"], "Matrix"),
+        ("(a: bpy.types.Action | None) -> None", ["bpy.types.Action | None"], None),
+        ("(a) -> <class 'x'>", [""], None),
+    ],
+)
+def test_annotations_give_types(signature: str, types: list[str], result: str | None) -> None:
+    parsed = parse_docstring("Text.", signature)
+    assert [parameter.type for parameter in parsed.parameters] == types
+    assert [returned.type for returned in parsed.returns] == ([result] if result else [])
+
+
+def test_a_described_result_wins_over_the_annotation() -> None:
+    assert parse_docstring("Text.\n\n:rtype: float", "() -> int").returns == (Parameter("", "float"),)
 
 
 @pytest.mark.parametrize(

@@ -237,3 +237,24 @@ def test_how_a_member_is_reached_is_that_of_its_class(kb: KnowledgeBase, reader:
             assert (
                 f"reached as `{cls.reached}.{path.rpartition('.')[2]}`" in kb.query(path, max_tokens=ALL).text
             )
+
+
+def test_an_argument_shows_its_default_as_the_call_has_it(renderer: MarkdownRenderer) -> None:
+    symbol = Symbol(
+        "m.f", "function", "m", signature="f(a, *, b=None, c=Matrix(), d=set(), e=(1, 2), g=3)",
+        parameters=(
+            Parameter("a", required=True), Parameter("b", "str"), Parameter("c", "Matrix"),
+            Parameter("d", "set[enum]"), Parameter("e", default=[1, 2]), Parameter("g", "int", default=3),
+            Parameter("h"),
+        ),
+    )  # fmt: skip
+    lines = shown(renderer, symbol).split("**Parameters**\n")[1].split("\n")
+    assert lines == [
+        "- `a` (required)", "- `b` (str, default `None`)", "- `c` (Matrix, default `Matrix()`)",
+        "- `d` (set[enum], default `set()`)", "- `e` (default `(1, 2)`)", "- `g` (int, default `3`)", "- `h`",
+    ]  # fmt: skip
+
+
+def test_a_call_that_is_not_python_shows_the_known_defaults(renderer: MarkdownRenderer) -> None:
+    symbol = Symbol("m.f", "function", "m", signature="f(a, [b])", parameters=(Parameter("b", default=1),))
+    assert "- `b` (default `1`)" in shown(renderer, symbol)
