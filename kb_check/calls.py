@@ -197,7 +197,8 @@ class Calls(Narrowing):
         for name in ("type", "socket_type", "effect_type"):
             for value in literal_texts(given[name]) if name in given else ():
                 cls = self.api.class_of_value(result.cls, value)
-                found.append(replace(result, cls=cls) if cls else result)
+                # A value that no class of the API answers to may be that of a script's own class.
+                found.append(replace(result, cls=cls) if cls else replace(result, sure=False))
         return union(found) if found else result
 
     def _names(self, callee: Function, name: str, node: ast.Call, arguments: list[Type]) -> None:
@@ -225,9 +226,8 @@ class Calls(Narrowing):
             return
         found = self.attribute(owner, text)
         if found.symbols or found.missing or found.possible:
-            self.resolve(
-                text_node, "text", text, found.symbols, found.missing, found.possible, sure=found.sure
-            )
+            kind = "text" if owner_place < 0 else "button"
+            self.resolve(text_node, kind, text, found.symbols, found.missing, found.possible, sure=found.sure)
 
     def _named_operator(self, node: ast.expr, kind: Type) -> None:
         text = literal_text(kind)
@@ -235,12 +235,14 @@ class Calls(Narrowing):
             module, of_class, name = text.partition("_OT_")
             path = f"bpy.ops.{module.lower()}.{name}" if of_class else f"bpy.ops.{text}"
             known = self.api.symbols.symbol(path) is not None
-            self.resolve(node, "text", path, (path,) if known else (), () if known else ("bpy.ops",))
+            if path in self.own_operators:
+                return
+            self.resolve(node, "button", path, (path,) if known else (), () if known else ("bpy.ops",))
 
     def _property(self, name: str, keywords: list[tuple[ast.keyword, Type]]) -> Type:
         """The value of a property that bpy.props declares."""
         for keyword, kind in keywords:
-            if keyword.arg in {"update", "poll", "get", "set", "items"} and isinstance(kind, LocalFunction):
+            if keyword.arg in {"update", "items"} and isinstance(kind, LocalFunction):
                 self._pass(kind.number, [UNKNOWN, Instance(f"{T}Context")], {})
         if name in {"PointerProperty", "CollectionProperty"}:
             given = next((kind for keyword, kind in keywords if keyword.arg == "type"), UNKNOWN)
@@ -339,6 +341,9 @@ class Calls(Narrowing):
     def _receive(function: FunctionDefinition, name: str, kind: Type) -> None:
         kind = bounded(kind)
         before = function.received.get(name)
+        if kind is UNKNOWN and name not in function.unknown:
+            function.unknown.add(name)
+            function.stale = True
         if before is None or before is UNKNOWN:
             after = kind
         elif kind is UNKNOWN:

@@ -41,10 +41,12 @@ class Core:
         self.functions: list[FunctionDefinition] = []
         self.classes: list[ClassDefinition] = []
         self.numbers: dict[ast.AST, int] = {}
+        self.own_operators: set[str] = set()
         self.registered: dict[tuple[str, str], Type] = {}
         self.resolutions: dict[ast.AST, Resolution] = {}
         self.types: dict[ast.expr, Type] = {}
         self.tolerant = 0
+        self.guessing = False
         self.depth = 0
         self.steps_left = most_steps
         self.function: FunctionDefinition | None = None
@@ -90,7 +92,7 @@ class Core:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
         self.resolutions[node] = Resolution(
             node, kind, value, _once(symbols), _once(missing), _once(possible),
-            sure, self.tolerant > 0, self.statement,
+            sure and not self.guessing, self.tolerant > 0, self.statement,
         )  # fmt: skip
 
     # Definitions.

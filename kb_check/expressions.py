@@ -47,6 +47,7 @@ _CLASSES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "str
 _MATH = frozenset(
     {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
 )
+_VECTOR = "mathutils.Vector"
 _LONGEST_LITERAL = 64
 _FEWEST_VALUES = 2  # of an enumeration that can be judged
 
@@ -418,15 +419,18 @@ def _compared(left: Tuple, right: Tuple, operator: ast.cmpop) -> Type:
             return BOOL
 
 
-def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa: PLR0911 - one return a rule
+def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa: PLR0911, PLR0912 - one return a rule
     if isinstance(left, Union) or isinstance(right, Union):
         return union(_operation(a, b, operator) for a in members(left)[:3] for b in members(right)[:3])
     if isinstance(left, Plain) and left.kind == "str":
         return STR
     if isinstance(left, Instance) and left.cls in _MATH:
         if isinstance(right, Instance) and right.cls in _MATH:
-            # A matrix or a rotation turns what stands behind it.
-            return right if isinstance(operator, ast.MatMult) else left
+            if not isinstance(operator, ast.MatMult):
+                return left
+            if left.cls == _VECTOR:
+                return FLOAT if right.cls == _VECTOR else left
+            return right  # which a matrix or a rotation turns
         return (
             Instance(left.cls) if right is not UNKNOWN or not isinstance(operator, ast.MatMult) else UNKNOWN
         )

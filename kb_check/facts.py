@@ -33,6 +33,29 @@ CLASS_OF_VALUE = {
 # The properties that tell an instance's class by their value, best first.
 DISCRIMINANTS = ("type", "bl_idname", "data_type", "effector_type")
 
+# Classes whose instances have whatever a script, an add-on or an operator gave them.
+OPEN_CLASSES = (
+    "bpy.types.PropertyGroup", "bpy.types.OperatorProperties", "bpy.types.AddonPreferences",
+    "bpy.types.GizmoGroupProperties", "bpy.types.KeyConfigPreferences", "bpy.types.IDPropertyWrapPtr",
+    "bpy.types.AnyType", "bpy.types.UnknownType", "bpy.types.Gizmo", "bpy.utils.previews.ImagePreviewCollection",
+)  # fmt: skip
+# Classes that scripts derive their own from, which a value declared so may be; and the context, to which layouts add.
+DERIVED_BY_SCRIPTS = frozenset(
+    {
+        "bpy.types.Operator", "bpy.types.Macro", "bpy.types.Panel", "bpy.types.Menu", "bpy.types.Header",
+        "bpy.types.UIList", "bpy.types.RenderEngine", "bpy.types.KeyingSetInfo", "bpy.types.GizmoGroup",
+        "bpy.types.Node", "bpy.types.NodeSocket", "bpy.types.NodeTree", "bpy.types.NodeCustomGroup",
+        "bpy.types.NodeTreeInterfaceSocket", "bpy.types.Context",
+    }
+)  # fmt: skip
+# Nodes that have the sockets which their group, their zone or their items give them.
+NODES_WITH_SOCKETS_OF_THEIR_OWN = (
+    "Group", "GroupInput", "GroupOutput", "SimulationInput", "SimulationOutput", "RepeatInput", "RepeatOutput",
+    "ForeachGeometryElementInput", "ForeachGeometryElementOutput", "Bake", "CaptureAttribute", "MenuSwitch",
+    "IndexSwitch", "Viewer", "OutputFile", "Script", "CombineBundle", "SeparateBundle", "EvaluateClosure",
+    "ClosureInput", "ClosureOutput", "FormatString", "CryptomatteV2", "RLayers", "Image", "Reroute", "Custom",
+)  # fmt: skip
+
 # Functions that take keywords which their signatures do not list.
 OPEN_CALLS = frozenset({"bpy.types.Context.temp_override"})
 
@@ -46,6 +69,8 @@ BMESH_RESULTS = {
 NARROWER = {
     "bpy.types.SpaceNodeEditor.edit_tree": "NodeTree",
     "bpy.types.Context.space_data": "Space",
+    "bpy.types.Context.edit_bone": "EditBone",
+    "bpy.types.BoidSettings.active_boid_state": "BoidState",
 }
 
 # Parameters of a script's own functions that are called so by everyone. Only a name that hardly means another thing

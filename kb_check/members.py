@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 from kb_check.api import ARRAY, COLLECTION, STRUCT
 from kb_check.core import Core
-from kb_check.facts import LAYER_ITEM, T
+from kb_check.facts import (
+    DERIVED_BY_SCRIPTS,
+    LAYER_ITEM,
+    NODES_WITH_SOCKETS_OF_THEIR_OWN,
+    OPEN_CLASSES,
+)
 from kb_check.types import (
     FLOAT,
     STR,
@@ -38,14 +43,7 @@ if TYPE_CHECKING:
     import ast
     from collections.abc import Callable
 
-# Classes whose instances have whatever a script or an operator gave them.
-_OPEN = (
-    f"{T}PropertyGroup", f"{T}OperatorProperties", f"{T}AddonPreferences", f"{T}GizmoGroupProperties",
-    f"{T}KeyConfigPreferences", f"{T}IDPropertyWrapPtr", f"{T}AnyType", f"{T}Gizmo",
-    "bpy.utils.previews.ImagePreviewCollection",
-)  # fmt: skip
 _PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
-_EVERYWHERE = frozenset({"bl_rna", "rna_type", "__class__", "__doc__", "__dict__", "__module__", "__name__"})
 _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
 
 
@@ -104,10 +102,17 @@ class Members(Core):
                 union(self._held(member.type, Instance(cls), name) for cls, member in below[:9])
             )
             return
-        is_open = name in _EVERYWHERE or any(self.api.descends(kind.cls, cls) for cls in _OPEN)
-        if not is_open and self.api.is_class(kind.cls):
+        if not _is_pythons(name) and not self._is_open(kind.cls):
             found.missing.append(kind.cls)
+            found.sure = found.sure and kind.cls not in DERIVED_BY_SCRIPTS
         found.types.append(UNKNOWN)
+
+    def _is_open(self, cls: str) -> bool:
+        """Whether instances of a class have members that its symbols do not tell."""
+        symbol = self.api.symbols.symbol(cls)
+        if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"}:
+            return True
+        return any(self.api.descends(cls, base) for base in OPEN_CLASSES)
 
     def _held(self, kind: Type, owner: Type, name: str) -> Type:
         """A member's type as it is read from its owner."""
@@ -141,7 +146,11 @@ class Members(Core):
         member = self.api.member(kind.path, name)
         if member is None:
             nested = self.api.symbols.symbol(f"{kind.path}.{name}")
-            if nested is None and not name.startswith("_"):
+            if (
+                nested is None
+                and not name.startswith("_")
+                and f"{kind.path}.{name}" not in self.own_operators
+            ):
                 found.missing.append(kind.path)
             found.types.append(UNKNOWN)
             return
@@ -157,7 +166,7 @@ class Members(Core):
             )
             return
         found.types.append(self._registered(kind.cls, name) or UNKNOWN)
-        if name not in _EVERYWHERE and not hasattr(type, name):
+        if not _is_pythons(name) and not hasattr(type, name) and not self._is_open(kind.cls):
             found.missing.append(kind.cls)
 
     def _of_operator(self, kind: Operator, name: str, found: Lookup) -> None:
@@ -273,7 +282,7 @@ class Members(Core):
                 (s for _, label, s in sockets if label == value), None
             )
         if symbol is None:
-            if isinstance(value, str):
+            if isinstance(value, str) and not _has_sockets_of_its_own(owner.cls):
                 self.resolve(node, "item", value, missing=(owner.cls,), sure=owner.sure)
             return None
         self.resolve(node, "item", str(value), (symbol.path,), sure=owner.sure)
@@ -319,6 +328,16 @@ class Members(Core):
         Tuple: _of_value,
         Mapping: _of_value,
     }
+
+
+def _has_sockets_of_its_own(cls: str) -> bool:
+    """Whether the sockets of a node depend on more than its class."""
+    return cls.rpartition("Node")[2] in NODES_WITH_SOCKETS_OF_THEIR_OWN
+
+
+def _is_pythons(name: str) -> bool:
+    """Whether everything has an attribute of this name, or may have."""
+    return name in {"bl_rna", "rna_type"} or (name.startswith("__") and name.endswith("__"))
 
 
 def _python_class(kind: Type) -> type:

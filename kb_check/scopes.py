@@ -117,10 +117,11 @@ class Scope:
 
 @dataclass(slots=True)
 class FunctionDefinition:
-    """A function of the script. ``received`` joins what calls passed, ``returned`` what it returns.
+    """A function of the script.
 
-    ``seen`` is the state of the script's definitions at the last run; ``used`` are the attributes that it reads
-    from each name, once they were asked for.
+    ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
+    something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
+    ``used`` are the attributes that it reads from each name, once they were asked for.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -130,6 +131,7 @@ class FunctionDefinition:
     is_class_method: bool = False
     is_property: bool = False
     received: dict[str, Type] = field(default_factory=dict[str, Type])
+    unknown: set[str] = field(default_factory=set[str])
     returned: Type | None = None
     running: bool = False
     runs: int = 0

@@ -437,6 +437,9 @@ class Statements(Calls):
         finally:
             self.scope = outer
         definition = self.classes[number]
+        if isinstance(name := literal(scope.state.names.get("bl_idname", UNKNOWN)), str):
+            module, _, operator = f"bpy.ops.{name}".rpartition(".")
+            self.own_operators |= {module, f"{module}.{operator}"}
         for name, kind in scope.ever.items():
             definition.bind(name, _general(kind) if isinstance(kind, Plain) else kind)
         self.scope.bind(node.name, LocalClass(number))
@@ -453,12 +456,14 @@ class Statements(Calls):
     def run(self, number: int) -> None:
         """See :class:`core.Core`."""
         function = self.functions[number]
-        outer = self.scope, self.function, self.loops, self.tolerant, self.statement
+        outer = self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing
         self.scope = Scope(function.scope)
         self.function, self.loops, self.tolerant = function, [], 0
         function.running, function.stale, function.runs = True, False, function.runs + 1
         function.seen = self.stamp(function)
         self.statement = None
+        # Some calls pass what is not known: the others tell no more than what may be passed.
+        self.guessing = any(function.received.get(name, UNKNOWN) is not UNKNOWN for name in function.unknown)
         try:
             self._bind_parameters(function)
             if isinstance(function.node, ast.Lambda):
@@ -472,7 +477,7 @@ class Statements(Calls):
                     function.returned = declared
         finally:
             function.running = False
-            self.scope, self.function, self.loops, self.tolerant, self.statement = outer
+            self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing = outer
 
     def stamp(self, function: FunctionDefinition) -> tuple[int, int]:
         """What changes when a function should be read again: its module's names, its class's attributes."""

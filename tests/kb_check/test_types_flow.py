@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
-from kb_check_reading import last_type, resolved, symbol, unknown
+from kb_check_reading import last_type, read, resolved, symbol, unknown
 
 if TYPE_CHECKING:
     from kb_check.api import Api
@@ -44,6 +44,8 @@ if TYPE_CHECKING:
         ("import bpy\nbpy.data.objects[:][0]", "Object"),
         ("from mathutils import Vector, Matrix\nMatrix() @ Vector()", "mathutils.Vector"),
         ("from mathutils import Vector\n2 * Vector()", "mathutils.Vector"),
+        ("from mathutils import Vector, Matrix\nVector() @ Matrix()", "mathutils.Vector"),
+        ("from mathutils import Vector, Quaternion\nQuaternion() @ Vector()", "mathutils.Vector"),
         ("import bpy\nbpy.context.object.matrix_world.to_quaternion()", "mathutils.Quaternion"),
         ("import bpy\nbpy.context.object.matrix_world.decompose()[1]", "mathutils.Quaternion"),
     ],
@@ -236,6 +238,14 @@ def test_a_script_that_is_ready_for_absence_is_believed(api: Api) -> None:
     """
     assert not unknown(api, code)
     assert symbol(api, code, "select_set") == "Object.select_set"
+
+
+def test_what_only_some_calls_tell_is_not_sure(api: Api) -> None:
+    code = "import bpy\ndef f(x):\n    return x.nothing\ndef g(x):\n    return x.nothing\n"
+    calls = "f(bpy.context.object)\ng(bpy.context.object)\ng(numbers())"
+    rows = [row for row in read(api, code + calls).resolutions.values() if row.value == "nothing"]
+    assert [row.missing for row in rows] == [("bpy.types.Object",)] * 2
+    assert sorted(row.sure for row in rows) == [False, True]
 
 
 def test_conventions_are_not_sure(api: Api) -> None:
