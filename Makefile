@@ -82,7 +82,7 @@ $(STAMP): requirements.lock pyproject.toml | $(UV)
 	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
 	@$(UV_ENV) "$(UV)" pip sync --quiet --compile-bytecode --python $(PY) --require-hashes requirements.lock
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
-	@$(PY) -m compileall -q simworlds kb_build kb_serve agents bench measurements
+	@$(PY) -m compileall -q simworlds kb_check kb_build kb_serve agents bench measurements
 	@touch $(STAMP)
 
 # The lock pins uv too, since the project depends on it: that very version is fetched, its hashes checked.

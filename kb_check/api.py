@@ -1,0 +1,398 @@
+"""Blender's API as types: what members are, what calls return, which classes literals mean."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from kb_check.facts import (
+    CLASS_OF_VALUE,
+    CONTEXT_MEMBERS,
+    DISCRIMINANTS,
+    ELEMENT,
+    ELEMENTS,
+    LAYER_ITEM,
+    LAYERS,
+    MATH_OF_SUBTYPE,
+    NARROWER,
+    SAME_CLASS,
+    T,
+)
+from kb_check.type_text import read_type
+from kb_check.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    STR,
+    UNKNOWN,
+    ClassObject,
+    Collection,
+    Function,
+    Instance,
+    Module,
+    Operator,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    Unknown,
+    members,
+    union,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Parameter, Symbol
+    from kb_check.symbols import Symbols
+
+COLLECTION = "bpy.types.bpy_prop_collection"
+GROUPS = "bpy.types.bpy_prop_collection_idprop"
+ARRAY = "bpy.types.bpy_prop_array"
+STRUCT = "bpy.types.bpy_struct"
+_ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}
+_SCALARS: dict[str, Type] = {"boolean": BOOL, "int": INT, "float": FLOAT, "string": STR}
+_INTERFACE = f"{T}NodeTreeInterfaceSocket"
+_MOST_CLASSES = 2_000
+_WORD = re.compile(r"[A-Z][a-z0-9]*$")
+_SIMPLE = re.compile(r"[^a-z0-9]")
+_OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A member as a class or module has it: its symbol, and the type of its value."""
+
+    symbol: Symbol
+    type: Type
+
+
+class Api:
+    """The types of one Blender's API. Everything that is asked for twice is kept."""
+
+    def __init__(self, symbols: Symbols) -> None:
+        self.symbols = symbols
+        self._own: dict[str, dict[str, Symbol]] = {}
+        self._sockets: dict[str, tuple[Symbol, ...]] = {}
+        self._lineages: dict[str, tuple[str, ...]] = {}
+        self._members: dict[tuple[str, str], Member | None] = {}
+        self._descendants: dict[str, tuple[str, ...]] = {}
+        self._below: dict[tuple[str, str], tuple[tuple[str, Member], ...]] = {}
+        self._named: dict[tuple[str, str], str] = {}
+        self._returns: dict[str, Type] = {}
+        self._value_classes: dict[str, dict[str, str]] = {}
+        self._labels: dict[str, dict[str, str]] = {}
+
+    # Classes.
+
+    def is_class(self, path: str) -> bool:
+        """Whether the path is a class."""
+        symbol = self.symbols.symbol(path)
+        return symbol is not None and symbol.kind == "class"
+
+    def lineage(self, cls: str) -> tuple[str, ...]:
+        """A class and its bases, nearest first."""
+        found = self._lineages.get(cls)
+        if found is None:
+            names: list[str] = []
+            path = cls
+            while path and path not in names and (symbol := self.symbols.symbol(path)):
+                names.append(path)
+                path = symbol.base
+            found = self._lineages[cls] = tuple(names)
+        return found
+
+    def descends(self, cls: str, ancestor: str) -> bool:
+        """Whether a class is ``ancestor`` or derives from it."""
+        return cls == ancestor or ancestor in self.lineage(cls)
+
+    def descendants(self, cls: str) -> tuple[str, ...]:
+        """Every class below a class."""
+        found = self._descendants.get(cls)
+        if found is None:
+            queue, names = [cls], dict[str, None]()
+            while queue and len(names) < _MOST_CLASSES:
+                for child in self.symbols.subclasses(queue.pop()):
+                    if child not in names:
+                        names[child] = None
+                        queue.append(child)
+            found = self._descendants[cls] = tuple(names)
+        return found
+
+    def class_named(self, name: str, scope: str = "") -> str:
+        """The path of the class that a name in the text of a type means, seen from the symbol ``scope``."""
+        key = name, scope
+        found = self._named.get(key)
+        if found is None:
+            found = self._named[key] = next(
+                (path for path in self._candidates(name, scope) if self.is_class(path)), ""
+            )
+        return found
+
+    @staticmethod
+    def _candidates(name: str, scope: str) -> Iterator[str]:
+        if "." in name:
+            yield name
+        last = name.rpartition(".")[2]
+        while "." in scope:
+            scope = scope.rpartition(".")[0]
+            yield f"{scope}.{last}"
+        yield f"{T}{last}"
+        yield f"mathutils.{last}"
+        yield f"bmesh.types.{last}"
+        yield f"gpu.types.{last}"
+        yield f"mathutils.{last.lower()}.{last}"
+
+    # Members.
+
+    def own(self, owner: str) -> dict[str, Symbol]:
+        """What a class or module has itself, by name; without sockets."""
+        found = self._own.get(owner)
+        if found is None:
+            found = {symbol.name: symbol for symbol in self.symbols.members(owner) if symbol.kind != "socket"}
+            self._own[owner] = found
+        return found
+
+    def member(self, cls: str, name: str) -> Member | None:
+        """A member of a class, inherited ones included, or of a module."""
+        key = cls, name
+        if key in self._members:
+            return self._members[key]
+        for ancestor in self.lineage(cls) or (cls,):
+            if symbol := self.own(ancestor).get(name):
+                found = Member(symbol, self._type_of(symbol))
+                break
+        else:
+            found = None
+        self._members[key] = found
+        return found
+
+    def below(self, cls: str, name: str) -> tuple[tuple[str, Member], ...]:
+        """The classes derived from ``cls`` that have a member which it lacks: (class, member)."""
+        key = cls, name
+        found = self._below.get(key)
+        if found is None:
+            rows: dict[str, tuple[str, Member]] = {}
+            for child in self.descendants(cls):
+                symbol = self.own(child).get(name)
+                if symbol is not None and symbol.path not in rows:
+                    rows[symbol.path] = child, Member(symbol, self._type_of(symbol))
+            found = self._below[key] = tuple(rows.values())
+        return found
+
+    def _type_of(self, symbol: Symbol) -> Type:  # noqa: PLR0911 - one return a kind
+        path = symbol.path
+        match symbol.kind:
+            case "class":
+                return ClassObject(path)
+            case "module":
+                return Module(path)
+            case "operator":
+                return Operator(path)
+            case "function":
+                return Function(path, UNKNOWN)
+            case "enum":
+                return UNKNOWN
+            case _:
+                pass
+        if path in _ROOTS:
+            return Instance(_ROOTS[path])
+        if symbol.type == "collection":
+            element = Instance(self._target(symbol))
+            if symbol.kind == "context":  # what an editor puts together
+                return Sequence("list", element)
+            container = f"{T}{symbol.collection}" if symbol.collection else COLLECTION
+            if not symbol.collection and self.descends(element.cls, f"{T}PropertyGroup"):
+                container = GROUPS
+            return Collection(element, container, path, UNKNOWN)
+        if symbol.type == "pointer" or symbol.target:
+            return Instance(self._target(symbol))
+        if symbol.kind == "context" and not symbol.type:
+            return self._context_member(symbol.name)
+        return self._value_type(symbol)
+
+    def _target(self, symbol: Symbol) -> str:
+        narrower = T + NARROWER.get(symbol.path, "")
+        return narrower if self.is_class(narrower) else f"{T}{symbol.target}"
+
+    def _context_member(self, name: str) -> Type:
+        cls = CONTEXT_MEMBERS.get(name, "")
+        if cls.startswith("["):
+            return Sequence("list", self.instance(T + cls[1:-1]))
+        return self.instance(T + cls)
+
+    def instance(self, cls: str) -> Type:
+        """An instance of a class; UNKNOWN if there is no such class."""
+        return Instance(cls) if cls and self.is_class(cls) else UNKNOWN
+
+    def _value_type(self, symbol: Symbol) -> Type:
+        if symbol.type == "enum":
+            value = Plain("str", None, symbol.path)
+            return Sequence("set", value) if "enum-flag" in symbol.flags else value
+        scalar = _SCALARS.get(symbol.type)
+        if scalar is None:
+            return self.read_type(symbol.type, symbol.path)
+        if not symbol.array:
+            return Plain("bytes") if symbol.subtype == "BYTE_STRING" else scalar
+        math = MATH_OF_SUBTYPE.get(symbol.subtype, "")
+        size = symbol.array[-1]
+        if symbol.type == "float" and self._is_math(math, symbol.array):
+            return Instance(f"mathutils.{math}")
+        element: Type = scalar if len(symbol.array) == 1 else Sequence("array", scalar)
+        return Instance(ARRAY, ((ELEMENT, element),)) if size else Sequence("array", scalar)
+
+    @staticmethod
+    def _is_math(math: str, array: tuple[int, ...]) -> bool:
+        match math:
+            case "Matrix":
+                return len(array) == 2
+            case "Color" | "Euler":
+                return array == (3,)
+            case "Quaternion":
+                return array == (4,)
+            case "Vector":
+                return len(array) == 1 and 2 <= array[0] <= 4
+            case _:
+                return False
+
+    def read_type(self, text: str, scope: str) -> Type:
+        """The type that a text spells, seen from a symbol."""
+        return read_type(text, lambda name: self.class_named(name, scope)) if text else UNKNOWN
+
+    # Calls.
+
+    def returned(self, path: str, receiver: Type) -> Type:
+        """What a function of the API returns when it was read from ``receiver``."""
+        found = self._returns.get(path)
+        if found is None:
+            symbol = self.symbols.symbol(path)
+            found = self._returns[path] = self._declared(symbol) if symbol else UNKNOWN
+        return self.as_held_by(found, receiver, path.rpartition(".")[2])
+
+    def as_held_by(self, kind: Type, receiver: Type, name: str) -> Type:
+        """A member's type with what its receiver adds: the element of a collection, a copy's own class."""
+        if isinstance(receiver, Collection):
+            return self._of_collection(kind, receiver, name)
+        if not isinstance(receiver, Instance):
+            return kind
+        if isinstance(kind, Instance):
+            if name in SAME_CLASS and self.descends(receiver.cls, kind.cls):
+                return receiver
+            if kind.cls == LAYER_ITEM and receiver.traits:
+                return replace(kind, traits=receiver.traits)
+        return kind
+
+    def _of_collection(self, kind: Type, receiver: Collection, name: str) -> Type:
+        match name:
+            case "get" if isinstance(kind, Unknown) or kind == Instance(STRUCT) or len(members(kind)) > 1:
+                return receiver.element
+            case "add" if receiver.container == GROUPS:
+                return receiver.element
+            case "values":
+                return Sequence("list", receiver.element)
+            case "items":
+                return Sequence("list", Tuple((STR, receiver.element)))
+            case _:
+                return kind
+
+    def _declared(self, symbol: Symbol) -> Type:
+        kinds = [self._returned_value(result, symbol) for result in symbol.returns]
+        if not kinds:
+            return UNKNOWN
+        return kinds[0] if len(kinds) == 1 else Tuple(tuple(kinds))
+
+    def _returned_value(self, result: Parameter, symbol: Symbol) -> Type:
+        if result.type == "Self":
+            return self.instance(symbol.owner)
+        if result.type == "float[3]":
+            return Instance("mathutils.Vector")
+        if result.type == "float[4][4]":
+            return Instance("mathutils.Matrix")
+        if symbol.owner.endswith("bpy_prop_collection") and symbol.name == "get":
+            return UNKNOWN
+        return self.read_type(result.type, symbol.path)
+
+    # What literals mean.
+
+    def class_of_value(self, base: str, value: str) -> str:
+        """The class below ``base`` that a value stands for: Modifier and ``CLOTH`` → ClothModifier; empty for none."""
+        if value.isidentifier() and self.descends(f"{T}{value}", base):
+            return f"{T}{value}"
+        if base == _INTERFACE and value.startswith("NodeSocket"):
+            cls = f"{base}{value.removeprefix('NodeSocket')}"
+            return cls if self.is_class(cls) else ""
+        if base not in self._value_classes:
+            self._value_classes[base] = self._values_of(base)
+        return self._value_classes[base].get(value, "")
+
+    def _values_of(self, base: str) -> dict[str, str]:
+        """Value → class, for every value of the property of ``base`` that tells its classes apart."""
+        symbol = next((m.symbol for name in DISCRIMINANTS if (m := self.member(base, name))), None)
+        short = base.removeprefix(T)
+        last = _WORD.search(short)
+        affixes = {short.lower(), last[0].lower() if last else ""}
+        by_name: dict[str, str] = {}
+        by_label: dict[str, str] = {}
+        for path in self.descendants(base):
+            cls = self.symbols.symbol(path)
+            name = path.removeprefix(T).lower()
+            by_name[name] = path
+            for affix in affixes:
+                by_name.setdefault(_SIMPLE.sub("", name.removesuffix(affix).removeprefix(affix)), path)
+                label = _SIMPLE.sub("", cls.label.lower() if cls else "")
+                by_label.setdefault(label.removesuffix(affix).removeprefix(affix), path)
+        found: dict[str, str] = {}
+        for item in symbol.enum_items if symbol else ():
+            key, label = (_SIMPLE.sub("", text.lower()) for text in (item.identifier, item.name))
+            if path := by_name.get(key) or by_label.get(key) or by_label.get(label):
+                found[item.identifier] = path
+        for value, name in CLASS_OF_VALUE.get(short, {}).items():
+            if self.is_class(T + name):
+                found[value] = T + name
+        return found
+
+    def class_by_label(self, base: str, text: str) -> str:
+        """The class below ``base`` whose instances are called ``text`` unless somebody renames them."""
+        if base not in self._labels:
+            labels: dict[str, str] = {}
+            for path in self.descendants(base):
+                symbol = self.symbols.symbol(path)
+                label = symbol.label if symbol else ""
+                for suffix in ("", " Modifier", " Constraint"):
+                    if label and label.endswith(suffix):
+                        labels.setdefault(label.removesuffix(suffix), path)
+            self._labels[base] = labels
+        name, dot, number = text.rpartition(".")
+        return self._labels[base].get(name if dot and number.isdigit() else text, "")
+
+    def sockets(self, cls: str, side: str) -> Iterator[tuple[str, str, Symbol]]:
+        """(key, label, symbol) of the sockets of a node's class on one side, ``inputs`` or ``outputs``."""
+        found = self._sockets.get(cls)
+        if found is None:
+            found = self._sockets[cls] = tuple(
+                symbol for owner in self.lineage(cls) for symbol in self.symbols.members(owner)
+                if symbol.kind == "socket"
+            )  # fmt: skip
+        for symbol in found:
+            if symbol.path.startswith(f"{symbol.owner}.{side}["):
+                yield symbol.name, symbol.label, symbol
+
+    def socket_type(self, symbol: Symbol) -> Type:
+        """The type of a socket."""
+        target = f"{T}{symbol.target}"
+        if not self.descends(target, f"{T}NodeSocket"):
+            target = f"{T}NodeSocket{symbol.type.title()}"
+        return self.instance(target)
+
+    def element(self, kind: Instance) -> Type:
+        """What an instance holds, when it is indexed or looped over."""
+        if held := kind.trait(ELEMENT):
+            return Instance(LAYER_ITEM, ((ELEMENT, held),)) if kind.cls == LAYERS else held
+        if names := ELEMENTS.get(kind.cls):
+            return union(Instance(name) for name in names)
+        return UNKNOWN
+
+    def is_operator_method(self, name: str) -> bool:
+        """Whether every operator of ``bpy.ops`` has an attribute of this name."""
+        return name in _OPERATOR_METHODS

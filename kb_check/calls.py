@@ -1,0 +1,510 @@
+"""Evaluates calls: of the API's functions and operators, of Python's own, and of the script's."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+from kb_check.core import DEEPEST_RUN
+from kb_check.facts import BMESH_RESULTS, OPEN_CALLS, T
+from kb_check.narrowing import Narrowing
+from kb_check.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    NONE,
+    STR,
+    UNKNOWN,
+    Builtin,
+    ClassObject,
+    Collection,
+    Function,
+    Instance,
+    LocalClass,
+    LocalFunction,
+    LocalInstance,
+    Mapping,
+    Operator,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    Union,
+    bounded,
+    join,
+    literal_text,
+    literal_texts,
+    union,
+    without_none,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kb_build.records import Parameter, Symbol
+    from kb_check.scopes import FunctionDefinition
+
+_MOST_RUNS = 3
+# Arguments that name a property of another argument or of the receiver: function → (text, owner; -1 the receiver).
+_NAMES_PROPERTY = {
+    "keyframe_insert": (0, "data_path", -1), "keyframe_delete": (0, "data_path", -1),
+    "driver_add": (0, "path", -1), "driver_remove": (0, "path", -1), "property_unset": (0, "property", -1),
+    "is_property_set": (0, "property", -1), "property_overridable_library_set": (0, "property", -1),
+    "path_from_id": (0, "property", -1), "foreach_get": (0, "attr", -1), "foreach_set": (0, "attr", -1),
+    "prop": (1, "property", 0), "prop_search": (1, "property", 0), "prop_enum": (1, "property", 0),
+    "prop_menu_enum": (1, "property", 0), "props_enum": (1, "property", 0), "template_ID": (1, "property", 0),
+    "prop_tabs_enum": (1, "property", 0), "prop_with_popover": (1, "property", 0),
+}  # fmt: skip
+_ITERATORS = {
+    "list": "list", "sorted": "list", "set": "set", "frozenset": "set", "tuple": "list", "reversed": "iterator",
+    "iter": "iterator",
+}  # fmt: skip
+_PLAIN_RESULTS: dict[str, Type] = {
+    "len": INT, "int": INT, "float": FLOAT, "str": STR, "bool": BOOL, "repr": STR, "isinstance": BOOL,
+    "hasattr": BOOL, "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE, "setattr": NONE,
+}  # fmt: skip
+_STRING_RESULTS: dict[str, Type] = {
+    "split": Sequence("list", STR), "rsplit": Sequence("list", STR), "splitlines": Sequence("list", STR),
+    "partition": Tuple((STR, STR, STR)), "rpartition": Tuple((STR, STR, STR)), "find": INT, "rfind": INT,
+    "index": INT, "count": INT, "startswith": BOOL, "endswith": BOOL, "encode": Plain("bytes"), "isdigit": BOOL,
+}  # fmt: skip
+_PROPERTIES: dict[str, Type] = {
+    "FloatProperty": FLOAT, "IntProperty": INT, "BoolProperty": BOOL, "StringProperty": STR, "EnumProperty": STR,
+    "FloatVectorProperty": Sequence("array", FLOAT), "IntVectorProperty": Sequence("array", INT),
+    "BoolVectorProperty": Sequence("array", BOOL),
+}  # fmt: skip
+_OPERATOR_RESULT = Sequence("set", STR)
+
+
+class Calls(Narrowing):
+    """Evaluates calls."""
+
+    def call(self, callee: Type, node: ast.Call) -> Type:
+        """See :class:`core.Core`."""
+        arguments = [self.evaluate(argument) for argument in node.args]
+        keywords = [(keyword, self.evaluate(keyword.value)) for keyword in node.keywords]
+        if callee is UNKNOWN:
+            return UNKNOWN
+        if isinstance(callee, Union):
+            return union(
+                self._one_call(member, node, arguments, keywords)
+                for member in callee.members
+                if member is not NONE
+            )
+        return self._one_call(callee, node, arguments, keywords)
+
+    def _one_call(
+        self, callee: Type, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]
+    ) -> Type:
+        caller = self._callers.get(type(callee))
+        return caller(self, callee, node, arguments, keywords) if caller else UNKNOWN
+
+    # The API.
+
+    def _operator(
+        self,
+        callee: Operator,
+        node: ast.Call,
+        _arguments: list[Type],
+        keywords: list[tuple[ast.keyword, Type]],
+    ) -> Type:
+        symbol = self.api.symbols.symbol(callee.path)
+        self.resolve(node, "call", callee.path, (callee.path,))
+        if symbol:
+            self._keywords(symbol, keywords)
+        return _OPERATOR_RESULT
+
+    def _function(
+        self,
+        callee: Function,
+        node: ast.Call,
+        arguments: list[Type],
+        keywords: list[tuple[ast.keyword, Type]],
+    ) -> Type:
+        path = callee.path
+        symbol = self.api.symbols.symbol(path)
+        if symbol is None:
+            return UNKNOWN
+        sure = not isinstance(callee.receiver, Instance) or callee.receiver.sure
+        self.resolve(node, "call", path, (path,), sure=sure)
+        self._keywords(symbol, keywords)
+        self._values(symbol, node)
+        name = symbol.name
+        if symbol.owner == "bpy.props":
+            return self._property(name, keywords)
+        if symbol.owner == "bmesh.ops":
+            return self._bmesh_result()
+        if name in {"append", "prepend"} and isinstance(callee.receiver, ClassObject):
+            for kind in arguments:
+                if isinstance(kind, LocalFunction):
+                    self._pass(kind.number, [Instance(callee.receiver.cls), Instance(f"{T}Context")], {})
+        self._names(callee, name, node, arguments)
+        if isinstance(callee.receiver, Collection) and name == "get":
+            key = arguments[0] if arguments else UNKNOWN
+            found = self.collection_item(callee.receiver, key, node.args[0] if node.args else node)
+            return found if len(arguments) < 2 else join(found, arguments[1])
+        result = self.api.returned(path, callee.receiver)
+        return self._decided(result, symbol, arguments, keywords)
+
+    def _keywords(self, symbol: Symbol, keywords: list[tuple[ast.keyword, Type]]) -> None:
+        parameters = {parameter.name: parameter for parameter in symbol.parameters}
+        is_open = symbol.path in OPEN_CALLS or any(_is_open(parameter) for parameter in symbol.parameters)
+        for keyword, _ in keywords:
+            name = keyword.arg
+            if name is None:
+                continue
+            if parameter := parameters.get(name):
+                self.resolve(keyword, "keyword", name, (f"{symbol.path}({name})",))
+                self._value(symbol, parameter, keyword.value)
+            elif not is_open and (symbol.parameters or symbol.kind == "operator"):
+                self.resolve(keyword, "keyword", name, missing=(symbol.path,))
+
+    def _values(self, symbol: Symbol, node: ast.Call) -> None:
+        positional = [p for p in symbol.parameters if p.name not in {"self", "cls"}]
+        for parameter, argument in zip(positional, node.args, strict=False):
+            if isinstance(argument, ast.Starred):
+                return
+            self._value(symbol, parameter, argument)
+
+    def _value(self, symbol: Symbol, parameter: Parameter, node: ast.expr) -> None:
+        if parameter.enum_items:
+            nodes = node.elts if isinstance(node, ast.Set) else [node]
+            for item in nodes:
+                if isinstance(item, ast.Constant):
+                    self.resolve_value(item, (symbol.path,), parameter.name)
+
+    def _decided(
+        self,
+        result: Type,
+        symbol: Symbol,
+        arguments: list[Type],
+        keywords: list[tuple[ast.keyword, Type]],
+    ) -> Type:
+        """A result as its arguments decide it: ``modifiers.new("x", 'CLOTH')`` is a ClothModifier."""
+        if not isinstance(result, Instance):
+            return result
+        given = {keyword.arg: kind for keyword, kind in keywords}
+        positional = [p for p in symbol.parameters if p.name not in {"self", "cls"}]
+        for parameter, kind in zip(positional, arguments, strict=False):
+            given.setdefault(parameter.name, kind)
+        if result.cls == f"{T}Object" and "object_data" in given:
+            data = without_none(given["object_data"])
+            return (
+                replace(result, traits=(("data", data),)) if data is not UNKNOWN and data != NONE else result
+            )
+        found: list[Type] = []
+        for name in ("type", "socket_type", "effect_type"):
+            for value in literal_texts(given[name]) if name in given else ():
+                cls = self.api.class_of_value(result.cls, value)
+                # A value that no class of the API answers to may be that of a script's own class.
+                found.append(replace(result, cls=cls) if cls else replace(result, sure=False))
+        return union(found) if found else result
+
+    def _names(self, callee: Function, name: str, node: ast.Call, arguments: list[Type]) -> None:
+        """Records texts that name a property: ``layout.prop(cloth, "quality")``, ``ob.keyframe_insert("location")``."""
+        if name == "operator" and node.args:
+            self._named_operator(node.args[0], arguments[0])
+            return
+        if name not in _NAMES_PROPERTY:
+            return
+        place, keyword, owner_place = _NAMES_PROPERTY[name]
+        text_node = node.args[place] if len(node.args) > place else None
+        for given in node.keywords:
+            if given.arg == keyword:
+                text_node = given.value
+        if not isinstance(text_node, ast.Constant):
+            return
+        if owner_place < 0:
+            owner = callee.receiver
+            if isinstance(owner, Collection):
+                owner = owner.element
+        else:
+            owner = arguments[owner_place] if len(arguments) > owner_place else UNKNOWN
+        text = text_node.value
+        if not isinstance(text, str) or not text.isidentifier() or owner is UNKNOWN:
+            return
+        found = self.attribute(owner, text)
+        if found.symbols or found.missing or found.possible:
+            self.resolve(
+                text_node, "text", text, found.symbols, found.missing, found.possible, sure=found.sure
+            )
+
+    def _named_operator(self, node: ast.expr, kind: Type) -> None:
+        text = literal_text(kind)
+        if text and isinstance(node, ast.Constant):
+            module, of_class, name = text.partition("_OT_")
+            path = f"bpy.ops.{module.lower()}.{name}" if of_class else f"bpy.ops.{text}"
+            known = self.api.symbols.symbol(path) is not None
+            if path in self.own_operators:
+                return
+            self.resolve(node, "text", path, (path,) if known else (), () if known else ("bpy.ops",))
+
+    def _property(self, name: str, keywords: list[tuple[ast.keyword, Type]]) -> Type:
+        """The value of a property that bpy.props declares."""
+        for keyword, kind in keywords:
+            if keyword.arg in {"update", "items"} and isinstance(kind, LocalFunction):
+                self._pass(kind.number, [UNKNOWN, Instance(f"{T}Context")], {})
+        if name in {"PointerProperty", "CollectionProperty"}:
+            given = next((kind for keyword, kind in keywords if keyword.arg == "type"), UNKNOWN)
+            element = self._instance(given)
+            if name == "PointerProperty" or element is UNKNOWN:
+                return element
+            return Collection(element, "bpy.types.bpy_prop_collection_idprop", "", UNKNOWN)
+        return _PROPERTIES.get(name, UNKNOWN)
+
+    def _bmesh_result(self) -> Type:
+        """What an operator of bmesh returns: lists by name."""
+        items: list[tuple[str, Type]] = []
+        for prefix, names in BMESH_RESULTS.items():
+            element = union(Instance(f"bmesh.types.{name}") for name in names)
+            for suffix in (
+                "",
+                "s",
+                "_inner",
+                "_split",
+                "_cut",
+                "_out",
+                "s_out",
+                "_contig",
+                "_interior",
+                "_holes",
+            ):
+                items.append((f"{prefix}{suffix}", Sequence("list", element)))
+        return Mapping(STR, UNKNOWN, tuple(items))
+
+    def _class(
+        self,
+        callee: ClassObject,
+        node: ast.Call,
+        _arguments: list[Type],
+        keywords: list[tuple[ast.keyword, Type]],
+    ) -> Type:
+        self.resolve(node, "call", callee.cls, (callee.cls,))
+        symbol = self.api.symbols.symbol(callee.cls)
+        if symbol and symbol.parameters:
+            self._keywords(symbol, keywords)
+        return Instance(callee.cls)
+
+    # The script's own.
+
+    def _local_class(
+        self,
+        callee: LocalClass,
+        _node: ast.Call,
+        arguments: list[Type],
+        keywords: list[tuple[ast.keyword, Type]],
+    ) -> Type:
+        instance = LocalInstance(callee.number)
+        made = self.class_attribute(callee.number, "__init__")
+        if made and isinstance(made[0], LocalFunction):
+            self._pass(made[0].number, [instance, *arguments], {k.arg or "": t for k, t in keywords})
+            self._run_now(made[0].number)
+        return instance
+
+    def _local_function(
+        self,
+        callee: LocalFunction,
+        node: ast.Call,
+        arguments: list[Type],
+        keywords: list[tuple[ast.keyword, Type]],
+    ) -> Type:
+        function = self.functions[callee.number]
+        if any(isinstance(argument, ast.Starred) for argument in node.args):
+            arguments = []
+        values = arguments if callee.receiver is None else [callee.receiver, *arguments]
+        self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
+        self._run_now(callee.number)
+        return UNKNOWN if function.returned is None else function.returned
+
+    def _run_now(self, number: int) -> None:
+        """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""
+        function = self.functions[number]
+        if (
+            function.stale
+            and not function.running
+            and self.depth < DEEPEST_RUN
+            and function.runs < _MOST_RUNS
+        ):
+            self.run(number)
+
+    def _pass(self, number: int, values: list[Type], keywords: dict[str, Type]) -> None:
+        """Adds what a call passes to what a function is known to receive."""
+        function = self.functions[number]
+        parameters = function.node.args
+        names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)]
+        given = {**dict(zip(names, values, strict=False)), **keywords}
+        for name, kind in given.items():
+            if name:
+                self._receive(function, name, kind)
+
+    @staticmethod
+    def _receive(function: FunctionDefinition, name: str, kind: Type) -> None:
+        kind = bounded(kind)
+        before = function.received.get(name)
+        if kind is UNKNOWN and name not in function.unknown:
+            function.unknown.add(name)
+            function.stale = True
+        if before is None or before is UNKNOWN:
+            after = kind
+        elif kind is UNKNOWN:
+            return
+        else:
+            after = join(before, kind)
+        if after != before:
+            function.received[name] = after
+            if kind is not UNKNOWN:
+                function.stale = True
+
+    # Python's own.
+
+    def _builtin(  # noqa: PLR0911, PLR0912 - one case a function
+        self,
+        callee: Builtin,
+        node: ast.Call,
+        arguments: list[Type],
+        keywords: list[tuple[ast.keyword, Type]],
+    ) -> Type:
+        if callee.receiver is not None:
+            return self._method(callee.receiver, callee.name, arguments)
+        name = callee.name
+        if name in _PLAIN_RESULTS:
+            return _PLAIN_RESULTS[name]
+        first = arguments[0] if arguments else UNKNOWN
+        if name in _ITERATORS:
+            return (
+                Sequence(_ITERATORS[name], self.iterated(first)) if arguments else Sequence("list", UNKNOWN)
+            )
+        match name:
+            case "next":
+                return (
+                    self.iterated(first) if len(arguments) < 2 else join(self.iterated(first), arguments[1])
+                )
+            case "enumerate":
+                return Sequence("iterator", Tuple((INT, self.iterated(first))))
+            case "zip":
+                return Sequence("iterator", Tuple(tuple(self.iterated(kind) for kind in arguments)))
+            case "range":
+                return Sequence("iterator", INT)
+            case "filter" if len(arguments) == 2:
+                return Sequence("iterator", self._applied(arguments[0], arguments[1], keep=True))
+            case "map" if len(arguments) == 2:
+                return Sequence("iterator", self._applied(arguments[0], arguments[1], keep=False))
+            case "min" | "max":
+                self._key(keywords, first)
+                return self.iterated(first) if len(arguments) == 1 else union(arguments)
+            case "abs" | "round" | "sum":
+                return first if isinstance(first, Plain) and name != "sum" else FLOAT
+            case "super":
+                return self._super()
+            case "type":
+                return self._class_of(first)
+            case "getattr" | "setattr" | "delattr":
+                return self._named_attribute(node, arguments)
+            case "dict":
+                return Mapping(UNKNOWN, UNKNOWN)
+            case _:
+                return UNKNOWN
+
+    def _key(self, keywords: list[tuple[ast.keyword, Type]], values: Type) -> None:
+        for keyword, kind in keywords:
+            if keyword.arg == "key" and isinstance(kind, LocalFunction):
+                self._pass(kind.number, [self.iterated(values)], {})
+
+    def _applied(self, function: Type, values: Type, *, keep: bool) -> Type:
+        element = self.iterated(values)
+        if isinstance(function, LocalFunction):
+            self._pass(function.number, [element], {})
+        return element if keep else UNKNOWN
+
+    def _class_of(self, kind: Type) -> Type:
+        if isinstance(kind, Instance):
+            return ClassObject(kind.cls)
+        return LocalClass(kind.number) if isinstance(kind, LocalInstance) else UNKNOWN
+
+    def _super(self) -> Type:
+        if self.function is None or self.function.cls is None:
+            return UNKNOWN
+        bases = self.classes[self.function.cls].bases
+        found: list[Type] = []
+        for base in bases:
+            if isinstance(base, LocalClass):
+                found.append(LocalInstance(base.number))
+            elif isinstance(base, ClassObject):
+                found.append(Instance(base.cls))
+            else:
+                return UNKNOWN
+        return found[0] if len(found) == 1 else UNKNOWN
+
+    def _named_attribute(self, node: ast.Call, arguments: list[Type]) -> Type:
+        """``getattr(x, "name")``: read like an attribute, but a script that asks so is ready for its absence."""
+        text = literal_text(arguments[1]) if len(arguments) > 1 else None
+        if not text or arguments[0] is UNKNOWN:
+            return UNKNOWN
+        found = self.attribute(arguments[0], text)
+        if found.symbols:
+            self.resolve(node.args[1], "text", text, found.symbols, sure=found.sure)
+        kind = found.type
+        return join(kind, arguments[2]) if len(arguments) > 2 else kind
+
+    def _method(self, receiver: Type, name: str, arguments: list[Type]) -> Type:  # noqa: PLR0911, PLR0912 - one case a method
+        first = arguments[0] if arguments else UNKNOWN
+        if isinstance(receiver, Plain):
+            return _STRING_RESULTS.get(name, STR) if receiver.kind == "str" else UNKNOWN
+        if isinstance(receiver, Operator):
+            return BOOL if name == "operator.poll" else UNKNOWN
+        if isinstance(receiver, Mapping):
+            match name:
+                case "get" | "pop" | "setdefault":
+                    kind = self.item(receiver, first, ast.Pass())
+                    return join(kind, arguments[1]) if len(arguments) > 1 else kind
+                case "items":
+                    return Sequence("list", Tuple((receiver.key, receiver.value)))
+                case "keys":
+                    return Sequence("list", receiver.key)
+                case "values":
+                    return Sequence("list", receiver.value)
+                case "copy":
+                    return receiver
+                case _:
+                    return UNKNOWN
+        match name:
+            case "pop":
+                return self.iterated(receiver)
+            case "copy" | "union" | "intersection" | "difference":
+                return receiver
+            case "index" | "count":
+                return INT
+            case "append" | "add" | "insert" | "appendleft" if arguments:
+                self._grow(receiver, arguments[-1])
+                return NONE
+            case "extend" | "update" if arguments:
+                self._grow(receiver, self.iterated(first))
+                return NONE
+            case _:
+                return UNKNOWN
+
+    def _grow(self, receiver: Type, kind: Type) -> None:
+        """A list that a name holds gets one more element: the name's type follows."""
+        for scope in (self.scope,):
+            for name, held in scope.state.names.items():
+                if held is receiver and isinstance(held, (Sequence, Tuple)):
+                    before = held.element if isinstance(held, Sequence) else union(held.items)
+                    after = kind if before is UNKNOWN else join(before, kind)
+                    grown = Sequence(held.kind if isinstance(held, Sequence) else "list", after)
+                    scope.bind(name, grown)
+                    return
+
+    _callers: ClassVar[dict[type, Callable[..., Type]]] = {
+        Operator: _operator,
+        Function: _function,
+        ClassObject: _class,
+        LocalClass: _local_class,
+        LocalFunction: _local_function,
+        Builtin: _builtin,
+    }
+
+
+def _is_open(parameter: Parameter) -> bool:
+    """Whether a parameter takes any keyword."""
+    return parameter.name.startswith("*") or parameter.type.startswith("**")

@@ -1,0 +1,181 @@
+"""What every part of the analysis shares: the script's definitions, the place that is being read, and the results."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_check.scopes import ClassDefinition, FunctionDefinition, Scope
+from kb_check.types import (
+    UNKNOWN,
+    ClassObject,
+    Instance,
+    LocalClass,
+    LocalFunction,
+    Resolution,
+    Type,
+)
+
+if TYPE_CHECKING:
+    import ast
+    from collections.abc import Iterator, Sequence
+
+    from kb_check.api import Api
+
+DEEPEST_RUN = 60  # a function that is called further inside is read later
+DEEPEST = 160  # expressions and calls within each other
+_MOST_BASES = 40
+
+
+class StepsExhausted(Exception):  # noqa: N818 - reads as the state it names
+    """The script is larger than what the analysis may spend on it."""
+
+
+class Core:
+    """One analysis. The parts are mixed into one class (analysis.Analyzer), since types flow between all of them."""
+
+    def __init__(self, api: Api, version: tuple[int, ...], most_steps: int) -> None:
+        self.api = api
+        self.version = version
+        self.module = Scope()
+        self.scope = self.module
+        self.functions: list[FunctionDefinition] = []
+        self.classes: list[ClassDefinition] = []
+        self.numbers: dict[ast.AST, int] = {}
+        self.own_operators: set[str] = set()
+        self.registered: dict[tuple[str, str], Type] = {}
+        self.resolutions: dict[ast.AST, Resolution] = {}
+        self.types: dict[ast.expr, Type] = {}
+        self.tolerant = 0
+        self.guessing = False
+        self.depth = 0
+        self.steps_left = most_steps
+        self.function: FunctionDefinition | None = None
+        self.statement: ast.stmt | None = None
+        self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
+        self._mixed: dict[tuple[int, int], tuple[tuple[str, ...], bool]] = {}
+
+    # What the parts give each other.
+
+    def evaluate(self, node: ast.expr) -> Type:
+        """The type of an expression; what it resolves to is recorded on the way."""
+        raise NotImplementedError
+
+    def call(self, callee: Type, node: ast.Call) -> Type:
+        """What a call returns."""
+        raise NotImplementedError
+
+    def run(self, number: int) -> None:
+        """Reads a function of the script with what it is known to receive."""
+        raise NotImplementedError
+
+    def bind_target(self, target: ast.expr, kind: Type, value: ast.expr | None = None) -> None:
+        """Assigns to a name, an attribute, an item, or several of them."""
+        raise NotImplementedError
+
+    def narrow(self, test: ast.expr, *, holds: bool) -> None:
+        """Applies what is known once a condition holds or does not."""
+        raise NotImplementedError
+
+    # Results.
+
+    def resolve(  # noqa: PLR0913, PLR0917 - the fields of a resolution
+        self,
+        node: ast.AST,
+        kind: str,
+        value: str,
+        symbols: Sequence[str] = (),
+        missing: Sequence[str] = (),
+        possible: Sequence[str] = (),
+        *,
+        sure: bool = True,
+    ) -> None:
+        """Records what a part of the script stands for; a later reading of the same part replaces it."""
+        self.resolutions[node] = Resolution(
+            node, kind, value, _once(symbols), _once(missing), _once(possible),
+            sure and not self.guessing, self.tolerant > 0, self.statement,
+        )  # fmt: skip
+
+    # Definitions.
+
+    def define_function(
+        self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda, cls: int | None = None
+    ) -> int:
+        """The number of a function's definition; the same one when it is read again."""
+        number = self.numbers.get(node)
+        if number is None:
+            number = self.numbers[node] = len(self.functions)
+            self.functions.append(FunctionDefinition(node, self.scope, cls))
+        return number
+
+    def ancestors(self, number: int) -> Iterator[Type]:
+        """A class of the script and what it derives from, as LocalClass, ClassObject or UNKNOWN; nearest first."""
+        queue: list[Type] = [LocalClass(number)]
+        for _ in range(_MOST_BASES):
+            if not queue:
+                return
+            kind = queue.pop(0)
+            yield kind
+            if isinstance(kind, LocalClass):
+                queue.extend(self.classes[kind.number].bases)
+
+    def class_attribute(self, number: int, name: str) -> tuple[Type, int] | None:
+        """An attribute that the script gives to a class or to one of its bases: (type, class)."""
+        for kind in self.ancestors(number):
+            if isinstance(kind, LocalClass):
+                found = self.classes[kind.number].attributes.get(name)
+                if found is not None:
+                    return found, kind.number
+        return None
+
+    def api_bases(self, number: int) -> tuple[tuple[str, ...], bool]:
+        """The classes of the API that a class of the script derives from, and whether all its bases are known.
+
+        A class without any that others of the script derive from has those of the others: it is mixed into them.
+        """
+        bases, known = self._direct_bases(number)
+        if bases or not known:
+            return bases, known
+        key = number, len(self.classes)
+        found = self._mixed.get(key)
+        if found is None:
+            for other in range(len(self.classes)):
+                if other != number and LocalClass(number) in self.ancestors(other):
+                    more, _ = self._direct_bases(other)
+                    bases += tuple(base for base in more if base not in bases)
+            found = self._mixed[key] = bases, not bases
+        return found
+
+    def _direct_bases(self, number: int) -> tuple[tuple[str, ...], bool]:
+        found = self._bases.get(number)
+        if found is None:
+            bases: list[str] = []
+            known = True
+            for kind in self.ancestors(number):
+                if isinstance(kind, ClassObject):
+                    bases.append(kind.cls)
+                elif not isinstance(kind, LocalClass):
+                    known = False
+            found = self._bases[number] = tuple(bases), known
+        return found
+
+    def bound(self, kind: Type, receiver: Type) -> Type:
+        """A class attribute as it is read from an instance or a class: methods are bound."""
+        if not isinstance(kind, LocalFunction):
+            return kind
+        function = self.functions[kind.number]
+        if function.is_static:
+            return kind
+        if function.is_property:
+            if function.returned is None and not function.running and self.depth < DEEPEST_RUN:
+                self.run(kind.number)
+            return function.returned or UNKNOWN
+        return LocalFunction(kind.number, receiver)
+
+    def instance_of(self, kind: Type) -> Type:
+        """An instance of what a name in an annotation or in isinstance means."""
+        return Instance(kind.cls) if isinstance(kind, ClassObject) else UNKNOWN
+
+
+def _once(paths: Sequence[str]) -> tuple[str, ...]:
+    """The same paths, each once."""
+    return tuple(paths) if len(paths) < 2 else tuple(dict.fromkeys(paths))

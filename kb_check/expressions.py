@@ -1,0 +1,459 @@
+"""Evaluates expressions: what each one is, and which symbols its parts stand for."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING, ClassVar
+
+from kb_check.core import DEEPEST, StepsExhausted
+from kb_check.facts import T
+from kb_check.members import Members
+from kb_check.scopes import State, chain_text
+from kb_check.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    NONE,
+    STR,
+    UNKNOWN,
+    Builtin,
+    Instance,
+    LocalFunction,
+    Mapping,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    Union,
+    join,
+    literal,
+    literal_text,
+    members,
+    union,
+    without_none,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_BUILTINS = frozenset(
+    (  # noqa: SIM905
+        "abs all any bool dict enumerate filter float frozenset getattr hasattr int isinstance iter len list map max "
+        "min next open print range repr reversed round set setattr sorted str sum super tuple type zip delattr "
+        "property staticmethod classmethod object callable"
+    ).split()
+)
+_CLASSES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "str", bytes: "bytes"}
+_MATH = frozenset(
+    {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
+)
+_VECTOR = "mathutils.Vector"
+_LONGEST_LITERAL = 64
+_FEWEST_VALUES = 2  # of an enumeration that can be judged
+
+
+class Expressions(Members):
+    """Evaluates expressions."""
+
+    def evaluate(self, node: ast.expr) -> Type:
+        """See :class:`core.Core`."""
+        self.steps_left -= 1
+        if self.steps_left < 0:
+            raise StepsExhausted
+        reader = self._evaluators.get(type(node))
+        if reader is None or self.depth > DEEPEST:
+            return UNKNOWN
+        self.depth += 1
+        kind = reader(self, node)
+        self.depth -= 1
+        self.types[node] = kind
+        return kind
+
+    # Names, attributes, items.
+
+    def _name(self, node: ast.Name) -> Type:
+        if self.scope.state.chains and (known := self.scope.state.chains.get(node.id)) is not None:
+            return known
+        found = self.scope.lookup(node.id)
+        if found is not None:
+            return found
+        if node.id in _BUILTINS:
+            return Builtin(node.id)
+        return UNKNOWN
+
+    def _attribute(self, node: ast.Attribute) -> Type:
+        owner = self.evaluate(node.value)
+        known = None
+        if self.scope.state.chains and (text := chain_text(node)):
+            known = self.scope.state.chains.get(text)
+        self.resolutions.pop(node, None)
+        if owner is UNKNOWN:
+            return known or UNKNOWN
+        found = self.attribute(owner, node.attr)
+        if found.symbols or found.possible or (found.missing and known is None):
+            missing = found.missing if known is None else ()
+            self.resolve(
+                node, "attribute", node.attr, found.symbols, missing, found.possible, sure=found.sure
+            )
+        if known is not None:
+            return known
+        kind = found.type
+        if self.version and found.symbols == ["bpy.app.version"]:
+            return Tuple(tuple(Plain("int", part) for part in self.version))
+        return kind
+
+    def _subscript(self, node: ast.Subscript) -> Type:
+        owner = self.evaluate(node.value)
+        if isinstance(node.slice, ast.Slice):
+            for part in (node.slice.lower, node.slice.upper, node.slice.step):
+                if part is not None:
+                    self.evaluate(part)
+            return self._sliced(owner, node.slice)
+        key = self.evaluate(node.slice)
+        return self.item(owner, key, node) if owner is not UNKNOWN else UNKNOWN
+
+    def _sliced(self, owner: Type, part: ast.Slice) -> Type:
+        if isinstance(owner, Tuple):
+            if part.step is None and all(
+                bound is None or (isinstance(bound, ast.Constant) and isinstance(bound.value, int))
+                for bound in (part.lower, part.upper)
+            ):
+                low = part.lower.value if isinstance(part.lower, ast.Constant) else None
+                high = part.upper.value if isinstance(part.upper, ast.Constant) else None
+                assert low is None or isinstance(low, int)
+                assert high is None or isinstance(high, int)
+                return Tuple(owner.items[low:high])
+            return Sequence("list", self.iterated(owner))
+        if isinstance(owner, (Sequence, Plain)):
+            return Plain(owner.kind) if isinstance(owner, Plain) else owner
+        return Sequence("list", self.iterated(owner))
+
+    # Literals.
+
+    def _constant(self, node: ast.Constant) -> Type:
+        value = node.value
+        if value is None:
+            return NONE
+        kind = _CLASSES.get(type(value))
+        if kind is None:
+            return UNKNOWN
+        if isinstance(value, (bytes, complex)) or (isinstance(value, str) and len(value) > _LONGEST_LITERAL):
+            return Plain(kind)
+        return Plain(kind, value) if isinstance(value, (str, int, float)) else UNKNOWN
+
+    def _text(self, node: ast.JoinedStr) -> Type:
+        for part in node.values:
+            if isinstance(part, ast.FormattedValue):
+                self.evaluate(part.value)
+        return STR
+
+    def _tuple(self, node: ast.Tuple | ast.List) -> Type:
+        items: list[Type] = []
+        starred = False
+        for item in node.elts:
+            if isinstance(item, ast.Starred):
+                starred = True
+                items.append(self.iterated(self.evaluate(item.value)))
+            else:
+                items.append(self.evaluate(item))
+        if starred or len(items) > _LONGEST_LITERAL:
+            return Sequence("list", union(items))
+        if isinstance(node, ast.List):
+            return Tuple(tuple(items)) if items else Sequence("list", UNKNOWN)
+        return Tuple(tuple(items))
+
+    def _set(self, node: ast.Set) -> Type:
+        return Sequence("set", union([self.evaluate(item) for item in node.elts]))
+
+    def _dict(self, node: ast.Dict) -> Type:
+        keys: list[Type] = []
+        values: list[Type] = []
+        items: list[tuple[str, Type]] = []
+        for key, value in zip(node.keys, node.values, strict=True):
+            value_type = self.evaluate(value)
+            if key is None:
+                values.append(UNKNOWN)
+                continue
+            key_type = self.evaluate(key)
+            keys.append(key_type)
+            values.append(value_type)
+            if (text := literal_text(key_type)) is not None and len(items) < _LONGEST_LITERAL:
+                items.append((text, value_type))
+        if len(items) < len(values):
+            items = []
+        return Mapping(union(keys), union(values), tuple(items))
+
+    # Operations.
+
+    def _binary(self, node: ast.BinOp) -> Type:
+        left, right = self.evaluate(node.left), self.evaluate(node.right)
+        return _operation(left, right, node.op)
+
+    def _unary(self, node: ast.UnaryOp) -> Type:
+        operand = self.evaluate(node.operand)
+        if isinstance(node.op, ast.Not):
+            value = literal(operand) if isinstance(operand, Plain) and operand.kind == "bool" else None
+            return Plain("bool", not value) if isinstance(value, bool) else BOOL
+        if isinstance(operand, Plain) and isinstance(node.op, ast.USub):
+            value = operand.value
+            return Plain(operand.kind, -value) if isinstance(value, (int, float)) else Plain(operand.kind)
+        return operand if isinstance(operand, (Plain, Instance)) else UNKNOWN
+
+    def _compare(self, node: ast.Compare) -> Type:
+        left_node: ast.expr = node.left
+        left = self.evaluate(left_node)
+        result: Type = BOOL
+        for operator, right_node in zip(node.ops, node.comparators, strict=True):
+            right = self.evaluate(right_node)
+            if isinstance(operator, (ast.Eq, ast.NotEq, ast.In, ast.NotIn)):
+                self.check_value(left, right_node)
+                if isinstance(operator, (ast.Eq, ast.NotEq)):
+                    self.check_value(right, left_node)
+            if isinstance(left, Tuple) and isinstance(right, Tuple) and len(node.ops) == 1:
+                result = _compared(left, right, operator)
+            left, left_node = right, right_node
+        return result
+
+    def _boolean(self, node: ast.BoolOp) -> Type:
+        before = self.scope.state
+        kinds: list[Type] = []
+        holds = isinstance(node.op, ast.And)
+        for place, value in enumerate(node.values):
+            kinds.append(self.evaluate(value))
+            if place < len(node.values) - 1:
+                if place == 0:
+                    self.scope.state = before.copy()
+                self.narrow(value, holds=holds)
+        assigned = {name: kind for name, kind in self.scope.state.names.items() if name not in before.names}
+        self.scope.state = before
+        before.names.update(assigned)
+        if holds:
+            truths = [literal(kind) for kind in kinds]
+            if any(truth is False for truth in truths):
+                return Plain("bool", False)
+            return kinds[-1]
+        return union([*(without_none(kind) for kind in kinds[:-1]), kinds[-1]])
+
+    def _choice(self, node: ast.IfExp) -> Type:
+        test = self.evaluate(node.test)
+        before = self.scope.state
+        self.scope.state = before.copy()
+        self.narrow(node.test, holds=True)
+        first = self.evaluate(node.body)
+        self.scope.state = before.copy()
+        self.narrow(node.test, holds=False)
+        second = self.evaluate(node.orelse)
+        self.scope.state = before
+        if isinstance(test, Plain) and isinstance(test.value, bool):
+            return first if test.value else second
+        return join(first, second)
+
+    def _walrus(self, node: ast.NamedExpr) -> Type:
+        kind = self.evaluate(node.value)
+        self.bind_target(node.target, kind, node.value)
+        return kind
+
+    def _awaited(self, node: ast.Await | ast.Starred | ast.YieldFrom) -> Type:
+        self.evaluate(node.value)
+        return UNKNOWN
+
+    def _yielded(self, node: ast.Yield) -> Type:
+        kind = self.evaluate(node.value) if node.value else NONE
+        if self.function is not None:
+            before = self.function.returned
+            after = Sequence("iterator", kind)
+            self.function.returned = after if before is None else join(before, after)
+        return UNKNOWN
+
+    # What has names of its own.
+
+    def _lambda(self, node: ast.Lambda) -> Type:
+        number = self.define_function(node)
+        self.functions[number].stale = self.functions[number].runs == 0
+        return LocalFunction(number)
+
+    def _comprehension(self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp) -> Type:
+        element: list[Type] = []
+        self._inside(node.generators, lambda: element.append(self.evaluate(node.elt)))
+        return Sequence(_KINDS.get(type(node), "list"), element[0] if element else UNKNOWN)
+
+    def _dict_comprehension(self, node: ast.DictComp) -> Type:
+        kinds: list[Type] = []
+        self._inside(
+            node.generators, lambda: kinds.extend((self.evaluate(node.key), self.evaluate(node.value)))
+        )
+        return Mapping(kinds[0], kinds[1]) if len(kinds) == 2 else UNKNOWN
+
+    def _inside(self, generators: list[ast.comprehension], read: Callable[[], None]) -> None:
+        """Reads a comprehension's element with the names that its loops bind."""
+        before = self.scope.state
+        self.scope.state = before.copy()
+        try:
+            for generator in generators:
+                kind = self.iterated(self.evaluate(generator.iter))
+                self.bind_target(generator.target, kind)
+                for test in generator.ifs:
+                    self.evaluate(test)
+                    self.narrow(test, holds=True)
+            read()
+        finally:
+            self.scope.state = before
+
+    def _call(self, node: ast.Call) -> Type:
+        return self.call(self.evaluate(node.func), node)
+
+    # Values of enumerations.
+
+    def check_value(self, kind: Type, node: ast.expr) -> None:
+        """Records literals that are compared with, or assigned to, a value of an enumeration."""
+        source = self.source_of(kind)
+        if not source:
+            return
+        for constant in _constants(node):
+            self.resolve_value(constant, source)
+
+    @staticmethod
+    def source_of(kind: Type) -> tuple[str, ...]:
+        """The enumerations that a value was read from."""
+        found: list[str] = []
+        for member in members(kind):
+            plain = member.element if isinstance(member, Sequence) else member
+            if isinstance(plain, Plain) and plain.source:
+                found.append(plain.source)
+            elif plain is not NONE:
+                return ()
+        return tuple(found)
+
+    def resolve_value(self, node: ast.Constant, sources: tuple[str, ...], parameter: str = "") -> None:
+        """Records a literal as one of the values of properties, or of a parameter of functions."""
+        value = node.value
+        if not isinstance(value, str):
+            return
+        having: list[str] = []
+        lacking: list[str] = []
+        for path in sources:
+            symbol = self.api.symbols.symbol(path)
+            if symbol is None:
+                continue
+            items = symbol.enum_items
+            computed = symbol.enum_computed
+            if parameter:
+                found = next((row for row in symbol.parameters if row.name == parameter), None)
+                items, computed = found.enum_items if found else (), False
+            name = f"{path}({parameter})" if parameter else path
+            # Where classes are the values, RNA lists none or a stand-in.
+            is_listed = any(item.identifier == value for item in items) or self.api.is_class(f"{T}{value}")
+            if len(items) < _FEWEST_VALUES or is_listed:
+                having.append(name)
+            elif not computed:
+                lacking.append(name)
+        if having or lacking:
+            self.resolve(node, "value", value, having, lacking)
+
+    def with_state(self, state: State, read: Callable[[], None]) -> State:
+        """Reads something from a state on; returns the state after it."""
+        before, self.scope.state = self.scope.state, state
+        try:
+            read()
+            return self.scope.state
+        finally:
+            self.scope.state = before
+
+    _evaluators: ClassVar[dict[type, Callable[..., Type]]] = {
+        ast.Name: _name,
+        ast.Attribute: _attribute,
+        ast.Subscript: _subscript,
+        ast.Constant: _constant,
+        ast.JoinedStr: _text,
+        ast.Tuple: _tuple,
+        ast.List: _tuple,
+        ast.Set: _set,
+        ast.Dict: _dict,
+        ast.BinOp: _binary,
+        ast.UnaryOp: _unary,
+        ast.Compare: _compare,
+        ast.BoolOp: _boolean,
+        ast.IfExp: _choice,
+        ast.NamedExpr: _walrus,
+        ast.Await: _awaited,
+        ast.Starred: _awaited,
+        ast.YieldFrom: _awaited,
+        ast.Yield: _yielded,
+        ast.Lambda: _lambda,
+        ast.ListComp: _comprehension,
+        ast.SetComp: _comprehension,
+        ast.GeneratorExp: _comprehension,
+        ast.DictComp: _dict_comprehension,
+        ast.Call: _call,
+    }
+
+
+def _constants(node: ast.expr) -> list[ast.Constant]:
+    """The text literals in a literal or a display of literals."""
+    if isinstance(node, ast.Constant):
+        return [node]
+    if isinstance(node, (ast.Set, ast.Tuple, ast.List)):
+        return [item for item in node.elts if isinstance(item, ast.Constant)]
+    if isinstance(node, ast.IfExp):
+        return [*_constants(node.body), *_constants(node.orelse)]
+    return []
+
+
+def _compared(left: Tuple, right: Tuple, operator: ast.cmpop) -> Type:
+    """The comparison of two tuples of numbers: how scripts ask for Blender's version."""
+    first = [literal(kind) for kind in left.items]
+    second = [literal(kind) for kind in right.items]
+    if not all(isinstance(value, int) for value in (*first, *second)):
+        return BOOL
+    ours, theirs = [int(v) for v in first if v is not None], [int(v) for v in second if v is not None]
+    match operator:
+        case ast.Lt():
+            return Plain("bool", ours < theirs)
+        case ast.LtE():
+            return Plain("bool", ours <= theirs)
+        case ast.Gt():
+            return Plain("bool", ours > theirs)
+        case ast.GtE():
+            return Plain("bool", ours >= theirs)
+        case _:
+            return BOOL
+
+
+def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa: PLR0911, PLR0912 - one return a rule
+    if isinstance(left, Union) or isinstance(right, Union):
+        return union(_operation(a, b, operator) for a in members(left)[:3] for b in members(right)[:3])
+    if isinstance(left, Plain) and left.kind == "str":
+        return STR
+    if isinstance(left, Instance) and left.cls in _MATH:
+        if isinstance(right, Instance) and right.cls in _MATH:
+            if not isinstance(operator, ast.MatMult):
+                return left
+            if left.cls == _VECTOR:
+                return FLOAT if right.cls == _VECTOR else left
+            return right  # which a matrix or a rotation turns
+        return (
+            Instance(left.cls) if right is not UNKNOWN or not isinstance(operator, ast.MatMult) else UNKNOWN
+        )
+    if isinstance(right, Instance) and right.cls in _MATH and isinstance(left, Plain):
+        return right
+    if isinstance(left, Plain) and isinstance(right, Plain):
+        if isinstance(operator, ast.Div):
+            return FLOAT
+        return FLOAT if "float" in {left.kind, right.kind} else INT
+    if isinstance(operator, ast.Add):
+        if isinstance(left, Tuple) and isinstance(right, Tuple):
+            return Tuple((*left.items, *right.items)) if len(left.items) < _LONGEST_LITERAL else UNKNOWN
+        if isinstance(left, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple)):
+            return Sequence("list", join(_element(left), _element(right)))
+    if isinstance(operator, ast.Mult) and isinstance(left, (Sequence, Tuple)):
+        return Sequence("list", _element(left))
+    if isinstance(operator, (ast.BitOr, ast.BitAnd, ast.Sub)) and isinstance(left, Sequence):
+        return left
+    return UNKNOWN
+
+
+def _element(kind: Sequence | Tuple) -> Type:
+    return kind.element if isinstance(kind, Sequence) else union(kind.items)
+
+
+_KINDS: dict[type, str] = {ast.ListComp: "list", ast.SetComp: "set", ast.GeneratorExp: "iterator"}

@@ -1,0 +1,125 @@
+"""Facts about Blender that its symbols do not tell, each as plain data. What a version lacks is passed over."""
+
+from __future__ import annotations
+
+T = "bpy.types."
+
+# ``Object.type`` → the class of ``Object.data``.
+OBJECT_DATA = {
+    "MESH": "Mesh", "CURVE": "Curve", "SURFACE": "SurfaceCurve", "FONT": "TextCurve", "META": "MetaBall",
+    "ARMATURE": "Armature", "LATTICE": "Lattice", "LIGHT": "Light", "LIGHT_PROBE": "LightProbe", "CAMERA": "Camera",
+    "SPEAKER": "Speaker", "GPENCIL": "GreasePencil", "GREASEPENCIL": "GreasePencil", "CURVES": "Curves",
+    "POINTCLOUD": "PointCloud", "VOLUME": "Volume",
+}  # fmt: skip
+
+# Classes whose name is not spelled like the value that makes them: base class → value → class.
+CLASS_OF_VALUE = {
+    "Modifier": {
+        "GREASE_PENCIL_VERTEX_WEIGHT_ANGLE": "GreasePencilWeightAngleModifier",
+        "GREASE_PENCIL_VERTEX_WEIGHT_PROXIMITY": "GreasePencilWeightProximityModifier",
+    },
+    "Constraint": {"IK": "KinematicConstraint"},
+    "Strip": {"SPEED": "SpeedControlStrip"},
+    "StripModifier": {
+        "COMPOSITOR": "SequencerCompositorModifierData", "TONEMAP": "SequencerTonemapModifierData",
+    },
+    "ShaderFx": {"FX_PIXEL": "ShaderFxPixel", "FX_WAVE": "ShaderFxWave"},
+    "Attribute": {"BOOLEAN": "BoolAttribute"},
+    "Curve": {"CURVE": "Curve", "SURFACE": "SurfaceCurve", "FONT": "TextCurve"},
+    "NodeSocket": {"VALUE": "NodeSocketFloat", "RGBA": "NodeSocketColor"},
+    "NodeTree": {"COMPOSITING": "CompositorNodeTree"},
+}  # fmt: skip
+
+# The properties that tell an instance's class by their value, best first.
+DISCRIMINANTS = ("type", "bl_idname", "data_type", "effector_type")
+
+# Classes whose instances have whatever a script, an add-on or an operator gave them.
+OPEN_CLASSES = (
+    "bpy.types.PropertyGroup", "bpy.types.OperatorProperties", "bpy.types.AddonPreferences",
+    "bpy.types.GizmoGroupProperties", "bpy.types.KeyConfigPreferences", "bpy.types.IDPropertyWrapPtr",
+    "bpy.types.AnyType", "bpy.types.UnknownType", "bpy.types.Gizmo", "bpy.utils.previews.ImagePreviewCollection",
+)  # fmt: skip
+# Classes that scripts derive their own from, which a value declared so may be; and the context, to which layouts add.
+DERIVED_BY_SCRIPTS = frozenset(
+    {
+        "bpy.types.Operator", "bpy.types.Macro", "bpy.types.Panel", "bpy.types.Menu", "bpy.types.Header",
+        "bpy.types.UIList", "bpy.types.RenderEngine", "bpy.types.KeyingSetInfo", "bpy.types.GizmoGroup",
+        "bpy.types.Node", "bpy.types.NodeSocket", "bpy.types.NodeTree", "bpy.types.NodeCustomGroup",
+        "bpy.types.NodeTreeInterfaceSocket", "bpy.types.Context",
+    }
+)  # fmt: skip
+# Nodes that have the sockets which their group, their zone or their items give them.
+NODES_WITH_SOCKETS_OF_THEIR_OWN = (
+    "Group", "GroupInput", "GroupOutput", "SimulationInput", "SimulationOutput", "RepeatInput", "RepeatOutput",
+    "ForeachGeometryElementInput", "ForeachGeometryElementOutput", "Bake", "CaptureAttribute", "MenuSwitch",
+    "IndexSwitch", "Viewer", "OutputFile", "Script", "CombineBundle", "SeparateBundle", "EvaluateClosure",
+    "ClosureInput", "ClosureOutput", "FormatString", "CryptomatteV2", "RLayers", "Image", "Reroute", "Custom",
+)  # fmt: skip
+
+# Functions that take keywords which their signatures do not list.
+OPEN_CALLS = frozenset({"bpy.types.Context.temp_override"})
+
+# What the entries of a result of bmesh.ops hold, by the beginning of their names.
+BMESH_RESULTS = {
+    "vert": ("BMVert",), "edge": ("BMEdge",), "face": ("BMFace",), "geom": ("BMVert", "BMEdge", "BMFace"),
+    "region": ("BMFace",), "new_geom": ("BMVert", "BMEdge", "BMFace"), "split": ("BMVert", "BMEdge", "BMFace"),
+}  # fmt: skip
+
+# Properties that RNA declares wider than they are: path → class.
+NARROWER = {
+    "bpy.types.SpaceNodeEditor.edit_tree": "NodeTree",
+    "bpy.types.Context.space_data": "Space",
+    "bpy.types.Context.edit_bone": "EditBone",
+    "bpy.types.BoidSettings.active_boid_state": "BoidState",
+}
+
+# Parameters of a script's own functions that are called so by everyone. Only a name that hardly means another thing
+# has a place here; types from here are not sure.
+PARAMETERS = {
+    "context": "Context", "_context": "Context", "C": "Context", "ctx": "Context",
+    "layout": "UILayout", "depsgraph": "Depsgraph", "scene": "Scene", "view_layer": "ViewLayer",
+    "obj": "Object", "ob": "Object", "material": "Material", "mat": "Material", "mesh": "Mesh",
+    "fcurve": "FCurve", "fcu": "FCurve", "pbone": "PoseBone", "pose_bone": "PoseBone", "edit_bone": "EditBone",
+    "armature_ob": "Object", "node_tree": "NodeTree", "ntree": "NodeTree", "event": "Event",
+    "psys": "ParticleSystem", "brush": "Brush", "armature": "Object", "region": "Region", "wm": "WindowManager",
+    "window_manager": "WindowManager", "constraint": "Constraint", "action": "Action", "image": "Image",
+    "driver": "Driver", "col": "UILayout", "row": "UILayout", "box": "UILayout", "addon_prefs": "AddonPreferences",
+}  # fmt: skip
+
+# Python's and the API's names for mathutils in RNA's subtypes.
+MATH_OF_SUBTYPE = {
+    "TRANSLATION": "Vector", "XYZ": "Vector", "DIRECTION": "Vector", "VELOCITY": "Vector", "ACCELERATION": "Vector",
+    "XYZ_LENGTH": "Vector", "COORDINATES": "Vector", "EULER": "Euler", "QUATERNION": "Quaternion",
+    "MATRIX": "Matrix", "COLOR": "Color", "COLOR_GAMMA": "Color",
+}  # fmt: skip
+
+# Members of ``bpy.context`` whose class only an editor tells: name → class; with brackets, a list of them.
+CONTEXT_MEMBERS = {
+    "active_editable_fcurve": "FCurve", "cloth": "ClothModifier", "collision": "CollisionModifier",
+    "dynamic_paint": "DynamicPaintModifier", "edit_movieclip": "MovieClip", "editable_fcurves": "[FCurve]",
+    "fluid": "FluidModifier", "gpencil": "GreasePencil", "image_paint_object": "Object", "lightprobe": "LightProbe",
+    "line_style": "FreestyleLineStyle", "particle_edit_object": "Object", "pointcloud": "PointCloud",
+    "particle_system_editable": "ParticleSystem", "sculpt_object": "Object",
+    "selected_editable_fcurves": "[FCurve]", "selected_movieclip_tracks": "[MovieTrackingTrack]",
+    "selected_pose_bones_from_active_object": "[PoseBone]", "selected_visible_fcurves": "[FCurve]",
+    "sequencer_scene": "Scene", "soft_body": "SoftBodyModifier", "ui_list": "UIList",
+    "vertex_paint_object": "Object", "visible_fcurves": "[FCurve]", "weight_paint_object": "Object",
+    "curves": "Curves", "selected_ids": "[ID]", "edit_image": "Image", "active_file": "FileSelectEntry",
+    "selected_files": "[FileSelectEntry]",
+}  # fmt: skip
+
+# Members whose value has the class of what they are read from, though they are declared wider.
+SAME_CLASS = frozenset(
+    {"original", "evaluated_get", "copy", "override_create", "make_local", "evaluated_object"}
+)
+
+# What sequences with a class of their own hold.
+ELEMENTS = {
+    "bmesh.types.BMVertSeq": ("bmesh.types.BMVert",), "bmesh.types.BMEdgeSeq": ("bmesh.types.BMEdge",),
+    "bmesh.types.BMFaceSeq": ("bmesh.types.BMFace",), "bmesh.types.BMLoopSeq": ("bmesh.types.BMLoop",),
+    "bmesh.types.BMEditSelSeq": ("bmesh.types.BMVert", "bmesh.types.BMEdge", "bmesh.types.BMFace"),
+    "bmesh.types.BMEditSelIter": ("bmesh.types.BMVert", "bmesh.types.BMEdge", "bmesh.types.BMFace"),
+}  # fmt: skip
+LAYER_ITEM = "bmesh.types.BMLayerItem"
+LAYERS = "bmesh.types.BMLayerCollection"
+ELEMENT = "[]"  # the trait that names what an instance holds

@@ -1,0 +1,351 @@
+"""Reads attributes and items of every type."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, ClassVar
+
+from kb_check.api import ARRAY, COLLECTION, STRUCT
+from kb_check.core import Core
+from kb_check.facts import (
+    DERIVED_BY_SCRIPTS,
+    LAYER_ITEM,
+    NODES_WITH_SOCKETS_OF_THEIR_OWN,
+    OPEN_CLASSES,
+)
+from kb_check.types import (
+    FLOAT,
+    STR,
+    UNKNOWN,
+    Builtin,
+    ClassObject,
+    Collection,
+    Function,
+    Instance,
+    LocalClass,
+    LocalFunction,
+    LocalInstance,
+    Mapping,
+    Module,
+    NoneValue,
+    Operator,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    Union,
+    literal,
+    literal_text,
+    union,
+)
+
+if TYPE_CHECKING:
+    import ast
+    from collections.abc import Callable
+
+_PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
+_VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
+
+
+@dataclass(slots=True)
+class Lookup:
+    """What an attribute was found to be, for each member of a union in turn (see types.Resolution)."""
+
+    types: list[Type] = field(default_factory=list[Type])
+    symbols: list[str] = field(default_factory=list[str])
+    missing: list[str] = field(default_factory=list[str])
+    possible: list[str] = field(default_factory=list[str])
+    sure: bool = True
+
+    @property
+    def type(self) -> Type:
+        """The type of the attribute."""
+        return self.types[0] if len(self.types) == 1 else union(self.types)
+
+
+class Members(Core):
+    """Reads attributes and items."""
+
+    def attribute(self, kind: Type, name: str) -> Lookup:
+        """An attribute of a value."""
+        found = Lookup()
+        if isinstance(kind, Union):
+            for member in kind.members:
+                if not isinstance(member, NoneValue):
+                    self._read(member, name, found)
+        else:
+            self._read(kind, name, found)
+        if not found.types:
+            found.types.append(UNKNOWN)
+        return found
+
+    def _read(self, kind: Type, name: str, found: Lookup) -> None:
+        reader = self._attribute_readers.get(type(kind))
+        if reader is not None:
+            reader(self, kind, name, found)
+        else:
+            found.types.append(UNKNOWN)
+
+    def _of_instance(self, kind: Instance, name: str, found: Lookup) -> None:
+        found.sure = found.sure and kind.sure
+        member = self.api.member(kind.cls, name)
+        if member is not None:
+            found.symbols.append(member.symbol.path)
+            found.types.append(kind.trait(name) or self._held(member.type, kind, name))
+            return
+        if (extra := self._registered(kind.cls, name)) is not None:
+            found.types.append(extra)
+            return
+        if below := self.api.below(kind.cls, name):
+            found.possible += [member.symbol.path for _, member in below]
+            found.types.append(
+                union(self._held(member.type, Instance(cls), name) for cls, member in below[:9])
+            )
+            return
+        if not _is_pythons(name) and not self._is_open(kind.cls):
+            found.missing.append(kind.cls)
+            found.sure = found.sure and kind.cls not in DERIVED_BY_SCRIPTS
+        found.types.append(UNKNOWN)
+
+    def _is_open(self, cls: str) -> bool:
+        """Whether instances of a class have members that its symbols do not tell."""
+        symbol = self.api.symbols.symbol(cls)
+        if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"}:
+            return True
+        return any(self.api.descends(cls, base) for base in OPEN_CLASSES)
+
+    def _held(self, kind: Type, owner: Type, name: str) -> Type:
+        """A member's type as it is read from its owner."""
+        if isinstance(kind, Function):
+            return Function(kind.path, owner)
+        if isinstance(kind, Collection):
+            return replace(kind, owner=owner)
+        return self.api.as_held_by(kind, owner, name)
+
+    def _registered(self, cls: str, name: str) -> Type | None:
+        """A property that the script gives to a class of the API."""
+        if self.registered:
+            for ancestor in self.api.lineage(cls):
+                if (found := self.registered.get((ancestor, name))) is not None:
+                    return found
+        return None
+
+    def _of_collection(self, kind: Collection, name: str, found: Lookup) -> None:
+        own = self.api.member(kind.container, name)
+        if own is None or own.symbol.owner == STRUCT:
+            # What every struct has, as ``get``, a collection has of its own.
+            own = self.api.member(COLLECTION, name) or own
+        if own is not None:
+            found.symbols.append(own.symbol.path)
+            found.types.append(self._held(own.type, kind, name))
+            return
+        found.missing.append(kind.path or kind.container)
+        found.types.append(UNKNOWN)
+
+    def _of_module(self, kind: Module, name: str, found: Lookup) -> None:
+        member = self.api.member(kind.path, name)
+        if member is None:
+            nested = self.api.symbols.symbol(f"{kind.path}.{name}")
+            if (
+                nested is None
+                and not name.startswith("_")
+                and f"{kind.path}.{name}" not in self.own_operators
+            ):
+                found.missing.append(kind.path)
+            found.types.append(UNKNOWN)
+            return
+        found.symbols.append(member.symbol.path)
+        found.types.append(self._held(member.type, kind, name))
+
+    def _of_class(self, kind: ClassObject, name: str, found: Lookup) -> None:
+        member = self.api.member(kind.cls, name)
+        if member is not None:
+            found.symbols.append(member.symbol.path)
+            found.types.append(
+                Function(member.symbol.path, kind) if isinstance(member.type, Function) else UNKNOWN
+            )
+            return
+        found.types.append(self._registered(kind.cls, name) or UNKNOWN)
+        if not _is_pythons(name) and not hasattr(type, name) and not self._is_open(kind.cls):
+            found.missing.append(kind.cls)
+
+    def _of_operator(self, kind: Operator, name: str, found: Lookup) -> None:
+        found.types.append(Builtin(f"operator.{name}", kind))
+        if not self.api.is_operator_method(name):
+            found.missing.append(kind.path)
+
+    def _of_local_class(self, kind: LocalClass, name: str, found: Lookup) -> None:
+        if own := self.class_attribute(kind.number, name):
+            found.types.append(self.bound(own[0], kind) if self._is_class_method(own[0]) else own[0])
+            return
+        bases, known = self.api_bases(kind.number)
+        self._of_bases([ClassObject(base) for base in bases], name, found, known=known)
+
+    def _is_class_method(self, kind: Type) -> bool:
+        return isinstance(kind, LocalFunction) and self.functions[kind.number].is_class_method
+
+    def _of_local_instance(self, kind: LocalInstance, name: str, found: Lookup) -> None:
+        if own := self.class_attribute(kind.number, name):
+            found.types.append(self.bound(own[0], kind))
+            return
+        bases, known = self.api_bases(kind.number)
+        self._of_bases([Instance(base) for base in bases], name, found, known=known)
+
+    def _of_bases(self, bases: list[Type], name: str, found: Lookup, *, known: bool) -> None:
+        inner = Lookup()
+        for base in bases:
+            one = Lookup()
+            self._read(base, name, one)
+            if one.symbols:
+                found.symbols += one.symbols
+                found.types += one.types
+                return
+            inner.missing += one.missing
+            inner.types += one.types
+        # What a class of the script lacks may be set by whoever makes it: only its API bases are told.
+        found.types.append(inner.type if inner.types else UNKNOWN)
+        if known and bases and inner.missing:
+            found.missing += inner.missing
+            found.sure = False
+
+    def _of_value(self, kind: Type, name: str, found: Lookup) -> None:
+        if isinstance(kind, Sequence) and kind.kind == "array" and (member := self.api.member(ARRAY, name)):
+            found.symbols.append(member.symbol.path)
+        if hasattr(_python_class(kind), name):
+            found.types.append(Builtin(name, kind))
+
+    # Items.
+
+    def item(self, kind: Type, key: Type, node: ast.AST) -> Type:
+        """What an index or a key gives; ``node`` is where a socket is recorded."""
+        if isinstance(kind, Union):
+            return union(
+                self._item(member, key, node) for member in kind.members if not isinstance(member, NoneValue)
+            )
+        return self._item(kind, key, node)
+
+    def _item(self, kind: Type, key: Type, node: ast.AST) -> Type:  # noqa: PLR0911 - one return a type
+        if isinstance(kind, Collection):
+            return self.collection_item(kind, key, node)
+        if isinstance(kind, Sequence):
+            return kind.element
+        if isinstance(kind, Tuple):
+            at = literal(key)
+            if isinstance(at, int) and -len(kind.items) <= at < len(kind.items):
+                return kind.items[at]
+            return union(kind.items) if kind.items else UNKNOWN
+        if isinstance(kind, Mapping):
+            text = literal_text(key)
+            return next((value for name, value in kind.items if name == text), kind.value)
+        if isinstance(kind, Instance):
+            return self._item_of_instance(kind, key)
+        if isinstance(kind, Plain) and kind.kind == "str":
+            return STR
+        return UNKNOWN
+
+    def _item_of_instance(self, kind: Instance, key: Type) -> Type:
+        if kind.cls in _VECTORS:
+            return FLOAT
+        if kind.cls == "mathutils.Matrix":
+            return Instance("mathutils.Vector")
+        if isinstance(key, Instance) and key.cls == LAYER_ITEM and key.traits:
+            return key.traits[0][1]
+        return self.api.element(kind)
+
+    def collection_item(self, kind: Collection, key: Type, node: ast.AST) -> Type:
+        """An item of a collection: its key may be a socket's, or the name that an item has by default."""
+        text = literal_text(key)
+        side = kind.path.rpartition(".")[2]
+        if side in {"inputs", "outputs"} and isinstance(kind.owner, Instance):
+            found = self._socket(kind.owner, side, key, node)
+            if found is not None:
+                return found
+        element = kind.element
+        if text and isinstance(element, Instance):
+            cls = self.api.class_by_label(element.cls, text)
+            if cls and self.api.descends(cls, element.cls):
+                return Instance(cls, sure=False)
+        return element
+
+    def _socket(self, owner: Instance, side: str, key: Type, node: ast.AST) -> Type | None:
+        """The type of a node's socket, which is recorded; None where the node's class is not known."""
+        value = literal(key)
+        if value is None or isinstance(value, (bool, float)):
+            return None
+        sockets = list(self.api.sockets(owner.cls, side))
+        if not sockets:
+            return None
+        if isinstance(value, int):
+            symbol = next((s for _, _, s in sockets if s.signature == f"{side}[{value}]"), None)
+        else:
+            symbol = next((s for name, _, s in sockets if name == value), None) or next(
+                (s for _, label, s in sockets if label == value), None
+            )
+        if symbol is None:
+            if isinstance(value, str) and not _has_sockets_of_its_own(owner.cls):
+                self.resolve(node, "item", value, missing=(owner.cls,), sure=owner.sure)
+            return None
+        self.resolve(node, "item", str(value), (symbol.path,), sure=owner.sure)
+        return self.api.socket_type(symbol)
+
+    def iterated(self, kind: Type) -> Type:  # noqa: PLR0911 - one return a type
+        """What a loop over a value gives."""
+        if isinstance(kind, Union):
+            return union(
+                self.iterated(member) for member in kind.members if not isinstance(member, NoneValue)
+            )
+        if isinstance(kind, Collection):
+            return kind.element
+        if isinstance(kind, Sequence):
+            return kind.element
+        if isinstance(kind, Tuple):
+            return union(kind.items) if kind.items else UNKNOWN
+        if isinstance(kind, Mapping):
+            return kind.key
+        if isinstance(kind, Instance):
+            return self._item_of_instance(kind, UNKNOWN)
+        return STR if isinstance(kind, Plain) and kind.kind == "str" else UNKNOWN
+
+    def unpacked(self, kind: Type, count: int) -> list[Type]:
+        """The types of ``count`` names that a value is unpacked into."""
+        if isinstance(kind, Tuple) and len(kind.items) == count:
+            return list(kind.items)
+        if isinstance(kind, Union):
+            rows = [self.unpacked(member, count) for member in kind.members]
+            return [union(column) for column in zip(*rows, strict=True)]
+        return [self.iterated(kind)] * count
+
+    _attribute_readers: ClassVar[dict[type, Callable[..., None]]] = {
+        Instance: _of_instance,
+        Collection: _of_collection,
+        Module: _of_module,
+        ClassObject: _of_class,
+        Operator: _of_operator,
+        LocalClass: _of_local_class,
+        LocalInstance: _of_local_instance,
+        Plain: _of_value,
+        Sequence: _of_value,
+        Tuple: _of_value,
+        Mapping: _of_value,
+    }
+
+
+def _has_sockets_of_its_own(cls: str) -> bool:
+    """Whether the sockets of a node depend on more than its class."""
+    return cls.rpartition("Node")[2] in NODES_WITH_SOCKETS_OF_THEIR_OWN
+
+
+def _is_pythons(name: str) -> bool:
+    """Whether everything has an attribute of this name, or may have."""
+    return name in {"bl_rna", "rna_type"} or (name.startswith("__") and name.endswith("__"))
+
+
+def _python_class(kind: Type) -> type:
+    """The class of Python that a value is of."""
+    if isinstance(kind, Mapping):
+        return dict
+    if isinstance(kind, Plain):
+        return _PYTHON.get(kind.kind, str)
+    if isinstance(kind, Tuple):
+        return list  # or a tuple, which has less
+    return set if isinstance(kind, Sequence) and kind.kind == "set" else list

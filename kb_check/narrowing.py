@@ -1,0 +1,155 @@
+"""What conditions tell: ``isinstance``, ``ob.type == 'MESH'``, ``hasattr``, ``is not None``."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import replace
+
+from kb_check.expressions import Expressions
+from kb_check.facts import DISCRIMINANTS, OBJECT_DATA, T
+from kb_check.scopes import chain_text
+from kb_check.types import (
+    NONE,
+    UNKNOWN,
+    ClassObject,
+    Instance,
+    LocalClass,
+    LocalInstance,
+    Tuple,
+    Type,
+    Union,
+    literal_text,
+    literal_texts,
+    members,
+    union,
+    without_none,
+)
+
+_OBJECT = f"{T}Object"
+
+
+class Narrowing(Expressions):
+    """Applies conditions to what names and chains hold."""
+
+    def narrow(self, test: ast.expr, *, holds: bool) -> None:  # noqa: PLR0912 - one case a form
+        """See :class:`core.Core`."""
+        match test:
+            case ast.UnaryOp(op=ast.Not()):
+                self.narrow(test.operand, holds=not holds)
+            case ast.BoolOp(op=ast.And()) if holds:
+                for value in test.values:
+                    self.narrow(value, holds=True)
+            case ast.BoolOp(op=ast.Or()) if not holds:
+                for value in test.values:
+                    self.narrow(value, holds=False)
+            case ast.BoolOp(op=ast.Or()) if holds:
+                self._any_of(test.values)
+            case ast.Name() | ast.Attribute():
+                if holds:
+                    self._without_none(test)
+            case ast.NamedExpr():
+                if holds:
+                    self._without_none(test.target)
+            case ast.Compare(ops=[operator], comparators=[right]):
+                self._comparison(test.left, operator, right, holds=holds)
+            case ast.Call(func=ast.Name(id=name)) if holds:
+                self._asked(name, test)
+            case _:
+                pass
+
+    def _type_of(self, node: ast.expr) -> Type:
+        return self.types.get(node, UNKNOWN)
+
+    def _know(self, node: ast.expr, kind: Type) -> None:
+        """What a name or a chain holds from here on; only for the way that is being read."""
+        text = chain_text(node)
+        if not text or self._type_of(node) == kind:
+            return
+        if isinstance(node, ast.Name) and node.id in self.scope.state.names:
+            self.scope.state.names[node.id] = kind
+        else:
+            self.scope.state.chains[text] = kind
+        self.types[node] = kind
+
+    def _without_none(self, node: ast.expr) -> None:
+        kind = self._type_of(node)
+        if isinstance(kind, Union):
+            self._know(node, without_none(kind))
+
+    def _any_of(self, tests: list[ast.expr]) -> None:
+        """``a.type == 'X' or a.type == 'Y'``: either."""
+        before = self.scope.state
+        kinds: dict[str, list[Type]] = {}
+        for test in tests:
+            self.scope.state = before.copy()
+            self.narrow(test, holds=True)
+            for name, kind in self.scope.state.names.items():
+                if before.names.get(name) is not kind:
+                    kinds.setdefault(name, []).append(kind)
+        self.scope.state = before
+        for name, found in kinds.items():
+            if len(found) == len(tests):
+                before.names[name] = union(found)
+
+    def _comparison(self, left: ast.expr, operator: ast.cmpop, right: ast.expr, *, holds: bool) -> None:
+        positive = isinstance(operator, (ast.Eq, ast.In, ast.Is)) == holds
+        if isinstance(right, ast.Constant) and right.value is None:
+            if not positive:
+                self._without_none(left.target if isinstance(left, ast.NamedExpr) else left)
+            return
+        if not positive or not isinstance(left, ast.Attribute) or left.attr not in DISCRIMINANTS:
+            return
+        texts: list[str] = []
+        if isinstance(operator, (ast.In, ast.NotIn)):
+            kind = self._type_of(right)
+            held = kind.items if isinstance(kind, Tuple) else (self.iterated(kind),)
+            texts = [text for item in held for text in literal_texts(item)]
+        elif text := literal_text(self._type_of(right)):
+            texts = [text]
+        if texts:
+            self._told_apart(left.value, texts)
+
+    def _told_apart(self, node: ast.expr, values: list[str]) -> None:
+        """A value whose ``type`` is one of ``values``."""
+        kind = without_none(self._type_of(node))
+        found: list[Type] = []
+        for member in members(kind):
+            if not isinstance(member, Instance):
+                return
+            for value in values:
+                if member.cls == _OBJECT:
+                    data = self.api.instance(T + OBJECT_DATA.get(value, ""))
+                    found.append(replace(member, traits=(("data", data),)) if data is not UNKNOWN else member)
+                elif cls := self.api.class_of_value(member.cls, value):
+                    found.append(Instance(cls))
+                else:
+                    found.append(member)
+        if found and (result := union(found)) is not UNKNOWN:
+            self._know(node, result)
+
+    def _asked(self, name: str, call: ast.Call) -> None:
+        """``isinstance(x, y)`` and ``hasattr(x, "y")``."""
+        if len(call.args) != 2:
+            return
+        subject, answer = call.args
+        if name == "isinstance":
+            wanted = self._type_of(answer)
+            kinds = wanted.items if isinstance(wanted, Tuple) else members(wanted)
+            found = [self._instance(kind) for kind in kinds]
+            if UNKNOWN not in found:
+                self._know(subject, union(found))
+            elif chain_text(subject):
+                self._know(subject, UNKNOWN)
+        elif name == "hasattr" and (attribute := literal_text(self._type_of(answer))):
+            text = chain_text(subject)
+            owner = self._type_of(subject)
+            if text and owner is not UNKNOWN and owner is not NONE:
+                found_type = self.attribute(owner, attribute)
+                if found_type.missing or found_type.possible:
+                    self.scope.state.chains[f"{text}.{attribute}"] = found_type.type
+
+    @staticmethod
+    def _instance(kind: Type) -> Type:
+        if isinstance(kind, ClassObject):
+            return Instance(kind.cls)
+        return LocalInstance(kind.number) if isinstance(kind, LocalClass) else UNKNOWN

@@ -1,0 +1,172 @@
+"""The names of a script: what each holds at the place that is being read, and what it ever held."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kb_check.types import (
+    UNKNOWN,
+    Builtin,
+    Function,
+    Instance,
+    LocalFunction,
+    Mapping,
+    Tuple,
+    Type,
+    Union,
+    bounded,
+    join,
+)
+from kb_check.types import Sequence as ListType
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_DEEPEST_CHAIN = 8
+_NESTED = (ListType, Tuple, Mapping, Union, Instance, Function, Builtin, LocalFunction)
+
+
+def _kept(kind: Type) -> Type:
+    """A type as a name holds it; the same object where it is simple."""
+    return bounded(kind) if isinstance(kind, _NESTED) else kind
+
+
+@dataclass(slots=True)
+class State:
+    """What is known at one place of one scope: of names, and of chains (``context.object``) by their text."""
+
+    names: dict[str, Type] = field(default_factory=dict[str, Type])
+    chains: dict[str, Type] = field(default_factory=dict[str, Type])
+
+    def copy(self) -> State:
+        """The same, to be changed on its own."""
+        return State(self.names.copy(), self.chains.copy())
+
+
+def joined(states: Sequence[State]) -> State:
+    """What is known where several ways meet. A name that is bound on some ways only keeps its type."""
+    first, *others = states
+    names = first.names.copy()
+    chains = first.chains
+    for other in others:
+        for name, kind in other.names.items():
+            names[name] = join(names[name], kind) if name in names else kind
+        chains = {text: kind for text, kind in chains.items() if other.chains.get(text) == kind}
+    return State(names, dict(chains))
+
+
+@dataclass(slots=True)
+class Scope:
+    """A module, a function or a class. ``ever`` joins all that a name was bound to: what other scopes see."""
+
+    parent: Scope | None = None
+    is_class: bool = False
+    cls: int | None = None
+    state: State = field(default_factory=State)
+    ever: dict[str, Type] = field(default_factory=dict[str, Type])
+    elsewhere: set[str] = field(default_factory=set[str])
+    changes: int = 0
+
+    def lookup(self, name: str) -> Type | None:
+        """What a name holds here; None for a name that the script does not bind."""
+        if name not in self.elsewhere:
+            found = self.state.names.get(name)
+            if found is not None:
+                return found
+        scope = self.parent
+        while scope is not None:
+            if not scope.is_class:
+                found = scope.ever.get(name)
+                if found is not None:
+                    return found
+            scope = scope.parent
+        return None
+
+    def bind(self, name: str, kind: Type) -> None:
+        """Binds a name, and forgets what was known of chains that begin with it."""
+        kind = _kept(kind)
+        if name in self.elsewhere:
+            scope = self.parent
+            while scope is not None and scope.parent is not None and name not in scope.ever:
+                scope = scope.parent
+            if scope is not None:
+                scope.remember(name, kind)
+            return
+        self.state.names[name] = kind
+        if self.state.chains:
+            self.forget(name)
+        self.remember(name, kind)
+
+    def remember(self, name: str, kind: Type) -> None:
+        """Adds to what a name ever held."""
+        before = self.ever.get(name)
+        after = kind if before is None else join(before, kind)
+        if after != before:
+            self.ever[name] = after
+            self.changes += 1
+
+    def forget(self, text: str) -> None:
+        """Forgets what is known of a chain and of those that begin with it."""
+        begins = f"{text}."
+        chains = self.state.chains
+        for chain in [chain for chain in chains if chain == text or chain.startswith(begins)]:
+            del chains[chain]
+
+
+@dataclass(slots=True)
+class FunctionDefinition:
+    """A function of the script.
+
+    ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
+    something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
+    ``used`` are the attributes that it reads from each name, once they were asked for.
+    """
+
+    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+    scope: Scope
+    cls: int | None = None
+    is_static: bool = False
+    is_class_method: bool = False
+    is_property: bool = False
+    received: dict[str, Type] = field(default_factory=dict[str, Type])
+    unknown: set[str] = field(default_factory=set[str])
+    returned: Type | None = None
+    running: bool = False
+    runs: int = 0
+    stale: bool = True
+    seen: tuple[int, int] = (-1, -1)
+    used: dict[str, set[str]] | None = None
+
+
+@dataclass(slots=True)
+class ClassDefinition:
+    """A class of the script; ``attributes`` joins what its body, its annotations and its methods bind."""
+
+    node: ast.ClassDef
+    bases: tuple[Type, ...]
+    attributes: dict[str, Type] = field(default_factory=dict[str, Type])
+    changes: int = 0
+
+    def bind(self, name: str, kind: Type) -> None:
+        """Adds to what an attribute holds."""
+        kind = _kept(kind)
+        before = self.attributes.get(name)
+        after = kind if before is None or before is UNKNOWN else join(before, kind)
+        if after != before:
+            self.attributes[name] = after
+            self.changes += 1
+
+
+def chain_text(node: ast.expr) -> str:
+    """``context.object.data`` for such an expression; empty for one that is not only names and attributes."""
+    parts: list[str] = []
+    while isinstance(node, ast.Attribute):
+        parts.append(node.attr)
+        node = node.value
+        if len(parts) > _DEEPEST_CHAIN:
+            return ""
+    if not isinstance(node, ast.Name):
+        return ""
+    return ".".join((node.id, *reversed(parts)))

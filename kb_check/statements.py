@@ -1,0 +1,618 @@
+"""Reads statements in the order in which they run: ways part at conditions and meet again behind them."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
+
+from kb_check.annotations import annotated
+from kb_check.calls import Calls
+from kb_check.facts import PARAMETERS, T
+from kb_check.scopes import ClassDefinition, FunctionDefinition, Scope, State, chain_text, joined
+from kb_check.types import (
+    NONE,
+    STR,
+    UNKNOWN,
+    ClassObject,
+    Function,
+    Instance,
+    LocalClass,
+    LocalFunction,
+    LocalInstance,
+    Mapping,
+    Module,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    bounded,
+    join,
+    literal,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from collections.abc import Sequence as Rows
+
+_FORGIVING = frozenset(
+    {"AttributeError", "Exception", "BaseException", "KeyError", "TypeError", "RuntimeError", "ValueError"}
+)
+_API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
+                          "bl_math", "idprop", "imbuf"})  # fmt: skip
+
+
+@dataclass(slots=True)
+class _Loop:
+    """A loop that is being read: the states at its ``break`` and ``continue``."""
+
+    left: list[State] = field(default_factory=list[State])
+    continued: list[State] = field(default_factory=list[State])
+
+
+class Statements(Calls):
+    """Reads statements. Each reader returns whether the next statement can be reached."""
+
+    loops: list[_Loop]
+
+    def read_body(self, body: Rows[ast.stmt]) -> bool:
+        """Reads statements one after the other; whether what follows them can be reached."""
+        for statement in body:
+            self.statement = statement
+            reader = self._statement_readers.get(type(statement))
+            if reader is not None and not reader(self, statement):
+                return False
+        return True
+
+    # Assignments.
+
+    def bind_target(self, target: ast.expr, kind: Type, value: ast.expr | None = None) -> None:
+        """See :class:`core.Core`."""
+        match target:
+            case ast.Name():
+                self.scope.bind(target.id, kind)
+                self.types[target] = kind
+            case ast.Attribute():
+                self._store(target, kind, value)
+            case ast.Tuple() | ast.List():
+                self._unpack(target, kind)
+            case ast.Subscript():
+                owner = self.evaluate(target.value)
+                key = self.evaluate(target.slice) if not isinstance(target.slice, ast.Slice) else UNKNOWN
+                if owner is not UNKNOWN:
+                    self.item(owner, key, target)
+                self._fill(target, owner, key, kind)
+            case ast.Starred():
+                self.bind_target(target.value, Sequence("list", UNKNOWN))
+            case _:
+                pass
+
+    def _unpack(self, target: ast.Tuple | ast.List, kind: Type) -> None:
+        starred = next((at for at, item in enumerate(target.elts) if isinstance(item, ast.Starred)), None)
+        if starred is None:
+            for item, one in zip(target.elts, self.unpacked(kind, len(target.elts)), strict=True):
+                self.bind_target(item, one)
+            return
+        element = self.iterated(kind)
+        for item in target.elts:
+            if isinstance(item, ast.Starred):
+                self.bind_target(item.value, Sequence("list", element))
+            else:
+                self.bind_target(item, element)
+
+    def _fill(self, target: ast.Subscript, owner: Type, key: Type, kind: Type) -> None:
+        """An empty dictionary that a name holds learns what it is filled with."""
+        if (
+            isinstance(target.value, ast.Name)
+            and isinstance(owner, Mapping)
+            and target.value.id in self.scope.state.names
+        ):
+            value = kind if owner.value is UNKNOWN and not owner.items else join(owner.value, kind)
+            known = key if owner.key is UNKNOWN else join(owner.key, key)
+            self.scope.bind(target.value.id, Mapping(_general(known), value))
+
+    def _store(self, target: ast.Attribute, kind: Type, value: ast.expr | None) -> None:
+        owner = self.evaluate(target.value)
+        text = chain_text(target)
+        if isinstance(owner, LocalInstance):
+            self._store_on_instance(owner, target.attr, kind)
+        elif isinstance(owner, LocalClass):
+            self.classes[owner.number].bind(target.attr, kind)
+        elif isinstance(owner, ClassObject) and self.api.member(owner.cls, target.attr) is None:
+            self.registered[owner.cls, target.attr] = kind
+            return
+        is_expected = text in self.scope.state.chains
+        if text and self.scope.state.chains:
+            self.scope.forget(text)
+        self.resolutions.pop(target, None)
+        if owner is UNKNOWN:
+            return
+        found = self.attribute(owner, target.attr)
+        if found.symbols or found.missing or found.possible:
+            missing = () if is_expected else found.missing
+            self.resolve(
+                target, "store", target.attr, found.symbols, missing, found.possible, sure=found.sure
+            )
+        if found.symbols and value is not None:
+            self.check_value(found.type, value)
+        if text and isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance):
+            self.scope.state.chains[text] = kind
+
+    def _store_on_instance(self, owner: LocalInstance, name: str, kind: Type) -> None:
+        if self.class_attribute(owner.number, name) is None:
+            bases, _ = self.api_bases(owner.number)
+            if any(self.api.member(base, name) for base in bases):
+                return
+        found = self.class_attribute(owner.number, name)
+        self.classes[found[1] if found else owner.number].bind(name, _general(kind))
+
+    def _assign(self, node: ast.Assign) -> bool:
+        kind = self.evaluate(node.value)
+        for target in node.targets:
+            self.bind_target(target, kind, node.value)
+        return True
+
+    def _assign_annotated(self, node: ast.AnnAssign) -> bool:
+        kind = self.evaluate(node.value) if node.value is not None else UNKNOWN
+        if isinstance(node.annotation, ast.Call):  # ``size: FloatProperty(...)``
+            declared = self.evaluate(node.annotation)
+        else:
+            declared = annotated(node.annotation, self.evaluate)
+        if kind is UNKNOWN or kind is NONE or (isinstance(kind, Sequence) and kind.element is UNKNOWN):
+            kind = declared
+        self.bind_target(node.target, kind, node.value)
+        return True
+
+    def _assign_augmented(self, node: ast.AugAssign) -> bool:
+        right = self.evaluate(node.value)
+        before = self.evaluate(node.target)
+        if isinstance(node.target, ast.Name):
+            grown = isinstance(before, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple))
+            if grown:
+                before = Sequence("list", join(self.iterated(before), self.iterated(right)))
+            self.scope.bind(node.target.id, _general(before))
+        elif isinstance(node.target, ast.Attribute):
+            self._store(node.target, _general(before), None)
+        return True
+
+    # Ways that part and meet.
+
+    def _way(self, state: State, body: Rows[ast.stmt]) -> State | None:
+        """Reads statements from a state on; the state behind them, or None if they do not get there."""
+        self.scope.state = state
+        return self.scope.state if self.read_body(body) else None
+
+    def _meet(self, states: Rows[State | None], otherwise: State) -> bool:
+        """Goes on from where several ways end; whether any does."""
+        open_ways = [state for state in states if state is not None]
+        self.scope.state = joined(open_ways) if open_ways else otherwise
+        return bool(open_ways)
+
+    def _if(self, node: ast.If) -> bool:
+        test = self.evaluate(node.test)
+        truth = literal(test) if isinstance(test, Plain) and test.kind == "bool" else None
+        before = self.scope.state
+        ways: list[State | None] = []
+        for holds, body in ((True, node.body), (False, node.orelse)):
+            if isinstance(truth, bool) and truth is not holds:
+                continue
+            self.scope.state = before.copy()
+            self.narrow(node.test, holds=holds)
+            ways.append(self._way(self.scope.state, body))
+        return self._meet(ways, before)
+
+    def _loop(self, body: Rows[ast.stmt], orelse: Rows[ast.stmt], enter: Callable[[], None]) -> bool:
+        """Reads a loop's body twice, so that what one turn binds is known in the next."""
+        before = self.scope.state
+        loop = _Loop()
+        self.loops.append(loop)
+        start = before
+        bound = len(before.names), before
+        for turn in range(2):
+            self.scope.state = start.copy()
+            enter()
+            after = self._way(self.scope.state, body)
+            ends = [state for state in (after, *loop.continued) if state is not None]
+            start = joined([before, *ends])
+            if turn == 0 and not _differs(bound[1], start):
+                break
+        self.loops.pop()
+        self.scope.state = start.copy()
+        reached = self.read_body(orelse) if orelse else True
+        return self._meet([self.scope.state if reached else None, *loop.left], start)
+
+    def _for(self, node: ast.For | ast.AsyncFor) -> bool:
+        kind = self.iterated(self.evaluate(node.iter))
+
+        def enter() -> None:
+            self.statement = node
+            self.bind_target(node.target, kind)
+
+        return self._loop(node.body, node.orelse, enter)
+
+    def _while(self, node: ast.While) -> bool:
+        def enter() -> None:
+            self.statement = node
+            self.evaluate(node.test)
+            self.narrow(node.test, holds=True)
+
+        return self._loop(node.body, node.orelse, enter)
+
+    def _break(self, _node: ast.Break) -> bool:
+        if self.loops:
+            self.loops[-1].left.append(self.scope.state)
+        return False
+
+    def _continue(self, _node: ast.Continue) -> bool:
+        if self.loops:
+            self.loops[-1].continued.append(self.scope.state)
+        return False
+
+    def _with(self, node: ast.With | ast.AsyncWith) -> bool:
+        for item in node.items:
+            kind = self.evaluate(item.context_expr)
+            if item.optional_vars is not None:
+                self.bind_target(item.optional_vars, kind)
+        return self.read_body(node.body)
+
+    def _try(self, node: ast.Try) -> bool:
+        forgiving = any(_forgives(handler) for handler in node.handlers)
+        before = self.scope.state
+        self.tolerant += forgiving
+        after = self._way(before.copy(), node.body)
+        self.tolerant -= forgiving
+        within = joined([before, after or self.scope.state])
+        if after is not None and node.orelse:
+            after = self._way(after, node.orelse)
+        ways = [after]
+        for handler in node.handlers:
+            self.scope.state = within.copy()
+            if handler.type is not None:
+                self.evaluate(handler.type)
+            if handler.name:
+                self.scope.bind(handler.name, UNKNOWN)
+            ways.append(self._way(self.scope.state, handler.body))
+        reached = self._meet(ways, within.copy())
+        return self.read_body(node.finalbody) and reached
+
+    def _match(self, node: ast.Match) -> bool:
+        subject = self.evaluate(node.subject)
+        before = self.scope.state
+        ways: list[State | None] = []
+        whole = False
+        for case in node.cases:
+            self.scope.state = before.copy()
+            self._bind_pattern(case.pattern, subject, node.subject)
+            if case.guard is not None:
+                self.evaluate(case.guard)
+                self.narrow(case.guard, holds=True)
+            whole = whole or (
+                isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None and not case.guard
+            )
+            ways.append(self._way(self.scope.state, case.body))
+        if not whole:
+            ways.append(before)
+        return self._meet(ways, before)
+
+    def _bind_pattern(self, pattern: ast.pattern, subject: Type, node: ast.expr) -> None:
+        if isinstance(pattern, ast.MatchValue):
+            self.evaluate(pattern.value)
+            self.check_value(subject, pattern.value)
+            compared = ast.Compare(node, [ast.Eq()], [pattern.value])
+            self.narrow(compared, holds=True)
+            return
+        for part in ast.walk(pattern):
+            name = getattr(part, "name", None) or getattr(part, "rest", None)
+            if isinstance(name, str):
+                self.scope.bind(name, UNKNOWN)
+
+    # Ends and expressions.
+
+    def _expression(self, node: ast.Expr) -> bool:
+        self.evaluate(node.value)
+        return True
+
+    def _return(self, node: ast.Return) -> bool:
+        kind = self.evaluate(node.value) if node.value is not None else NONE
+        if self.function is not None:
+            before, kind = self.function.returned, bounded(kind)
+            self.function.returned = kind if before is None else join(before, kind)
+        return False
+
+    def _raise(self, node: ast.Raise) -> bool:
+        if node.exc is not None:
+            self.evaluate(node.exc)
+        return False
+
+    def _assert(self, node: ast.Assert) -> bool:
+        self.evaluate(node.test)
+        self.narrow(node.test, holds=True)
+        return True
+
+    def _delete(self, node: ast.Delete) -> bool:
+        for target in node.targets:
+            if isinstance(target, (ast.Attribute, ast.Subscript)):
+                owner = self.evaluate(target.value)
+                if isinstance(target, ast.Attribute) and isinstance(owner, ClassObject):
+                    continue
+                self.evaluate(target)
+        return True
+
+    def _global(self, node: ast.Global | ast.Nonlocal) -> bool:
+        if self.scope is not self.module:
+            self.scope.elsewhere.update(node.names)
+        return True
+
+    # Definitions.
+
+    def _import(self, node: ast.Import) -> bool:
+        for alias in node.names:
+            top = alias.name.partition(".")[0]
+            known = top in _API_MODULES
+            whole = self._module(alias.name) if known else UNKNOWN
+            if known and whole is UNKNOWN and "." in alias.name:
+                self.resolve(alias, "name", alias.name, missing=(alias.name,))
+            elif known:
+                self.resolve(alias, "name", alias.name, (alias.name,))
+            if alias.asname:
+                self.scope.bind(alias.asname, whole)
+            else:
+                self.scope.bind(top, self._module(top) if known else UNKNOWN)
+        return True
+
+    def _module(self, path: str) -> Type:
+        symbol = self.api.symbols.symbol(path)
+        if symbol is None:
+            return UNKNOWN
+        owner, _, name = path.rpartition(".")
+        member = self.api.member(owner, name) if owner else None
+        return member.type if member else Module(path)
+
+    def _import_from(self, node: ast.ImportFrom) -> bool:
+        module = node.module or ""
+        known = not node.level and module.partition(".")[0] in _API_MODULES
+        owner = self._module(module) if known else UNKNOWN
+        for alias in node.names:
+            name = alias.asname or alias.name
+            if alias.name == "*":
+                self._import_all(owner)
+                continue
+            if owner is UNKNOWN:
+                self.scope.bind(name, UNKNOWN)
+                continue
+            found = self.attribute(owner, alias.name)
+            if found.symbols or found.missing:
+                self.resolve(alias, "name", alias.name, found.symbols, found.missing)
+            self.scope.bind(name, found.type)
+        return True
+
+    def _import_all(self, owner: Type) -> None:
+        if isinstance(owner, Module):
+            for name in self.api.own(owner.path):
+                if not name.startswith("_"):
+                    self.scope.bind(name, self.attribute(owner, name).type)
+
+    def _define_function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+        cls = self.scope.cls if self.scope.is_class else None
+        number = self.define_function(node, cls)
+        function = self.functions[number]
+        kind: Type = LocalFunction(number)
+        for decorator in node.decorator_list:
+            self.evaluate(decorator)
+            match decorator:
+                case ast.Name(id="staticmethod"):
+                    function.is_static = True
+                case ast.Name(id="classmethod"):
+                    function.is_class_method = True
+                case (
+                    ast.Name(id="property")
+                    | ast.Attribute(attr="cached_property")
+                    | ast.Name(id="cached_property")
+                ):
+                    function.is_property = True
+                case ast.Attribute(attr="setter" | "getter" | "deleter"):
+                    return True
+                case ast.Attribute(attr="persistent") | ast.Name(id="persistent"):
+                    pass
+                case _:
+                    kind = UNKNOWN if cls is None else kind
+        for default in (*node.args.defaults, *node.args.kw_defaults):
+            if default is not None:
+                self.evaluate(default)
+        self.scope.bind(node.name, kind)
+        return True
+
+    def _define_class(self, node: ast.ClassDef) -> bool:
+        for decorator in node.decorator_list:
+            self.evaluate(decorator)
+        bases = tuple(self._base(base) for base in node.bases)
+        number = self.numbers.get(node)
+        if number is None:
+            number = self.numbers[node] = len(self.classes)
+            self.classes.append(ClassDefinition(node, bases))
+        scope = Scope(self.scope, is_class=True, cls=number)
+        outer, self.scope = self.scope, scope
+        try:
+            self.read_body(node.body)
+        finally:
+            self.scope = outer
+        definition = self.classes[number]
+        if isinstance(name := literal(scope.state.names.get("bl_idname", UNKNOWN)), str):
+            module, _, operator = f"bpy.ops.{name}".rpartition(".")
+            self.own_operators |= {module, f"{module}.{operator}"}
+        for name, kind in scope.ever.items():
+            definition.bind(name, _general(kind) if isinstance(kind, Plain) else kind)
+        self.scope.bind(node.name, LocalClass(number))
+        return True
+
+    def _base(self, node: ast.expr) -> Type:
+        kind = self.evaluate(node)
+        if isinstance(node, ast.Name) and node.id == "object":
+            return ClassObject("object")
+        return kind
+
+    # Functions.
+
+    def run(self, number: int) -> None:
+        """See :class:`core.Core`."""
+        function = self.functions[number]
+        outer = self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing
+        self.scope = Scope(function.scope)
+        self.function, self.loops, self.tolerant = function, [], 0
+        function.running, function.stale, function.runs = True, False, function.runs + 1
+        function.seen = self.stamp(function)
+        self.statement = None
+        # Some calls pass what is not known: the others tell no more than what may be passed.
+        self.guessing = any(function.received.get(name, UNKNOWN) is not UNKNOWN for name in function.unknown)
+        try:
+            self._bind_parameters(function)
+            if isinstance(function.node, ast.Lambda):
+                function.returned = self.evaluate(function.node.body)
+            elif self.read_body(function.node.body) and function.returned is not None:
+                function.returned = join(function.returned, NONE)
+            if not isinstance(function.node, ast.Lambda) and function.node.returns is not None:
+                self.statement = None
+                declared = annotated(function.node.returns, self.evaluate)
+                if declared is not UNKNOWN and function.returned in {UNKNOWN, None}:
+                    function.returned = declared
+        finally:
+            function.running = False
+            self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing = outer
+
+    def stamp(self, function: FunctionDefinition) -> tuple[int, int]:
+        """What changes when a function should be read again: its module's names, its class's attributes."""
+        return self.module.changes, self.classes[function.cls].changes if function.cls is not None else 0
+
+    def _bind_parameters(self, function: FunctionDefinition) -> None:
+        arguments = function.node.args
+        positional = [*arguments.posonlyargs, *arguments.args]
+        declared = self._declared_parameters(function, len(positional))
+        defaults: dict[str, ast.expr] = {}
+        for argument, default in zip(reversed(positional), reversed(arguments.defaults), strict=False):
+            defaults[argument.arg] = default
+        for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
+            if default is not None:
+                defaults[argument.arg] = default
+        for place, argument in enumerate((*positional, *arguments.kwonlyargs)):
+            given = declared[place] if place < len(declared) else UNKNOWN
+            self.scope.bind(
+                argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg))
+            )
+        if arguments.vararg is not None:
+            self.scope.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
+        if arguments.kwarg is not None:
+            self.scope.bind(arguments.kwarg.arg, Mapping(STR, UNKNOWN))
+
+    def _parameter(
+        self, function: FunctionDefinition, argument: ast.arg, declared: Type, default: ast.expr | None
+    ) -> Type:
+        """A parameter's type: annotated, declared by the API, seen in calls, its default's, or by its name."""
+        if argument.annotation is not None:
+            kind = annotated(argument.annotation, self.evaluate)
+            if kind is not UNKNOWN:
+                return kind
+        if declared is not UNKNOWN:
+            return declared
+        received = function.received.get(argument.arg, UNKNOWN)
+        fallback = self.types.get(default, UNKNOWN) if default is not None else UNKNOWN
+        if received is not UNKNOWN and received is not NONE:
+            return received if fallback is UNKNOWN else join(received, _general(fallback))
+        if fallback is not UNKNOWN and fallback is not NONE:
+            return _general(fallback)
+        return self._by_convention(function, argument.arg)
+
+    def _by_convention(self, function: FunctionDefinition, name: str) -> Type:
+        """The type that everyone's parameters of this name have, if the function uses it so."""
+        cls = T + PARAMETERS.get(name, "")
+        if not self.api.is_class(cls):
+            return UNKNOWN
+        if function.used is None:
+            function.used = _used_names(function.node)
+        for attribute in function.used.get(name, ()):
+            if not attribute or not (self.api.member(cls, attribute) or self.api.below(cls, attribute)):
+                return UNKNOWN
+        return Instance(cls, sure=False)
+
+    def _declared_parameters(self, function: FunctionDefinition, count: int) -> list[Type]:
+        """What a method is called with: itself, and what the API's class passes to the method that it overrides."""
+        if function.cls is None or count == 0:
+            return []
+        node = function.node
+        first: list[Type] = []
+        if not function.is_static:
+            made = function.is_class_method or (
+                isinstance(node, ast.FunctionDef) and node.name in {"__new__", "__init_subclass__"}
+            )
+            first = [LocalClass(function.cls) if made else LocalInstance(function.cls)]
+        if isinstance(node, ast.Lambda):
+            return first
+        bases, _ = self.api_bases(function.cls)
+        for base in bases:
+            member = self.api.member(base, node.name)
+            if member is not None and isinstance(member.type, Function):
+                symbol = member.symbol
+                rest = [p for p in symbol.parameters if p.name not in {"self", "cls"}]
+                return first + [self.api.read_type(parameter.type, symbol.path) for parameter in rest]
+        return first
+
+    _statement_readers: ClassVar[dict[type, Callable[..., bool]]] = {
+        ast.Assign: _assign,
+        ast.AnnAssign: _assign_annotated,
+        ast.AugAssign: _assign_augmented,
+        ast.If: _if,
+        ast.For: _for,
+        ast.AsyncFor: _for,
+        ast.While: _while,
+        ast.Break: _break,
+        ast.Continue: _continue,
+        ast.With: _with,
+        ast.AsyncWith: _with,
+        ast.Try: _try,
+        ast.TryStar: _try,
+        ast.Match: _match,
+        ast.Expr: _expression,
+        ast.Return: _return,
+        ast.Raise: _raise,
+        ast.Assert: _assert,
+        ast.Delete: _delete,
+        ast.Global: _global,
+        ast.Nonlocal: _global,
+        ast.Import: _import,
+        ast.ImportFrom: _import_from,
+        ast.FunctionDef: _define_function,
+        ast.AsyncFunctionDef: _define_function,
+        ast.ClassDef: _define_class,
+    }
+
+
+def _general(kind: Type) -> Type:
+    """A type without its literal value: what a name can hold besides its first value."""
+    if isinstance(kind, Plain) and kind.value is not None:
+        return Plain(kind.kind, None, kind.source)
+    return kind
+
+
+def _used_names(function: ast.AST) -> dict[str, set[str]]:
+    """Name → the attributes that a function reads from it; an empty one where it is indexed."""
+    used: dict[str, set[str]] = {}
+    for node in ast.walk(function):
+        if isinstance(node, (ast.Attribute, ast.Subscript)) and isinstance(node.value, ast.Name):
+            used.setdefault(node.value.id, set()).add(node.attr if isinstance(node, ast.Attribute) else "")
+    return used
+
+
+def _differs(before: State, after: State) -> bool:
+    """Whether a loop's first turn bound something that its beginning has otherwise."""
+    return any(
+        before.names.get(name) is not kind and before.names.get(name) != kind
+        for name, kind in after.names.items()
+        if name in before.names
+    )
+
+
+def _forgives(handler: ast.ExceptHandler) -> bool:
+    """Whether a handler is ready for a name that does not exist."""
+    if handler.type is None:
+        return True
+    names = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+    return any(isinstance(name, ast.Name) and name.id in _FORGIVING for name in names)

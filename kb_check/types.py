@@ -1,0 +1,301 @@
+"""What an expression can be: the types that flow through a script.
+
+Types are immutable and compare by value. ``None`` as a Python value is :data:`NONE`; what is not known is
+:data:`UNKNOWN`. A type whose ``sure`` is False rests on a convention (a parameter called ``context``), not on code.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import ast
+    from collections.abc import Iterable, Iterator
+
+DEEPEST_TYPE = 6  # parts within each other of what a name holds
+MOST_MEMBERS = 8  # of a union; more are UNKNOWN
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """Anything."""
+
+
+@dataclass(frozen=True, slots=True)
+class NoneValue:
+    """Python's None."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plain:
+    """A number, a text, a truth value. ``value`` is the literal where it is known, else None.
+
+    ``source`` is the property or parameter that it was read from, which knows its values.
+    """
+
+    kind: str
+    value: str | int | float | bool | None = None
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """An instance of one of the API's classes, given by its path.
+
+    ``traits`` are members about which more is known than the class tells: ``("data", Instance(Mesh))``.
+    """
+
+    cls: str
+    traits: tuple[tuple[str, Type], ...] = ()
+    sure: bool = True
+
+    def trait(self, name: str) -> Type | None:
+        """What is known of a member of this very instance."""
+        for known, kind in self.traits:
+            if known == name:
+                return kind
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class ClassObject:
+    """One of the API's classes itself."""
+
+    cls: str
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """A module of the API."""
+
+    path: str
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function or method of the API, read from ``receiver``."""
+
+    path: str
+    receiver: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """An operator, ready to be called."""
+
+    path: str
+
+
+@dataclass(frozen=True, slots=True)
+class Collection:
+    """A collection of RNA. ``container`` is the class of the collection itself, ``path`` the property that it was
+    read from, ``owner`` what that was read from.
+    """
+
+    element: Type
+    container: str
+    path: str
+    owner: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Sequence:
+    """A list, tuple, set or iterator whose elements are all of one type."""
+
+    kind: str
+    element: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Tuple:
+    """A tuple or list whose items are known one by one."""
+
+    items: tuple[Type, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """A dictionary; ``items`` are what is known of its literal keys."""
+
+    key: Type
+    value: Type
+    items: tuple[tuple[str, Type], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class LocalFunction:
+    """A function of the script; ``number`` finds its definition. ``receiver`` is what a method is bound to."""
+
+    number: int
+    receiver: Type | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LocalClass:
+    """A class of the script."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class LocalInstance:
+    """An instance of one of the script's classes."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Builtin:
+    """One of Python's own functions, or a method of a plain value; ``receiver`` is what it was read from."""
+
+    name: str
+    receiver: Type | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Union:
+    """One of several types."""
+
+    members: tuple[Type, ...]
+
+
+Type = (
+    Unknown
+    | NoneValue
+    | Plain
+    | Instance
+    | ClassObject
+    | Module
+    | Function
+    | Operator
+    | Collection
+    | Sequence
+    | Tuple
+    | Mapping
+    | LocalFunction
+    | LocalClass
+    | LocalInstance
+    | Builtin
+    | Union
+)
+
+UNKNOWN = Unknown()
+NONE = NoneValue()
+BOOL = Plain("bool")
+INT = Plain("int")
+FLOAT = Plain("float")
+STR = Plain("str")
+
+
+def members(kind: Type) -> tuple[Type, ...]:
+    """The members of a union; any other type alone."""
+    return kind.members if isinstance(kind, Union) else (kind,)
+
+
+def without_none(kind: Type) -> Type:
+    """A type without None: what it is when it is used."""
+    if isinstance(kind, Union) and NONE in kind.members:
+        return union(member for member in kind.members if member is not NONE)
+    return kind
+
+
+def _general(kind: Type) -> Type:
+    """A type without its literal value."""
+    if isinstance(kind, Plain) and kind.value is not None:
+        return Plain(kind.kind, None, kind.source)
+    return kind
+
+
+def union(kinds: Iterable[Type]) -> Type:
+    """One of ``kinds``; UNKNOWN as soon as one of them is, or when they are too many."""
+    found: dict[Type, None] = {}
+    for kind in kinds:
+        for member in members(kind):
+            if member is UNKNOWN:
+                return UNKNOWN
+            found[member] = None
+    if len(found) > 1 and sum(isinstance(member, Plain) for member in found) > MOST_MEMBERS // 2:
+        found = dict.fromkeys(_general(member) for member in found)
+    if not found:
+        return UNKNOWN
+    if len(found) == 1:
+        return next(iter(found))
+    return Union(tuple(found)) if len(found) <= MOST_MEMBERS else UNKNOWN
+
+
+def join(first: Type, second: Type) -> Type:
+    """What a name holds after two ways led to the same place."""
+    return first if first is second or first == second else union((first, second))
+
+
+def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:  # noqa: PLR0911 - one return a type
+    """A type whose parts lie at most so deep within each other: a list that holds itself has no end."""
+    if isinstance(
+        kind, (Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalClass, LocalInstance)
+    ):
+        return kind
+    if depth == 0:
+        return UNKNOWN
+    below = depth - 1
+    match kind:
+        case Sequence():
+            return Sequence(kind.kind, bounded(kind.element, below))
+        case Tuple():
+            return Tuple(tuple(bounded(item, below) for item in kind.items))
+        case Mapping():
+            items = tuple((name, bounded(value, below)) for name, value in kind.items)
+            return Mapping(bounded(kind.key, below), bounded(kind.value, below), items)
+        case Union():
+            return union(bounded(member, below) for member in kind.members)
+        case Instance() if kind.traits:
+            return replace(kind, traits=tuple((name, bounded(trait, below)) for name, trait in kind.traits))
+        case Function() | Builtin() | LocalFunction() if kind.receiver is not None:
+            return replace(kind, receiver=bounded(kind.receiver, below))
+        case Collection():
+            return replace(kind, owner=bounded(kind.owner, below))
+        case _:
+            return kind
+
+
+def literal(kind: Type) -> str | int | float | bool | None:
+    """The value of a type that is a literal."""
+    return kind.value if isinstance(kind, Plain) else None
+
+
+def literal_text(kind: Type) -> str | None:
+    """The text of a type that is a string literal."""
+    return kind.value if isinstance(kind, Plain) and isinstance(kind.value, str) else None
+
+
+def literal_texts(kind: Type) -> Iterator[str]:
+    """The texts that a type can be, if it is nothing but string literals."""
+    found = [literal_text(member) for member in members(kind)]
+    if all(text is not None for text in found):
+        yield from (text for text in found if text is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """What a part of a script stands for in the API.
+
+    ``symbols`` are the paths of the symbols it resolves to, one for each type that its owner can have: a member, an
+    operator, a socket, ``operator(keyword)`` for a keyword, the property or parameter for a value. ``missing`` are
+    the owners that have no such member, ``possible`` the symbols of derived classes that do. ``value`` is the
+    value or the name as written. ``sure`` is False where a convention was needed, ``guarded`` is True where the
+    script is ready for the opposite (``hasattr``, ``try``). ``statement`` is the innermost one around it.
+
+    Kinds: ``attribute`` and ``store`` (ast.Attribute), ``name`` (an imported or bare name), ``call`` (ast.Call),
+    ``keyword`` (ast.keyword), ``value`` (a literal of an enumeration), ``item`` (ast.Subscript, or the literal key
+    of a call to ``get``), ``text`` (a literal that names a property or an operator).
+    """
+
+    node: ast.AST
+    kind: str
+    value: str
+    symbols: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    possible: tuple[str, ...] = ()
+    sure: bool = True
+    guarded: bool = False
+    statement: ast.stmt | None = None

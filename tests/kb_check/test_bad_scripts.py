@@ -1,0 +1,70 @@
+"""Scripts that cannot be read, or not to their end: the analysis says so, and ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_check import analysis as analysis_module
+from kb_check.analysis import analyse
+
+if TYPE_CHECKING:
+    from kb_check.api import Api
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "def f(:",
+        "print 'two'",
+        "x = '\0'",
+        "(" * 5_000,
+        "\tif x:\n  y",
+        "a" * 5_000_000,
+    ],
+)
+def test_what_cannot_be_parsed_says_why(api: Api, code: str) -> None:
+    found = analyse(code, api)
+    assert found.tree is None
+    assert found.error is not None
+    assert str(found.error)
+    assert not found.resolutions
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import bpy\nx = " + "+".join(["bpy.context.object.location.x"] * 500),
+        "import bpy\nx = bpy" + ".context" * 600,
+        "import bpy\n" + "".join(f"{' ' * n}if x:\n" for n in range(90)) + " " * 90 + "bpy.data",
+        "def f(x):\n    return g(x)\ndef g(x):\n    return f(x)\nf(1)",
+        "class A(A): pass\nclass B(C): pass\nclass C(B): pass\nB().x\nA().y",
+        "x = x\nx.y = x.y\nfor x in x: x = x(x)[x]",
+        "def f(x):\n    f([x])\nf(1)",
+        "x = " + "[" * 150 + "]" * 150,
+        "x = 1\n" + "x = (x, x)\n" * 200,
+        "x = []\n" + "x.append(x)\n" * 50 + "while x:\n    x = [x, {'a': x}]",
+        "import bpy\nob = None\n" + "ob = bpy.data.objects.new('x', ob)\n" * 300,
+        "x = lambda: x()\nx()",
+        "import bpy\n" + "\n".join(f"def f{n}(x): return f{n + 1}(x)" for n in range(400)) + "\nf0(bpy)",
+        "global x\nimport bpy.nothing\nfrom bpy import *\nfrom . import a\ndel x, x.y, x[0]",
+        "match 1:\n    case {'a': x, **rest}: x\n    case [1, *others] | None: others\n    case _: pass",
+        "async def f():\n    async with a as b:\n        await b\n    async for c in d: yield c",
+        "try:\n    pass\nexcept* ValueError as e:\n    e\nwhile True:\n    break\nelse:\n    1",
+        "",
+        "\ufeffimport bpy",
+    ],
+)
+def test_strange_code_is_read_to_its_end(api: Api, code: str) -> None:
+    found = analyse(code, api)
+    assert found.error is None
+    assert found.tree is not None
+    assert found.complete
+
+
+def test_what_takes_too_much_work_is_left(api: Api, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(analysis_module, "MOST_STEPS", 500)
+    found = analyse("import bpy\n" + "bpy.context.object.location\n" * 1_000, api)
+    assert not found.complete
+    assert len(found.resolutions) > 100
