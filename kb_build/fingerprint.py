@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 _PACKAGE = Path(__file__).resolve().parent
 _DATA = _PACKAGE.parent / "corpora"
+_CHECK = _PACKAGE.parent / "kb_check"
 # Packages whose versions show in the text of pages or in the index.
 _READERS = ("sphinx", "docutils", "beautifulsoup4", "lxml")
 _WRITERS = ("sqlite-utils", "snowballstemmer", "pystemmer")
@@ -49,7 +50,9 @@ def _digest(parts: Iterable[str | bytes]) -> str:
 
 def _code(files: Iterable[Path]) -> str:
     return _digest(
-        part for file in sorted(files) for part in (file.relative_to(_PACKAGE).as_posix(), file.read_bytes())
+        part
+        for file in sorted(files)
+        for part in (file.relative_to(_PACKAGE.parent).as_posix(), file.read_bytes())
     )
 
 
@@ -85,9 +88,16 @@ def reader_digest() -> str:
 
 
 @cache
+def usage_digest() -> str:
+    """Digest of the code that finds the uses of symbols in scripts, and of what reads the symbols."""
+    files = [*_CHECK.glob("*.py"), *(_PACKAGE / "usage").glob("*.py"), *(_PACKAGE / "blender").glob("*.py")]
+    return _code([*files, _PACKAGE / "records.py"])
+
+
+@cache
 def code_digest() -> str:
     """Digest of the code, packages and data that shape a base."""
-    files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS]
+    files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS] + [*_CHECK.glob("*.py")]
     data = [
         path.read_bytes()
         for name in ("history", "words", "summaries")

@@ -18,7 +18,7 @@ from kb_build.base_file import read_meta
 from kb_build.blender.extractor import extract_api
 from kb_build.digests import Digests
 from kb_build.errors import ExtractError, SourceError, StoreError
-from kb_build.fingerprint import base_fingerprint, own_version, runtime_digest
+from kb_build.fingerprint import base_fingerprint, extractor_digest, own_version, runtime_digest
 from kb_build.pages.sources import Origin, find_sources
 from simworlds.files import remove_unfinished_files
 from simworlds.forked import beside
@@ -28,7 +28,7 @@ from simworlds.settings import base_path, cache_folder, summaries_path
 from simworlds.terminal.progress import silent
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping, Sequence
+    from collections.abc import Callable, Generator, Mapping, Sequence
 
     from kb_build.blender.extract_reader import Extract
     from kb_build.pages.reading import PageReader
@@ -36,12 +36,18 @@ if TYPE_CHECKING:
     from kb_build.records import Page
     from kb_build.store import Contents
     from kb_build.summaries.types import SummaryReport, SummaryRun
+    from kb_build.usage.examples import SymbolUsage
+    from kb_build.usage.usage_index import Usage
     from kb_build.versions.removed_symbols import RemovedSymbols
     from simworlds.sandbox.runtime import Runtime
     from simworlds.terminal.progress import Progress
 
 SummaryMethod = Literal["shipped", "extractive", "claude", "none"]
-_LOADED_AHEAD = ("kb_build.blender.extract_reader", "kb_build.summaries.methods")
+_LOADED_AHEAD = (
+    "kb_build.blender.extract_reader",
+    "kb_build.summaries.methods",
+    "kb_build.usage.usage_index",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,16 +122,16 @@ def build(
     meta = None if options.force else _present(work.path, fingerprint)
     if meta is not None:
         return _report(work, began, meta, built=False)
-    with _paused_collector():
-        with _page_reader(work) as reader:
-            ahead = threading.Thread(target=_load_ahead, daemon=True)
-            ahead.start()
-            extract = _extract(work)
+    with _paused_collector(), _page_reader(work) as reader:
+        ahead = threading.Thread(target=_load_ahead, daemon=True)
+        ahead.start()
+        extract = _extract(work)
+        ahead.join()
+        with _script_usage(work, extract) as scripts:
             pages = _pages(work, reader.result(), extract)
-            ahead.join()
-        run = _summaries(work, pages)
-        meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
-        _write(work, extract, pages, run, meta)
+            run = _summaries(work, pages)
+            meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
+            _write(work, extract, pages, run, meta, partial(_usage, extract, pages, scripts))
     return _report(work, began, meta, built=True, run=run)
 
 
@@ -250,6 +256,34 @@ def _extract(work: _Build) -> Extract:
     return extract
 
 
+@contextmanager
+def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Usage]]:
+    """Reads Blender's own scripts while pages are read; gives a function that waits for the uses of symbols there."""
+    from kb_build.usage.scripts import blender_scripts  # noqa: PLC0415 - not when nothing changed
+    from kb_build.usage.usage_index import script_usage, usage_file  # noqa: PLC0415 - loaded ahead
+
+    scripts = list(blender_scripts(Path(extract.scripts))) if extract.scripts else []
+    digests = Digests(cache_folder(work.home) / "digests.json")
+    identity = f"{extract.version} {runtime_digest(work.runtime, digests)} {extractor_digest()}"
+    file = usage_file(cache_folder(work.home), identity, scripts)
+    jobs = work.options.jobs
+    with script_usage(extract.symbols, scripts, extract.version, file=file, jobs=jobs) as result:
+        yield result
+
+
+def _usage(extract: Extract, pages: Sequence[Page], scripts: Callable[[], Usage]) -> SymbolUsage:
+    """The uses of symbols in Blender's scripts and in the guides, and the ways to instances that follow from them."""
+    from kb_build.blender.access_paths import reached_expressions  # noqa: PLC0415 - not when nothing changed
+    from kb_build.usage.examples import SymbolUsage  # noqa: PLC0415 - loaded ahead
+    from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
+
+    symbols = extract.symbols
+    guides = page_usage(symbols, pages, extract.version)
+    uses = with_aliases(merged([scripts(), guides]), symbols)
+    reached = reached_expressions(symbols, {path: found.count for path, found in uses.items()})
+    return SymbolUsage(uses, {f"bpy.types.{name}": expression for name, expression in reached.items()})
+
+
 def _pages(work: _Build, read: Mapping[str, list[Page]], extract: Extract) -> list[Page]:
     """All pages, one for each slug; of two with the same one, the manual's stays."""
     kept: dict[str, Page] = {}
@@ -296,7 +330,11 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
         "addons": list(extract.addons),
         "summaries": summary_facts(run),
         "page_warnings": {page.slug: list(page.warnings) for page in pages if page.warnings},
-        "runtime": {"kind": work.runtime.kind, "executable": str(work.runtime.executable)},
+        "runtime": {
+            "kind": work.runtime.kind,
+            "executable": str(work.runtime.executable),
+            "scripts": extract.scripts,
+        },
     }
     return {
         "blender": extract.version,
@@ -308,8 +346,13 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
     }
 
 
-def _write(
-    work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun | None, meta: dict[str, str]
+def _write(  # noqa: PLR0913, PLR0917 - all that a base is made of
+    work: _Build,
+    extract: Extract,
+    pages: Sequence[Page],
+    run: SummaryRun | None,
+    meta: dict[str, str],
+    usage: Callable[[], SymbolUsage],
 ) -> None:
     work.progress(f"Writing {work.path.name}", 0, None)
     by_slug = run.by_slug if run else {}
@@ -317,7 +360,9 @@ def _write(
         # Loaded now: a process is not forked safely from one that has NumPy's threads.
         from kb_build.store import Contents, write_base  # noqa: PLC0415
 
-        contents: Contents = Contents(extract.symbols, pages, extract.links, meta, by_slug, removed_symbols)
+        contents: Contents = Contents(
+            extract.symbols, pages, extract.links, meta, by_slug, removed_symbols, usage
+        )
         write_base(work.path, contents)
 
 

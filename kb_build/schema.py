@@ -15,7 +15,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -81,6 +81,14 @@ CREATE TABLE replacements (
 
 -- Symbols that came after the oldest version known.
 CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL) WITHOUT ROWID;
+
+-- How Blender's own scripts use a symbol: the clearest few uses, best first, each up to three lines of a file; how
+-- often it is used (up to ten times a file), and in how many files.
+CREATE TABLE uses (
+    path TEXT NOT NULL, rank INTEGER NOT NULL, file TEXT NOT NULL, line INTEGER NOT NULL, code TEXT NOT NULL,
+    PRIMARY KEY (path, rank)
+) WITHOUT ROWID;
+CREATE TABLE use_counts (path TEXT PRIMARY KEY, uses INTEGER NOT NULL, files INTEGER NOT NULL) WITHOUT ROWID;
 
 -- Page → symbols whose manual link leads there: classes and operators only.
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -41,6 +41,7 @@ from kb_build.schema import (
     pack,
 )
 from kb_build.symbol_lines import member_line
+from kb_build.usage.examples import SymbolUsage, Uses
 from kb_build.versions.removed_symbols import RemovedSymbols
 from simworlds.files import staged_file
 
@@ -55,7 +56,7 @@ if TYPE_CHECKING:
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are by slug; ``removed_symbols`` is called last: it may still be computed meanwhile.
+    ``summaries`` are by slug. ``removed_symbols`` and ``usage`` are called last: they may still be computed meanwhile.
     """
 
     symbols: Sequence[Symbol]
@@ -64,6 +65,7 @@ class Contents:
     meta: Mapping[str, str]
     summaries: Mapping[str, PageSummary] = field(default_factory=dict[str, "PageSummary"])
     removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
+    usage: Callable[[], SymbolUsage] = SymbolUsage
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
@@ -110,7 +112,9 @@ def _insert(
     connection.executemany(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", rows)  # noqa: S608
 
 
-def _write_symbols(connection: sqlite3.Connection, symbols: Sequence[Symbol]) -> None:
+def _write_symbols(
+    connection: sqlite3.Connection, symbols: Sequence[Symbol], reached: Mapping[str, str]
+) -> None:
     _insert(
         connection,
         "symbols",
@@ -118,7 +122,7 @@ def _write_symbols(connection: sqlite3.Connection, symbols: Sequence[Symbol]) ->
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label,
-                member_line(symbol), pack(to_json(symbol)),
+                member_line(symbol), pack(to_json(_with_path(symbol, reached))),
             )
             for number, symbol in enumerate(symbols)
         ),
@@ -126,6 +130,12 @@ def _write_symbols(connection: sqlite3.Connection, symbols: Sequence[Symbol]) ->
     )  # fmt: skip
     _insert(connection, "names", (row for symbol in symbols for row in symbol_names(symbol)), 3)
     _insert(connection, "enum_items", (row for symbol in symbols for row in enum_rows(symbol)), 4)
+
+
+def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
+    """A class with the expression that leads to an instance."""
+    path = reached.get(symbol.path) if symbol.kind == "class" else None
+    return replace(symbol, reached=path) if path else symbol
 
 
 def _places(pages: Sequence[Page]) -> dict[str, tuple[str, int]]:
@@ -145,6 +155,16 @@ def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: Remo
     _insert(connection, "removed_names", removed_symbols.names, 2)
     _insert(connection, "replacements", removed_symbols.replacements, 3)
     _insert(connection, "since", removed_symbols.since, 2)
+
+
+def _write_usage(connection: sqlite3.Connection, usage: Mapping[str, Uses]) -> None:
+    examples = (
+        (path, rank, example.file, example.line, example.code)
+        for path, uses in usage.items()
+        for rank, example in enumerate(uses.examples)
+    )
+    _insert(connection, "uses", examples, 5)
+    _insert(connection, "use_counts", ((path, uses.count, uses.files) for path, uses in usage.items()), 3)
 
 
 def _write_pages(
@@ -244,10 +264,12 @@ def _write(part: Path, contents: Contents) -> None:
         expansions = query_expansions(contents.summaries)
         units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, expansions)
         with connection:
-            _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
             _write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
+            usage = contents.usage()
+            _write_symbols(connection, contents.symbols, usage.reached)
+            _write_usage(connection, usage.uses)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

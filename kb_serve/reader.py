@@ -60,6 +60,15 @@ class PageEntry:
     summary_method: str
 
 
+@dataclass(frozen=True, slots=True)
+class Use:
+    """Lines of one of Blender's own scripts that use a symbol; ``line`` is the first one's number."""
+
+    file: str
+    line: int
+    code: str
+
+
 _ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, line"
 _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
@@ -212,6 +221,15 @@ class BaseReader:
         """The version that introduced a symbol; empty for those older than the history."""
         rows = self.rows("SELECT version FROM since WHERE path = ?", path)
         return rows[0][0] if rows else ""
+
+    def uses(self, path: str) -> list[Use]:
+        """The clearest uses of a symbol in Blender's own scripts and the guides, best first."""
+        sql = "SELECT file, line, code FROM uses WHERE path = ? ORDER BY rank"
+        return [Use(*row) for row in self.rows(sql, path)]
+
+    def use_counts(self, paths: Collection[str]) -> dict[str, int]:
+        """How often Blender's own scripts use each of some symbols; those that they do not use are left out."""
+        return dict(self.rows_of("SELECT path, uses FROM use_counts WHERE path", paths))
 
     def units(self, numbers: Collection[int]) -> dict[int, tuple[str, str, str, str, str]]:
         """Number → (ref, kind, title, anchor, page) of retrieval units; ``page`` explains a class or operator, as a

@@ -1,4 +1,4 @@
-"""Access paths: for each class the shortest expression over RNA pointers that leads to an instance."""
+"""Access paths: for each class the expression over RNA pointers by which scripts come to an instance."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from kb_build.records import Symbol
 
@@ -21,19 +21,38 @@ _EVERYWHERE = frozenset({"object", "scene", "view_layer", "collection"})
 _DETOURS = frozenset(
     {
         "window_manager", "window", "screen", "workspace", "area", "region", "preferences", "space_data", "library",
-        "original", "override_library", "asset_data", "asset", "drivers", "rigidbody_world",
+        "original", "override_library", "asset_data", "asset", "rigidbody_world",
         "blend_data", "node_groups", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
     }
 )  # fmt: skip
 _DETOUR_COST = 6
+_LAST_RESORT = {"drivers": 30.0}  # holds curves as animation does, but hardly anybody looks for them there
+# What a step costs in addition that Blender's own scripts take less often than this.
+_RARE = ((20, 0.0), (5, 0.5), (1, 1.5), (0, 4.0))
+_ACTIVE_GAIN = 1.1  # the active element is what scripts begin with; any other one is found by its name
+# What scripts come to through the active object; other data-blocks they take from ``bpy.data``.
+_OBJECT_DATA = ("Mesh", "Armature")
+# A driver is on a curve of its own kind, which RNA does not tell from others.
+_TOLD = {"Driver": 'bpy.context.object.animation_data.drivers.find("location", index=0).driver'}
 _TOLD_COST = 5  # of what Blender tells how to reach: the preferences of an add-on
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """A property that leads to another class. ``container`` is the class of a collection, which may have ``active``."""
+
+    name: str
+    target: str
+    cost: float
+    many: bool = False
+    container: str = ""
 
 
 @dataclass(slots=True)
 class _Graph:
-    """class → (property name, target class, is a collection), own properties only."""
+    """class → the properties of its own that lead to others."""
 
-    edges: dict[str, list[tuple[str, str, bool]]] = field(default_factory=lambda: defaultdict(list))
+    edges: dict[str, list[_Step]] = field(default_factory=lambda: defaultdict(list[_Step]))
     base: dict[str, str] = field(default_factory=dict)
     derived: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
     label: dict[str, str] = field(default_factory=dict)
@@ -42,7 +61,7 @@ class _Graph:
     told: dict[str, str] = field(default_factory=dict)
 
 
-def _graph(symbols: Iterable[Symbol]) -> _Graph:
+def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int]) -> _Graph:
     graph = _Graph()
     for symbol in symbols:
         if symbol.kind == "class" and symbol.owner == "bpy.types":
@@ -61,13 +80,26 @@ def _graph(symbols: Iterable[Symbol]) -> _Graph:
             if symbol.kind == "context" and symbol.name not in _EVERYWHERE:
                 continue
             owner = "Context" if symbol.kind == "context" else symbol.owner.removeprefix(TYPES)
-            graph.edges[owner].append((symbol.name, symbol.target, symbol.type == "collection"))
+            detour = _LAST_RESORT.get(symbol.name, _DETOUR_COST if symbol.name in _DETOURS else 0.0)
+            cost = 1.0 + detour + _rarity(symbol.path, uses)
+            many = symbol.type == "collection"
+            graph.edges[owner].append(_Step(symbol.name, symbol.target, cost, many, symbol.collection))
+            if symbol.path == f"{TYPES}Object.data":
+                graph.edges[owner] += [_Step(symbol.name, name, cost) for name in _OBJECT_DATA]
     return graph
+
+
+def _rarity(path: str, uses: Mapping[str, int]) -> float:
+    """What is added for a property that scripts seldom use; nothing where no use of anything is known."""
+    count = uses.get(path, 0)
+    return next(cost for least, cost in _RARE if count >= least) if uses else 0.0
 
 
 def _key(target: str, graph: _Graph) -> str:
     """The subscript of a collection: the name Blender gives by default, or an index."""
-    if graph.named.isdisjoint(_lineage(target, graph)):
+    lineage = list(_lineage(target, graph))
+    # A socket is called what its node calls it, not like its class.
+    if graph.named.isdisjoint(lineage) or "NodeSocket" in lineage:
         return "[0]"
     label = graph.label.get(target, "") or target
     return f'["{label.removesuffix(" Modifier").removesuffix(" Constraint")}"]'
@@ -79,10 +111,21 @@ def _lineage(cls: str, graph: _Graph) -> Iterable[str]:
         cls = graph.base.get(cls, "")
 
 
-def _steps(cls: str, graph: _Graph) -> Iterable[tuple[str, str, bool]]:
+def _steps(cls: str, graph: _Graph) -> Iterable[_Step]:
     """The properties of a class, inherited ones last."""
     for ancestor in _lineage(cls, graph):
         yield from graph.edges.get(ancestor, ())
+
+
+def _told(graph: _Graph) -> dict[str, str]:
+    """What is reached by a call; of the classes that this Blender has."""
+    return {cls: expression for cls, expression in _TOLD.items() if cls in graph.base}
+
+
+def _active(step: _Step, graph: _Graph) -> _Step | None:
+    """``active`` of a collection, where it leads to one of its elements."""
+    found = (inner for inner in graph.edges.get(step.container, ()) if inner.name == "active")
+    return next((inner for inner in found if inner.target == step.target and not inner.many), None)
 
 
 def _descendants(cls: str, graph: _Graph) -> Iterable[str]:
@@ -91,39 +134,44 @@ def _descendants(cls: str, graph: _Graph) -> Iterable[str]:
         yield from _descendants(child, graph)
 
 
-def reached_expressions(symbols: Iterable[Symbol]) -> dict[str, str]:
+def reached_expressions(symbols: Iterable[Symbol], uses: Mapping[str, int] | None = None) -> dict[str, str]:
     """class name → an expression that gives an instance, for every class that pointers lead to.
 
     ``ClothSettings`` → ``bpy.context.object.modifiers["Cloth"].settings``: the names in brackets are the
-    default ones, to be replaced by the scene's own.
+    default ones, to be replaced by the scene's own. ``uses`` tells how often Blender's own scripts use a property:
+    of several ways the one is taken that they take.
     """
-    graph = _graph(symbols)
+    graph = _graph(symbols, uses or {})
     expressions: dict[str, str] = {}
-    queue: list[tuple[int, int, str, str]] = []
+    queue: list[tuple[float, int, str, str]] = []
     order = 0
+
+    def offer(cost: float, cls: str, expression: str) -> None:
+        nonlocal order
+        if cls not in expressions:
+            heapq.heappush(queue, (cost, order := order + 1, cls, expression))
+
     for root, cls, cost in _ROOTS:
-        heapq.heappush(queue, (cost, order := order + 1, cls, root))
-    for cls, expression in graph.told.items():
-        heapq.heappush(queue, (_TOLD_COST, order := order + 1, cls, expression))
+        offer(cost, cls, root)
+    for cls, expression in {**_told(graph), **graph.told}.items():
+        offer(_TOLD_COST, cls, expression)
     while queue:
         cost, _, cls, expression = heapq.heappop(queue)
         if cls in expressions:
             continue
         expressions[cls] = expression
-        for name, target, many in _steps(cls, graph):
-            step = cost + 1 + (1 if many else 0) + (_DETOUR_COST if name in _DETOURS else 0)
-            here = f"{expression}.{name}"
-            if target not in expressions:
-                order += 1
-                heapq.heappush(queue, (step, order, target, here + (_key(target, graph) if many else "")))
+        for step in _steps(cls, graph):
+            here = f"{expression}.{step.name}"
+            reached = cost + step.cost + (1 if step.many else 0)
+            offer(reached, step.target, here + (_key(step.target, graph) if step.many else ""))
+            active = _active(step, graph) if step.many else None
+            if active is not None:
+                offer(cost + step.cost + active.cost - _ACTIVE_GAIN, step.target, f"{here}.active")
             # ``Object.data`` is any data-block to RNA; the collections of ``bpy.data`` say which.
-            for child in _descendants(target, graph) if target != "ID" else ():
+            for child in _descendants(step.target, graph) if step.target != "ID" else ():
                 # Every tree's ``nodes`` takes every node as far as RNA knows.
-                if child not in expressions and cls in graph.trees.get(child, (cls,)):
-                    order += 1
-                    heapq.heappush(
-                        queue, (step + 1, order, child, here + (_key(child, graph) if many else ""))
-                    )
+                if cls in graph.trees.get(child, (cls,)):
+                    offer(reached + 1, child, here + (_key(child, graph) if step.many else ""))
     # A shader's nodes live in a material, where there are others like it.
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
         expressions[cls] = f"{expressions.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"

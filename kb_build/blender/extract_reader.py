@@ -9,7 +9,6 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from kb_build.blender.access_paths import reached_expressions
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.errors import ExtractError
 from kb_build.records import Default, Link, Page, Parameter, Section, Symbol, symbol_from_json
@@ -39,6 +38,7 @@ _TREES = {
 class Extract:
     """One Blender's API. ``version`` is the full one (``"5.1.2"``), ``build`` its commit hash.
 
+    ``scripts`` is the folder of the Python files that it brings, empty for an unknown one.
     ``faults`` are the tracebacks of steps that failed inside Blender; what the other steps found is there.
     """
 
@@ -49,6 +49,7 @@ class Extract:
     links: tuple[Link, ...]
     templates: tuple[Page, ...]
     faults: tuple[str, ...] = ()
+    scripts: str = ""
 
 
 @dataclass(slots=True)
@@ -247,9 +248,6 @@ def read_extract(path: Path) -> Extract:
     ]
     for extra in _subclass_lookups((cls for cls in classes if cls.group == "data"), prototypes):
         symbols.setdefault(extra.path, extra)
-    for name, expression in reached_expressions(symbols.values()).items():
-        if (class_path := f"bpy.types.{name}") in symbols:
-            symbols[class_path] = replace(symbols[class_path], reached=expression)
     minor = ".".join(raw.header["version"].split(".")[:2])
     return Extract(
         version=raw.header["version"],
@@ -259,4 +257,5 @@ def read_extract(path: Path) -> Extract:
         links=(*manual_links(symbols.values(), raw.manual), *_structure(symbols.values())),
         templates=tuple(_template(name, text, minor) for name, text in raw.templates),
         faults=tuple(raw.faults),
+        scripts=raw.header.get("scripts") or "",
     )

@@ -117,7 +117,10 @@ class MarkdownRenderer:
     def symbol(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         """A symbol: a class with a list of its members, an operator or function with its parameters."""
         yield AnswerBlock(self._head(symbol), "description")
+        used = AnswerBlock(self.used(symbol.path), "a use in Blender's scripts")
         if symbol.kind == "class":
+            if used.text:
+                yield used  # the lists below it would leave no room
             yield from self._class(symbol)
         elif symbol.kind in {"operator", "function"}:
             yield from _parameters(symbol)
@@ -128,6 +131,8 @@ class MarkdownRenderer:
         definition = self.manual_definition(symbol)
         if definition:
             yield AnswerBlock(definition, "the manual's definition")
+        if used.text and symbol.kind != "class":
+            yield used
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""
@@ -215,6 +220,11 @@ class MarkdownRenderer:
             if text:
                 return f"**In the manual** ({page.title if page else ''})\n{text}"
         return ""
+
+    def used(self, path: str) -> str:
+        """The clearest use of a symbol in Blender's own scripts; empty for none."""
+        uses = self.reader.uses(path)
+        return f"**Used** ({uses[0].file}:{uses[0].line})\n```python\n{uses[0].code}\n```" if uses else ""
 
     def _class(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         members = list(self.reader.members(symbol.path).values())

@@ -207,7 +207,10 @@ def test_the_prefix_that_people_leave_out_is_left_out(path: str, short: str) -> 
 
 def test_all_of_blender_reads_back(extract: Extract, reader: BaseReader) -> None:
     for symbol in extract.symbols[::7]:
-        assert reader.symbol(symbol.path) == symbol
+        read = reader.symbol(symbol.path)
+        # How a class is reached is found by its uses, which the extract does not tell.
+        assert read is not None
+        assert replace(read, reached=symbol.reached) == symbol
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:

@@ -74,6 +74,7 @@ def main(arguments):
         version=bpy.app.version_string.split()[0],
         build=text(bpy.app.build_hash),
         addons=sorted(bpy.context.preferences.addons.keys()),
+        scripts=bpy.utils.system_resource("SCRIPTS"),
     )
     found = {}
     for name, step in STEPS:

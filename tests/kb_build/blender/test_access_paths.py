@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import closing
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.blender.access_paths import reached_expressions
 from kb_build.records import Symbol
+from kb_check.symbols import BaseSymbols
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_build.blender.extract_reader import Extract
 
 TYPES = "bpy.types."
@@ -50,14 +55,27 @@ SMALL = [
         ("Object", "bpy.context.object"),
         ("ClothModifier", 'bpy.context.object.modifiers["Cloth"]'),
         ("ClothSettings", 'bpy.context.object.modifiers["Cloth"].settings'),
-        ("Mesh", 'bpy.data.meshes["Mesh"]'),
-        ("Vertex", 'bpy.data.meshes["Mesh"].vertices[0]'),
+        ("Mesh", "bpy.context.object.data"),
+        ("Vertex", "bpy.context.object.data.vertices[0]"),
         ("Context", "bpy.context"),
         ("BlendData", "bpy.data"),
     ],
 )
 def test_takes_the_shortest_path(name: str, expression: str) -> None:
     assert reached_expressions(SMALL)[name] == expression
+
+
+def test_of_two_ways_the_one_is_taken_that_scripts_take() -> None:
+    symbols = [
+        *SMALL, cls("Layer"), cls("Layers"), name_of("Layer"), prop("Mesh.clone", "Layer"),
+        replace(prop("Mesh.layers", "Layer", "collection"), collection="Layers"),
+        prop("Layers.active", "Layer"),
+    ]  # fmt: skip
+    assert reached_expressions(symbols)["Layer"] == "bpy.context.object.data.layers.active"
+    used = {f"{TYPES}Object.data": 90, f"{TYPES}Mesh.clone": 60}
+    assert reached_expressions(symbols, used)["Layer"] == "bpy.context.object.data.clone"
+    used = {f"{TYPES}Object.data": 90, f"{TYPES}Mesh.layers": 60}
+    assert reached_expressions(symbols, used)["Layer"] == 'bpy.context.object.data.layers["Layer"]'
 
 
 def test_an_unreachable_class_has_no_expression() -> None:
@@ -93,12 +111,13 @@ def test_a_node_is_reached_through_a_tree_that_takes_it() -> None:
 
 
 @pytest.fixture(scope="module")
-def reached(extract: Extract) -> dict[str, str]:
-    return {
-        row.path.removeprefix(TYPES): row.reached
-        for row in extract.symbols
-        if row.kind == "class" and row.reached
-    }
+def reached(base: Path) -> dict[str, str]:
+    with closing(BaseSymbols(base)) as symbols:
+        return {
+            row.path.removeprefix(TYPES): row.reached
+            for row in symbols.members("bpy.types")
+            if row.kind == "class" and row.reached
+        }
 
 
 @pytest.mark.parametrize(
@@ -111,6 +130,7 @@ def reached(extract: Extract) -> dict[str, str]:
         ("CyclesRenderSettings", "bpy.context.scene.cycles"),
         ("RenderSettings", "bpy.context.scene.render"),
         ("ViewLayer", "bpy.context.view_layer"),
+        ("MeshUVLoopLayer", "bpy.context.object.data.uv_layers.active"),
         ("ShaderNodeBsdfPrincipled", 'bpy.context.object.active_material.node_tree.nodes["Principled BSDF"]'),
     ],
 )
@@ -118,6 +138,11 @@ def test_blenders_classes_are_reached_as_scripts_reach_them(
     reached: dict[str, str], name: str, expression: str
 ) -> None:
     assert reached[name] == expression
+
+
+def test_no_way_goes_by_what_scripts_do_not_take(reached: dict[str, str]) -> None:
+    assert len(reached) > 1_500
+    assert not [path for path in reached.values() if "clone" in path or "drivers[" in path]
 
 
 def test_every_expression_is_python_from_a_root(reached: dict[str, str]) -> None:

@@ -1,0 +1,269 @@
+"""Finds the uses of symbols in a script, and the lines that show each most clearly."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kb_check.analysis import analyse
+from kb_check.types import UNKNOWN, Instance, Operator
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from kb_check.analysis import Analysis
+    from kb_check.api import Api
+    from kb_check.types import Resolution
+
+MOST_EXAMPLES = 3  # of one symbol
+_MOST_LINES = 3
+_LONGEST_LINE = 110
+_LONGEST_REWRITTEN = 150  # of a statement of more lines, written as one
+_MOST_COUNTED = 10  # uses of one symbol in one file: tables and generated code say little
+_NEAR = 12  # lines between a name's binding and its use
+_BUILTINS = frozenset(dir(builtins)) | {
+    "bpy",
+    "context",
+    "bmesh",
+    "mathutils",
+    "self",
+    "cls",
+    "C",
+    "D",
+    "gpu",
+}
+
+_LAYOUT = Instance("bpy.types.UILayout")
+
+# How clearly a use shows its symbol: 0 is best.
+_COSTS = {
+    "store": 0.0,
+    "call": 0.0,
+    "item": 0.0,
+    "made": 0.5,
+    "attribute": 3.0,
+    "name": 6.0,
+    "text": 5.0,
+    "given": 5.0,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """Lines of a script that use a symbol. ``line`` counts from 1; the lower the ``cost``, the clearer."""
+
+    cost: float
+    file: str
+    line: int
+    code: str
+
+
+@dataclass(slots=True)
+class Uses:
+    """The uses of one symbol: their number (up to ten a file), the number of files, and the clearest ones."""
+
+    count: int = 0
+    files: int = 0
+    examples: list[Example] = field(default_factory=list[Example])
+
+    def add(self, other: Uses) -> None:
+        """Adds the uses in other files."""
+        self.count += other.count
+        self.files += other.files
+        self.examples = clearest([*self.examples, *other.examples])
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolUsage:
+    """What the uses of symbols tell: symbol → its uses, and class → the expression that leads to an instance."""
+
+    uses: Mapping[str, Uses] = field(default_factory=dict[str, Uses])
+    reached: Mapping[str, str] = field(default_factory=dict[str, str])
+
+
+def clearest(examples: Iterable[Example]) -> list[Example]:
+    """The clearest examples, no two of the same code."""
+    kept: dict[str, Example] = {}
+    for example in sorted(examples, key=lambda one: (one.cost, len(one.code), one.file, one.line)):
+        kept.setdefault(example.code, example)
+        if len(kept) == MOST_EXAMPLES:
+            break
+    return list(kept.values())
+
+
+def uses_in(code: str, file: str, api: Api, version: tuple[int, ...], cost: float = 0.0) -> dict[str, Uses]:
+    """Symbol → its uses in a script; none where the script cannot be read. ``cost`` is added to every example's."""
+    analysis = analyse(code, api, version)
+    if analysis.tree is None:
+        return {}
+    script = _Script(code, file, analysis, cost)
+    found: dict[str, Uses] = {}
+    candidates: dict[str, list[tuple[float, ast.stmt]]] = defaultdict(list)
+    for path, kind, share, resolution in _used(analysis):
+        uses = found.setdefault(path, Uses(files=1))
+        if uses.count < _MOST_COUNTED:
+            uses.count += 1
+        statement = resolution.statement
+        # That a menu shows an operator does not tell how it is called.
+        if statement is not None and not (kind == "text" and path.startswith("bpy.ops.")):
+            step = _COSTS[kind] + 3.0 * (share - 1) + (0.0 if resolution.sure else 2.0)
+            candidates[path].append((step, statement))
+    for path, rows in candidates.items():
+        found[path].examples = script.examples(rows)
+    return found
+
+
+def _used(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
+    """(symbol, kind of use, number of symbols it may be, resolution) for everything that a script uses."""
+    called = {node.func for node in analysis.resolutions if isinstance(node, ast.Call)}
+    for node, resolution in analysis.resolutions.items():
+        kind = resolution.kind
+        if kind in {"keyword", "value"} or (kind == "attribute" and node in called):
+            continue
+        for path in resolution.symbols:
+            yield path, kind, len(resolution.symbols), resolution
+        if isinstance(node, (ast.Call, ast.Attribute)) and kind in {"call", "attribute"}:
+            made = analysis.types.get(node)
+            if isinstance(made, Instance) and made.sure and made.cls.startswith("bpy.types."):
+                yield made.cls, "made" if kind == "call" else "given", 1, resolution
+            elif isinstance(made, Operator):
+                continue
+
+
+class _Script:
+    """A script's lines and the places where it binds names."""
+
+    def __init__(self, code: str, file: str, analysis: Analysis, cost: float) -> None:
+        self._lines = code.splitlines()
+        self._file = file
+        self._analysis = analysis
+        self._cost = cost
+        self._scope_of: dict[ast.stmt, int] = {}
+        self._bound: dict[tuple[int, str], list[tuple[int, str]]] = defaultdict(list)
+        self._texts: dict[ast.stmt, tuple[float, int, str] | None] = {}
+        if analysis.tree is not None:
+            self._index(analysis.tree.body, 0)
+
+    def _index(self, body: list[ast.stmt], scope: int) -> None:
+        queue = [(body, scope)]
+        while queue:
+            statements, number = queue.pop()
+            for statement in statements:
+                self._scope_of[statement] = number
+                inner = number
+                match statement:
+                    case ast.Assign(targets=[ast.Name(id=name)]) if statement.lineno == statement.end_lineno:
+                        self._bind(number, name, statement.lineno)
+                    case ast.For(target=ast.Name(id=name)) if statement.iter.end_lineno == statement.lineno:
+                        self._bind(number, name, statement.lineno)
+                    case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                        inner = statement.lineno
+                    case _:
+                        pass
+                for name in ("body", "orelse", "finalbody"):
+                    if nested := getattr(statement, name, None):
+                        queue.append((nested, inner))
+                if isinstance(statement, ast.Try):
+                    queue += [(handler.body, inner) for handler in statement.handlers]
+
+    def _bind(self, scope: int, name: str, line: int) -> None:
+        self._bound[scope, name].append((line, self._lines[line - 1]))
+
+    def examples(self, rows: list[tuple[float, ast.stmt]]) -> list[Example]:
+        """The clearest of a symbol's uses: (cost of the way it is used, statement)."""
+        found: list[Example] = []
+        # The text of a statement is looked at for the likeliest ones only.
+        for step, statement in sorted(rows, key=lambda row: row[0])[: 3 * MOST_EXAMPLES]:
+            if statement not in self._texts:
+                self._texts[statement] = self._text(statement)
+            text = self._texts[statement]
+            if text is not None:
+                cost, line, code = text
+                found.append(Example(round(step + cost + self._cost, 2), self._file, line, code))
+        return clearest(found)
+
+    def _text(self, statement: ast.stmt) -> tuple[float, int, str] | None:
+        """(cost, line, code) of a statement, with the binding of the name that it begins with."""
+        code = self._quoted(statement)
+        if code is None:
+            return None
+        names = [node for node in _names(statement) if node.id not in _BUILTINS]
+        first = statement.lineno
+        unknown = 0
+        layouts = {node.id for node in names if self._analysis.types.get(node) == _LAYOUT}
+        for name in dict.fromkeys(node.id for node in names if isinstance(node.ctx, ast.Load)):
+            if name in layouts:
+                continue  # everyone knows what a layout is
+            line = self._binding(statement, name)
+            lines = code.count("\n") + 1
+            if line is not None and lines < _MOST_LINES and line[1] not in code:
+                is_loop = line[1].startswith("for ")
+                code = f"{line[1]}\n{_indented(code) if is_loop else code}"
+                first = min(first, line[0])
+            elif line is None and any(
+                self._analysis.types.get(n, UNKNOWN) is UNKNOWN for n in names if n.id == name
+            ):
+                unknown += 1
+            elif line is None:
+                unknown += 0.4
+        cost = 1.2 * unknown + len(code) / 60 + 0.3 * code.count("\n")
+        cost += 1.0 if "self." in code else 0.0
+        cost += 1.5 if isinstance(statement, (ast.If, ast.While, ast.Return)) else 0.0
+        if isinstance(statement, ast.Assign) and _is_literal(statement.value):
+            cost -= 1.0
+        return cost, first, code
+
+    def _quoted(self, statement: ast.stmt) -> str | None:
+        """A statement's own lines, or its first ones up to its body; one line where it is written in many."""
+        if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Try)):
+            return None
+        body = getattr(statement, "body", None)
+        last = body[0].lineno - 1 if body else statement.end_lineno or statement.lineno
+        if last < statement.lineno:
+            return None
+        lines = self._lines[statement.lineno - 1 : last]
+        while body and lines and (not lines[-1].strip() or lines[-1].lstrip().startswith("#")):
+            lines.pop()
+        if len(lines) <= _MOST_LINES and all(len(line.strip()) <= _LONGEST_LINE for line in lines):
+            return _dedented(lines)
+        if body or len(lines) > 4 * _MOST_LINES:
+            return None
+        text = ast.unparse(statement)
+        return text if len(text) <= _LONGEST_REWRITTEN and "\n" not in text else None
+
+    def _binding(self, statement: ast.stmt, name: str) -> tuple[int, str] | None:
+        """(line, text) of the nearest binding of a name above a statement, in the same function."""
+        rows = self._bound.get((self._scope_of.get(statement, -1), name), ())
+        near = [row for row in rows if statement.lineno - _NEAR <= row[0] < statement.lineno]
+        if not near or len(near[-1][1].strip()) > _LONGEST_LINE:
+            return None
+        line, text = near[-1]
+        return line, text.split("  #")[0].strip()
+
+
+def _names(statement: ast.stmt) -> Iterator[ast.Name]:
+    """The names in a statement, without those in the statements below it."""
+    queue: list[ast.AST] = [statement]
+    while queue:
+        node = queue.pop()
+        if isinstance(node, ast.Name):
+            yield node
+        queue += [child for child in ast.iter_child_nodes(node) if not isinstance(child, ast.stmt)]
+
+
+def _is_literal(node: ast.expr) -> bool:
+    if isinstance(node, (ast.Tuple, ast.List, ast.Set)):
+        return all(_is_literal(item) for item in node.elts)
+    return isinstance(node, ast.Constant) or (isinstance(node, ast.UnaryOp) and _is_literal(node.operand))
+
+
+def _dedented(lines: list[str]) -> str:
+    margin = len(lines[0]) - len(lines[0].lstrip())
+    return "\n".join(line[min(margin, len(line) - len(line.lstrip())) :].rstrip() for line in lines)
+
+
+def _indented(code: str) -> str:
+    return "\n".join(f"    {line}" for line in code.split("\n"))

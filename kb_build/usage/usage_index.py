@@ -1,0 +1,147 @@
+"""The uses of all symbols in the scripts that a Blender brings and in the guides; kept for the next build."""
+
+from __future__ import annotations
+
+import contextlib
+import gzip
+import hashlib
+import json
+import re
+import zlib
+from functools import partial
+from typing import TYPE_CHECKING
+
+from kb_build.fingerprint import usage_digest
+from kb_build.usage.examples import Example, Uses, uses_in
+from kb_build.usage.scripts import read_script
+from kb_check.api import Api
+from kb_check.symbols import SymbolList
+from simworlds.files import remove_unfinished_files, staged_file
+from simworlds.forked import beside
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Sequence
+    from pathlib import Path
+
+    from kb_build.records import Page, Symbol
+    from kb_build.usage.scripts import Script
+
+_KEPT = 12
+_CODE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_GUIDE_COST = 0.0
+_SAME = "same-as:"
+
+Usage = dict[str, Uses]
+
+
+def usage_file(cache: Path, extract: str, scripts: Sequence[Script]) -> Path:
+    """Where the uses in these scripts are kept; the name depends on the scripts, the API and the code that reads them.
+
+    ``extract`` names what Blender said of itself, with the digests of that Blender and of the extractor.
+    """
+    total = hashlib.sha256(f"{usage_digest()} {extract}".encode())
+    for script in scripts:
+        total.update(script.name.encode())
+        total.update(hashlib.sha256(read_script(script.path).encode(errors="replace")).digest())
+    return cache / "usage" / f"{total.hexdigest()[:32]}.json.gz"
+
+
+@contextlib.contextmanager
+def script_usage(
+    symbols: Sequence[Symbol], scripts: Sequence[Script], version: str, *, file: Path, jobs: int
+) -> Generator[Callable[[], Usage]]:
+    """Reads scripts in other processes meanwhile; gives a function that waits for the uses of symbols in them.
+
+    The uses are kept in ``file`` (see usage_file). Where that is not possible, the next build reads them again.
+    """
+    kept = _kept(file)
+    if kept is not None:
+        yield lambda: kept
+        return
+    # Large files first, each to the next process: the shares take about equally long.
+    largest_first = sorted(scripts, key=lambda script: -script.path.stat().st_size)
+    shares = [largest_first[start::jobs] for start in range(jobs)]
+    with contextlib.ExitStack() as stack:
+        waiting = [
+            stack.enter_context(beside(partial(_read, symbols, share, version))) for share in shares if share
+        ]
+
+        def result() -> Usage:
+            usage = merged([share() for share in waiting])
+            _keep(usage, file)
+            return usage
+
+        yield result
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in version.split(".") if part.isdigit())
+
+
+def _read(symbols: Sequence[Symbol], scripts: Iterable[Script], version: str) -> Usage:
+    api = Api(SymbolList(symbols))
+    numbers = _numbers(version)
+    return merged(uses_in(read_script(s.path), s.name, api, numbers, s.cost) for s in scripts)
+
+
+def page_usage(symbols: Sequence[Symbol], pages: Iterable[Page], version: str) -> Usage:
+    """The uses in the code of the guides."""
+    api = Api(SymbolList(symbols))
+    numbers = _numbers(version)
+    return merged(
+        uses_in(code, page.slug, api, numbers, _GUIDE_COST)
+        for page in pages
+        if page.source == "guide"
+        for section in page.sections
+        for code in _CODE.findall(section.text)
+    )
+
+
+def merged(parts: Iterable[Usage]) -> Usage:
+    """The uses in several files together."""
+    usage: Usage = {}
+    for part in parts:
+        for path, uses in part.items():
+            if path in usage:
+                usage[path].add(uses)
+            else:
+                usage[path] = uses
+    return usage
+
+
+def with_aliases(usage: Usage, symbols: Iterable[Symbol]) -> Usage:
+    """The same with the second names of context members: ``bpy.context.object`` is ``bpy.types.Context.object``."""
+    aliases = {
+        symbol.path: flag.removeprefix(_SAME)
+        for symbol in symbols
+        if symbol.kind == "context" and symbol.path not in usage
+        for flag in symbol.flags
+        if flag.startswith(_SAME)
+    }
+    return {**usage, **{path: usage[other] for path, other in aliases.items() if other in usage}}
+
+
+def _kept(path: Path) -> Usage | None:
+    try:
+        with gzip.open(path, "rt", encoding="utf-8") as file:
+            rows = json.load(file)
+        return {
+            name: Uses(count, files, [Example(*example) for example in examples])
+            for name, (count, files, examples) in rows.items()
+        }
+    except (OSError, EOFError, zlib.error, ValueError, TypeError):
+        return None
+
+
+def _keep(usage: Usage, path: Path) -> None:
+    rows = {
+        name: (uses.count, uses.files, [(e.cost, e.file, e.line, e.code) for e in uses.examples])
+        for name, uses in usage.items()
+    }
+    with contextlib.suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        remove_unfinished_files(path.parent)
+        with staged_file(path) as part, gzip.open(part, "wt", encoding="utf-8", compresslevel=1) as file:
+            json.dump(rows, file, ensure_ascii=False)
+        for old in sorted(path.parent.glob("*.json.gz"), key=lambda one: one.stat().st_mtime)[:-_KEPT]:
+            old.unlink(missing_ok=True)

@@ -1,0 +1,117 @@
+"""The uses of symbols in scripts, and which of them are shown."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from textwrap import dedent
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.usage.examples import MOST_EXAMPLES, Example, Uses, clearest, uses_in
+from kb_check.api import Api
+from kb_check.symbols import BaseSymbols
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+SCRIPT = """
+    import bpy
+
+    def drape(ob):
+        cloth = ob.modifiers.new("Cloth", 'CLOTH')
+        cloth.settings.quality = 12
+        if cloth.settings.quality > 5:
+            print(cloth.settings.quality)
+
+    def draw(self, context):
+        layout = self.layout
+        layout.operator("object.shade_smooth")
+        layout.prop(context.scene.render, "fps")
+
+    bpy.types.VIEW3D_MT_object.append(draw)
+    drape(bpy.context.object)
+    bpy.ops.mesh.primitive_cube_add(
+        size=2,
+        location=(0, 0, 1),
+        rotation=(0, 0, 0),
+    )
+    for ob in bpy.context.selected_objects:
+        ob.location.z += 1
+"""
+
+
+@pytest.fixture(scope="module")
+def found(base: Path) -> Iterator[dict[str, Uses]]:
+    with closing(BaseSymbols(base)) as symbols:
+        yield uses_in(dedent(SCRIPT), "a/script.py", Api(symbols), (5, 1, 0))
+
+
+def shown(found: dict[str, Uses], path: str) -> str:
+    return found[path].examples[0].code
+
+
+def test_a_setting_is_shown_where_it_is_set_with_the_line_that_binds_its_owner(
+    found: dict[str, Uses],
+) -> None:
+    uses = found["bpy.types.ClothSettings.quality"]
+    assert (uses.count, uses.files) == (3, 1)
+    best = uses.examples[0]
+    assert best.code == "cloth = ob.modifiers.new(\"Cloth\", 'CLOTH')\ncloth.settings.quality = 12"
+    assert (best.file, best.line) == ("a/script.py", 5)
+
+
+def test_a_call_of_many_lines_is_shown_on_one(found: dict[str, Uses]) -> None:
+    call = "bpy.ops.mesh.primitive_cube_add(size=2, location=(0, 0, 1), rotation=(0, 0, 0))"
+    assert shown(found, "bpy.ops.mesh.primitive_cube_add") == call
+
+
+def test_what_is_looped_over_is_shown_with_its_loop(found: dict[str, Uses]) -> None:
+    expected = "for ob in bpy.context.selected_objects:\n    ob.location.z += 1"
+    assert shown(found, "bpy.types.Object.location") == expected
+
+
+def test_a_class_is_shown_where_an_instance_is_made(found: dict[str, Uses]) -> None:
+    assert shown(found, "bpy.types.ClothModifier") == "cloth = ob.modifiers.new(\"Cloth\", 'CLOTH')"
+
+
+def test_a_button_counts_as_a_use_but_does_not_tell_how_an_operator_is_called(found: dict[str, Uses]) -> None:
+    assert found["bpy.ops.object.shade_smooth"].count == 1
+    assert not found["bpy.ops.object.shade_smooth"].examples
+    assert shown(found, "bpy.types.RenderSettings.fps") == 'layout.prop(context.scene.render, "fps")'
+
+
+def test_every_line_that_is_shown_is_in_the_script(found: dict[str, Uses]) -> None:
+    text = squeezed(SCRIPT)
+    examples = [example for uses in found.values() for example in uses.examples]
+    assert len(examples) > 20
+    for example in examples:
+        lines = example.code.split("\n")
+        assert len(lines) <= 3
+        assert all(squeezed(line) in text for line in lines)
+
+
+def squeezed(code: str) -> str:
+    """Code without its white space, and without the comma behind a last argument."""
+    return "".join(code.split()).replace(",)", ")")
+
+
+def test_a_script_that_cannot_be_read_has_no_uses(base: Path) -> None:
+    with closing(BaseSymbols(base)) as symbols:
+        assert uses_in("print 'x'", "a", Api(symbols), ()) == {}
+
+
+def test_the_clearest_are_kept_and_the_same_code_once() -> None:
+    rows = [
+        Example(cost, "f", line, code)
+        for cost, line, code in ((3, 1, "c"), (1, 2, "a"), (2, 3, "a"), (2, 4, "b"))
+    ]
+    assert [row.code for row in clearest(rows)] == ["a", "b", "c"]
+    assert len(clearest([Example(n, "f", n, str(n)) for n in range(9)])) == MOST_EXAMPLES
+
+
+def test_uses_in_several_files_are_added_up() -> None:
+    uses = Uses(2, 1, [Example(2, "f", 1, "two")])
+    uses.add(Uses(3, 1, [Example(1, "g", 1, "one")]))
+    assert (uses.count, uses.files, [row.code for row in uses.examples]) == (5, 2, ["one", "two"])
