@@ -69,14 +69,14 @@ class Member:
 
 
 class Api:
-    """The types of one Blender's API. Everything that is asked for twice is kept."""
+    """The types of one Blender's API. What is there is kept; names that are not would be without end."""
 
     def __init__(self, symbols: Symbols) -> None:
         self.symbols = symbols
         self._own: dict[str, dict[str, Symbol]] = {}
         self._sockets: dict[str, tuple[Symbol, ...]] = {}
         self._lineages: dict[str, tuple[str, ...]] = {}
-        self._members: dict[tuple[str, str], Member | None] = {}
+        self._members: dict[tuple[str, str], Member] = {}
         self._descendants: dict[str, tuple[str, ...]] = {}
         self._below: dict[tuple[str, str], tuple[tuple[str, Member], ...]] = {}
         self._named: dict[tuple[str, str], str] = {}
@@ -100,7 +100,9 @@ class Api:
             while path and path not in names and (symbol := self.symbols.symbol(path)):
                 names.append(path)
                 path = symbol.base
-            found = self._lineages[cls] = tuple(names)
+            found = tuple(names)
+            if names:
+                self._lineages[cls] = found
         return found
 
     def descends(self, cls: str, ancestor: str) -> bool:
@@ -157,15 +159,12 @@ class Api:
     def member(self, cls: str, name: str) -> Member | None:
         """A member of a class, inherited ones included, or of a module."""
         key = cls, name
-        if key in self._members:
-            return self._members[key]
-        for ancestor in self.lineage(cls) or (cls,):
-            if symbol := self.own(ancestor).get(name):
-                found = Member(symbol, self._type_of(symbol))
-                break
-        else:
-            found = None
-        self._members[key] = found
+        found = self._members.get(key)
+        if found is None:
+            for ancestor in self.lineage(cls) or (cls,):
+                if symbol := self.own(ancestor).get(name):
+                    found = self._members[key] = Member(symbol, self._type_of(symbol))
+                    break
         return found
 
     def below(self, cls: str, name: str) -> tuple[tuple[str, Member], ...]:
@@ -178,7 +177,9 @@ class Api:
                 symbol = self.own(child).get(name)
                 if symbol is not None and symbol.path not in rows:
                     rows[symbol.path] = child, Member(symbol, self._type_of(symbol))
-            found = self._below[key] = tuple(rows.values())
+            found = tuple(rows.values())
+            if found:
+                self._below[key] = found
         return found
 
     def _type_of(self, symbol: Symbol) -> Type:  # noqa: PLR0911 - one return a kind

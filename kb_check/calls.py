@@ -226,9 +226,8 @@ class Calls(Narrowing):
             return
         found = self.attribute(owner, text)
         if found.symbols or found.missing or found.possible:
-            self.resolve(
-                text_node, "text", text, found.symbols, found.missing, found.possible, sure=found.sure
-            )
+            kind = "text" if owner_place < 0 else "button"
+            self.resolve(text_node, kind, text, found.symbols, found.missing, found.possible, sure=found.sure)
 
     def _named_operator(self, node: ast.expr, kind: Type) -> None:
         text = literal_text(kind)
@@ -238,7 +237,7 @@ class Calls(Narrowing):
             known = self.api.symbols.symbol(path) is not None
             if path in self.own_operators:
                 return
-            self.resolve(node, "text", path, (path,) if known else (), () if known else ("bpy.ops",))
+            self.resolve(node, "button", path, (path,) if known else (), () if known else ("bpy.ops",))
 
     def _property(self, name: str, keywords: list[tuple[ast.keyword, Type]]) -> Type:
         """The value of a property that bpy.props declares."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from functools import cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 from kb_build.records import Symbol, symbol_from_json
@@ -12,6 +12,9 @@ from kb_build.schema import open_read_only, unpack
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
+
+
+_MOST_KEPT = 20_000
 
 
 class Symbols(Protocol):
@@ -61,9 +64,9 @@ class BaseSymbols:
 
     def __init__(self, path: Path) -> None:
         self._connection = open_read_only(path)
-        self.symbol = cache(self._symbol)
-        self.members = cache(self._owned)
-        self.subclasses = cache(self._below)
+        self.symbol = lru_cache(maxsize=_MOST_KEPT)(self._symbol)
+        self.members = lru_cache(maxsize=_MOST_KEPT)(self._owned)
+        self.subclasses = lru_cache(maxsize=_MOST_KEPT)(self._below)
 
     def close(self) -> None:
         """Closes the file."""

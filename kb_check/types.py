@@ -287,7 +287,8 @@ class Resolution:
 
     Kinds: ``attribute`` and ``store`` (ast.Attribute), ``name`` (an imported or bare name), ``call`` (ast.Call),
     ``keyword`` (ast.keyword), ``value`` (a literal of an enumeration), ``item`` (ast.Subscript, or the literal key
-    of a call to ``get``), ``text`` (a literal that names a property or an operator).
+    of a call to ``get``), ``text`` (a literal that names a property: ``keyframe_insert("location")``), ``button`` (a
+    literal that names the property or the operator that a layout shows).
     """
 
     node: ast.AST

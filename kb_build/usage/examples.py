@@ -38,7 +38,7 @@ _BUILTINS = frozenset(dir(builtins)) | {
 
 _LAYOUT = Instance("bpy.types.UILayout")
 
-# How clearly a use shows its symbol: 0 is best.
+# How clearly a use shows its symbol: 0 is best. That a panel or a menu shows it does not tell how it is used.
 _COSTS = {
     "store": 0.0,
     "call": 0.0,
@@ -46,7 +46,7 @@ _COSTS = {
     "made": 0.5,
     "attribute": 3.0,
     "name": 6.0,
-    "text": 5.0,
+    "text": 1.5,
     "given": 5.0,
 }
 
@@ -107,8 +107,7 @@ def uses_in(code: str, file: str, api: Api, version: tuple[int, ...], cost: floa
         if uses.count < _MOST_COUNTED:
             uses.count += 1
         statement = resolution.statement
-        # That a menu shows an operator does not tell how it is called.
-        if statement is not None and not (kind == "text" and path.startswith("bpy.ops.")):
+        if statement is not None and kind in _COSTS:
             step = _COSTS[kind] + 3.0 * (share - 1) + (0.0 if resolution.sure else 2.0)
             candidates[path].append((step, statement))
     for path, rows in candidates.items():

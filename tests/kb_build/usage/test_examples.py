@@ -76,10 +76,10 @@ def test_a_class_is_shown_where_an_instance_is_made(found: dict[str, Uses]) -> N
     assert shown(found, "bpy.types.ClothModifier") == "cloth = ob.modifiers.new(\"Cloth\", 'CLOTH')"
 
 
-def test_a_button_counts_as_a_use_but_does_not_tell_how_an_operator_is_called(found: dict[str, Uses]) -> None:
-    assert found["bpy.ops.object.shade_smooth"].count == 1
-    assert not found["bpy.ops.object.shade_smooth"].examples
-    assert shown(found, "bpy.types.RenderSettings.fps") == 'layout.prop(context.scene.render, "fps")'
+def test_a_button_counts_as_a_use_but_does_not_tell_how_its_symbol_is_used(found: dict[str, Uses]) -> None:
+    for path in ("bpy.ops.object.shade_smooth", "bpy.types.RenderSettings.fps"):
+        assert found[path].count == 1
+        assert not found[path].examples
 
 
 def test_every_line_that_is_shown_is_in_the_script(found: dict[str, Uses]) -> None:
