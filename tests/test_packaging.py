@@ -133,6 +133,6 @@ def test_the_wheel_holds_the_packages_the_table_of_sources_and_the_prompts(tmp_p
     scenes = {path.relative_to(REPO).as_posix() for path in (REPO / "bench" / "scenes").glob("*.yaml")}
     assert scenes | {"bench/commands/bench.py", "bench/audit/inside/serve.py"} <= names
     tops = {name.split("/")[0] for name in names if ".dist-info/" not in name}
-    assert tops == {"agents", "bench", "corpora", "kb_build", "kb_serve", "simworlds"}
+    assert tops == {"agents", "bench", "corpora", "kb_build", "kb_check", "kb_serve", "simworlds"}
     assert not [name for name in names if name.startswith("corpora/queries/")]
     assert "simworlds = simworlds.cli:main" in commands
