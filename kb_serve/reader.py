@@ -340,6 +340,7 @@ class BaseReader:
         """The symbols that a page explains, by Blender's own table."""
         return [row[0] for row in self.rows("SELECT symbol FROM explained WHERE slug = ?", slug)]
 
+    @cached_property
     def data_classes(self) -> list[tuple[str, str]]:
         """(path, name) of every data class."""
         return self.rows("SELECT path, name FROM symbols WHERE kind = 'class' AND grp = 'data'")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PARTS = (
-    *("retrieval", "defaults", "signatures", "old_code", "usage", "latency", "server", "builds"),
+    *("retrieval", "defaults", "passages", "signatures", "old_code", "usage", "latency", "server", "builds"),
     *("blender", "verifier", "audits"),
 )
 _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")

@@ -83,6 +83,8 @@ _ROWS = (
     Target("old_works", "names that work: left alone", "share", 1.0, True),
     Target("longest", "longest answer (estimated high)", "tokens", 1500, False, "official 121 KB"),
     Target("defaults_wrong", "defaults of new things told wrongly", "count", 0),
+    Target("passages", "symbols with a passage of the manual", "count", 2_000, True),
+    Target("passages_right", "passages about their symbol", "share", 0.97, True),
     Target("exact_p50", "in process, by exact name: p50", "ms", 0.5),
     Target(
         "ranked_p50", "in process, ranked: p50", "ms", 3, False, "FTS5 1.2 · rank-bm25 11 · official 860 ms"

@@ -147,7 +147,7 @@ class Topics:
     @cached_property
     def _classes(self) -> dict[str, frozenset[str]]:
         """Every data class with the words of its name."""
-        return {path: frozenset(terms(name)) for path, name in self._reader.data_classes()}
+        return {path: frozenset(terms(name)) for path, name in self._reader.data_classes}
 
     def _weights(self, paths: Iterator[str] | dict[str, float]) -> dict[str, float]:
         """What symbols count: themselves, and of a class the heaviest of its members."""

@@ -218,7 +218,7 @@ class Steps:
         types = self._reader.symbol(f"{TYPES}Object.type")
         items = types.enum_items if types else ()
         names = {key(name) for item in items for name in (item.identifier, item.name)}
-        return {path for path, name in self._reader.data_classes() if key(name) in names}
+        return {path for path, name in self._reader.data_classes if key(name) in names}
 
     def _named_pointers(self) -> list[SymbolEntry]:
         """Properties called as the topic is: ``Scene.camera``."""
