@@ -74,6 +74,9 @@ _ROWS = (
     Target("task5", "task: hit@5", "share", 0.60, True, "FTS5 0.24 · MiniLM embeddings 0.56"),
     Target("names1", "exact, member, expression: hit@1", "share", 0.97, True),
     Target("members", "class members found first by full path", "share", None, True, "official 0 of 400"),
+    Target("history_dated", "removed symbols of scripts: dated rightly in the base", "share", 0.95, True),
+    Target("history_first", "… right successor first in the base, none where there is none", "share", 0.85, True),
+    Target("history_answered", "… answered with date and right successor first", "share", 0.85, True),
     Target("longest", "longest answer (estimated high)", "tokens", 1500, False, "official 121 KB"),
     Target("exact_p50", "in process, by exact name: p50", "ms", 0.5),
     Target(
