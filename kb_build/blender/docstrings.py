@@ -337,6 +337,14 @@ def _split(text: str) -> tuple[list[str], str]:
 def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
     """The call's arguments in its order, completed from the field list."""
     parameters = {parameter.name: parameter for parameter in call_parameters(signature)}
+    described = fields.texts | fields.types
+    misnamed = [name for name in described if name not in parameters]
+    undescribed = [name for name in parameters if name not in described]
+    if fields.arguments and len(misnamed) == len(undescribed) == 1:
+        # The docstring calls the one argument that is left otherwise than the signature does.
+        for known in (fields.texts, fields.types):
+            if misnamed[0] in known:
+                known[undescribed[0]] = known.pop(misnamed[0])
     for name in fields.texts | fields.types:
         parameters.setdefault(name, Parameter(name=name))
     return tuple(

@@ -167,11 +167,13 @@ def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> t
     completed: list[Parameter] = []
     for parameter in parameters:
         more = by_name.get(parameter.name, parameter)
+        empty_set = not parameter.default and more.type.startswith("set[")
         completed.append(
             replace(
                 parameter,
                 type=parameter.type or more.type,
                 description=parameter.description or more.description,
+                default=[] if empty_set else parameter.default,
                 enum_items=parameter.enum_items or more.enum_items,
             )
         )
