@@ -174,6 +174,21 @@ def test_operators_know_what_they_get(api: Api) -> None:
     assert not unknown(api, code)
 
 
+def test_a_collection_that_a_script_declares_gives_what_it_holds(api: Api) -> None:
+    code = """
+        import bpy
+        class Item(bpy.types.PropertyGroup):
+            ob: bpy.props.PointerProperty(type=bpy.types.Object)
+        bpy.types.Scene.items_of_mine = bpy.props.CollectionProperty(type=Item)
+        item = bpy.context.scene.items_of_mine.add()
+        item.ob.hide_render = True
+        bpy.context.scene.items_of_mine.clear()
+        bpy.context.scene.items_of_mine.no_such_method()
+    """
+    assert symbol(api, code, "hide_render") == "Object.hide_render"
+    assert {name for _, name in unknown(api, code)} == {"no_such_method"}
+
+
 def test_a_class_that_is_mixed_into_others_is_what_they_are(api: Api) -> None:
     code = """
         import bpy
