@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kb_check.api import Api
     from kb_check.types import Resolution, Type
 
-MOST_CHARACTERS = 4_000_000
+MOST_CHARACTERS = 2_000_000
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
 _STEPS_PER_CHARACTER = 4
 _ROUNDS = 3

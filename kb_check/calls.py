@@ -450,6 +450,8 @@ class Calls(Narrowing):
         first = arguments[0] if arguments else UNKNOWN
         if isinstance(receiver, Plain):
             return _STRING_RESULTS.get(name, STR) if receiver.kind == "str" else UNKNOWN
+        if isinstance(receiver, Collection):
+            return receiver.element if name == "add" else NONE
         if isinstance(receiver, Operator):
             return BOOL if name == "operator.poll" else UNKNOWN
         if isinstance(receiver, Mapping):

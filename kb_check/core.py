@@ -40,6 +40,7 @@ class Core:
         self.scope = self.module
         self.functions: list[FunctionDefinition] = []
         self.classes: list[ClassDefinition] = []
+        self.derived: dict[int, list[int]] = {}
         self.numbers: dict[ast.AST, int] = {}
         self.own_operators: set[str] = set()
         self.registered: dict[tuple[str, str], Type] = {}
@@ -52,7 +53,6 @@ class Core:
         self.function: FunctionDefinition | None = None
         self.statement: ast.stmt | None = None
         self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
-        self._mixed: dict[tuple[int, int], tuple[tuple[str, ...], bool]] = {}
 
     # What the parts give each other.
 
@@ -135,15 +135,10 @@ class Core:
         bases, known = self._direct_bases(number)
         if bases or not known:
             return bases, known
-        key = number, len(self.classes)
-        found = self._mixed.get(key)
-        if found is None:
-            for other in range(len(self.classes)):
-                if other != number and LocalClass(number) in self.ancestors(other):
-                    more, _ = self._direct_bases(other)
-                    bases += tuple(base for base in more if base not in bases)
-            found = self._mixed[key] = bases, not bases
-        return found
+        mixed = dict.fromkeys(
+            base for other in self.derived.get(number, ()) for base in self._direct_bases(other)[0]
+        )
+        return tuple(mixed), not mixed
 
     def _direct_bases(self, number: int) -> tuple[tuple[str, ...], bool]:
         found = self._bases.get(number)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_check.api import ARRAY, COLLECTION, STRUCT
+from kb_check.api import ARRAY, COLLECTION, GROUPS, STRUCT
 from kb_check.core import Core
 from kb_check.facts import (
     DERIVED_BY_SCRIPTS,
@@ -15,6 +15,7 @@ from kb_check.facts import (
 )
 from kb_check.types import (
     FLOAT,
+    MOST_MEMBERS,
     STR,
     UNKNOWN,
     Builtin,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     import ast
     from collections.abc import Callable
 
+_GROUP_METHODS = frozenset({"add", "remove", "clear", "move"})
 _PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
 _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
 
@@ -98,9 +100,10 @@ class Members(Core):
             return
         if below := self.api.below(kind.cls, name):
             found.possible += [member.symbol.path for _, member in below]
-            found.types.append(
-                union(self._held(member.type, Instance(cls), name) for cls, member in below[:9])
-            )
+            kinds = [
+                self._held(member.type, Instance(cls), name) for cls, member in below[: MOST_MEMBERS + 1]
+            ]
+            found.types.append(union(kinds) if len(kinds) <= MOST_MEMBERS else UNKNOWN)
             return
         if not _is_pythons(name) and not self._is_open(kind.cls):
             found.missing.append(kind.cls)
@@ -138,6 +141,9 @@ class Members(Core):
         if own is not None:
             found.symbols.append(own.symbol.path)
             found.types.append(self._held(own.type, kind, name))
+            return
+        if kind.container == GROUPS and name in _GROUP_METHODS:
+            found.types.append(Builtin(name, kind))  # not every Blender documents them
             return
         found.missing.append(kind.path or kind.container)
         found.types.append(UNKNOWN)

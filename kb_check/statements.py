@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Sequence as Rows
 
+_MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
 _FORGIVING = frozenset(
     {"AttributeError", "Exception", "BaseException", "KeyError", "TypeError", "RuntimeError", "ValueError"}
 )
@@ -430,6 +431,9 @@ class Statements(Calls):
         if number is None:
             number = self.numbers[node] = len(self.classes)
             self.classes.append(ClassDefinition(node, bases))
+            for kind in self.ancestors(number):
+                if isinstance(kind, LocalClass) and kind.number != number and number < _MOST_CLASSES:
+                    self.derived.setdefault(kind.number, []).append(number)
         scope = Scope(self.scope, is_class=True, cls=number)
         outer, self.scope = self.scope, scope
         try:

@@ -47,6 +47,8 @@ def test_what_cannot_be_parsed_says_why(api: Api, code: str) -> None:
         "x = []\n" + "x.append(x)\n" * 50 + "while x:\n    x = [x, {'a': x}]",
         "import bpy\nob = None\n" + "ob = bpy.data.objects.new('x', ob)\n" * 300,
         "x = lambda: x()\nx()",
+        "\n".join(f"class C{n}:\n def m(self): return self.q" for n in range(2_000)),
+        "import bpy\nx = 1" + "\nif bpy.app.version < x:\n  x = [x]\nelif x:\n  x = x.y(x)" * 300,
         "import bpy\n" + "\n".join(f"def f{n}(x): return f{n + 1}(x)" for n in range(400)) + "\nf0(bpy)",
         "global x\nimport bpy.nothing\nfrom bpy import *\nfrom . import a\ndel x, x.y, x[0]",
         "match 1:\n    case {'a': x, **rest}: x\n    case [1, *others] | None: others\n    case _: pass",

@@ -174,6 +174,52 @@ def test_operators_know_what_they_get(api: Api) -> None:
     assert not unknown(api, code)
 
 
+def test_a_collection_that_a_script_declares_gives_what_it_holds(api: Api) -> None:
+    code = """
+        import bpy
+        class Item(bpy.types.PropertyGroup):
+            ob: bpy.props.PointerProperty(type=bpy.types.Object)
+        bpy.types.Scene.items_of_mine = bpy.props.CollectionProperty(type=Item)
+        item = bpy.context.scene.items_of_mine.add()
+        item.ob.hide_render = True
+        bpy.context.scene.items_of_mine.clear()
+        bpy.context.scene.items_of_mine.no_such_method()
+    """
+    assert symbol(api, code, "hide_render") == "Object.hide_render"
+    assert {name for _, name in unknown(api, code)} == {"no_such_method"}
+
+
+def test_a_class_that_is_mixed_into_others_is_what_they_are(api: Api) -> None:
+    code = """
+        import bpy
+        class Buttons:
+            def draw(self, _context):
+                self.layout.label(text="x")
+        class Last(Buttons, bpy.types.Panel):
+            pass
+    """
+    assert symbol(api, code, "layout") == "Panel.layout"
+    assert symbol(api, code, "label") == "UILayout.label"
+
+
+def test_a_script_may_register_what_it_uses(api: Api) -> None:
+    code = """
+        import bpy
+        class Run(bpy.types.Operator):
+            bl_idname = "my.run"
+        class Tree(bpy.types.NodeTree):
+            def update(self):
+                self.links.clear()
+        bpy.types.Object.mine = bpy.props.IntProperty()
+        bpy.context.object.mine = 3
+        bpy.ops.my.run('INVOKE_DEFAULT')
+        bpy.types.VIEW3D_MT_object.append(lambda self, context: self.layout.operator("my.run"))
+        bpy.context.button_that_a_layout_set
+        bpy.data.node_groups["x"].nodes[0].inputs.new("MySocket", "x").value
+    """
+    assert not unknown(api, code)
+
+
 def test_parts_of_calls_stand_for_symbols(api: Api) -> None:
     code = """
         import bpy
