@@ -215,6 +215,15 @@ class BaseReader:
         rows = self.rows("SELECT first, last, gone FROM removed WHERE path = ?", path)
         return rows[0] if rows else None
 
+    def removed_named(self, name: str) -> list[str]:
+        """Paths of the symbols of other versions whose last part is exactly ``name``."""
+        return [row[0] for row in self.rows("SELECT path FROM removed WHERE name = ? ORDER BY path", name)]
+
+    def still_works(self, path: str) -> str:
+        """The symbol that one gets by a former name that this Blender still takes; "" where it does not."""
+        rows = self.rows("SELECT taken_as FROM still_works WHERE path = ?", path)
+        return rows[0][0] if rows else ""
+
     def removed_by_key(self, key: str) -> list[str]:
         """Paths of symbols of other versions that are spelled like ``key``."""
         return [
@@ -225,6 +234,12 @@ class BaseReader:
         """What takes the place of a symbol that this version lacks, best first; empty where no source says it."""
         sql = "SELECT target, how, version, source FROM successors WHERE path = ? ORDER BY position"
         return [Successor(*row) for row in self.rows(sql, path)]
+
+    def successors_of_classes(self) -> list[tuple[str, str]]:
+        """(removed class, class in its place), the best first for each."""
+        sql = """SELECT path, target FROM successors WHERE path GLOB 'bpy.types.*' AND path NOT GLOB 'bpy.types.*[.(:]*'
+            AND target != '' ORDER BY path, position"""
+        return self.rows(sql)
 
     def similar_names(self, path: str) -> list[tuple[str, float]]:
         """The symbols that resemble one without known successor, with scores, best first."""

@@ -7,17 +7,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise.message_patterns import is_message, prose_of
+from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recogniser import Recogniser
 
 if TYPE_CHECKING:
     from kb_serve.rank.search import Searcher, SearchHit
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.corrections import RemovedSymbol
     from kb_serve.recognise.recognition import Recognition
 
 SURE = 0.8  # from here on, named ids come before search hits
 _LEAST_HITS = 12  # of the search, so that it also finds alternatives to a named class
-_CLOSE = 0.6  # replacements with at least this share of the best one's score are named too
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,18 +39,13 @@ class Ranking:
     notes: list[str] = field(default_factory=list)
 
 
-def _span_text(removed: RemovedSymbol) -> str:
-    if removed.first == removed.last:
-        return f"seen in {removed.last} only"
-    return f"seen from {removed.first} to {removed.last}"
-
-
 class QueryRanker:
     """Ranks the ids that a query names or describes."""
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self._recogniser = Recogniser(reader)
+        self._notes = Notes(reader)
 
     @cached_property
     def searcher(self) -> Searcher:
@@ -66,33 +60,14 @@ class QueryRanker:
         best = recognition.best
         if best is not None and best.sure >= 1.0:
             ranked = [RankedId(match.id, match.sure, match.why) for match in recognition.matches]
-            return Ranking(ranked, recognition, named=True, notes=self._notes(recognition))
+            return Ranking(ranked, recognition, named=True, notes=self._notes.on(recognition))
+        if recognition.dead_end:  # what the words find would pass for the successor
+            ranked = [RankedId(m.id, m.sure, m.why) for m in recognition.matches if m.sure >= SURE]
+            return Ranking(ranked, recognition, named=False, notes=self._notes.on(recognition))
         hits = self.searcher.search(prose_of(query), max(limit, _LEAST_HITS), failed=is_message(query))
         ranked = self._merged(recognition, hits)
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
-        return Ranking(ranked, recognition, named, self._notes(recognition))
-
-    def _notes(self, recognition: Recognition) -> list[str]:
-        """Notes on the names in the query: corrections, removed and missing ones."""
-        version = self._reader.meta.get("minor", "this version")
-        notes: list[str] = []
-        for correction in recognition.corrections:
-            if correction.similarity < 1:
-                notes.append(f"`{correction.written}` does not exist; read as `{correction.meant}`.")
-        for removed in recognition.removed:
-            close = _CLOSE * max((score for _, score in removed.instead), default=0.0)
-            instead = ", ".join(f"`{target}`" for target, score in removed.instead[:3] if score >= close)
-            closest = f" Closest in {version}: {instead}." if instead else ""
-            notes.append(
-                f"`{removed.path}` does not exist in Blender {version}; {_span_text(removed)}.{closest}"
-            )
-        removed_names = {removed.path.rpartition(".")[2] for removed in recognition.removed}
-        similar = [f"`{match.id}`" for match in recognition.matches if match.why == "similar name"][:3]
-        closest = f" Closest: {', '.join(similar)}." if similar else ""
-        for missing in recognition.missing:
-            if missing.owner and missing.name not in removed_names:
-                notes.append(f"`{missing.owner}` has no `{missing.name}`.{closest}")
-        return list(dict.fromkeys((*notes, *recognition.notes)))
+        return Ranking(ranked, recognition, named, self._notes.on(recognition))
 
     @staticmethod
     def _merged(recognition: Recognition, hits: list[SearchHit]) -> list[RankedId]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kb_serve.recognise.corrections import nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from kb_build.records import Symbol
     from kb_serve.recognise.chains import Chain
@@ -21,7 +21,40 @@ NO_OVERRIDE = (
 _FEW = 3
 _NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
 _KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
+_ARGUMENT = re.compile(r"\s*(?:(\w+)\s*=(?!=))?\s*(.*)", re.DOTALL)
+_STRINGS = re.compile(r"""(["'])((?:(?!\1).)*)\1""")
 _DEPTH = 5
+
+
+def arguments(text: str) -> Iterator[tuple[str, str]]:
+    """(keyword or "", text) of each argument between a call's brackets."""
+    depth, quote, start = 0, "", 0
+    for position, char in enumerate(text):
+        if quote:
+            quote = "" if char == quote else quote
+        elif char in "\"'":
+            quote = char
+        elif char in "([{":
+            depth += 1
+        elif char in ")]}":
+            depth -= 1
+        elif char == "," and depth == 0:
+            yield _argument(text[start:position])
+            start = position + 1
+    if text[start:].strip():
+        yield _argument(text[start:])
+
+
+def _argument(text: str) -> tuple[str, str]:
+    match = _ARGUMENT.fullmatch(text)
+    return (match[1] or "", match[2].strip()) if match else ("", text.strip())
+
+
+def texts_in(argument: str) -> list[str]:
+    """The quoted texts that an argument is: one, or those in a set."""
+    if argument[:1] not in set("'\"{"):
+        return []
+    return [match[2] for match in _STRINGS.finditer(argument)]
 
 
 def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
@@ -36,8 +69,8 @@ def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
         yield f"`{symbol.path}` takes no `{name}`{closest}."
 
 
-def wrong_arguments(chain: Chain, symbol: Symbol) -> Iterator[str]:
-    """Sentences on the wrong arguments of a call, as far as its text shows."""
+def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ()) -> Iterator[str]:
+    """Sentences on the wrong arguments of a call, as far as its text shows; but on ``removed`` ones, given by path."""
     last = chain.steps[-1] if chain.steps else None
     if last is None or last.kind != "call" or symbol.kind not in {"operator", "function"}:
         return
@@ -47,7 +80,8 @@ def wrong_arguments(chain: Chain, symbol: Symbol) -> Iterator[str]:
     for _ in range(_DEPTH):
         text = _NESTED.sub("0", text)
     if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops."):
-        yield from unknown_keywords(symbol, _KEYWORD.findall(text))
+        names = [name for name in _KEYWORD.findall(text) if f"{symbol.path}({name})" not in removed]
+        yield from unknown_keywords(symbol, names)
 
 
 def _gives_context(arguments: str) -> bool:

@@ -12,9 +12,12 @@ MAX_QUERY = 4_000
 _MAX_CHAINS = 12
 _MAX_STEPS = 16  # the longest expression of a scene's script has ten
 _MAX_BUILTINS = 12
+_MAX_VALUES = 8
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
+_VALUE = re.compile(r"\s*(?:[-+*/|&^%=!]?=|not\s+in\b|in\b)\s*(?=['\"{(\[])")
+_ITEM = re.compile(r"""(["'])(\w[\w. -]{0,60})\1""")
 _CLOSING = {"(": ")", "[": "]"}
 _QUOTED = re.compile(r"""^\s*[bru]?(["'])(.*)\1\s*$""", re.DOTALL)
 
@@ -33,13 +36,15 @@ class ChainStep:
 class Chain:
     """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
 
-    ``assigned`` tells whether it stands left of an assignment.
+    ``assigned`` tells whether it stands left of an assignment; ``values`` are the texts that it is set to or
+    compared with.
     """
 
     root: str
     steps: tuple[ChainStep, ...]
     source: str
     assigned: bool = False
+    values: tuple[str, ...] = ()
 
     @property
     def dotted(self) -> str:
@@ -97,6 +102,18 @@ def _step(text: str, position: int) -> tuple[ChainStep, int] | None:
     return None
 
 
+def _values(text: str, position: int) -> tuple[str, ...]:
+    """The quoted texts right of ``=``, ``==``, ``in`` …: one, or all in a set, tuple or list."""
+    if not (operator := _VALUE.match(text, position)):
+        return ()
+    start = operator.end()
+    if text[start] in "'\"":
+        item = _ITEM.match(text, start)
+        return (item[2],) if item else ()
+    content, _ = _bracket(text, start)
+    return tuple(item[2] for item in _ITEM.finditer(content))[:_MAX_VALUES]
+
+
 def find_chains(text: str) -> list[Chain]:
     """Every name or dotted expression in a text, in order; at most a dozen with code in them.
 
@@ -117,7 +134,13 @@ def find_chains(text: str) -> list[Chain]:
             if builtins_called <= _MAX_BUILTINS:
                 position = match.end() + 1  # the arguments of Python's own functions may be Blender's
             continue
-        chain = Chain(match.group(), tuple(steps), text[start:position], assigned)
+        chain = Chain(
+            match.group(),
+            tuple(steps),
+            text[start:position],
+            assigned,
+            _values(text, position) if steps else (),
+        )
         chains.append(chain)
         code += chain.is_code
         if code >= _MAX_CHAINS:

@@ -1,10 +1,9 @@
-"""Corrections of names that do not exist, and symbols that only other versions have."""
+"""Corrections of misspelt names."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
@@ -12,7 +11,7 @@ from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.chains import Chain, ChainStep
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
@@ -21,6 +20,8 @@ _CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` 
 _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
+_TYPO = 0.8  # similarity of a whole name from which on it may be misspelt
+_TYPO_IN_WORD = 0.55  # … and of each of its words
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,16 +31,6 @@ class Correction:
     written: str
     meant: str
     similarity: float
-
-
-@dataclass(frozen=True, slots=True)
-class RemovedSymbol:
-    """A symbol that only other versions have: its path, their first and last, and replacements in this version."""
-
-    path: str
-    first: str
-    last: str
-    instead: tuple[tuple[str, float], ...]
 
 
 def similarity(written: str, name: str) -> float:
@@ -68,6 +59,25 @@ def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[st
     return sorted(likely, key=lambda row: (-row[1], len(row[0]), row[0]))[:limit]
 
 
+def is_misspelling(written: str, name: str) -> bool:
+    """Whether ``written`` can only be ``name`` with a slip of the fingers, not another word: ``location_x`` is no
+    misspelt ``location_y``, and ``groups`` no ``node_groups``.
+    """
+    from rapidfuzz.distance import OSA  # noqa: PLC0415 - names that exist need no correction
+
+    left, right = key(written), key(name)
+    if left == right:
+        return True
+    if OSA.normalized_similarity(left, right) < _TYPO:
+        return False
+    mine, theirs = words(written), words(name)
+    if set(mine) < set(theirs) or set(theirs) < set(mine):
+        return False
+    if len(mine) != len(theirs):
+        return True
+    return all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in zip(mine, theirs, strict=True))
+
+
 class Corrector:
     """Corrects the wrong names in a chain."""
 
@@ -88,7 +98,7 @@ class Corrector:
         """The class or module that a misspelt first name means."""
         if len(written) < 5:
             return None
-        return _closest(written, self._roots, 0.8)
+        return _closest(written, self._roots, _TYPO)
 
     @cached_property
     def _members(self) -> dict[str, str]:
@@ -131,6 +141,8 @@ class Corrector:
             if not similar:
                 break
             name, alike = similar[0]
+            if not is_misspelling(resolved.missing, name):
+                return None
             corrections.append(Correction(resolved.missing, name, alike))
             chain = _with_step(chain, len(chain.steps) - resolved.steps_left, name)
             readings = self._resolver.resolve(chain)
@@ -147,7 +159,9 @@ def _closest(written: str, names: Mapping[str, str], cutoff: float) -> Correctio
     hit = process.extractOne(
         key(written), names.keys(), scorer=OSA.normalized_similarity, score_cutoff=cutoff
     )
-    return Correction(written, names[hit[0]], hit[1]) if hit else None
+    if hit is None or not is_misspelling(written, names[hit[0]].rpartition(".")[2]):
+        return None
+    return Correction(written, names[hit[0]], hit[1])
 
 
 def _with_step(chain: Chain, number: int, name: str) -> Chain:
@@ -156,57 +170,3 @@ def _with_step(chain: Chain, number: int, name: str) -> Chain:
         "key" if steps[number].kind == "key" else "attr", name.partition('["')[2].rstrip('"]') or name
     )
     return replace(chain, steps=tuple(steps))
-
-
-class RemovedSymbolLookup:
-    """Looks up symbols that only other versions have."""
-
-    def __init__(self, reader: BaseReader) -> None:
-        self._reader = reader
-
-    def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
-        """A removed member of a class, of its bases, or of a module."""
-        for ancestor in [entry.path for entry in self._reader.lineage(owner)] or [owner]:
-            if removed := self.of_path(f"{ancestor}.{name}"):
-                return removed
-        return None
-
-    def of_socket(self, owner: str, name: str, variable: str) -> RemovedSymbol | None:
-        """A removed socket, ``inputs["Subsurface"]``, of a node below ``owner``: the variable may tell which."""
-        paths = [path for path in self._reader.removed_by_key(key(name)) if '["' in path]
-        below = [
-            path
-            for path in paths
-            if self._reader.descends(path.partition('puts["')[0].rpartition(".")[0], owner)
-        ]
-        below.sort(key=lambda path: (key(variable) not in key(path), path))
-        return self.of_path(below[0]) if below else None
-
-    def of_variables_socket(self, chain: Chain) -> RemovedSymbol | None:
-        """A removed socket, ``bsdf.inputs["Transmission"]``, of a node known only by the variable's name."""
-        for before, step in pairwise(chain.steps[:2]):
-            if step.kind == "key" and before.text in {"inputs", "outputs"}:
-                paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
-                named = [path for path in paths if key(chain.root) in key(path.partition('puts["')[0])]
-                return self.of_path(named[0]) if named else None
-        return None
-
-    def of_path(self, path: str) -> RemovedSymbol | None:
-        """A removed symbol by its exact path."""
-        span = self._reader.removed(path)
-        if span is None:
-            return None
-        successors = tuple((row.target, 1.0) for row in self._reader.successors(path) if row.target)
-        return RemovedSymbol(path, *span[:2], successors or tuple(self._reader.similar_names(path)))
-
-    def spelled(self, text: str) -> Iterator[RemovedSymbol]:
-        """Removed symbols in any usual spelling; bare enum items only as code writes them."""
-        for path in self._reader.removed_by_key(key(text)):
-            if (
-                ":" in path
-                and "." not in text
-                and not (text.isupper() and not self._reader.enum_owners(key(text)))
-            ):
-                continue
-            if removed := self.of_path(path):
-                yield removed

@@ -9,11 +9,14 @@ from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
 from kb_serve.recognise.recognition import MissingName
+from kb_serve.recognise.removed_symbols import plain_path
+from kb_serve.recognise.variables import USUAL, usual_classes
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.chains import Chain
-    from kb_serve.recognise.corrections import Corrector, RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.corrections import Corrector
+    from kb_serve.recognise.old_code import OldCode, OldName
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
@@ -35,13 +38,11 @@ def _is_api(chain: Chain) -> bool:
 class Expressions:
     """Recognises code against one base."""
 
-    def __init__(
-        self, reader: BaseReader, resolver: Resolver, corrector: Corrector, removed: RemovedSymbolLookup
-    ) -> None:
+    def __init__(self, reader: BaseReader, resolver: Resolver, corrector: Corrector, old: OldCode) -> None:
         self._reader = reader
         self._resolver = resolver
         self._corrector = corrector
-        self._removed = removed
+        self._old = old
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
@@ -54,7 +55,11 @@ class Expressions:
         for position, chain in enumerate(code):
             later = 0.02 * min(position, 5)
             readings = self._resolver.resolve(chain)
-            if self._names_removed(chain, readings, recognition):
+            if taken_as := self._old.still_taken(readings):
+                self._former_name(taken_as, later, recognition)
+                continue
+            if old := self._old.in_chain(chain, readings):
+                self._old_name(old, later, recognition)
                 continue
             broken = max(
                 (resolved for resolved in readings if resolved.missing), key=lambda w: w.fit, default=None
@@ -90,33 +95,25 @@ class Expressions:
         meant = self._corrector.root(chain.root)
         return meant is not None and _NEARLY <= meant.similarity < 1.0
 
-    def _names_removed(self, chain: Chain, readings: list[ResolvedChain], recognition: Recognition) -> bool:
-        """Adds the removed symbol that a chain names, on the likeliest class or by its path; whether there is one."""
-        if not (readings and readings[0].complete and readings[0].fit >= 0.85):
-            if removed := self._removed.of_variables_socket(chain):
-                recognition.removed.append(removed)  # in addition to other nodes with such a socket
-            if whole := self._removed.of_path(chain.dotted) if chain.steps else None:
-                recognition.removed.append(whole)
-                return True
-            for resolved in readings:
-                if removed := self._removed_symbol(chain, resolved):
-                    recognition.removed.append(removed)
-                    return True
-            for removed in self._removed.spelled(chain.dotted) if chain.is_code else ():
-                recognition.removed.append(removed)
-                return True
-        return False
+    def _old_name(self, old: OldName, later: float, recognition: Recognition) -> None:
+        """Adds a removed symbol, and where the rest of its chain leads from what took its place."""
+        for _ in range(_FEW):
+            recognition.add_removed(old.removed)
+            if not old.rest or not old.removed.targets:
+                return
+            resolved = self._resolver.onward(plain_path(old.removed.targets[0]), old.rest)
+            if resolved.complete:
+                recognition.add(resolved.symbols[-1], 0.88 - later, "behind the successor")
+                return
+            further = self._old.behind(resolved, old.rest)
+            if further is None:
+                return
+            old = further
 
-    def _removed_symbol(self, chain: Chain, resolved: ResolvedChain) -> RemovedSymbol | None:
-        """The removed symbol at which an incomplete reading stops."""
-        if "puts[" in resolved.missing:
-            removed = self._removed.of_member(resolved.owner, resolved.missing)
-            return removed or self._removed.of_socket(resolved.owner, resolved.missing, chain.root)
-        return (
-            self._removed.of_member(resolved.owner, resolved.missing)
-            if resolved.missing and resolved.fit >= 0.6
-            else None
-        )
+    @staticmethod
+    def _former_name(taken_as: str, later: float, recognition: Recognition) -> None:
+        recognition.add(taken_as, 0.97 - later, "former name")
+        recognition.notes.append(f"The former name still works here; the name is now `{taken_as}`.")
 
     def _reading(
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
@@ -154,7 +151,10 @@ class Expressions:
     def _broken_off(chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
         assigned = chain.assigned and resolved.steps_left == 1
-        recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned))
+        if assigned and len(resolved.symbols) == 1 and chain.root in {"bpy", "types"}:
+            return  # ``bpy.types.Scene.my_property = …`` defines it
+        sure = resolved.fit >= 1.0 or (resolved.fit >= USUAL and len(usual_classes(chain.root)) <= 1)
+        recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure))
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'

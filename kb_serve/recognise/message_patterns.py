@@ -14,7 +14,14 @@ MODULE_HAS_NO = re.compile(r"module ['\"](?P<owner>[\w.]+)['\"] has no attribute
 NO_KEY = re.compile(r"\b(?P<on>bpy_\w+)\[key\]: key \"(?P<name>[^\"]+)\" not found")
 NO_INDEX = re.compile(r"\w+\[index\]: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
 BAD_ENUM = re.compile(r"enum \"(?P<name>[^\"]*)\" not found in \((?P<items>[^)]*)\)?")
-BAD_KEYWORD = re.compile(r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)")
+BAD_KEYWORD = re.compile(
+    r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)"
+    r"|(?:(?P<function>[\w.]+)\(\) got an )?unexpected keyword argument ['\"](?P<unexpected>\w+)['\"]"
+    r"|['\"](?P<invalid>\w+)['\"] is an invalid keyword argument for (?:this function|(?P<of>[\w.]+)\(\))"
+    r"|(?P<method>\w+(?:\.\w+)+)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
+)
+NO_MODULE = re.compile(r"No module named ['\"](?P<module>[\w.]+)['\"]")
+NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?P<module>[\w.]+)['\"]")
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 WRONG_TYPE = re.compile(
     # Only from the start of a dotted name, and the whole of it: trying each part of a long one takes seconds.
@@ -34,6 +41,9 @@ _WORDING = re.compile(
     r"""bpy_struct:\ item\.attr\s*=\s*val:|bpy_\w+\[(?:key|index|slice)\](?:\ =\ value)?:|BMElemSeq\[index\]:
     |(?:object\ )?has\ no\ attribute\ '\w+'|and\ no\ __dict__\ for\ setting\ new\ attributes
     |Converting\ py\ args\ to\ operator\ properties::?|keyword\ "\w+"\ (?:is\ invalid|unrecognized)
+    |(?:got\ an\ )?unexpected\ keyword\ argument|is\ an\ invalid\ keyword\ argument\ for(?:\ this\ function)?
+    |was\ called\ with\ invalid\ keyword\ argument\(s\)\ \([^)]*\),\ expected\ \([^)]*\)?
+    |No\ module\ named|cannot\ import\ name|function\ takes\ exactly\ \d+\ arguments?\ \(\d+\ given\)
     |not\ found\ in\ \([^)]*\)?|expected\ an?\ \w+\ type,\ not\ \w+|error\ with\ argument\ \d+,\ "\w+"\ -
     |\bFunction\.(?=\w+\ expected)|[A-Z][A-Z_0-9]*_OT_\w+\.(?=\w+\ expected)
     |bpy_struct:\ (?=attribute|Context)|attribute\ "\w+"\ from\ "\w+"\ is\ read-only|Context\ property\ (?="\w+"\ is)

@@ -7,25 +7,28 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
-from kb_serve.reader import TYPES
+from kb_serve.reader import COLLECTION, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import NO_OVERRIDE, OVERRIDE, unknown_keywords
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.recognition import MissingName
+from kb_serve.recognise.removed_symbols import socket_node
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_serve.reader import BaseReader, SymbolEntry
-    from kb_serve.recognise.corrections import RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
 _MANY = 8  # where more properties may be None, none is likely enough to be named
 # Pages of the API's own guides that explain a kind of message; named where the base has them.
 _ON_OPERATORS = "info_gotchas_operators"
+_INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
+_USUAL_NODE = f"{TYPES}ShaderNodeBsdfPrincipled."  # whose sockets scripts set most
 _ON_FREED = "info_gotchas_crashes"
 
 
@@ -55,7 +58,10 @@ class Messages:
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes that need the query's names: the right argument, a removed socket."""
         for match in _matches(forms.BAD_KEYWORD, query):
-            self._keyword(match["name"], recognition)
+            function = match["function"] or match["of"] or match["method"] or ""
+            several = re.findall(r"\w+", match["several"] or "")
+            for name in several or [match["name"] or match["unexpected"] or match["invalid"]]:
+                self._keyword(name, function, recognition)
         for match in _matches(forms.NO_KEY, query):
             self._key(match["on"], match["name"], query, recognition)
 
@@ -66,13 +72,12 @@ class Messages:
             for match in _matches(pattern, query):
                 if match["owner"] == "NoneType":
                     self._none(match["name"], query, recognition)
-                    continue
-                owner = self._class_path(match["owner"])
-                if removed := self._removed_owner(match["owner"], match["name"], owner):
-                    recognition.removed.extend(removed)
-                elif owner and not self._resolver.member(owner, match["name"]):
-                    recognition.missing.append(MissingName(match["name"], owner))
-                    recognition.add(owner, 0.6, "error message")
+                else:
+                    self._no_attribute(match["owner"], match["name"], recognition)
+        for match in _matches(forms.NO_MODULE, query):
+            self._gone(match["module"], recognition)
+        for match in _matches(forms.NO_IMPORT, query):
+            self._gone(f"{match['module']}.{match['name']}", recognition)
         for match in _matches(forms.READ_ONLY, query):
             owner = "bpy.context" if match["context"] else TYPES + match["owner"]
             entry = self._named(owner, match["context"] or match["name"])
@@ -115,12 +120,37 @@ class Messages:
         symbol = self._reader.symbol(entry.path)
         return symbol is not None and "never-none" in symbol.flags
 
-    def _removed_owner(self, written: str, name: str, owner: str) -> list[RemovedSymbol]:
-        """The members, or else the classes, that other versions had under a name that is no class in this one."""
-        if self._reader.entry(TYPES + written):
-            return []
-        members = [*self._removed.spelled(f"{written}.{name}")]
-        return members if members or owner else [*self._removed.spelled(written)]
+    def _no_attribute(self, written: str, name: str, recognition: Recognition) -> None:
+        """A class or module without an attribute that other versions may have, or that never was."""
+        owner = _INSTANCES.get(written) or self._class_path(written)
+        if owner == COLLECTION:
+            removed = self._of_a_collection(name)
+        else:
+            removed = (
+                self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
+            )
+        if removed is None and not self._reader.entry(TYPES + written):
+            members = self._removed.spelled(f"{written}.{name}")
+            removed = next(members, None) or (None if owner else next(self._removed.spelled(written), None))
+        if removed:
+            recognition.add_removed(removed)
+        elif owner and not self._resolver.member(owner, name):
+            recognition.missing.append(MissingName(name, owner, sure=owner != COLLECTION))
+            recognition.add(owner, 0.6, "error message")
+
+    def _of_a_collection(self, name: str) -> RemovedSymbol | None:
+        """The removed member of a collection's own class (``SceneObjects.link``); messages do not name that class."""
+        paths = [path for path in self._removed.paths_named(name) if self._holds_collection(path)]
+        return self._removed.of_path(paths[0]) if len(paths) == 1 else None
+
+    def _holds_collection(self, path: str) -> bool:
+        cls = path.rpartition(".")[0].removeprefix(TYPES)
+        return bool(self._reader.rows("SELECT 1 FROM symbols WHERE collection = ? LIMIT 1", cls))
+
+    def _gone(self, path: str, recognition: Recognition) -> None:
+        """A module, or a name in one, that cannot be imported."""
+        if not self._reader.entry(path) and (removed := self._removed.of_path(path)):
+            recognition.add_removed(removed)
 
     def _class_path(self, name: str) -> str:
         for candidate in (TYPES + name, name):
@@ -164,27 +194,48 @@ class Messages:
                     recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
             recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")
 
-    def _keyword(self, name: str, recognition: Recognition) -> None:
-        """The arguments most like an unknown one, by the surest match that has any."""
-        for match in sorted(recognition.matches, key=lambda match: -match.sure):
-            symbol = self._reader.symbol(match.id)
-            if symbol is not None and symbol.parameters:
-                recognition.notes += unknown_keywords(symbol, [name])
+    def _keyword(self, name: str, function: str, recognition: Recognition) -> None:
+        """An argument that the function in the message, or else the surest match, does not take (any more)."""
+        if any(removed.path.endswith(f"({name})") for removed in recognition.removed):
+            return
+        ids = [self._function(function)] if function else []
+        ids += [match.id for match in sorted(recognition.matches, key=lambda match: -match.sure)]
+        for symbol in filter(None, map(self._reader.symbol, filter(None, ids))):
+            if symbol.parameters:
+                if removed := self._removed.of_part(symbol.path, f"({name})"):
+                    recognition.add_removed(removed)
+                else:
+                    recognition.notes += unknown_keywords(symbol, [name])
+                recognition.add(symbol.path, 0.9, "error message")
                 return
+        # The message alone: any function that took it once.
+        for path in [path for path in self._reader.removed_named(name) if path.endswith(f"({name})")][:_FEW]:
+            if removed := self._removed.of_path(path):
+                recognition.add_removed(removed)
+
+    def _function(self, written: str) -> str:
+        """The path of a function that a message names: ``Object.ray_cast``, ``from_pydata``."""
+        if "." in written:
+            entry = self._named(*written.rpartition(".")[::2])
+            return entry.path if entry else ""
+        entries = [entry for entry in self._reader.by_name(written) if entry.kind in {"function", "operator"}]
+        return entries[0].path if len(entries) == 1 else ""
 
     # Values
 
     def _values(self, query: str, recognition: Recognition) -> None:
         for match in _matches(forms.BAD_ENUM, query):
             items = re.findall(r"'([^']+)'", match["items"])
-            for rank, (owner, _) in enumerate(self._enum_values.owners(items)):
-                if rank >= 2:
-                    break
-                path = owner.partition("(")[0]
-                recognition.add(path, 0.95 - 0.02 * rank, "error message")
-                if removed := self._removed.of_path(f"{path}:{match['name']}"):
-                    recognition.removed.append(removed)
-            if similar := [f"`{name}`" for name, _ in nearest(match["name"], items)]:
+            removed = None
+            for rank, (owner, _) in enumerate(islice(self._enum_values.owners(items), _MANY)):
+                path, _, parameter = owner.partition("(")
+                if rank < 2:
+                    recognition.add(path, 0.95 - 0.02 * rank, "error message")
+                part = f"({parameter}:" if parameter else ":"
+                removed = removed or self._removed.of_part(path, f"{part}{match['name']}")
+            if removed:
+                recognition.add_removed(removed)
+            elif similar := [f"`{name}`" for name, _ in nearest(match["name"], items)]:
                 recognition.notes.append(
                     f"`{match['name']}` is not an item of this enum; closest: {', '.join(similar)}."
                 )
@@ -203,10 +254,11 @@ class Messages:
             for side in ("inputs", "outputs")
             for path in self._reader.removed_by_key(key(f'{side}["{name}"]'))
         ]
-        paths.sort(key=lambda path: -len(around & set(terms(path.partition('puts["')[0]))))
-        for path in paths[:1]:
-            if removed := self._removed.of_path(path):
-                recognition.removed.append(removed)
+        paths.sort(
+            key=lambda path: (-len(around & set(terms(socket_node(path)))), not path.startswith(_USUAL_NODE))
+        )
+        for removed in islice(filter(None, map(self._removed.of_path, paths)), 1):
+            recognition.add_removed(removed)
 
     # Removed data
 
@@ -229,7 +281,8 @@ class Messages:
             if entry := self._reader.entry(TYPES + match["type"]):
                 recognition.add(entry.path, 0.95, "error message")
             else:
-                recognition.removed.extend(self._removed.spelled(match["type"]))
+                for removed in self._removed.spelled(match["type"]):
+                    recognition.add_removed(removed)
 
     def _page(self, slug: str, recognition: Recognition) -> None:
         if self._reader.page_entry(slug):

@@ -11,12 +11,15 @@ from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.calls import NO_OVERRIDE, OVERRIDE, wrong_arguments
 from kb_serve.recognise.chains import Chain, find_chains
-from kb_serve.recognise.corrections import Corrector, RemovedSymbolLookup, nearest
+from kb_serve.recognise.corrections import Corrector, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
 from kb_serve.recognise.message_patterns import without_callers_names, without_wording
 from kb_serve.recognise.messages import Messages
+from kb_serve.recognise.notes import SIMILAR
+from kb_serve.recognise.old_code import OldCode
 from kb_serve.recognise.recognition import MissingName, Recognition
+from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
 from kb_serve.recognise.resolver import Resolver
 from kb_serve.recognise.spellings import Spellings
 
@@ -25,6 +28,8 @@ _FEW = 3
 _SURE = 0.9
 _MANY = 12
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
+_OWNER_OF_REMOVED = 0.89  # … one whose removed member has no known successor
+_GUESSES = frozenset({"enum item", "quoted name", "name", "label", "title", "on the way"})
 
 
 def _name(chain: Chain) -> str:
@@ -42,7 +47,8 @@ class Recogniser:
         self._spellings = Spellings(reader, self._removed)
         self._enum_values = EnumValues(reader)
         self._messages = Messages(reader, self._resolver, self._removed, self._enum_values)
-        self._expressions = Expressions(reader, self._resolver, self._corrector, self._removed)
+        self._old = OldCode(reader, self._resolver, self._removed)
+        self._expressions = Expressions(reader, self._resolver, self._corrector, self._old)
 
     def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
@@ -56,46 +62,75 @@ class Recogniser:
             self._expressions.recognise(find_chains(_FILE_PATH.sub(" ", text)), recognition)
             self._enum_values.recognise(text, recognition)
             self._removed_values(text, recognition)
-            self._messages.explain(query, recognition)
-            self._explain_missing(recognition)
-        self._check_calls(query, recognition)
+        self._check_uses(query, recognition)
+        self._messages.explain(query, recognition)
+        self._explain_removed(recognition)
+        self._explain_missing(recognition)
         recognition.matches.sort(key=lambda match: -match.sure)
         return recognition
 
-    def _check_calls(self, query: str, recognition: Recognition) -> None:
-        """Adds notes on wrong arguments of the recognised calls."""
-        if "(" not in query:
-            return
-        chains = [chain for chain in find_chains(query) if chain.steps and chain.steps[-1].kind == "call"]
-        for chain in chains:
-            paths = [
-                match.id
-                for match in recognition.matches
-                if match.sure >= _SURE and match.id.endswith(f".{_name(chain)}")
-            ]
-            if paths and (symbol := self._reader.symbol(paths[0])):
-                notes = list(wrong_arguments(chain, symbol))
-                recognition.notes += notes
-                if NO_OVERRIDE in notes and recognition.matches:
-                    recognition.add(OVERRIDE, 0.85, "error message")
+    def _check_uses(self, query: str, recognition: Recognition) -> None:
+        """Adds removed values and arguments of what was recognised, and notes on wrong ones."""
+        for removed in self._old.in_strings(query):
+            recognition.add_removed(removed)
+        for chain in find_chains(query):
+            called = bool(chain.steps) and chain.steps[-1].kind == "call"
+            if not (called or chain.values):
+                continue
+            end = f".{_name(chain)}"
+            path = next((m.id for m in recognition.matches if m.sure >= _SURE and m.id.endswith(end)), "")
+            symbol = self._reader.symbol(path) if path else None
+            if symbol is None:
+                continue
+            old = list(self._old.in_values(chain, symbol))
+            for removed in old:
+                recognition.add_removed(removed)
+            notes = list(wrong_arguments(chain, symbol, {removed.path for removed in old}))
+            recognition.notes += notes
+            if NO_OVERRIDE in notes:
+                recognition.add(OVERRIDE, 0.85, "error message")
 
     def _removed_values(self, text: str, recognition: Recognition) -> None:
         """Adds enum items that a property in the query has only in other versions."""
         for value in self._enum_values.values(text):
             for match in [match for match in recognition.matches if match.sure >= _SURE]:
-                if removed := self._removed.of_path(f"{match.id}:{value}"):
-                    recognition.removed.append(removed)
+                if removed := self._removed.of_part(match.id, f":{value}"):
+                    recognition.add_removed(removed)
 
-    def _explain_missing(self, recognition: Recognition) -> None:
-        """Adds replacements for names that do not exist: of removed symbols, and similar members."""
+    def _explain_removed(self, recognition: Recognition) -> None:
+        """Adds what took the place of the removed symbols; the owner where nothing did."""
         for missing in recognition.missing:
             if missing.owner and (removed := self._removed.of_member(missing.owner, missing.name)):
-                recognition.removed.append(removed)
-        for place, removed in enumerate(recognition.removed):
-            for rank, (target, score) in enumerate(removed.instead):
+                recognition.add_removed(removed)
+        if recognition.dead_end:
+            # Whatever else fits some word of the query would pass for the successor.
+            recognition.matches = [match for match in recognition.matches if match.why not in _GUESSES]
+        for place, removed in enumerate(recognition.removed[:_FEW]):
+            later = 0.03 * place
+            for rank, target in enumerate(removed.targets[:_FEW]):
+                recognition.add(plain_path(target), 0.99 - 0.01 * rank - later, "successor")
+            if not removed.targets:
+                for owner in self._owners(removed):
+                    recognition.add(owner, _OWNER_OF_REMOVED - later, "owner")
+            for rank, (target, score) in enumerate(removed.similar):
                 sure = max(0.74 + 0.2 * min(1.0, (score - 0.6) / 0.8), 0 if rank else 0.85)
-                recognition.add(target, sure - 0.05 * min(place, 3), "replacement")
+                recognition.add(plain_path(target), sure - 0.05 * place, "replacement")
+
+    def _owners(self, removed: RemovedSymbol) -> list[str]:
+        """The class, node, property or operator that a removed symbol belonged to, if this version has it."""
+        whole = plain_path(removed.path)
+        owner = (
+            whole if whole != removed.path else socket_node(removed.path) or removed.path.rpartition(".")[0]
+        )
+        entry = self._reader.entry(owner)
+        return [owner] if entry and entry.kind != "module" else []
+
+    def _explain_missing(self, recognition: Recognition) -> None:
+        """Adds similar members of the class that lacks a name, or the name on other classes, or the class."""
+        removed = {symbol.path.rpartition(".")[2] for symbol in recognition.removed}
         for missing in recognition.missing:
+            if missing.name in removed:
+                continue
             names = self._corrector.member_names(missing.owner) if missing.owner else []
             similar = nearest(missing.name, names)
             if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
@@ -104,7 +139,7 @@ class Recogniser:
                 )
             for place, (name, alike) in enumerate(similar):
                 if member := self._resolver.member(missing.owner, name):
-                    recognition.add(member.path, 0.95 * alike - 0.01 * place, "similar name")
+                    recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
             if missing.owner and not similar and not self._elsewhere(missing, recognition):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
 

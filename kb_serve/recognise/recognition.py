@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from kb_serve.recognise.corrections import Correction, RemovedSymbol
+    from kb_serve.recognise.corrections import Correction
+    from kb_serve.recognise.removed_symbols import RemovedSymbol
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,12 +23,13 @@ class RecognisedName:
 class MissingName:
     """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty.
 
-    ``assigned`` tells whether the query assigns to it.
+    ``assigned`` tells whether the query assigns to it, ``sure`` whether the owner is certain.
     """
 
     name: str
     owner: str = ""
     assigned: bool = False
+    sure: bool = False
 
 
 @dataclass(slots=True)
@@ -51,6 +53,16 @@ class Recognition:
                     self.matches[number] = RecognisedName(identifier, sure, why)
                 return
         self.matches.append(RecognisedName(identifier, sure, why))
+
+    def add_removed(self, removed: RemovedSymbol) -> None:
+        """Adds a removed symbol that the query names, once."""
+        if all(known.path != removed.path for known in self.removed):
+            self.removed.append(removed)
+
+    @property
+    def dead_end(self) -> bool:
+        """Whether the query names a removed symbol, and nothing is known to take its place."""
+        return bool(self.removed) and not any(removed.targets for removed in self.removed)
 
     @property
     def best(self) -> RecognisedName | None:

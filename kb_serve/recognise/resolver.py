@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_serve.reader import COLLECTION, TYPES, BaseReader, SymbolEntry
+from kb_serve.recognise.variables import Variables, variable_fit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -21,7 +22,7 @@ _MATH = {
     "XYZ_LENGTH": "Vector", "EULER": "Euler", "QUATERNION": "Quaternion", "MATRIX": "Matrix", "COLOR": "Color",
     "COLOR_GAMMA": "Color",
 }  # fmt: skip
-_ROOTS = {
+ROOTS = {
     "C": "bpy.context",
     "D": "bpy.data",
     "context": "bpy.context",
@@ -75,28 +76,12 @@ class ResolvedChain:
         return bool(self.symbols) and not self.missing
 
 
-def variable_fit(variable: str, cls: str) -> float:
-    """How well a variable's name suits a class: ``obj`` Object, ``psys`` ParticleSystem, ``mat`` Material."""
-    name, target = key(variable).rstrip("0123456789"), key(cls)
-    if not name or not target:
-        return 0.0
-    if name == target:
-        return 1.0
-    if target.startswith(name) or name.startswith(target):
-        return 0.9
-    if target.endswith(name) or name.endswith(target):
-        return 0.8
-    letters = iter(target)
-    if name[0] == target[0] and len(name) >= 3 and all(letter in letters for letter in name):
-        return 0.6
-    return 0.0
-
-
 class Resolver:
     """Resolves chains against one base."""
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
+        self._variables = Variables(reader)
         self._returned = lru_cache(maxsize=500)(self._returned_class)
         self._named = lru_cache(maxsize=64)(self._named_classes)
 
@@ -119,6 +104,11 @@ class Resolver:
         }
         return self._ranked(unique.values())
 
+    def onward(self, path: str, steps: tuple[ChainStep, ...]) -> ResolvedChain:
+        """Follows steps from a symbol, as if an expression had led there."""
+        entry = self._reader.entry(path)
+        return self._follow(self._value_of(entry), steps) if entry else ResolvedChain(())
+
     @staticmethod
     def _ranked(readings: Iterable[ResolvedChain]) -> list[ResolvedChain]:
         return sorted(readings, key=lambda reading: (reading.steps_left, -reading.fit, -len(reading.symbols)))
@@ -131,7 +121,7 @@ class Resolver:
             return
         first = next((step.text for step in chain.steps if step.kind == "attr"), "")
         seen: set[str] = set()
-        for cls, fit in self._typed_variables(chain.root):
+        for cls, fit in self._variables.classes(chain.root):
             if cls not in seen:
                 seen.add(cls)
                 yield ChainValue(cls, cls), 0, fit
@@ -162,7 +152,7 @@ class Resolver:
     def _rooted(self, chain: Chain) -> tuple[ChainValue, int, float] | None:
         """The longest leading part that is a path itself: a module, a class, ``bpy.context``."""
         names = chain.dotted.split(".")
-        names[:1] = _ROOTS.get(names[0], names[0]).split(".")
+        names[:1] = ROOTS.get(names[0], names[0]).split(".")
         extra = len(names) - len(chain.dotted.split("."))
         for length in range(min(len(names), _MOST_NAMES), 0, -1):
             path = ".".join(names[:length])
@@ -171,22 +161,6 @@ class Resolver:
                 if entry and not (length == 1 and entry.kind not in {"module", "class"}):
                     return self._value_of(entry), max(0, length - 1 - extra), 1.0
         return None
-
-    def _typed_variables(self, name: str) -> Iterator[tuple[str, float]]:
-        """The classes a bare variable may have: by context members and properties of its name, similar classes."""
-        for entry in self._reader.by_name(name):
-            if entry.target and entry.kind == "context":
-                yield TYPES + entry.target, 1.0
-        for entry in self._reader.by_name(name):
-            if entry.target and entry.kind == "property" and entry.type == "pointer":
-                yield TYPES + entry.target, 0.85
-        for entry in self._reader.members("bpy.types.BlendData").values():
-            if entry.type == "collection" and (fit := variable_fit(name, entry.target)) > 0:
-                yield TYPES + entry.target, fit
-        for _, identifier in self._reader.by_key(key(name)):
-            entry = self._reader.entry(identifier)
-            if entry and entry.kind == "class":
-                yield entry.path, 0.9
 
     def _value_of(self, entry: SymbolEntry, came_from: str = "") -> ChainValue:  # noqa: PLR0911 - one return a kind
         """What a step to ``entry`` leads to."""
@@ -273,6 +247,8 @@ class Resolver:
         """(name, owner) of an unresolved step; a socket is missing on its node, not on its collection."""
         if step.kind == "key" and value.many:
             return f'{value.symbol.rpartition(".")[2]}["{step.text}"]', value.origin or value.cls
+        if value.many and step.kind == "attr":
+            return step.text, value.container
         return step.text, value.cls or value.symbol
 
     def _step(self, value: ChainValue, step: ChainStep) -> Iterator[ChainValue]:

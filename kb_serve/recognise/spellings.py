@@ -12,8 +12,8 @@ from kb_serve.recognise.addresses import find_page
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.corrections import RemovedSymbolLookup
     from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
@@ -69,7 +69,8 @@ class Spellings:
         if rows:
             self._spelled(called, rows, recognition)
         if recognition.best is None or recognition.best.sure < 1:
-            recognition.removed.extend(self._removed.spelled(called))
+            for removed in self._removed.spelled(called):
+                recognition.add_removed(removed)
 
     def _spelled(self, text: str, rows: list[tuple[int, str]], recognition: Recognition) -> None:
         """Adds the symbols and pages with the query's key; the fuller the spelling, the surer."""

@@ -1,0 +1,99 @@
+"""Sentences about the names in a query: corrected, removed, missing."""
+
+from __future__ import annotations
+
+import json
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import MissingName, Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbol
+
+SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
+_CLOSE = 0.6  # similar names with at least this share of the best one's score are named
+_MOST_NAMED = 3
+
+
+def _list(paths: Iterable[str]) -> str:
+    return ", ".join(f"`{path}`" for path in list(paths)[:_MOST_NAMED])
+
+
+class Notes:
+    """Words what was recognised, for one base."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    @cached_property
+    def _version(self) -> str:
+        return self._reader.meta.get("minor", "this version")
+
+    @cached_property
+    def _versions(self) -> list[str]:
+        """All versions that the history knows, oldest first."""
+        return json.loads(self._reader.meta.get("history_versions", "[]"))
+
+    def on(self, recognition: Recognition) -> list[str]:
+        """Every sentence once: corrections, removed names, missing ones, and what the recognisers noted."""
+        notes = [
+            f"`{correction.written}` does not exist; read as `{correction.meant}`."
+            for correction in recognition.corrections
+            if correction.similarity < 1
+        ]
+        notes += map(self.removed, recognition.removed)
+        notes += self._missing(recognition)
+        return list(dict.fromkeys((*notes, *recognition.notes)))
+
+    def removed(self, symbol: RemovedSymbol) -> str:
+        """When a symbol was removed, and what takes its place: by a source, or only perhaps."""
+        return " ".join(
+            (
+                f"`{symbol.path}` does not exist in Blender {self._version}: {self._span(symbol)}.",
+                *self._instead(symbol),
+            )
+        )
+
+    def _span(self, symbol: RemovedSymbol) -> str:
+        if not symbol.gone:
+            return f"new in {symbol.first}"
+        known = self._versions
+        follows = (
+            symbol.last in known
+            and symbol.gone in known
+            and known.index(symbol.gone) == known.index(symbol.last) + 1
+        )
+        if follows or not known:
+            return f"removed in {symbol.gone} (last in {symbol.last})"
+        return f"gone by {symbol.gone} (last seen in {symbol.last})"
+
+    def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:
+        how = next((successor.how for successor in symbol.successors if successor.how), "")
+        if symbol.targets:
+            yield (
+                f"Use {_list(symbol.targets)}"
+                + (f": {how}" if how else "")
+                + ("" if how.endswith(".") else ".")
+            )
+        elif symbol.successors:
+            yield "Nothing takes its place" + (f": {how}" if how else "") + ("" if how.endswith(".") else ".")
+        elif symbol.similar:
+            close = _CLOSE * symbol.similar[0][1]
+            yield f"Similar names: {_list(path for path, score in symbol.similar if score >= close)}."
+
+    def _missing(self, recognition: Recognition) -> Iterator[str]:
+        removed_names = {removed.path.rpartition(".")[2] for removed in recognition.removed}
+        similar = [match.id for match in recognition.matches if match.why == SIMILAR]
+        closest = f" Closest: {_list(similar)}." if similar else ""
+        for missing in recognition.missing:
+            if missing.owner and missing.name not in removed_names:
+                yield f"`{missing.owner}` has no `{missing.name}`{self._never(missing)}.{closest}"
+
+    def _never(self, missing: MissingName) -> str:
+        if not missing.sure or not self._versions:
+            return ""
+        first, last = self._versions[0], self._versions[-1]
+        return f", and never had it from {first} to {last} (add-ons and custom properties aside)"

@@ -1,0 +1,191 @@
+"""Finds the names in code that only other versions have: members, paths, keyword arguments, enum values, sockets."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_serve.reader import TYPES
+from kb_serve.recognise.calls import arguments, texts_in
+from kb_serve.recognise.resolver import ROOTS
+from kb_serve.recognise.variables import usual_classes, variable_fit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_build.records import Symbol
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.chains import Chain, ChainStep
+    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.resolver import ResolvedChain, Resolver
+
+SURE_FIT = 0.85  # from this fit of a variable's name on, its class is believed
+_LIKELY_FIT = 0.6  # … it is believed if the class had the name once
+_MOST_NAMES = 6
+_MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
+_CLASS_NAME = re.compile(r"""(["'])([A-Z]\w*[a-z]\w*[A-Z]\w+|[A-Z]\w*_[A-Z]{2}_\w+)\1""")
+_MOST_QUOTED = 12
+
+
+@dataclass(frozen=True, slots=True)
+class OldName:
+    """A removed symbol that a chain names, and the steps of the chain behind it."""
+
+    removed: RemovedSymbol
+    rest: tuple[ChainStep, ...] = ()
+
+
+class OldCode:
+    """Finds removed names against one base."""
+
+    def __init__(self, reader: BaseReader, resolver: Resolver, removed: RemovedSymbolLookup) -> None:
+        self._reader = reader
+        self._resolver = resolver
+        self._removed = removed
+
+    def in_chain(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """The first removed name in a chain that this version cannot resolve; None where that is not sure."""
+        if readings and readings[0].complete and readings[0].fit >= SURE_FIT:
+            return self._member(chain, self._likelier(readings))
+        return (
+            self._path(chain)
+            or self._member(chain, readings)
+            or self._socket(chain)
+            or self._of_any_class(chain, readings)
+        )
+
+    def still_taken(self, readings: Sequence[ResolvedChain]) -> str:
+        """The present symbol that a name missing on a class still leads to under its former name; "" for none."""
+        for resolved in readings:
+            if not resolved.complete and resolved.fit >= _LIKELY_FIT:
+                return self._reader.still_works(f"{resolved.owner}.{resolved.missing}")
+        return ""
+
+    def behind(self, resolved: ResolvedChain, steps: tuple[ChainStep, ...]) -> OldName | None:
+        """The removed name at which a chain breaks off that was followed from a successor."""
+        removed = self._removed.of_member(resolved.owner, resolved.missing) if resolved.missing else None
+        return OldName(removed, steps[len(steps) - resolved.steps_left + 1 :]) if removed else None
+
+    def _likelier(self, readings: Sequence[ResolvedChain]) -> list[ResolvedChain]:
+        """The readings that suit the variable better than a complete one, and cannot be a case of it."""
+        whole = readings[0]
+        return [
+            reading
+            for reading in readings[1:]
+            if not reading.complete
+            and reading.fit > whole.fit
+            and not self._reader.descends(reading.symbols[0], whole.symbols[0])
+        ]
+
+    def _path(self, chain: Chain) -> OldName | None:
+        """A removed symbol that the chain spells out from its root: ``bgl.glEnable``, ``bpy.ops.wm.addon_enable``."""
+        if not chain.steps:
+            return None
+        names = chain.dotted.split(".")
+        root = ROOTS.get(names[0], names[0])
+        for length in range(min(len(names), _MOST_NAMES), 0, -1):
+            path = ".".join((root, *names[1:length]))
+            for candidate in (path, TYPES + path, f"bpy.{path}"):
+                if removed := self._removed.of_path(candidate):
+                    return OldName(removed, chain.steps[length - 1 :])
+        return None
+
+    def _member(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """A removed member of the class that the chain or its variable leads to."""
+        for resolved in readings:
+            if resolved.complete or resolved.fit < _LIKELY_FIT:
+                continue
+            rest = chain.steps[len(chain.steps) - resolved.steps_left :]
+            if "puts[" in resolved.missing:
+                found = self._removed.of_member(resolved.owner, resolved.missing) or self._removed.of_socket(
+                    resolved.owner, resolved.missing, chain.root
+                )
+            else:
+                found = self._removed.of_member(resolved.owner, resolved.missing) or self._removed.below(
+                    resolved.owner, resolved.missing
+                )
+            if found:
+                return OldName(found, rest[1:])
+        return None
+
+    def _socket(self, chain: Chain) -> OldName | None:
+        """A removed socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells."""
+        for number, (before, step) in enumerate(zip(chain.steps, chain.steps[1:], strict=False)):
+            if step.kind == "key" and before.text in {"inputs", "outputs"}:
+                paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
+                nodes = usual_classes(chain.root)
+                for path in paths:
+                    node = path.partition('puts["')[0].rpartition(".")[0]
+                    named = number == 0 and (node in nodes or key(chain.root) in key(node))
+                    if named and (removed := self._removed.of_path(path)):
+                        return OldName(removed, chain.steps[number + 2 :])
+        return None
+
+    def _of_any_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """A member that no class has any more, of a variable that may be anything."""
+        if not chain.steps or any(reading.fit >= SURE_FIT for reading in readings):
+            return None
+        for number, step in enumerate(chain.steps):
+            if step.kind != "attr":
+                continue
+            if self._reader.by_name(step.text):
+                return None
+            if owners := self._owners(step.text, chain.root if number == 0 else ""):
+                removed = self._removed.of_path(f"{owners[0]}.{step.text}")
+                return OldName(removed, chain.steps[number + 1 :]) if removed else None
+        return None
+
+    def _owners(self, name: str, variable: str) -> list[str]:
+        """The classes that had a member of that name, the likeliest first; none where that is anybody's guess."""
+        owners = [path.removesuffix(f".{name}") for path in self._removed.paths_named(name)]
+        usual = usual_classes(variable)
+        if named := [owner for owner in owners if owner in usual]:
+            return named
+        if fitting := [
+            owner for owner in owners if variable_fit(variable, owner.removeprefix(TYPES)) >= _LIKELY_FIT
+        ]:
+            return fitting
+        return owners if len(owners) <= _MANY_OWNERS else []
+
+    # Names in strings, and keyword arguments
+
+    def in_values(self, chain: Chain, symbol: Symbol) -> Iterator[RemovedSymbol]:
+        """Removed enum values that a property is set to or compared with; removed arguments of a call and their
+        removed values."""
+        if symbol.kind == "property" and symbol.type == "enum":
+            known = {item.identifier for item in symbol.enum_items}
+            for value in chain.values:
+                if value not in known and (removed := self._removed.of_part(symbol.path, f":{value}")):
+                    yield removed
+        last = chain.steps[-1] if chain.steps else None
+        if last is not None and last.kind == "call" and symbol.parameters:
+            yield from self._arguments(last.text, symbol)
+
+    def _arguments(self, text: str, symbol: Symbol) -> Iterator[RemovedSymbol]:
+        parameters = {parameter.name: parameter for parameter in symbol.parameters}
+        positions = list(parameters) if symbol.kind == "function" else []
+        for number, (keyword, value) in enumerate(arguments(text)):
+            if not keyword and value not in parameters and value.isidentifier():
+                # ``to_mesh(scene, …)``: a variable called like the parameter that it was given to.
+                if removed := self._removed.of_part(symbol.path, f"({value})"):
+                    yield removed
+                continue
+            name = keyword or (positions[number] if number < len(positions) else "")
+            if name not in parameters:
+                if keyword and (removed := self._removed.of_part(symbol.path, f"({keyword})")):
+                    yield removed
+                continue
+            known = {item.identifier for item in parameters[name].enum_items}
+            for item in texts_in(value) if known else ():
+                if item not in known and (removed := self._removed.of_part(symbol.path, f"({name}):{item}")):
+                    yield removed
+
+    def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
+        """Removed classes whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
+        for match in list(_CLASS_NAME.finditer(text))[:_MOST_QUOTED]:
+            if not self._reader.entry(TYPES + match[2]) and (
+                removed := self._removed.of_path(TYPES + match[2])
+            ):
+                yield removed

@@ -1,0 +1,150 @@
+"""Symbols that only other versions have: looked up by path, by member of a class, by spelling, by name alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_serve.reader import TYPES
+from kb_serve.recognise.variables import usual_classes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_serve.reader import BaseReader, Successor
+
+_INSTANCES = {f"{TYPES}Context": "bpy.context"}
+_MOST_OWNERS = 40  # a name that more removed symbols have says nothing about its class
+
+
+@dataclass(frozen=True, slots=True)
+class RemovedSymbol:
+    """A symbol that only other versions have.
+
+    ``first`` and ``last`` are the versions that had it, ``gone`` the first one without it ("" for what only newer
+    versions have). ``successors`` take its place, by written sources: one with an empty target says why nothing
+    does. ``similar`` are guesses with their scores, best first, where no source is known.
+    """
+
+    path: str
+    first: str
+    last: str
+    gone: str
+    successors: tuple[Successor, ...] = ()
+    similar: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """The paths that take its place, best first."""
+        return tuple(successor.target for successor in self.successors if successor.target)
+
+    @property
+    def without_successor(self) -> bool:
+        """Whether it is known that nothing takes its place."""
+        return bool(self.successors) and not self.targets
+
+
+def socket_node(path: str) -> str:
+    """The node of a socket's path: ``bpy.types.N`` of ``bpy.types.N.inputs["A"]``; "" for other paths."""
+    node, mark, _ = path.partition('puts["')
+    return node.rpartition(".")[0] if mark else ""
+
+
+def plain_path(path: str) -> str:
+    """The symbol that a parameter (``f(x)``) or an enum item (``p:ITEM``) belongs to; other paths as they are."""
+    return path if '["' in path else path.partition(":")[0].partition("(")[0]
+
+
+class RemovedSymbolLookup:
+    """Looks up symbols that only other versions have."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def of_path(self, path: str) -> RemovedSymbol | None:
+        """A removed symbol by its exact path; None for what this version has or takes under the former name."""
+        span = self._reader.removed(path)
+        if span is None or self._reader.still_works(path):
+            return None
+        successors = tuple(self._reader.successors(path))
+        similar = () if successors else tuple(self._reader.similar_names(path))
+        return RemovedSymbol(path, *span, successors, similar)
+
+    def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
+        """A removed member of a class, of its bases, of what they were called before, or of a module."""
+        lineage = [entry.path for entry in self._reader.lineage(owner)] or [owner]
+        for ancestor in lineage:
+            for holder in (ancestor, _INSTANCES.get(ancestor), *self._former_names.get(ancestor, ())):
+                if holder and (removed := self.of_path(f"{holder}.{name}")):
+                    return removed
+        return None
+
+    def of_part(self, path: str, part: str) -> RemovedSymbol | None:
+        """A removed parameter ``(x)`` or enum item ``:X`` of a symbol that this version has, or had by another name."""
+        owner, _, name = path.rpartition(".")
+        holders = (owner, *self._former_names.get(owner, ()))
+        return next(filter(None, (self.of_path(f"{holder}.{name}{part}") for holder in holders)), None)
+
+    def below(self, owner: str, name: str) -> RemovedSymbol | None:
+        """A removed member of a class below ``owner`` (``Material.alpha`` for an ID), if only one class had it."""
+        found: dict[str, RemovedSymbol] = {}
+        for path in self.paths_named(name):
+            cls = path.removesuffix(f".{name}")
+            if any(self._reader.descends(now, owner) for now in self._classes_now(cls)) and (
+                removed := self.of_path(path)
+            ):
+                found[cls] = removed
+        return next(iter(found.values())) if len(found) == 1 else None
+
+    def paths_named(self, name: str) -> list[str]:
+        """Paths of the removed members that are called exactly ``name``; none for a name that too many have."""
+        paths = [path for path in self._reader.removed_named(name) if path.endswith(f".{name}")]
+        return paths if len(paths) <= _MOST_OWNERS else []
+
+    def of_socket(self, owner: str, name: str, variable: str) -> RemovedSymbol | None:
+        """A removed socket, ``inputs["Subsurface"]``, of a node below ``owner``; the variable may tell which."""
+        nodes = usual_classes(variable)
+        below = [
+            path
+            for path in self._reader.removed_by_key(key(name))
+            if path.endswith(name) and self._reader.descends(socket_node(path), owner)
+        ]
+        below.sort(key=lambda path: (socket_node(path) not in nodes, path))
+        return next(filter(None, map(self.of_path, below)), None)
+
+    def spelled(self, text: str) -> Iterator[RemovedSymbol]:
+        """Removed symbols in any usual spelling; bare enum items only as code writes them."""
+        for path in self._reader.removed_by_key(key(text)):
+            if "." not in text and not self._is_meant(text, path):
+                continue
+            if removed := self.of_path(path):
+                yield removed
+
+    def _is_meant(self, text: str, path: str) -> bool:
+        """Whether a bare word means a removed enum item or class rather than what the word says in prose."""
+        if ":" in path:
+            return text.isupper() and not self._reader.enum_owners(key(text))
+        return " " in text or "_" in text or path.endswith(f".{text}")
+
+    def _classes_now(self, cls: str) -> Iterable[str]:
+        """A class, or what took the place of a removed one."""
+        return (cls,) if self._reader.entry(cls) else self._class_successors.get(cls, ())
+
+    @cached_property
+    def _class_successors(self) -> dict[str, list[str]]:
+        """Removed class → the classes that took its place."""
+        found: dict[str, list[str]] = {}
+        for path, target in self._reader.successors_of_classes():
+            found.setdefault(path, []).append(target)
+        return found
+
+    @cached_property
+    def _former_names(self) -> dict[str, list[str]]:
+        """Class → what it was called before: Light → Lamp."""
+        found: dict[str, list[str]] = {}
+        for path, targets in self._class_successors.items():
+            for target in targets[:1]:
+                found.setdefault(target, []).append(path)
+        return found

@@ -1,0 +1,180 @@
+"""Which classes a variable may hold, by its name: ``ob`` an Object, ``psys`` a ParticleSystem, ``mat`` a Material."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.reader import BaseReader
+
+USUAL = 0.95  # fit of a name that scripts use for a class
+_OTHERWISE = 0.92  # … and of the further classes that they use it for
+_NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|selected|cur|current)_(?=\w)")
+
+# Names that scripts give to instances of a class, besides the class's own name and its beginning. A camera, light or
+# armature is often the object that holds it.
+_NAMES = {
+    "Object": "o ob obj object objs act active cube sphere plane empty target parent child ground emitter domain rig",
+    "Camera Object": "cam camera cam_obj camera_obj",
+    "Light Object": "lamp light sun spot lamp_data light_data key_light fill_light lt",
+    "Armature Object": "arm armature arm_obj amt armt",
+    "Mesh": "me mesh msh mesh_data",
+    "Curve": "cu curve curve_data crv",
+    "TextCurve Object": "txt text_obj font_curve",
+    "MetaBall": "mball metaball mb",
+    "Scene": "sce scn scene sc",
+    "ViewLayer": "view_layer vl vlayer layer",
+    "RenderSettings": "render rd render_settings rnd",
+    "CyclesRenderSettings": "cycles cscene",
+    "SceneEEVEE": "eevee",
+    "Material": "mat material mtl mtrl m",
+    "Texture ImageTexture": "tex texture",
+    "Image": "img image im",
+    "World": "world wrld wld",
+    "Collection": "coll col collection grp",
+    "Action": "act action",
+    "FCurve": "fc fcu fcurve fcurves_item crv",
+    "Keyframe": "kp kf keyframe keyframe_point kfp",
+    "Driver": "drv driver",
+    "AnimData": "anim_data adt animation_data ad",
+    "NlaTrack": "track nla_track",
+    "NlaStrip": "nla_strip",
+    "Bone EditBone PoseBone": "bone b bn",
+    "EditBone": "eb ebone edit_bone",
+    "PoseBone": "pb pbone pose_bone pchan",
+    "Pose": "pose",
+    "ParticleSystem ParticleSettings": "psys particle_system ps part",
+    "ParticleSettings": "pset particle_settings psettings part_settings",
+    "Modifier": "mod md modifier",
+    "ClothSettings": "cloth_settings",
+    "Constraint": "con cns constraint const crc",
+    "Node ShaderNode GeometryNode": "node n nd",
+    "ShaderNodeBsdfPrincipled": "bsdf principled principled_bsdf bsdf_node principled_node shader pbsdf",
+    "NodeTree": "ntree nodetree nt node_tree tree ng node_group group nodegroup",
+    "NodeLinks": "links",
+    "Nodes": "nodes",
+    "NodeSocket": "socket sock inp",
+    "ShapeKey": "sk kb shape_key shapekey key_block",
+    "Key": "shape_keys",
+    "Spline": "spline spl",
+    "VertexGroup": "vg vgroup vertex_group",
+    "MeshVertex": "v vert vertex vtx",
+    "MeshPolygon": "p poly polygon face f",
+    "MeshEdge": "e edge ed",
+    "MeshLoop": "loop",
+    "SpaceView3D": "space space_data v3d view view3d",
+    "SpaceImageEditor": "sima image_editor",
+    "SpaceSequenceEditor": "sseq",
+    "RegionView3D": "rv3d region_3d r3d",
+    "Area": "area",
+    "Region": "region",
+    "Screen": "screen scr",
+    "Window": "win window",
+    "WindowManager": "wm",
+    "UILayout": "layout row column split box sub",
+    "Depsgraph": "depsgraph deg dg",
+    "Preferences": "prefs preferences user_preferences user_prefs userpref",
+    "SequenceEditor": "sed seq_editor sequence_editor",
+    "Strip": "strip seq sequence",
+    "RigidBodyWorld": "rbw rigidbody_world rb_world",
+    "RigidBodyObject": "rb rigid_body",
+    "RigidBodyConstraint": "rbc rigid_body_constraint",
+    "FieldSettings": "field force_field",
+    "GreasePencil": "gp gpd gpencil grease_pencil",
+    "GreasePencilLayer": "gpl gp_layer",
+    "GreasePencilFrame": "gpf gp_frame",
+    "ToolSettings": "ts tool_settings tool_settings ups",
+    "Brush": "brush br",
+    "PointCache": "cache point_cache",
+    "Context": "ctx cntx c context",
+    "BlendData": "data",
+    "KeyMapItem": "kmi",
+    "KeyMap": "km",
+    "ColorRamp": "ramp color_ramp cr",
+    "MovieClip": "clip",
+    "Text": "txt text",
+    "Event": "event evt",
+    "Library": "lib",
+    "Volume": "volume vol",
+    "bmesh.types.BMesh": "bm bmesh",
+}  # fmt: skip
+
+
+def _classes_by_name() -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for classes, names in _NAMES.items():
+        paths = [cls if "." in cls else TYPES + cls for cls in classes.split()]
+        for name in names.split():
+            found.setdefault(name, []).extend(path for path in paths if path not in found[name])
+    return found
+
+
+_BY_NAME = _classes_by_name()
+
+
+def variable_fit(variable: str, cls: str) -> float:
+    """How well a variable's name suits a class: ``obj`` Object, ``psys`` ParticleSystem, ``mat`` Material."""
+    name, target = key(variable).rstrip("0123456789"), key(cls)
+    if not name or not target:
+        return 0.0
+    if name == target:
+        return 1.0
+    if target.startswith(name) or name.startswith(target):
+        return 0.9
+    if target.endswith(name) or name.endswith(target):
+        return 0.8
+    letters = iter(target)
+    if name[0] == target[0] and len(name) >= 3 and all(letter in letters for letter in name):
+        return 0.6
+    return 0.0
+
+
+def usual_classes(variable: str) -> list[str]:
+    """Paths of the classes that scripts use a variable's name for, the likeliest first: ``my_cam2`` as ``cam``."""
+    name = variable.lower()
+    while name not in _BY_NAME and (plain := _NUMBERED.sub("", name)) != name:
+        name = plain
+    return _BY_NAME.get(name, [])
+
+
+class Variables:
+    """What variables may hold in one base."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def classes(self, name: str) -> list[tuple[str, float]]:
+        """(class, fit) that a bare variable may have, best first: by context members and properties of its name, by
+        what scripts call so, and similar classes.
+        """
+        fits: dict[str, float] = {}
+        for path, fit in self._candidates(name):
+            fits[path] = max(fit, fits.get(path, 0.0))
+        return sorted(fits.items(), key=lambda row: -row[1])
+
+    def _candidates(self, name: str) -> Iterator[tuple[str, float]]:
+        named = self._reader.by_name(name)
+        for entry in named:
+            if entry.target and entry.kind == "context":
+                yield TYPES + entry.target, 1.0
+        fit = USUAL
+        for path in usual_classes(name):
+            if self._reader.entry(path):
+                yield path, fit
+                fit = _OTHERWISE
+        for entry in named:
+            if entry.target and entry.kind == "property" and entry.type == "pointer":
+                yield TYPES + entry.target, 0.85
+        for entry in self._reader.members(f"{TYPES}BlendData").values():
+            if entry.type == "collection" and (fit := variable_fit(name, entry.target)) > 0:
+                yield TYPES + entry.target, fit
+        for _, identifier in self._reader.by_key(key(name)):
+            entry = self._reader.entry(identifier)
+            if entry and entry.kind == "class":
+                yield entry.path, 0.9
