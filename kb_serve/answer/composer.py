@@ -102,7 +102,8 @@ class AnswerComposer:
         notes = (*ranking.notes, *self._source_notes(ranking, hits))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
-            return _Draft("none", (), notes, (AnswerBlock(text),))
+            known = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
+            return _Draft("none", (), notes, (known,))
         if ranking.named:
             blocks = tuple(self._whole(hits[0], ranking.ranked[0])) + self._others(hits[1:])
             return _Draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)

@@ -21,6 +21,7 @@ _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
 _TYPO = 0.8  # similarity of a whole name from which on it may be misspelt
+_TYPO_ACROSS_WORDS = 0.88  # … where it has more or fewer words
 _TYPO_IN_WORD = 0.55  # … and of each of its words
 
 
@@ -68,13 +69,14 @@ def is_misspelling(written: str, name: str) -> bool:
     left, right = key(written), key(name)
     if left == right:
         return True
-    if OSA.normalized_similarity(left, right) < _TYPO:
+    alike = OSA.normalized_similarity(left, right)
+    if alike < _TYPO:
         return False
     mine, theirs = words(written), words(name)
     if set(mine) < set(theirs) or set(theirs) < set(mine):
         return False
     if len(mine) != len(theirs):
-        return True
+        return alike >= _TYPO_ACROSS_WORDS
     return all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in zip(mine, theirs, strict=True))
 
 

@@ -21,10 +21,14 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
+_LONG = 12  # letters from which on a name is corrected without knowing what it belongs to
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 _CLEAR = 0.85  # fit of a variable's name that hardly means another class
 _LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
 _OWN_CLASS = 0.2  # from this fit on, a variable's name supports the class at all
+
+# Classes whose members are defined by scripts and add-ons.
+_OPEN = frozenset({"OperatorProperties", "Operator", "PropertyGroup", "AddonPreferences", "Context"})
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
@@ -147,19 +151,35 @@ class Expressions:
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
 
-    @staticmethod
-    def _broken_off(chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
+    def _broken_off(
+        self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition
+    ) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
         assigned = chain.assigned and resolved.steps_left == 1
         if assigned and len(resolved.symbols) == 1 and chain.root in {"bpy", "types"}:
             return  # ``bpy.types.Scene.my_property = …`` defines it
-        sure = resolved.fit >= 1.0 or (resolved.fit >= USUAL and len(usual_classes(chain.root)) <= 1)
+        owner = self._reader.entry(resolved.owner)
+        if owner and owner.kind == "property" and hasattr(str, resolved.missing):
+            return  # ``obj.name.startswith``
+        sure = self._is_sure(chain, resolved)
         recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure))
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'
             )  # one that takes no value of its own is still what was meant
             recognition.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
+
+    def _is_sure(self, chain: Chain, resolved: ResolvedChain) -> bool:
+        """Whether the owner of a missing name is certain, and has no members that only exist at run time."""
+        entry = self._reader.entry(resolved.owner)
+        if entry is None or (entry.kind == "class" and (entry.group != "data" or entry.name in _OPEN)):
+            return False
+        if entry.kind == "context" or self._old.had(resolved.owner, resolved.missing):
+            return False
+        before = chain.steps[: len(chain.steps) - resolved.steps_left]
+        if resolved.missing.startswith(("bl_", "_")) or any(step.kind in {"key", "index"} for step in before):
+            return False
+        return resolved.fit >= 1.0 or (resolved.fit >= USUAL and len(usual_classes(chain.root)) <= 1)
 
     def _loose_name(self, chain: Chain, prose: set[str], recognition: Recognition) -> None:
         """Adds the owners of a name without its owner (``thickness_outer``), by the words around it."""
@@ -170,7 +190,8 @@ class Expressions:
             if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
         ]
         rows = [entry for entry in rows if entry.name == name] or rows  # before the same letters
-        if not rows and not name.isupper() and (correction := self._corrector.member(name)):
+        lone = not chain.attributes or len(name) >= _LONG
+        if not rows and lone and not name.isupper() and (correction := self._corrector.member(name)):
             recognition.corrections.append(correction)
             rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
         if chain.attributes and len(rows) > _FEW:

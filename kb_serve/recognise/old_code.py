@@ -29,6 +29,11 @@ _CLASS_NAME = re.compile(r"""(["'])([A-Z]\w*[a-z]\w*[A-Z]\w+|[A-Z]\w*_[A-Z]{2}_\
 _MOST_QUOTED = 12
 
 
+def _is_telling(name: str) -> bool:
+    """Whether a name is hardly one of the script's own: ``dupli_object`` rather than ``index``."""
+    return "_" in name.strip("_")
+
+
 @dataclass(frozen=True, slots=True)
 class OldName:
     """A removed symbol that a chain names, and the steps of the chain behind it."""
@@ -48,7 +53,7 @@ class OldCode:
     def in_chain(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
         """The first removed name in a chain that this version cannot resolve; None where that is not sure."""
         if readings and readings[0].complete and readings[0].fit >= SURE_FIT:
-            return self._member(chain, self._likelier(readings))
+            return self._member(chain, self._likelier(chain, readings))
         return (
             self._path(chain)
             or self._member(chain, readings)
@@ -63,19 +68,24 @@ class OldCode:
                 return self._reader.still_works(f"{resolved.owner}.{resolved.missing}")
         return ""
 
+    def had(self, owner: str, name: str) -> bool:
+        """Whether a class, or one below it, had a member of that name in another version."""
+        return bool(self._removed.of_member(owner, name) or self._removed.paths_below(owner, name))
+
     def behind(self, resolved: ResolvedChain, steps: tuple[ChainStep, ...]) -> OldName | None:
         """The removed name at which a chain breaks off that was followed from a successor."""
         removed = self._removed.of_member(resolved.owner, resolved.missing) if resolved.missing else None
         return OldName(removed, steps[len(steps) - resolved.steps_left + 1 :]) if removed else None
 
-    def _likelier(self, readings: Sequence[ResolvedChain]) -> list[ResolvedChain]:
+    def _likelier(self, chain: Chain, readings: Sequence[ResolvedChain]) -> list[ResolvedChain]:
         """The readings that suit the variable better than a complete one, and cannot be a case of it."""
-        whole = readings[0]
+        whole, usual = readings[0], usual_classes(chain.root)
         return [
             reading
             for reading in readings[1:]
             if not reading.complete
             and reading.fit > whole.fit
+            and whole.symbols[0] not in usual
             and not self._reader.descends(reading.symbols[0], whole.symbols[0])
         ]
 
@@ -103,9 +113,9 @@ class OldCode:
                     resolved.owner, resolved.missing, chain.root
                 )
             else:
-                found = self._removed.of_member(resolved.owner, resolved.missing) or self._removed.below(
-                    resolved.owner, resolved.missing
-                )
+                found = self._removed.of_member(resolved.owner, resolved.missing)
+                if not found and (resolved.fit >= 1.0 or _is_telling(resolved.missing)):
+                    found = self._removed.below(resolved.owner, resolved.missing, chain.root)
             if found:
                 return OldName(found, rest[1:])
         return None
@@ -132,6 +142,8 @@ class OldCode:
                 continue
             if self._reader.by_name(step.text):
                 return None
+            if not _is_telling(step.text):
+                continue
             if owners := self._owners(step.text, chain.root if number == 0 else ""):
                 removed = self._removed.of_path(f"{owners[0]}.{step.text}")
                 return OldName(removed, chain.steps[number + 1 :]) if removed else None
@@ -139,7 +151,8 @@ class OldCode:
 
     def _owners(self, name: str, variable: str) -> list[str]:
         """The classes that had a member of that name, the likeliest first; none where that is anybody's guess."""
-        owners = [path.removesuffix(f".{name}") for path in self._removed.paths_named(name)]
+        paths = [path for path in self._removed.paths_named(name) if path.startswith(TYPES)]
+        owners = [path.removesuffix(f".{name}") for path in paths]
         usual = usual_classes(variable)
         if named := [owner for owner in owners if owner in usual]:
             return named

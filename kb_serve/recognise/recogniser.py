@@ -66,7 +66,7 @@ class Recogniser:
         self._messages.explain(query, recognition)
         self._explain_removed(recognition)
         self._explain_missing(recognition)
-        recognition.matches.sort(key=lambda match: -match.sure)
+        recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
         return recognition
 
     def _check_uses(self, query: str, recognition: Recognition) -> None:
@@ -108,7 +108,7 @@ class Recogniser:
         for place, removed in enumerate(recognition.removed[:_FEW]):
             later = 0.03 * place
             for rank, target in enumerate(removed.targets[:_FEW]):
-                recognition.add(plain_path(target), 0.99 - 0.01 * rank - later, "successor")
+                recognition.add(plain_path(target), 1.0 - 0.01 * rank - later, "successor")
             if not removed.targets:
                 for owner in self._owners(removed):
                     recognition.add(owner, _OWNER_OF_REMOVED - later, "owner")

@@ -87,16 +87,28 @@ class RemovedSymbolLookup:
         holders = (owner, *self._former_names.get(owner, ()))
         return next(filter(None, (self.of_path(f"{holder}.{name}{part}") for holder in holders)), None)
 
-    def below(self, owner: str, name: str) -> RemovedSymbol | None:
-        """A removed member of a class below ``owner`` (``Material.alpha`` for an ID), if only one class had it."""
-        found: dict[str, RemovedSymbol] = {}
-        for path in self.paths_named(name):
-            cls = path.removesuffix(f".{name}")
-            if any(self._reader.descends(now, owner) for now in self._classes_now(cls)) and (
-                removed := self.of_path(path)
-            ):
-                found[cls] = removed
-        return next(iter(found.values())) if len(found) == 1 else None
+    def below(self, owner: str, name: str, variable: str = "") -> RemovedSymbol | None:
+        """A removed member of a class below ``owner``: ``Material.alpha`` for an ID.
+
+        Of several classes the one that ``variable`` may hold; the first, if they all lost it alike.
+        """
+        found = {path: removed for path in self.paths_below(owner, name) if (removed := self.of_path(path))}
+        if len({(removed.gone, removed.successors) for removed in found.values()}) > 1:
+            usual = usual_classes(variable)
+            found = {path: removed for path, removed in found.items() if path.rpartition(".")[0] in usual}
+            if len(found) > 1:
+                return None
+        return next(iter(found.values()), None)
+
+    def paths_below(self, owner: str, name: str) -> list[str]:
+        """Paths of the removed members called ``name`` of a class and of those below it."""
+        return [
+            path
+            for path in self.paths_named(name)
+            if any(
+                self._reader.descends(now, owner) for now in self._classes_now(path.removesuffix(f".{name}"))
+            )
+        ]
 
     def paths_named(self, name: str) -> list[str]:
         """Paths of the removed members that are called exactly ``name``; none for a name that too many have."""

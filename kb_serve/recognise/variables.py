@@ -15,15 +15,16 @@ if TYPE_CHECKING:
 
 USUAL = 0.95  # fit of a name that scripts use for a class
 _OTHERWISE = 0.92  # … and of the further classes that they use it for
+_LETTER = 0.4  # … of a single letter that a class begins with
 _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|selected|cur|current)_(?=\w)")
 
 # Names that scripts give to instances of a class, besides the class's own name and its beginning. A camera, light or
 # armature is often the object that holds it.
 _NAMES = {
-    "Object": "o ob obj object objs act active cube sphere plane empty target parent child ground emitter domain rig",
-    "Camera Object": "cam camera cam_obj camera_obj",
-    "Light Object": "lamp light sun spot lamp_data light_data key_light fill_light lt",
-    "Armature Object": "arm armature arm_obj amt armt",
+    "Object": "o ob obj object objs cube empty",
+    "Camera Object": "cam camera",
+    "Light Object": "lamp light lamp_data light_data key_light fill_light",
+    "Armature Object": "arm armature amt rig",
     "Mesh": "me mesh msh mesh_data",
     "Curve": "cu curve curve_data crv",
     "TextCurve Object": "txt text_obj font_curve",
@@ -33,19 +34,20 @@ _NAMES = {
     "RenderSettings": "render rd render_settings rnd",
     "CyclesRenderSettings": "cycles cscene",
     "SceneEEVEE": "eevee",
-    "Material": "mat material mtl mtrl m",
+    "Material": "mat material mtl mtrl",
     "Texture ImageTexture": "tex texture",
-    "Image": "img image im",
+    "Image": "img image",
     "World": "world wrld wld",
-    "Collection": "coll col collection grp",
+    "Collection": "coll collection grp",
+    "UILayout Collection": "col",
     "Action": "act action",
-    "FCurve": "fc fcu fcurve fcurves_item crv",
+    "FCurve": "fc fcu fcurve",
     "Keyframe": "kp kf keyframe keyframe_point kfp",
     "Driver": "drv driver",
-    "AnimData": "anim_data adt animation_data ad",
-    "NlaTrack": "track nla_track",
+    "AnimData": "anim_data adt animation_data",
+    "NlaTrack": "nla_track",
     "NlaStrip": "nla_strip",
-    "Bone EditBone PoseBone": "bone b bn",
+    "Bone EditBone PoseBone": "bone bn",
     "EditBone": "eb ebone edit_bone",
     "PoseBone": "pb pbone pose_bone pchan",
     "Pose": "pose",
@@ -54,7 +56,7 @@ _NAMES = {
     "Modifier": "mod md modifier",
     "ClothSettings": "cloth_settings",
     "Constraint": "con cns constraint const crc",
-    "Node ShaderNode GeometryNode": "node n nd",
+    "Node ShaderNode GeometryNode": "node nd",
     "ShaderNodeBsdfPrincipled": "bsdf principled principled_bsdf bsdf_node principled_node shader pbsdf",
     "NodeTree": "ntree nodetree nt node_tree tree ng node_group group nodegroup",
     "NodeLinks": "links",
@@ -64,9 +66,9 @@ _NAMES = {
     "Key": "shape_keys",
     "Spline": "spline spl",
     "VertexGroup": "vg vgroup vertex_group",
-    "MeshVertex": "v vert vertex vtx",
-    "MeshPolygon": "p poly polygon face f",
-    "MeshEdge": "e edge ed",
+    "MeshVertex": "vert vertex vtx",
+    "MeshPolygon": "poly polygon face",
+    "MeshEdge": "edge",
     "MeshLoop": "loop",
     "SpaceView3D": "space space_data v3d view view3d",
     "SpaceImageEditor": "sima image_editor",
@@ -77,7 +79,7 @@ _NAMES = {
     "Screen": "screen scr",
     "Window": "win window",
     "WindowManager": "wm",
-    "UILayout": "layout row column split box sub",
+    "UILayout": "layout row column split box flow",
     "Depsgraph": "depsgraph deg dg",
     "Preferences": "prefs preferences user_preferences user_prefs userpref",
     "SequenceEditor": "sed seq_editor sequence_editor",
@@ -89,16 +91,15 @@ _NAMES = {
     "GreasePencil": "gp gpd gpencil grease_pencil",
     "GreasePencilLayer": "gpl gp_layer",
     "GreasePencilFrame": "gpf gp_frame",
-    "ToolSettings": "ts tool_settings tool_settings ups",
+    "ToolSettings": "ts tool_settings ups",
     "Brush": "brush br",
     "PointCache": "cache point_cache",
-    "Context": "ctx cntx c context",
-    "BlendData": "data",
+    "Context": "ctx cntx context",
     "KeyMapItem": "kmi",
     "KeyMap": "km",
     "ColorRamp": "ramp color_ramp cr",
     "MovieClip": "clip",
-    "Text": "txt text",
+    "Text": "textblock text_block",
     "Event": "event evt",
     "Library": "lib",
     "Volume": "volume vol",
@@ -125,6 +126,8 @@ def variable_fit(variable: str, cls: str) -> float:
         return 0.0
     if name == target:
         return 1.0
+    if len(name) == 1:  # may be anything
+        return _LETTER if target.startswith(name) else 0.0
     if target.startswith(name) or name.startswith(target):
         return 0.9
     if target.endswith(name) or name.endswith(target):
@@ -168,9 +171,10 @@ class Variables:
             if self._reader.entry(path):
                 yield path, fit
                 fit = _OTHERWISE
+        pointed = {entry.target for entry in named if entry.kind == "property" and entry.type == "pointer"}
         for entry in named:
             if entry.target and entry.kind == "property" and entry.type == "pointer":
-                yield TYPES + entry.target, 0.85
+                yield TYPES + entry.target, 0.85 if len(pointed) == 1 else 0.5
         for entry in self._reader.members(f"{TYPES}BlendData").values():
             if entry.type == "collection" and (fit := variable_fit(name, entry.target)) > 0:
                 yield TYPES + entry.target, fit
