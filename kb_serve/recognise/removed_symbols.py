@@ -93,6 +93,10 @@ class RemovedSymbolLookup:
         Of several classes the one that ``variable`` may hold; the first, if they all lost it alike.
         """
         found = {path: removed for path in self.paths_below(owner, name) if (removed := self.of_path(path))}
+        present = {
+            path: removed for path, removed in found.items() if self._reader.entry(path.rpartition(".")[0])
+        }
+        found = present or found  # of the class before what it was called before
         if len({(removed.gone, removed.successors) for removed in found.values()}) > 1:
             usual = usual_classes(variable)
             found = {path: removed for path, removed in found.items() if path.rpartition(".")[0] in usual}

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 USUAL = 0.95  # fit of a name that scripts use for a class
 _OTHERWISE = 0.92  # … and of the further classes that they use it for
-_LETTER = 0.4  # … of a single letter that a class begins with
+_LETTER = 0.4  # … of a single letter that a class begins with: it may be anything
 _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|selected|cur|current)_(?=\w)")
 
 # Names that scripts give to instances of a class, besides the class's own name and its beginning. A camera, light or
@@ -126,12 +126,10 @@ def variable_fit(variable: str, cls: str) -> float:
         return 0.0
     if name == target:
         return 1.0
-    if len(name) == 1:  # may be anything
-        return _LETTER if target.startswith(name) else 0.0
     if target.startswith(name) or name.startswith(target):
-        return 0.9
+        return 0.9 if len(name) > 1 else _LETTER
     if target.endswith(name) or name.endswith(target):
-        return 0.8
+        return 0.8 if len(name) > 1 else 0.0
     letters = iter(target)
     if name[0] == target[0] and len(name) >= 3 and all(letter in letters for letter in name):
         return 0.6

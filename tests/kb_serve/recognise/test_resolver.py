@@ -14,7 +14,7 @@ import pytest
 from asking import SEED, TYPES, classes, first_id, wrong
 
 from kb_serve.recognise.chains import find_chains
-from kb_serve.recognise.resolver import Resolver, variable_fit
+from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -229,21 +229,6 @@ def test_a_socket_that_does_not_exist_is_answered_with_those_that_do(kb: Knowled
     answer = kb.query('mat.node_tree.nodes["Principled BSDF"].inputs["Specular"].default_value')
     ids = [hit.id for hit in answer.hits[:4]]
     assert 'bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular IOR Level"]' in ids
-
-
-@pytest.mark.parametrize(
-    ("variable", "cls", "low", "high"),
-    [
-        ("object", "Object", 1, 1), ("obj", "Object", 0.8, 0.99), ("ob", "Object", 0.8, 0.99),
-        ("mat", "Material", 0.8, 0.99),
-        ("psys", "ParticleSystem", 0, 0.9), ("my_object", "Object", 0.7, 0.99), ("obj2", "Object", 0.8, 0.99),
-        ("x", "Object", 0, 0), ("", "Object", 0, 0), ("cloth", "Object", 0, 0), ("mtrl", "Material", 0.5, 0.7),
-    ],
-)  # fmt: skip
-def test_a_variable_fits_the_class_whose_name_it_bears(
-    variable: str, cls: str, low: float, high: float
-) -> None:
-    assert low <= variable_fit(variable, cls) <= high
 
 
 def test_no_chain_takes_long_or_fails(reader: BaseReader) -> None:

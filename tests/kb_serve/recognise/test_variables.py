@@ -1,0 +1,60 @@
+"""A variable's name tells which classes it may hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.recognise.variables import Variables, usual_classes, variable_fit
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+
+
+@pytest.mark.parametrize(
+    ("variable", "cls", "low", "high"),
+    [
+        ("object", "Object", 1, 1), ("obj", "Object", 0.8, 0.99), ("ob", "Object", 0.8, 0.99),
+        ("mat", "Material", 0.8, 0.99),
+        ("psys", "ParticleSystem", 0, 0.9), ("my_object", "Object", 0.7, 0.99), ("obj2", "Object", 0.8, 0.99),
+        ("x", "Object", 0, 0), ("", "Object", 0, 0), ("cloth", "Object", 0, 0), ("m", "Material", 0.1, 0.5),
+        ("t", "Object", 0, 0), ("mtrl", "Material", 0.5, 0.7),
+    ],
+)  # fmt: skip
+def test_a_variable_fits_the_class_whose_name_it_bears(
+    variable: str, cls: str, low: float, high: float
+) -> None:
+    assert low <= variable_fit(variable, cls) <= high
+
+
+@pytest.mark.parametrize(
+    ("variable", "classes"),
+    [
+        ("ob", ["Object"]), ("my_obj", ["Object"]), ("obj2", ["Object"]),
+        ("OBJ", ["Object"]), ("cam", ["Camera", "Object"]), ("scn", ["Scene"]), ("pb", ["PoseBone"]),
+        ("fcu", ["FCurve"]), ("ng", ["NodeTree"]), ("bsdf", ["ShaderNodeBsdfPrincipled"]), ("x", []), ("", []),
+        ("result", []),
+    ],
+)  # fmt: skip
+def test_the_names_that_scripts_use_are_known(variable: str, classes: list[str]) -> None:
+    assert usual_classes(variable) == [f"bpy.types.{cls}" for cls in classes]
+
+
+def test_every_usual_class_exists_here(reader: BaseReader) -> None:
+    """A misspelt class in the table would be ignored without a word."""
+    from kb_serve.recognise import variables  # noqa: PLC0415
+
+    paths = {path for paths in variables._BY_NAME.values() for path in paths}  # noqa: SLF001
+    assert [path for path in sorted(paths) if reader.entry(path) is None] == []
+
+
+def test_classes_come_once_and_the_likeliest_first(reader: BaseReader) -> None:
+    variables = Variables(reader)
+    for name in ("cam", "object", "mat", "node_group", "scene", "strip"):
+        rows = variables.classes(name)
+        fits = [fit for _, fit in rows]
+        assert fits == sorted(fits, reverse=True)
+        assert len({path for path, _ in rows}) == len(rows)
+    assert variables.classes("cam")[0][0] == "bpy.types.Camera"
+    assert variables.classes("qwertz") == []
