@@ -111,10 +111,11 @@ class Corrector:
         return {key(name): name for (name,) in rows if len(name) >= _LONG and "_" in name}
 
     def member(self, written: str) -> Correction | None:
-        """Corrects a name of several words, ``use_self_colision``, without its owner."""
+        """Corrects a name of several words, ``use_self_colision``, without its owner; not a variable's plural."""
         if len(written) < _LONG or "_" not in written:
             return None
-        return _closest(written, self._members, _CLOSE)
+        closest = _closest(written, self._members, _CLOSE)
+        return None if closest and written.strip("s") == closest.meant.strip("s") else closest
 
     def member_names(self, owner: str) -> list[str]:
         """The members of a class, inherited ones included, or of a module."""
@@ -131,7 +132,7 @@ class Corrector:
         readings = self._resolver.resolve(chain)
         if not readings or readings[0].fit < 1.0:
             root = self.root(chain.root)
-            if root and root.similarity < 1.0 and chain.root[:1].isupper():
+            if root and root.similarity < 1.0 and chain.root[:1].isupper() and not chain.root.isupper():
                 corrections.append(root)
                 chain = replace(chain, root=root.meant)
                 readings = self._resolver.resolve(chain)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import builtins
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
 from kb_serve.recognise.recognition import MissingName
-from kb_serve.recognise.removed_symbols import plain_path
+from kb_serve.recognise.removed_symbols import for_reading, plain_path
 from kb_serve.recognise.variables import USUAL, usual_classes
 
 if TYPE_CHECKING:
@@ -63,6 +64,8 @@ class Expressions:
                 self._former_name(taken_as, later, recognition)
                 continue
             if old := self._old.in_chain(chain, readings):
+                if not chain.assigned:
+                    old = replace(old, removed=for_reading(old.removed))
                 self._old_name(old, later, recognition)
                 continue
             broken = max(

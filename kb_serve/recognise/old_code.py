@@ -135,7 +135,8 @@ class OldCode:
 
     def _of_any_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
         """A member that no class has any more, of a variable that may be anything."""
-        if not chain.steps or any(reading.fit >= SURE_FIT for reading in readings):
+        own = chain.root in {"self", "cls"} or chain.root[:1].isupper()
+        if own or any(reading.fit >= SURE_FIT for reading in readings):
             return None
         for number, step in enumerate(chain.steps):
             if step.kind != "attr":

@@ -28,7 +28,7 @@ _FEW = 3
 _SURE = 0.9
 _MANY = 12
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
-_OWNER_OF_REMOVED = 0.89  # … one whose removed member has no known successor
+_OWNER_OF_REMOVED = 0.82  # … one whose removed member has no known successor: after names that resemble it
 _GUESSES = frozenset({"enum item", "quoted name", "name", "label", "title", "on the way"})
 
 
@@ -99,9 +99,6 @@ class Recogniser:
 
     def _explain_removed(self, recognition: Recognition) -> None:
         """Adds what took the place of the removed symbols; the owner where nothing did."""
-        for missing in recognition.missing:
-            if missing.owner and (removed := self._removed.of_member(missing.owner, missing.name)):
-                recognition.add_removed(removed)
         if recognition.dead_end:
             # Whatever else fits some word of the query would pass for the successor.
             recognition.matches = [match for match in recognition.matches if match.why not in _GUESSES]

@@ -61,8 +61,8 @@ class Recognition:
 
     @property
     def dead_end(self) -> bool:
-        """Whether the query names a removed symbol, and nothing is known to take its place."""
-        return bool(self.removed) and not any(removed.targets for removed in self.removed)
+        """Whether the query names removed symbols, and it is known of each that nothing takes its place."""
+        return bool(self.removed) and all(removed.without_successor for removed in self.removed)
 
     @property
     def best(self) -> RecognisedName | None:

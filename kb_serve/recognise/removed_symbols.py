@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, short_path
 from kb_serve.reader import TYPES
 from kb_serve.recognise.variables import usual_classes
 
@@ -44,6 +44,12 @@ class RemovedSymbol:
     def without_successor(self) -> bool:
         """Whether it is known that nothing takes its place."""
         return bool(self.successors) and not self.targets
+
+
+def for_reading(removed: RemovedSymbol) -> RemovedSymbol:
+    """A removed property that is read, not assigned: what took its place, getters (``select_get``) first."""
+    getters_first = sorted(removed.successors, key=lambda successor: not successor.target.endswith("_get"))
+    return replace(removed, successors=tuple(getters_first))
 
 
 def socket_node(path: str) -> str:
@@ -133,13 +139,15 @@ class RemovedSymbolLookup:
     def spelled(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed symbols in any usual spelling; bare enum items only as code writes them."""
         for path in self._reader.removed_by_key(key(text)):
-            if "." not in text and not self._is_meant(text, path):
+            if not self._is_meant(text, path):
                 continue
             if removed := self.of_path(path):
                 yield removed
 
     def _is_meant(self, text: str, path: str) -> bool:
-        """Whether a bare word means a removed enum item or class rather than what the word says in prose."""
+        """Whether a text is a removed symbol's name, rather than other names, or words of prose, with these letters."""
+        if "." in text:
+            return short_path(text).count(".") == short_path(path).count(".")
         if ":" in path:
             return text.isupper() and not self._reader.enum_owners(key(text))
         return " " in text or "_" in text or path.endswith(f".{text}")
