@@ -115,7 +115,7 @@ class Corrector:
         if len(written) < _LONG or "_" not in written:
             return None
         closest = _closest(written, self._members, _CLOSE)
-        return None if closest and written.strip("s") == closest.meant.strip("s") else closest
+        return None if closest and written.removesuffix("s") == closest.meant.removesuffix("s") else closest
 
     def member_names(self, owner: str) -> list[str]:
         """The members of a class, inherited ones included, or of a module."""

@@ -63,7 +63,8 @@ class Expressions:
             if taken_as := self._old.still_taken(readings):
                 self._former_name(taken_as, later, recognition)
                 continue
-            if old := self._old.in_chain(chain, readings):
+            variable = not chain.steps and (chain.assigned or len(code) > 1)
+            if not variable and (old := self._old.in_chain(chain, readings)):
                 if not chain.assigned:
                     old = replace(old, removed=for_reading(old.removed))
                 self._old_name(old, later, recognition)

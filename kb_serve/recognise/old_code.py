@@ -27,6 +27,7 @@ _MOST_NAMES = 6
 _MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
 _CLASS_NAME = re.compile(r"""(["'])([A-Z]\w*[a-z]\w*[A-Z]\w+|[A-Z]\w*_[A-Z]{2}_\w+)\1""")
 _MOST_QUOTED = 12
+_THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
 
 
 def _is_telling(name: str) -> bool:
@@ -124,8 +125,10 @@ class OldCode:
         """A removed socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells."""
         for number, (before, step) in enumerate(zip(chain.steps, chain.steps[1:], strict=False)):
             if step.kind == "key" and before.text in {"inputs", "outputs"}:
-                paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
                 nodes = usual_classes(chain.root)
+                if any(key(chain.root) in key(entry.owner) for entry in self._reader.by_name(step.text)):
+                    return None
+                paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
                 for path in paths:
                     node = path.partition('puts["')[0].rpartition(".")[0]
                     named = number == 0 and (node in nodes or key(chain.root) in key(node))
@@ -134,25 +137,30 @@ class OldCode:
         return None
 
     def _of_any_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
-        """A member that no class has any more, of a variable that may be anything."""
+        """A member that no class has any more, of a variable that may be anything, or by itself."""
         own = chain.root in {"self", "cls"} or chain.root[:1].isupper()
         if own or any(reading.fit >= SURE_FIT for reading in readings):
             return None
-        for number, step in enumerate(chain.steps):
-            if step.kind != "attr":
-                continue
-            if self._reader.by_name(step.text):
+        names = [(number, step.text) for number, step in enumerate(chain.steps, 1) if step.kind == "attr"]
+        for number, name in names if chain.steps else [(0, chain.root)]:
+            if self._reader.by_name(name):
                 return None
-            if not _is_telling(step.text):
-                continue
-            if owners := self._owners(step.text, chain.root if number == 0 else ""):
-                removed = self._removed.of_path(f"{owners[0]}.{step.text}")
-                return OldName(removed, chain.steps[number + 1 :]) if removed else None
+            if _is_telling(name) and (removed := self._likeliest(name, chain.root if number == 1 else "")):
+                return OldName(removed, chain.steps[number:])
         return None
+
+    def _likeliest(self, name: str, variable: str) -> RemovedSymbol | None:
+        """Of the classes that had a member of that name the likeliest one's: what is known to be replaced first."""
+        removed = filter(
+            None, (self._removed.of_path(f"{owner}.{name}") for owner in self._owners(name, variable))
+        )
+        return min(removed, key=lambda symbol: (not symbol.successors, len(symbol.path)), default=None)
 
     def _owners(self, name: str, variable: str) -> list[str]:
         """The classes that had a member of that name, the likeliest first; none where that is anybody's guess."""
-        paths = [path for path in self._removed.paths_named(name) if path.startswith(TYPES)]
+        paths = [
+            path for path in self._removed.paths_named(name) if path.startswith(TYPES) and _THEME not in path
+        ]
         owners = [path.removesuffix(f".{name}") for path in paths]
         usual = usual_classes(variable)
         if named := [owner for owner in owners if owner in usual]:
@@ -161,7 +169,7 @@ class OldCode:
             owner for owner in owners if variable_fit(variable, owner.removeprefix(TYPES)) >= _LIKELY_FIT
         ]:
             return fitting
-        return owners if len(owners) <= _MANY_OWNERS else []
+        return owners if len(owners) <= _MANY_OWNERS or not variable else []
 
     # Names in strings, and keyword arguments
 

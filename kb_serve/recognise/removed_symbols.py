@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, short_path
+from kb_build.index.analysis import key
 from kb_serve.reader import TYPES
 from kb_serve.recognise.variables import usual_classes
 
@@ -147,7 +147,7 @@ class RemovedSymbolLookup:
     def _is_meant(self, text: str, path: str) -> bool:
         """Whether a text is a removed symbol's name, rather than other names, or words of prose, with these letters."""
         if "." in text:
-            return short_path(text).count(".") == short_path(path).count(".")
+            return f".{path}".endswith(f".{text}")  # ``lamp.type`` is a variable's, ``Lamp.type`` the class's
         if ":" in path:
             return text.isupper() and not self._reader.enum_owners(key(text))
         return " " in text or "_" in text or path.endswith(f".{text}")
