@@ -22,7 +22,7 @@ _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
 _TYPO = 0.8  # similarity of a whole name from which on it may be misspelt
 _TYPO_ACROSS_WORDS = 0.88  # … where it has more or fewer words
-_TYPO_IN_WORD = 0.55  # … and of each of its words
+_TYPO_IN_WORD = 0.6  # … and of each of its words
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,10 @@ def is_misspelling(written: str, name: str) -> bool:
         return False
     if len(mine) != len(theirs):
         return alike >= _TYPO_ACROSS_WORDS
-    return all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in zip(mine, theirs, strict=True))
+    pairs = [(a, b) for a, b in zip(mine, theirs, strict=True) if a != b]
+    if OSA.distance(left, right) == 1:
+        return all(len(a + b) > 2 for a, b in pairs)  # noqa: PLR2004 - one letter each: an axis or a number
+    return all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in pairs)
 
 
 class Corrector:
@@ -126,10 +129,14 @@ class Corrector:
             names.update(dict.fromkeys(self._reader.members(owner)))
         return list(names)
 
-    def corrected(self, chain: Chain) -> tuple[ResolvedChain, list[Correction]] | None:
-        """A chain with its wrong names corrected, and the corrections; None if no likely ones were found."""
+    def corrected(
+        self, chain: Chain, readings: list[ResolvedChain]
+    ) -> tuple[ResolvedChain, list[Correction]] | None:
+        """A chain with its wrong names corrected, and the corrections; None if no likely ones were found.
+
+        ``readings`` are the chain's, as it is.
+        """
         corrections: list[Correction] = []
-        readings = self._resolver.resolve(chain)
         if not readings or readings[0].fit < 1.0:
             root = self.root(chain.root)
             if root and root.similarity < 1.0 and chain.root[:1].isupper() and not chain.root.isupper():

@@ -78,7 +78,7 @@ class Expressions:
                 and not self._misspelt(chain, readings[0])
             ):
                 self._reading(chain, readings, later, recognition)
-            elif not self._corrected(chain, later, recognition):
+            elif not self._corrected(chain, readings, later, recognition):
                 if broken:
                     self._broken_off(chain, broken, later, recognition)
                 self._loose_name(chain, prose, recognition)
@@ -139,11 +139,13 @@ class Expressions:
         for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
 
-    def _corrected(self, chain: Chain, later: float, recognition: Recognition) -> bool:
+    def _corrected(
+        self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
+    ) -> bool:
         """Adds a chain with its misspelt names corrected; whether that is possible."""
         if not chain.steps and not chain.root[:1].isupper():
             return False
-        corrected = self._corrector.corrected(chain)
+        corrected = self._corrector.corrected(chain, readings)
         if corrected is None:
             return False
         resolved, corrections = corrected

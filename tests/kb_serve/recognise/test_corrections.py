@@ -1,4 +1,4 @@
-"""How alike names are, and which former symbols are known."""
+"""How alike names are, and which wrong ones are misspelt."""
 
 from __future__ import annotations
 
@@ -10,16 +10,25 @@ import pytest
 from asking import SEED, classes, misspelt, of_data, owner_and_name
 
 from kb_serve.recognise.chains import find_chains
-from kb_serve.recognise.corrections import LIKELY, Corrector, RemovedSymbolLookup, nearest, similarity
+from kb_serve.recognise.corrections import LIKELY, Corrector, is_misspelling, nearest, similarity
 from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.corrections import Correction
+    from kb_serve.recognise.resolver import ResolvedChain
 
 
 @pytest.fixture(scope="module")
 def corrector(reader: BaseReader) -> Corrector:
     return Corrector(reader, Resolver(reader))
+
+
+def corrected(
+    corrector: Corrector, reader: BaseReader, text: str
+) -> tuple[ResolvedChain, list[Correction]] | None:
+    (chain,) = find_chains(text)
+    return corrector.corrected(chain, Resolver(reader).resolve(chain))
 
 
 @pytest.mark.parametrize(
@@ -36,6 +45,30 @@ def test_names_are_alike_by_spelling_by_edits_and_by_words(
     written: str, name: str, low: float, high: float
 ) -> None:
     assert low <= similarity(written, name) <= high
+
+
+@pytest.mark.parametrize(
+    ("written", "name"),
+    [
+        ("colision_shape", "collision_shape"), ("lokation", "location"), ("modifier_ad", "modifier_add"),
+        ("PoimtLight", "PointLight"), ("active_materials", "active_material"), ("qualitySteps", "quality_steps"),
+        ("rigidbodyworld", "rigid_body_world"),
+    ],
+)  # fmt: skip
+def test_a_slip_of_the_fingers_is_a_misspelling(written: str, name: str) -> None:
+    assert is_misspelling(written, name)
+
+
+@pytest.mark.parametrize(
+    ("written", "name"),
+    [
+        ("groups", "node_groups"), ("use_limit_x", "use_limit_y"), ("frame_start", "frame_end"),
+        ("select", "select_set"), ("quality", "velocity"), ("use_min_x", "use_max_x"), ("draw_type", "display_type"),
+        ("shadow_min", "shadow_max"), ("collection_inputs", "collection_outputs"), ("", "x"),
+    ],
+)  # fmt: skip
+def test_another_word_is_no_misspelling(written: str, name: str) -> None:
+    assert not is_misspelling(written, name)
 
 
 def test_the_nearest_come_first_and_only_the_likely_ones() -> None:
@@ -88,7 +121,7 @@ def test_a_name_without_a_similar_one_is_not_corrected(corrector: Corrector, wri
 
 
 def test_two_mistakes_in_one_expression_are_both_mended(reader: BaseReader, corrector: Corrector) -> None:
-    mended = corrector.corrected(find_chains("bpy.context.object.rigid_bodi.colision_shape")[0])
+    mended = corrected(corrector, reader, "bpy.context.object.rigid_bodi.colision_shape")
     assert mended is not None
     resolved, corrections = mended
     assert resolved.symbols[-1] == "bpy.types.RigidBodyObject.collision_shape"
@@ -105,31 +138,7 @@ def test_names_that_may_follow_include_inherited_ones(corrector: Corrector) -> N
     assert corrector.member_names("nothing") == []
 
 
-def test_former_members_are_found_on_the_class_and_on_its_bases(reader: BaseReader) -> None:
-    drifts = RemovedSymbolLookup(reader)
-    own = drifts.of_member("bpy.types.Action", "fcurves")
-    assert own is not None
-    assert (own.path, own.last) == ("bpy.types.Action.fcurves", "4.5")
-    assert drifts.of_member("bpy.types.Action", "location") is None
-    assert drifts.of_path("bpy.types.Object.location") is None
-    assert "bpy.types.Action.fcurves" in {removed.path for removed in drifts.spelled("action fcurves")}
-
-
-def test_replacements_come_best_first_and_exist(reader: BaseReader) -> None:
-    drifts, checked = RemovedSymbolLookup(reader), 0
-    for (path,) in reader.rows("SELECT DISTINCT path FROM replacements ORDER BY path LIMIT 400"):
-        removed = drifts.of_path(path)
-        if removed is not None:
-            scores = [score for _, score in removed.instead]
-            assert scores == sorted(scores, reverse=True)
-            for target, _ in removed.instead:
-                plain = target.partition(":")[0].partition("(")[0] if '["' not in target else target
-                assert reader.entry(plain), target
-            checked += 1
-    assert checked > 100
-
-
 def test_a_right_member_needs_no_correction(reader: BaseReader, corrector: Corrector) -> None:
     for path in of_data(reader, "property", 40):
         owner, name = owner_and_name(path)
-        assert corrector.corrected(find_chains(f"{owner}.{name}")[0]) is None
+        assert corrected(corrector, reader, f"{owner}.{name}") is None
