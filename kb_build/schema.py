@@ -73,8 +73,9 @@ CREATE TABLE links (source TEXT NOT NULL, target TEXT NOT NULL, kind TEXT NOT NU
 
 -- Symbols that this Blender does not have and another has: the first and last version of their latest time before this
 -- one, and the first known not to have them any more. What only newer versions have has that time, and an empty gone.
+-- ``name`` is the last part of the path: a member, parameter, item or socket.
 CREATE TABLE removed (
-    path TEXT PRIMARY KEY, first TEXT NOT NULL, last TEXT NOT NULL, gone TEXT NOT NULL
+    path TEXT PRIMARY KEY, first TEXT NOT NULL, last TEXT NOT NULL, gone TEXT NOT NULL, name TEXT NOT NULL
 ) WITHOUT ROWID;
 -- Under which keys they are asked for.
 CREATE TABLE removed_names (key TEXT NOT NULL, path TEXT NOT NULL, PRIMARY KEY (key, path)) WITHOUT ROWID;
@@ -91,6 +92,9 @@ CREATE TABLE similar_names (
 
 -- Symbols that came after the oldest version known.
 CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL) WITHOUT ROWID;
+
+-- Former names (sockets, node classes) that this Blender still takes, tried on an instance, and what they give.
+CREATE TABLE still_works (path TEXT PRIMARY KEY, taken_as TEXT NOT NULL) WITHOUT ROWID;
 
 -- Page → symbols whose manual link leads there: classes and operators only.
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;
@@ -125,6 +129,7 @@ CREATE INDEX symbols_owner ON symbols (owner, name);
 CREATE INDEX symbols_name ON symbols (name);
 CREATE INDEX symbols_target ON symbols (target) WHERE target != '';
 CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
+CREATE INDEX removed_name ON removed (name);
 CREATE INDEX sections_slug ON sections (slug, position);
 CREATE INDEX links_source ON links (source, kind);
 CREATE INDEX pages_parent ON pages (parent, position);

@@ -141,7 +141,7 @@ def _explained(symbols: Sequence[Symbol], links: Sequence[Link]) -> Iterator[tup
 
 
 def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: RemovedSymbols) -> None:
-    _insert(connection, "removed", removed_symbols.removed, 4)
+    _insert(connection, "removed", removed_symbols.removed, 5)
     _insert(connection, "removed_names", removed_symbols.names, 2)
     _insert(connection, "successors", removed_symbols.successors, 6)
     _insert(connection, "similar_names", removed_symbols.similar_names, 3)

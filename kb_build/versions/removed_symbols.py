@@ -35,7 +35,7 @@ _MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)(?!\w|\[)")  # not sockets
 class RemovedSymbols:
     """Rows of the tables removed, removed_names, successors, similar_names and since (see schema.DDL)."""
 
-    removed: tuple[tuple[str, str, str, str], ...] = ()
+    removed: tuple[tuple[str, str, str, str, str], ...] = ()
     names: tuple[tuple[str, str], ...] = ()
     successors: tuple[tuple[str, int, str, str, str, str], ...] = ()
     similar_names: tuple[tuple[str, str, float], ...] = ()
@@ -106,7 +106,7 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
     items = Counter(path.partition(":")[2] for path, *_ in removed)
     since = history.since(version)
     return RemovedSymbols(
-        removed=tuple(removed),
+        removed=tuple((*row, split_path(row[0])[2]) for row in removed),
         names=tuple((spelled, path) for path, *_ in removed for spelled in _keys(path, items)),
         successors=tuple(rows),
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
