@@ -79,7 +79,7 @@ def is_misspelling(written: str, name: str) -> bool:
         return alike >= _TYPO_ACROSS_WORDS
     pairs = [(a, b) for a, b in zip(mine, theirs, strict=True) if a != b]
     if OSA.distance(left, right) == 1:
-        return all(len(a + b) > 2 for a, b in pairs)  # noqa: PLR2004 - one letter each: an axis or a number
+        return all(len(a + b) > 2 for a, b in pairs)
     return all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in pairs)
 
 

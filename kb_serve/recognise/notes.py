@@ -60,15 +60,20 @@ class Notes:
     def _span(self, symbol: RemovedSymbol) -> str:
         if not symbol.gone:
             return f"new in {symbol.first}"
-        known = self._versions
-        follows = (
-            symbol.last in known
-            and symbol.gone in known
-            and known.index(symbol.gone) == known.index(symbol.last) + 1
-        )
-        if follows or not known:
+        between = self._between(symbol.last, symbol.gone)
+        if len(between) <= 1:
             return f"removed in {symbol.gone} (last in {symbol.last})"
-        return f"gone by {symbol.gone} (last seen in {symbol.last})"
+        told = [successor.version for successor in symbol.successors if successor.version in between]
+        return (
+            f"removed in {told[0]} (last seen in {symbol.last})"
+            if told
+            else f"gone by {symbol.gone} (last seen in {symbol.last})"
+        )
+
+    def _between(self, last: str, gone: str) -> list[str]:
+        """The versions in which something may have gone that ``last`` had and ``gone`` has not."""
+        known = self._versions
+        return known[known.index(last) + 1 : known.index(gone) + 1] if {last, gone} <= {*known} else [gone]
 
     def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:
         how = next((successor.how for successor in symbol.successors if successor.how), "")

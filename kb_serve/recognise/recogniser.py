@@ -29,7 +29,8 @@ _SURE = 0.9
 _MANY = 12
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
 _OWNER_OF_REMOVED = 0.82  # … one whose removed member has no known successor: after names that resemble it
-_GUESSES = frozenset({"enum item", "quoted name", "name", "label", "title", "on the way"})
+_OF_STRINGS = frozenset({"enum item", "quoted name"})
+_GUESSES = _OF_STRINGS | {"name", "label", "title", "on the way"}
 
 
 def _name(chain: Chain) -> str:
@@ -99,9 +100,9 @@ class Recogniser:
 
     def _explain_removed(self, recognition: Recognition) -> None:
         """Adds what took the place of the removed symbols; the owner where nothing did."""
-        if recognition.dead_end:
-            # Whatever else fits some word of the query would pass for the successor.
-            recognition.matches = [match for match in recognition.matches if match.why not in _GUESSES]
+        # Whatever else fits some word of the query would pass for the successor.
+        guesses = _GUESSES if recognition.dead_end else _OF_STRINGS if recognition.removed else ()
+        recognition.matches = [match for match in recognition.matches if match.why not in guesses]
         for place, removed in enumerate(recognition.removed[:_FEW]):
             later = 0.03 * place
             for rank, target in enumerate(removed.targets[:_FEW]):

@@ -113,12 +113,14 @@ class RemovedSymbolLookup:
     def paths_below(self, owner: str, name: str) -> list[str]:
         """Paths of the removed members called ``name`` of a class and of those below it."""
         return [
-            path
-            for path in self.paths_named(name)
-            if any(
-                self._reader.descends(now, owner) for now in self._classes_now(path.removesuffix(f".{name}"))
-            )
+            path for path in self.paths_named(name) if self._was_below(path.removesuffix(f".{name}"), owner)
         ]
+
+    def _was_below(self, cls: str, owner: str) -> bool:
+        """Whether a class, or what took its place, is below ``owner``; of other removed classes the name tells it."""
+        if any(self._reader.descends(now, owner) for now in self._classes_now(cls)):
+            return True
+        return not self._reader.entry(cls) and cls.endswith(owner.removeprefix(TYPES))
 
     def paths_named(self, name: str) -> list[str]:
         """Paths of the removed members that are called exactly ``name``; none for a name that too many have."""
