@@ -11,7 +11,7 @@ from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.chains import Chain, ChainStep
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Container, Iterable, Mapping
 
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
@@ -60,27 +60,29 @@ def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[st
     return sorted(likely, key=lambda row: (-row[1], len(row[0]), row[0]))[:limit]
 
 
-def is_misspelling(written: str, name: str) -> bool:
+def is_misspelling(written: str, name: str, vocabulary: Container[str] = ()) -> bool:
     """Whether ``written`` can only be ``name`` with a slip of the fingers, not another word: ``location_x`` is no
     misspelt ``location_y``, and ``groups`` no ``node_groups``.
+
+    A word of the ``vocabulary`` is hardly misspelt: ``tool_get`` is no ``tool_set``.
     """
     from rapidfuzz.distance import OSA  # noqa: PLC0415 - names that exist need no correction
 
     left, right = key(written), key(name)
-    if left == right:
-        return True
-    alike = OSA.normalized_similarity(left, right)
-    if alike < _TYPO:
-        return False
     mine, theirs = words(written), words(name)
+    alike = OSA.normalized_similarity(left, right)
+    if alike in {0.0, 1.0}:
+        return alike == 1.0
     if set(mine) < set(theirs) or set(theirs) < set(mine):
         return False
     if len(mine) != len(theirs):
         return alike >= _TYPO_ACROSS_WORDS
     pairs = [(a, b) for a, b in zip(mine, theirs, strict=True) if a != b]
+    if any(a in vocabulary and a.removesuffix("s") != b.removesuffix("s") for a, b in pairs):
+        return False
     if OSA.distance(left, right) == 1:
-        return all(len(a + b) > 2 for a, b in pairs)
-    return all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in pairs)
+        return alike >= _TYPO and all(len(a + b) > 2 for a, b in pairs)  # noqa: PLR2004 - not an axis or a number
+    return alike >= _TYPO and all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in pairs)
 
 
 class Corrector:
@@ -99,11 +101,19 @@ class Corrector:
         )
         return {key(name): path.removeprefix(TYPES) for name, path in rows}
 
+    @cached_property
+    def _words(self) -> set[str]:
+        """Every word in a name."""
+        rows = self._reader.rows(
+            "SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function', 'operator', 'class')"
+        )
+        return {word for (name,) in rows for word in words(name)}
+
     def root(self, written: str) -> Correction | None:
         """The class or module that a misspelt first name means."""
         if len(written) < 5:
             return None
-        return _closest(written, self._roots, _TYPO)
+        return _closest(written, self._roots, _TYPO, self._words)
 
     @cached_property
     def _members(self) -> dict[str, str]:
@@ -117,7 +127,7 @@ class Corrector:
         """Corrects a name of several words, ``use_self_colision``, without its owner; not a variable's plural."""
         if len(written) < _LONG or "_" not in written:
             return None
-        closest = _closest(written, self._members, _CLOSE)
+        closest = _closest(written, self._members, _CLOSE, self._words)
         return None if closest and written.removesuffix("s") == closest.meant.removesuffix("s") else closest
 
     def member_names(self, owner: str) -> list[str]:
@@ -151,7 +161,7 @@ class Corrector:
             if not similar:
                 break
             name, alike = similar[0]
-            if not is_misspelling(resolved.missing, name):
+            if not is_misspelling(resolved.missing, name, self._words):
                 return None
             corrections.append(Correction(resolved.missing, name, alike))
             chain = _with_step(chain, len(chain.steps) - resolved.steps_left, name)
@@ -161,15 +171,17 @@ class Corrector:
         return None
 
 
-def _closest(written: str, names: Mapping[str, str], cutoff: float) -> Correction | None:
-    """The name whose key is most like what was written, if it is at least ``cutoff`` alike."""
+def _closest(
+    written: str, names: Mapping[str, str], cutoff: float, vocabulary: Container[str]
+) -> Correction | None:
+    """The name whose key is most like what was written, if it is at least ``cutoff`` alike, and no other word."""
     from rapidfuzz import process  # noqa: PLC0415 - names that exist need no correction
     from rapidfuzz.distance import OSA  # noqa: PLC0415
 
     hit = process.extractOne(
         key(written), names.keys(), scorer=OSA.normalized_similarity, score_cutoff=cutoff
     )
-    if hit is None or not is_misspelling(written, names[hit[0]].rpartition(".")[2]):
+    if hit is None or not is_misspelling(written, names[hit[0]].rpartition(".")[2], vocabulary):
         return None
     return Correction(written, names[hit[0]], hit[1])
 

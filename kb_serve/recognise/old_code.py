@@ -26,6 +26,7 @@ _LIKELY_FIT = 0.6  # … it is believed if the class had the name once
 _MOST_NAMES = 6
 _MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
 _CLASS_NAME = re.compile(r"""(["'])([A-Z]\w*[a-z]\w*[A-Z]\w+|[A-Z]\w*_[A-Z]{2}_\w+)\1""")
+_INTERFACE = re.compile(r"[A-Z0-9_]+_[A-Z]{2}_")
 _MOST_QUOTED = 12
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
 
@@ -98,7 +99,9 @@ class OldCode:
         root = ROOTS.get(names[0], names[0])
         for length in range(min(len(names), _MOST_NAMES), 0, -1):
             path = ".".join((root, *names[1:length]))
-            for candidate in (path, TYPES + path, f"bpy.{path}"):
+            # A script's own panel may bear a name that Blender's had.
+            cls = () if _INTERFACE.match(path) else (TYPES + path,)
+            for candidate in (path, *cls, f"bpy.{path}"):
                 if removed := self._removed.of_path(candidate):
                     return OldName(removed, chain.steps[length - 1 :])
         return None
@@ -174,35 +177,43 @@ class OldCode:
     # Names in strings, and keyword arguments
 
     def in_values(self, chain: Chain, symbol: Symbol) -> Iterator[RemovedSymbol]:
-        """Removed enum values that a property is set to or compared with; removed arguments of a call and their
-        removed values."""
-        if symbol.kind == "property" and symbol.type == "enum":
-            known = {item.identifier for item in symbol.enum_items}
-            for value in chain.values:
-                if value not in known and (removed := self._removed.of_part(symbol.path, f":{value}")):
-                    yield removed
+        """What this version lost: values that a property is set to or compared with, a call's arguments and theirs."""
+        for value in chain.values:
+            if removed := self.value(symbol, value):
+                yield removed
         last = chain.steps[-1] if chain.steps else None
         if last is not None and last.kind == "call" and symbol.parameters:
             yield from self._arguments(last.text, symbol)
 
+    def value(self, symbol: Symbol, value: str) -> RemovedSymbol | None:
+        """An item that an enumeration lost; of one whose items depend on the build only what a source tells of."""
+        if not symbol.enum_items or any(item.identifier == value for item in symbol.enum_items):
+            return None
+        removed = self._removed.of_part(symbol.path, f":{value}")
+        return removed if removed and (removed.successors or not symbol.enum_computed) else None
+
     def _arguments(self, text: str, symbol: Symbol) -> Iterator[RemovedSymbol]:
         parameters = {parameter.name: parameter for parameter in symbol.parameters}
         positions = list(parameters) if symbol.kind == "function" else []
-        for number, (keyword, value) in enumerate(arguments(text)):
-            if not keyword and value not in parameters and value.isidentifier():
-                # ``to_mesh(scene, …)``: a variable called like the parameter that it was given to.
-                if removed := self._removed.of_part(symbol.path, f"({value})"):
-                    yield removed
-                continue
-            name = keyword or (positions[number] if number < len(positions) else "")
+        given = list(arguments(text))
+        too_many = sum(not keyword for keyword, _ in given) > len(positions)
+        for number, (keyword, value) in enumerate(given):
+            # ``to_mesh(scene, …)``: called like the parameter that it is meant for.
+            named = keyword or (value if too_many and value.isidentifier() else "")
+            name = named or (positions[number] if number < len(positions) else "")
             if name not in parameters:
-                if keyword and (removed := self._removed.of_part(symbol.path, f"({keyword})")):
+                if named and (removed := self._lost(symbol, named)):
                     yield removed
                 continue
             known = {item.identifier for item in parameters[name].enum_items}
             for item in texts_in(value) if known else ():
                 if item not in known and (removed := self._removed.of_part(symbol.path, f"({name}):{item}")):
                     yield removed
+
+    def _lost(self, symbol: Symbol, keyword: str) -> RemovedSymbol | None:
+        """A parameter that a function had before; not one that only newer versions have."""
+        removed = self._removed.of_part(symbol.path, f"({keyword})")
+        return removed if removed and removed.gone else None
 
     def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed classes whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""

@@ -95,7 +95,8 @@ class Recogniser:
         """Adds enum items that a property in the query has only in other versions."""
         for value in self._enum_values.values(text):
             for match in [match for match in recognition.matches if match.sure >= _SURE]:
-                if removed := self._removed.of_part(match.id, f":{value}"):
+                symbol = self._reader.symbol(match.id)
+                if symbol and (removed := self._old.value(symbol, value)):
                     recognition.add_removed(removed)
 
     def _explain_removed(self, recognition: Recognition) -> None:
