@@ -73,15 +73,14 @@ def is_misspelling(written: str, name: str, vocabulary: Container[str] = ()) -> 
     alike = OSA.normalized_similarity(left, right)
     if alike in {0.0, 1.0}:
         return alike == 1.0
-    if set(mine) < set(theirs) or set(theirs) < set(mine):
-        return False
     if len(mine) != len(theirs):
-        return alike >= _TYPO_ACROSS_WORDS
+        contained = set(mine) < set(theirs) or set(theirs) < set(mine)
+        return alike >= _TYPO_ACROSS_WORDS and not contained
     pairs = [(a, b) for a, b in zip(mine, theirs, strict=True) if a != b]
-    if any(a in vocabulary and a.removesuffix("s") != b.removesuffix("s") for a, b in pairs):
+    if any(a in vocabulary and not (a.startswith(b) or b.startswith(a)) for a, b in pairs):
         return False
     if OSA.distance(left, right) == 1:
-        return alike >= _TYPO and all(len(a + b) > 2 for a, b in pairs)  # noqa: PLR2004 - not an axis or a number
+        return alike >= _TYPO and all(len(a + b) > 2 for a, b in pairs)  # one letter each: an axis, a number
     return alike >= _TYPO and all(OSA.normalized_similarity(a, b) >= _TYPO_IN_WORD for a, b in pairs)
 
 

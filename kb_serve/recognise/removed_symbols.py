@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, Successor
 
 _INSTANCES = {f"{TYPES}Context": "bpy.context"}
+_ANY = f"{TYPES}ID"  # data of any kind
 _MOST_OWNERS = 40  # a name that more removed symbols have says nothing about its class
 
 
@@ -70,13 +71,18 @@ class RemovedSymbolLookup:
         self._reader = reader
 
     def of_path(self, path: str) -> RemovedSymbol | None:
-        """A removed symbol by its exact path; None for what this version has or takes under the former name."""
+        """A removed symbol by its exact path; None for what this version inherits, or takes under the former name."""
         span = self._reader.removed(path)
-        if span is None or self._reader.still_works(path):
+        if span is None or self._reader.still_works(path) or self._is_inherited(path):
             return None
         successors = tuple(self._reader.successors(path))
         similar = () if successors else tuple(self._reader.similar_names(path))
         return RemovedSymbol(path, *span, successors, similar)
+
+    def _is_inherited(self, path: str) -> bool:
+        """Whether a member that a class lost has moved to one of its bases."""
+        owner, _, name = path.rpartition(".")
+        return any(name in self._reader.members(entry.path) for entry in self._reader.lineage(owner))
 
     def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
         """A removed member of a class, of its bases, of what they were called before, or of a module."""
@@ -103,7 +109,8 @@ class RemovedSymbolLookup:
             path: removed for path, removed in found.items() if self._reader.entry(path.rpartition(".")[0])
         }
         found = present or found  # of the class before what it was called before
-        if len({(removed.gone, removed.successors) for removed in found.values()}) > 1:
+        alike = len({(removed.gone, removed.successors) for removed in found.values()}) == 1
+        if len(found) > 1 and (owner == _ANY or not alike):
             usual = usual_classes(variable)
             found = {path: removed for path, removed in found.items() if path.rpartition(".")[0] in usual}
             if len(found) > 1:

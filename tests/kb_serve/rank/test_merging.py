@@ -67,4 +67,4 @@ def test_notes_are_not_repeated(ranker: QueryRanker) -> None:
     notes = ranker.rank("action.fcurves action.fcurves action.fcurves").notes
     assert len(notes) == len(set(notes)) == 1
     assert "`bpy.types.Action.fcurves` does not exist in Blender" in notes[0]
-    assert "Closest in" in notes[0]
+    assert "removed in 5.0" in notes[0]

@@ -51,9 +51,8 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
     )
     assert kb.query(pasted).hits[0].id == kb.query(line).hits[0].id == "bpy.types.Mesh.calc_loop_triangles"
     (note,) = kb.query(pasted).notes
-    assert note.startswith(
-        "`bpy.types.Mesh` has no `calc_loop_triangle`. Closest: `bpy.types.Mesh.calc_loop_t"
-    )
+    assert note.startswith("`bpy.types.Mesh` has no `calc_loop_triangle`")
+    assert "Closest: `bpy.types.Mesh.calc_loop_triangles`" in note
 
 
 @pytest.mark.parametrize(
@@ -89,7 +88,7 @@ def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str
 def test_messages_reveal_removed_symbols(kb: KnowledgeBase, message: str, former: str) -> None:
     note = next(note for note in kb.query(message).notes if "does not exist" in note)
     assert former in note
-    assert "Closest" in note
+    assert "removed in" in note or "gone by" in note
 
 
 def test_names_of_the_callers_data_are_not_searched_for() -> None:
@@ -117,8 +116,8 @@ def test_a_right_call_is_left_alone(kb: KnowledgeBase, call: str) -> None:
 
 
 def test_unknown_arguments_are_noted(kb: KnowledgeBase) -> None:
-    (note,) = kb.query("bpy.ops.mesh.primitive_cube_add(radius=1, location=(0, f(a=1), 0))").notes
-    assert note == "`bpy.ops.mesh.primitive_cube_add` takes no `radius`."
+    (note,) = kb.query("bpy.ops.mesh.primitive_cube_add(edge=1, location=(0, f(a=1), 0))").notes
+    assert note == "`bpy.ops.mesh.primitive_cube_add` takes no `edge`."
 
 
 @pytest.mark.parametrize(

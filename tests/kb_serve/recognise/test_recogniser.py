@@ -10,10 +10,23 @@ from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
 import pytest
-from asking import SEED, TYPES, camel, classes, misspelt, of_data, owner_and_name, paths, spaced, wrong
+from asking import (
+    SEED,
+    TYPES,
+    camel,
+    classes,
+    first_id,
+    misspelt,
+    of_data,
+    owner_and_name,
+    paths,
+    spaced,
+    wrong,
+)
 
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_SHORT
+from kb_serve.recognise.removed_symbols import plain_path
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -396,64 +409,73 @@ def former(reader: BaseReader, where: str, count: int = 250) -> list[str]:
     return random.Random(SEED).sample([row[0] for row in rows], count)
 
 
+MEMBERS = "path LIKE 'bpy.types.%.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%[%' AND path NOT LIKE '%(%'"
+
+
+def says_gone(kb: KnowledgeBase, query: str, path: str) -> bool:
+    return any(f"`{path}` does not exist in Blender" in note for note in kb.query(query).notes)
+
+
 @pytest.mark.parametrize("prefix", [True, False])
 def test_removed_symbols_are_noted_with_their_versions(
     kb: KnowledgeBase, reader: BaseReader, prefix: bool
 ) -> None:
     for path in former(reader, "path LIKE 'bpy.types.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%(%'"):
         answer = kb.query(path if prefix else path.removeprefix(TYPES))
-        span = reader.removed(path)
-        assert span is not None
+        first, _, gone = reader.removed(path) or ("", "", "")
         note = next(note for note in answer.notes if f"`{path}` does not exist" in note)
-        assert span[1] in note, note
+        assert (gone or f"new in {first}") in note, note
 
 
-def test_replacements_of_removed_symbols_come_first(kb: KnowledgeBase, reader: BaseReader) -> None:
-    checked = 0
-    for path in former(reader, "path NOT LIKE '%:%' AND path NOT LIKE '%(%'", 400):
-        instead = {target for target, _ in reader.replacements(path)}
-        if instead:
-            assert {hit.id for hit in kb.query(path).hits[:3]} & instead, path
-            checked += 1
-    assert checked > 100
+@pytest.mark.parametrize("form", ["{}()", "{}(a=1)", "x = {}('EXEC_DEFAULT')"])
+def test_a_removed_operator_is_noted_when_called(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
+    for path in former(reader, "path GLOB 'bpy.ops.*.*' AND path NOT GLOB '*[(:]*'", 60):
+        assert says_gone(kb, form.format(path), path), path
+        message = f'AttributeError: Calling operator "{path}" error, could not be found'
+        assert says_gone(kb, message, path), path
+
+
+def test_what_takes_a_removed_symbols_place_comes_first(kb: KnowledgeBase, reader: BaseReader) -> None:
+    rows = reader.rows(
+        f"SELECT DISTINCT path FROM successors JOIN removed USING (path) WHERE target != '' AND {MEMBERS} ORDER BY path"
+    )
+    assert len(rows) > 100
+    for (path,) in random.Random(SEED).sample(rows, 100):
+        targets = {plain_path(successor.target) for successor in reader.successors(path)}
+        assert first_id(kb.query(path)) in targets, path
+
+
+def test_nothing_stands_in_for_what_has_no_successor(kb: KnowledgeBase, reader: BaseReader) -> None:
+    rows = reader.rows(
+        f"SELECT path FROM successors JOIN removed USING (path) WHERE target = '' AND {MEMBERS}"
+    )
+    assert len(rows) > 20
+    for (path,) in rows[:60]:
+        answer = kb.query(path)
+        assert {hit.id for hit in answer.hits} <= {path.rpartition(".")[0]}, path
+        assert any("Nothing takes its place: " in note for note in answer.notes), path
 
 
 def test_a_former_item_or_argument_is_known_too(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in former(reader, "path LIKE '%:%'", 150):
-        answer = kb.query(path)
-        assert any(f"`{path}` does not exist" in note for note in answer.notes), path
+        assert says_gone(kb, path, path), path
 
 
-def test_an_attribute_error_of_a_former_class_says_so(kb: KnowledgeBase, reader: BaseReader) -> None:
-    where = (
-        "path LIKE 'bpy.types.%.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%[%' AND path NOT LIKE '%(%'"
-    )
-    checked = 0
-    for path in former(reader, where):
-        owner, name = owner_and_name(path)
-        if reader.entry(TYPES + owner) is None:
-            answer = kb.query(f"AttributeError: '{owner}' object has no attribute '{name}'")
-            assert any("does not exist in Blender" in note for note in answer.notes), path
-            checked += 1
-    assert checked > 50
+def test_an_attribute_error_of_a_former_member_says_so(kb: KnowledgeBase, reader: BaseReader) -> None:
+    silent = [
+        path
+        for path in former(reader, MEMBERS)
+        for owner, name in [owner_and_name(path)]
+        if not says_gone(kb, f"AttributeError: '{owner}' object has no attribute '{name}'", path)
+    ]
+    # Some classes inherit the name by now, or are called after what they were called before.
+    assert len(silent) <= 12, silent
 
 
-@pytest.mark.parametrize(
-    ("query", "gone", "instead"),
-    [
-        ("action.fcurves.new('location')", "bpy.types.Action.fcurves", "ActionChannelbagFCurves.new"),
-        ("scene.node_tree.nodes", "bpy.types.Scene.node_tree", "Scene.compositing_node_group"),
-        ("mesh.use_auto_smooth = True", "bpy.types.Mesh.use_auto_smooth", ""),
-        (
-            "bpy.context.scene.sequence_editor.sequences",
-            "bpy.types.SequenceEditor.sequences",
-            "SequenceEditor.strips",
-        ),
-        ("bpy.context.scene.eevee.use_bloom", "bpy.types.SceneEEVEE.use_bloom", ""),
-    ],
-)
-def test_code_of_older_versions_is_recognised(kb: KnowledgeBase, query: str, gone: str, instead: str) -> None:
-    answer = kb.query(query)
-    assert any(f"`{gone}` does not exist" in note for note in answer.notes)
-    if instead:
-        assert f"bpy.types.{instead}" in {hit.id for hit in answer.hits[:3]}
+def test_what_works_is_not_called_gone(kb: KnowledgeBase, reader: BaseReader) -> None:
+    lines = [f"{owner}.{name}" for owner, name in map(owner_and_name, of_data(reader, "property", 400))]
+    lines += [f"{path}()" for path in paths(reader, "operator", 200)]
+    lines += [f"ob.{entry.name} = x" for entry in reader.members(f"{TYPES}Object").values()]
+    lines += [f"cam.{entry.name} = x" for entry in reader.members(f"{TYPES}Object").values()]
+    lines += [f"mat.{entry.name}" for entry in reader.members(f"{TYPES}Material").values()]
+    assert [line for line in lines if any("does not exist" in note for note in kb.query(line).notes)] == []

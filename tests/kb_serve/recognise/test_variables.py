@@ -43,9 +43,9 @@ def test_the_names_that_scripts_use_are_known(variable: str, classes: list[str])
 
 def test_every_usual_class_exists_here(reader: BaseReader) -> None:
     """A misspelt class in the table would be ignored without a word."""
-    from kb_serve.recognise import variables  # noqa: PLC0415
+    from kb_serve.recognise import variables
 
-    paths = {path for paths in variables._BY_NAME.values() for path in paths}  # noqa: SLF001
+    paths = {path for paths in variables._BY_NAME.values() for path in paths}
     assert [path for path in sorted(paths) if reader.entry(path) is None] == []
 
 

@@ -1,0 +1,49 @@
+"""What is said of a removed symbol: when it went, and what takes its place, as far as that is known."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.reader import Successor
+from kb_serve.recognise.notes import Notes
+from kb_serve.recognise.removed_symbols import RemovedSymbol
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+
+USE = Successor("bpy.types.A.b", "", "2.80", "")
+HOW = Successor("bpy.types.A.b", "call it with True", "4.0", "")
+NONE = Successor("", "always on", "2.80", "")
+
+
+@pytest.mark.parametrize(
+    ("symbol", "said"),
+    [
+        (
+            RemovedSymbol("x", "2.79", "2.79", "2.80", (USE,)),
+            "removed in 2.80 (last in 2.79). Use `bpy.types.A.b`.",
+        ),
+        (
+            RemovedSymbol("x", "2.79", "3.6", "4.0", (HOW,)),
+            "removed in 4.0 (last in 3.6). Use `bpy.types.A.b`: call it with True.",
+        ),
+        (RemovedSymbol("x", "3.4", "3.4", "4.2", (HOW,)), "removed in 4.0 (last seen in 3.4). Use"),
+        (RemovedSymbol("x", "3.4", "3.4", "4.2", (USE,)), "gone by 4.2 (last seen in 3.4). Use"),
+        (
+            RemovedSymbol("x", "2.79", "2.79", "2.80", (NONE,)),
+            "removed in 2.80 (last in 2.79). Nothing takes its place: always on.",
+        ),
+        (
+            RemovedSymbol("x", "2.79", "2.79", "2.80", (), (("bpy.types.A.c", 1.0), ("bpy.types.A.d", 0.3))),
+            "(last in 2.79). Similar names: `bpy.types.A.c`.",
+        ),
+        (RemovedSymbol("x", "5.2", "5.2", ""), "new in 5.2."),
+    ],
+)
+def test_a_removed_symbol_is_dated_and_replaced(reader: BaseReader, symbol: RemovedSymbol, said: str) -> None:
+    note = Notes(reader).removed(symbol)
+    assert note.startswith("`x` does not exist in Blender ")
+    assert said in note
+    assert ".." not in note

@@ -1,0 +1,92 @@
+"""Removed symbols are looked up on classes, on their bases, below them, and by what classes were called before."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, plain_path, socket_node
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+
+T = "bpy.types."
+
+
+@pytest.fixture
+def removed(reader: BaseReader) -> RemovedSymbolLookup:
+    return RemovedSymbolLookup(reader)
+
+
+def path_of(symbol: object) -> str:
+    return getattr(symbol, "path", "")
+
+
+def test_a_member_is_found_on_the_class_and_on_its_bases(removed: RemovedSymbolLookup) -> None:
+    own = removed.of_member(f"{T}Action", "fcurves")
+    assert own is not None
+    assert (own.path, own.last, own.gone) == (f"{T}Action.fcurves", "4.5", "5.0")
+    assert path_of(removed.of_member(f"{T}GeometryNodeTree", "inputs")) == f"{T}NodeTree.inputs"
+    assert removed.of_member(f"{T}Action", "location") is None
+    assert removed.of_path(f"{T}Object.location") is None
+
+
+def test_a_member_is_found_below_a_class_where_only_one_lost_it(removed: RemovedSymbolLookup) -> None:
+    assert path_of(removed.below(f"{T}ID", "use_shadeless")) == f"{T}Material.use_shadeless"
+    assert removed.below(f"{T}Modifier", "use_shadeless") is None
+    # Cameras, armatures and more had it: the variable decides.
+    assert removed.below(f"{T}ID", "draw_type") is None
+    assert path_of(removed.below(f"{T}ID", "draw_type", "arm")) == f"{T}Armature.draw_type"
+
+
+def test_what_moved_to_a_base_class_is_not_gone(reader: BaseReader, removed: RemovedSymbolLookup) -> None:
+    moved = [
+        path
+        for (path,) in reader.rows(f"SELECT path FROM removed WHERE path GLOB '{T}*Light.*' ORDER BY path")
+        if f"{T}Light.{path.rpartition('.')[2]}"
+        in {entry.path for entry in reader.members(f"{T}Light").values()}
+    ]
+    assert moved
+    assert [path for path in moved if removed.of_path(path)] == []
+
+
+def test_a_class_answers_for_what_it_was_called_before(removed: RemovedSymbolLookup) -> None:
+    assert path_of(removed.of_member(f"{T}Light", "use_only_shadow")).startswith(f"{T}Lamp")
+
+
+def test_a_spelling_finds_names_but_no_variables(removed: RemovedSymbolLookup) -> None:
+    spelled = {
+        text: [symbol.path for symbol in removed.spelled(text)] for text in ("action fcurves", "lamp", "Lamp")
+    }
+    assert f"{T}Action.fcurves" in spelled["action fcurves"]
+    assert spelled["Lamp"] == [f"{T}Lamp"]
+    assert spelled["lamp"] == []
+    assert list(removed.spelled("lamp.type")) == []
+
+
+def test_successors_exist_and_exclude_guesses(reader: BaseReader, removed: RemovedSymbolLookup) -> None:
+    rows = reader.rows("SELECT DISTINCT path FROM successors JOIN removed USING (path) ORDER BY path")
+    assert len(rows) > 300
+    for (path,) in rows:
+        symbol = removed.of_path(path)
+        if symbol is None:
+            assert reader.still_works(path)
+            continue
+        assert symbol.similar == ()
+        assert symbol.without_successor is not bool(symbol.targets)
+        for target in symbol.targets:
+            assert reader.entry(plain_path(target)), target
+
+
+@pytest.mark.parametrize(
+    ("path", "plain", "node"),
+    [
+        (f"{T}Object.type:LAMP", f"{T}Object.type", ""),
+        ("bpy.ops.object.add(type):LAMP", "bpy.ops.object.add", ""),
+        (f'{T}N.inputs["A:B (c)"]', f'{T}N.inputs["A:B (c)"]', f"{T}N"),
+        (f"{T}Object.type", f"{T}Object.type", ""),
+    ],
+)
+def test_paths_are_taken_apart(path: str, plain: str, node: str) -> None:
+    assert (plain_path(path), socket_node(path)) == (plain, node)
