@@ -1,4 +1,4 @@
-"""``python -m measurements``: measures retrieval, history, latency, servers, builds, Blender, verifier and audits."""
+"""``python -m measurements``: measures retrieval, history, old code, latency, servers, builds, Blender and more."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from simworlds.settings import base_path, home_folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-PARTS = ("retrieval", "history", "latency", "server", "builds", "blender", "verifier", "audits")
+PARTS = ("retrieval", "history", "old_code", "latency", "server", "builds", "blender", "verifier", "audits")
 _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")
 
 

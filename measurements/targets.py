@@ -77,6 +77,13 @@ _ROWS = (
     Target("history_dated", "removed symbols of scripts: dated rightly in the base", "share", 0.95, True),
     Target("history_first", "… right successor first in the base, none where there is none", "share", 0.85, True),
     Target("history_answered", "… answered with date and right successor first", "share", 0.85, True),
+    Target("old_gone", "code of other versions: removed names said to be gone", "share", 0.98, True),
+    Target("old_version", "… in the right version", "share", 0.95, True),
+    Target("old_first", "… what takes their place comes first", "share", 0.80, True),
+    Target("old_five", "… or among the first five", "share", 0.92, True),
+    Target("old_nothing", "… told that nothing does, without a stand-in", "share", 0.90, True),
+    Target("old_never", "names that no version had: told so", "share", 0.90, True),
+    Target("old_works", "names that work: left alone", "share", 1.0, True),
     Target("longest", "longest answer (estimated high)", "tokens", 1500, False, "official 121 KB"),
     Target("exact_p50", "in process, by exact name: p50", "ms", 0.5),
     Target(

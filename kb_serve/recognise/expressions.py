@@ -162,7 +162,7 @@ class Expressions:
     ) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
         assigned = chain.assigned and resolved.steps_left == 1
-        if assigned and len(resolved.symbols) == 1 and chain.root in {"bpy", "types"}:
+        if assigned and chain.dotted.startswith(("bpy.types.", "types.")) and len(resolved.symbols) == 1:
             return  # ``bpy.types.Scene.my_property = …`` defines it
         owner = self._reader.entry(resolved.owner)
         if owner and owner.kind == "property" and hasattr(str, resolved.missing):

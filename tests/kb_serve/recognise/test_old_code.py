@@ -63,7 +63,7 @@ CODE = [
         "2.80",
     ),
     (
-        'Traceback (most recent call last):\n  File "a.py", line 3, in <module>\n    bpy.context.scene.objects.link(o)\n'
+        'Traceback (most recent call last):\n  File "a.py", line 3, in <module>\n    C.scene.objects.link(o)\n'
         "AttributeError: 'bpy_prop_collection' object has no attribute 'link'",
         f"{T}SceneObjects.link",
         "2.80",
@@ -83,7 +83,8 @@ def test_a_name_of_another_version_is_told(kb: KnowledgeBase, written: str, gone
     [
         "lamp.energy = 3", "light.energy", "cam.location", "arm.pose.bones", "bone.use_deform", "col.objects.link(ob)",
         "col.prop(ob, 'name')", "node.index", "f.write('x')", "m.type", "parent.hide", "self.draw_type",
-        "draw_type = 3", "bsdf.inputs['Color']", "bpy.types.Scene.my_tool = bpy.props.BoolProperty()", "ob.name.startswith('x')",
+        "draw_type = 3", "bsdf.inputs['Color']", "bpy.types.Scene.my_tool = bpy.props.BoolProperty()",
+        "ob.name.startswith('x')",
         "ob.type == 'MESH'", "scene.render.engine = 'CYCLES'", "bpy.ops.mesh.primitive_cube_add(size=2)",
         "context.mode == 'EDIT_MESH'", "nodes.new('ShaderNodeEmission')", "MyPanel.draw_type",
     ],
