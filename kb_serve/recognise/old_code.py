@@ -26,6 +26,8 @@ _LIKELY_FIT = 0.6  # … it is believed if the class had the name once
 _MOST_NAMES = 6
 _MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
 _CLASS_NAME = re.compile(r"""(["'])([A-Z]\w*[a-z]\w*[A-Z]\w+|[A-Z]\w*_[A-Z]{2}_\w+)\1""")
+_IMPORT = re.compile(r"\bimport\s+([a-z][\w.]*)")
+_FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
 _INTERFACE = re.compile(r"[A-Z0-9_]+_[A-Z]{2}_")
 _MOST_QUOTED = 12
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
@@ -214,6 +216,15 @@ class OldCode:
         """A parameter that a function had before; not one that only newer versions have."""
         removed = self._removed.of_part(symbol.path, f"({keyword})")
         return removed if removed and removed.gone else None
+
+    def in_imports(self, text: str) -> Iterator[RemovedSymbol]:
+        """Removed modules, and removed names of modules, that are imported."""
+        paths = [match[1] for match in _IMPORT.finditer(text)]
+        for match in _FROM.finditer(text):
+            paths += [match[1], *(f"{match[1]}.{name.strip()}" for name in match[2].split(","))]
+        for path in paths[:_MOST_QUOTED]:
+            if removed := self._removed.of_path(path):
+                yield removed
 
     def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed classes whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""

@@ -72,7 +72,7 @@ class Recogniser:
 
     def _check_uses(self, query: str, recognition: Recognition) -> None:
         """Adds removed values and arguments of what was recognised, and notes on wrong ones."""
-        for removed in self._old.in_strings(query):
+        for removed in (*self._old.in_imports(query), *self._old.in_strings(query)):
             recognition.add_removed(removed)
         for chain in find_chains(query):
             called = bool(chain.steps) and chain.steps[-1].kind == "call"

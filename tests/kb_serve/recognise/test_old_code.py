@@ -35,6 +35,8 @@ CODE = [
     ("bpy.ops.wm.addon_enable(module='x')", "bpy.ops.wm.addon_enable", "2.80"),
     ("bpy.utils.register_module(__name__)", "bpy.utils.register_module", "2.80"),
     ("bpy.types.INFO_MT_file_import.append(f)", f"{T}INFO_MT_file_import", "2.80"),
+    ("import bgl, blf", "bgl", "5.0"),
+    ("from bgl import glEnable, glDisable", "bgl.glDisable", "5.0"),
     ("steps_per_second", f"{T}RigidBodyWorld.steps_per_second", "2.91"),
     # keyword arguments, by name and by place
     ("bpy.ops.mesh.primitive_cube_add(radius=2)", "bpy.ops.mesh.primitive_cube_add(radius)", "2.80"),
