@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sqlite3
 from dataclasses import dataclass, field
@@ -146,6 +147,7 @@ def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: Remo
     _insert(connection, "successors", removed_symbols.successors, 6)
     _insert(connection, "similar_names", removed_symbols.similar_names, 3)
     _insert(connection, "since", removed_symbols.since, 2)
+    _insert(connection, "meta", [("history_versions", json.dumps(removed_symbols.versions))], 2)
 
 
 def _write_pages(

@@ -33,13 +33,17 @@ _MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)(?!\w|\[)")  # not sockets
 
 @dataclass(frozen=True, slots=True)
 class RemovedSymbols:
-    """Rows of the tables removed, removed_names, successors, similar_names and since (see schema.DDL)."""
+    """Rows of the tables removed, removed_names, successors, similar_names and since (see schema.DDL).
+
+    ``versions`` are all that the history knows, oldest first.
+    """
 
     removed: tuple[tuple[str, str, str, str, str], ...] = ()
     names: tuple[tuple[str, str], ...] = ()
     successors: tuple[tuple[str, int, str, str, str, str], ...] = ()
     similar_names: tuple[tuple[str, str, float], ...] = ()
     since: tuple[tuple[str, str], ...] = ()
+    versions: tuple[str, ...] = ()
 
 
 def is_asked_for(path: str, history: ApiHistory, version: str) -> bool:
@@ -111,4 +115,5 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         successors=tuple(rows),
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
         since=tuple((path, first) for path, first in since.items() if path in known),
+        versions=history.versions,
     )

@@ -76,18 +76,15 @@ class Notes:
         return known[known.index(last) + 1 : known.index(gone) + 1] if {last, gone} <= {*known} else [gone]
 
     def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:
-        how = next((successor.how for successor in symbol.successors if successor.how), "")
         if symbol.targets:
-            yield (
-                f"Use {_list(symbol.targets)}"
-                + (f": {how}" if how else "")
-                + ("" if how.endswith(".") else ".")
-            )
+            yield f"Use {_list(symbol.targets)}."
         elif symbol.successors:
-            yield "Nothing takes its place" + (f": {how}" if how else "") + ("" if how.endswith(".") else ".")
+            yield "Nothing takes its place."
         elif symbol.similar:
             close = _CLOSE * symbol.similar[0][1]
             yield f"Similar names: {_list(path for path, score in symbol.similar if score >= close)}."
+        if how := next((successor.how for successor in symbol.successors if successor.how), ""):
+            yield how
 
     def _missing(self, recognition: Recognition) -> Iterator[str]:
         removed_names = {removed.path.rpartition(".")[2] for removed in recognition.removed}

@@ -28,7 +28,12 @@ _FEW = 3
 _SURE = 0.9
 _MANY = 12
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
-_OWNER_OF_REMOVED = 0.82  # … one whose removed member has no known successor: after names that resemble it
+_OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
+# Of names that resemble a removed one: how sure those are from a score on; half of these are its successors, of the
+# others a quarter, and as many have none (found by comparing the guesses with the table of successors).
+_LIKELY = 1.1
+_LIKELY_GUESS = 0.88
+_GUESS = 0.83
 _OF_STRINGS = frozenset({"enum item", "quoted name"})
 _GUESSES = _OF_STRINGS | {"name", "label", "title", "on the way"}
 
@@ -112,8 +117,8 @@ class Recogniser:
                 for owner in self._owners(removed):
                     recognition.add(owner, _OWNER_OF_REMOVED - later, "owner")
             for rank, (target, score) in enumerate(removed.similar):
-                sure = max(0.74 + 0.2 * min(1.0, (score - 0.6) / 0.8), 0 if rank else 0.85)
-                recognition.add(plain_path(target), sure - 0.05 * place, "replacement")
+                sure = _LIKELY_GUESS if score >= _LIKELY else _GUESS
+                recognition.add(plain_path(target), sure - 0.005 * rank - later, "replacement")
 
     def _owners(self, removed: RemovedSymbol) -> list[str]:
         """The class, node, property or operator that a removed symbol belonged to, if this version has it."""

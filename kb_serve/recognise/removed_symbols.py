@@ -71,18 +71,13 @@ class RemovedSymbolLookup:
         self._reader = reader
 
     def of_path(self, path: str) -> RemovedSymbol | None:
-        """A removed symbol by its exact path; None for what this version inherits, or takes under the former name."""
+        """A removed symbol by its exact path; None for what this version has or takes under the former name."""
         span = self._reader.removed(path)
-        if span is None or self._reader.still_works(path) or self._is_inherited(path):
+        if span is None or self._reader.still_works(path):
             return None
         successors = tuple(self._reader.successors(path))
         similar = () if successors else tuple(self._reader.similar_names(path))
         return RemovedSymbol(path, *span, successors, similar)
-
-    def _is_inherited(self, path: str) -> bool:
-        """Whether a member that a class lost has moved to one of its bases."""
-        owner, _, name = path.rpartition(".")
-        return any(name in self._reader.members(entry.path) for entry in self._reader.lineage(owner))
 
     def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
         """A removed member of a class, of its bases, of what they were called before, or of a module."""

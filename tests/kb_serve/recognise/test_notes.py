@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 USE = Successor("bpy.types.A.b", "", "2.80", "")
-HOW = Successor("bpy.types.A.b", "call it with True", "4.0", "")
-NONE = Successor("", "always on", "2.80", "")
+HOW = Successor("bpy.types.A.b", "Call it with True.", "4.0", "")
+NONE = Successor("", "It is always on.", "2.80", "")
 
 
 @pytest.mark.parametrize(
@@ -27,13 +27,13 @@ NONE = Successor("", "always on", "2.80", "")
         ),
         (
             RemovedSymbol("x", "2.79", "3.6", "4.0", (HOW,)),
-            "removed in 4.0 (last in 3.6). Use `bpy.types.A.b`: call it with True.",
+            "removed in 4.0 (last in 3.6). Use `bpy.types.A.b`. Call it with True.",
         ),
         (RemovedSymbol("x", "3.4", "3.4", "4.2", (HOW,)), "removed in 4.0 (last seen in 3.4). Use"),
         (RemovedSymbol("x", "3.4", "3.4", "4.2", (USE,)), "gone by 4.2 (last seen in 3.4). Use"),
         (
             RemovedSymbol("x", "2.79", "2.79", "2.80", (NONE,)),
-            "removed in 2.80 (last in 2.79). Nothing takes its place: always on.",
+            "removed in 2.80 (last in 2.79). Nothing takes its place. It is always on.",
         ),
         (
             RemovedSymbol("x", "2.79", "2.79", "2.80", (), (("bpy.types.A.c", 1.0), ("bpy.types.A.d", 0.3))),
