@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sqlite3
 import zlib
 from contextlib import contextmanager
@@ -206,6 +207,11 @@ class BaseReader:
     def enum_owners(self, key: str) -> list[tuple[str, str, str]]:
         """(owner, identifier, name) for every enumeration that has the item."""
         return self.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)
+
+    @cached_property
+    def history_versions(self) -> list[str]:
+        """All minor versions that the history knows, oldest first."""
+        return json.loads(self.meta.get("history_versions", "[]"))
 
     def removed(self, path: str) -> tuple[str, str, str] | None:
         """(first, last, gone) of a symbol that this version lacks: the versions that have it, the first without it.

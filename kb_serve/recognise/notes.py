@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -32,11 +31,6 @@ class Notes:
     def _version(self) -> str:
         return self._reader.meta.get("minor", "this version")
 
-    @cached_property
-    def _versions(self) -> list[str]:
-        """All versions that the history knows, oldest first."""
-        return json.loads(self._reader.meta.get("history_versions", "[]"))
-
     def on(self, recognition: Recognition) -> list[str]:
         """Every sentence once: corrections, removed names, missing ones, and what the recognisers noted."""
         notes = [
@@ -60,20 +54,9 @@ class Notes:
     def _span(self, symbol: RemovedSymbol) -> str:
         if not symbol.gone:
             return f"new in {symbol.first}"
-        between = self._between(symbol.last, symbol.gone)
-        if len(between) <= 1:
+        if symbol.is_dated(self._reader.history_versions):
             return f"removed in {symbol.gone} (last in {symbol.last})"
-        told = [successor.version for successor in symbol.successors if successor.version in between]
-        return (
-            f"removed in {told[0]} (last seen in {symbol.last})"
-            if told
-            else f"gone by {symbol.gone} (last seen in {symbol.last})"
-        )
-
-    def _between(self, last: str, gone: str) -> list[str]:
-        """The versions in which something may have gone that ``last`` had and ``gone`` has not."""
-        known = self._versions
-        return known[known.index(last) + 1 : known.index(gone) + 1] if {last, gone} <= {*known} else [gone]
+        return f"gone by {symbol.gone} (last seen in {symbol.last})"
 
     def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:
         if symbol.targets:
@@ -95,7 +78,7 @@ class Notes:
                 yield f"`{missing.owner}` has no `{missing.name}`{self._never(missing)}.{closest}"
 
     def _never(self, missing: MissingName) -> str:
-        if not missing.sure or not self._versions:
+        if not missing.sure or not self._reader.history_versions:
             return ""
-        first, last = self._versions[0], self._versions[-1]
+        first, last = self._reader.history_versions[0], self._reader.history_versions[-1]
         return f", and never had it from {first} to {last} (add-ons and custom properties aside)"

@@ -188,11 +188,14 @@ class OldCode:
             yield from self._arguments(last.text, symbol)
 
     def value(self, symbol: Symbol, value: str) -> RemovedSymbol | None:
-        """An item that an enumeration lost; of one whose items depend on the build only what a source tells of."""
+        """An item that an enumeration lost; where the items may depend on the build only what a source tells of."""
         if not symbol.enum_items or any(item.identifier == value for item in symbol.enum_items):
             return None
         removed = self._removed.of_part(symbol.path, f":{value}")
-        return removed if removed and (removed.successors or not symbol.enum_computed) else None
+        if removed is None or removed.successors:
+            return removed
+        listed = removed.is_dated(self._reader.history_versions)  # else only one build's items are known
+        return removed if listed and not symbol.enum_computed else None
 
     def _arguments(self, text: str, symbol: Symbol) -> Iterator[RemovedSymbol]:
         parameters = {parameter.name: parameter for parameter in symbol.parameters}

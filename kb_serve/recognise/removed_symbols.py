@@ -11,7 +11,7 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.variables import usual_classes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader, Successor
 
@@ -35,6 +35,13 @@ class RemovedSymbol:
     gone: str
     successors: tuple[Successor, ...] = ()
     similar: tuple[tuple[str, float], ...] = ()
+
+    def is_dated(self, versions: Sequence[str]) -> bool:
+        """Whether ``gone`` is the very version that lost it: next after ``last`` in ``versions``, or by a source."""
+        if any(successor.version == self.gone for successor in self.successors):
+            return True
+        known = self.last in versions and self.gone in versions
+        return known and versions.index(self.gone) == versions.index(self.last) + 1
 
     @property
     def targets(self) -> tuple[str, ...]:
