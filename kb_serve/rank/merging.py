@@ -58,7 +58,7 @@ class QueryRanker:
         """The ids for a query, at least ``limit`` of them if there are."""
         recognition = self._recogniser.recognise(query)
         best = recognition.best
-        if best is not None and best.sure >= 1.0:
+        if best is not None and best.sure >= 1.0 and best.why != "successor":
             ranked = [RankedId(match.id, match.sure, match.why) for match in recognition.matches]
             return Ranking(ranked, recognition, named=True, notes=self._notes.on(recognition))
         if recognition.dead_end:  # what the words find would pass for the successor

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
+_NOTHING = "Nothing takes its place."
 
 
 def _list(paths: Iterable[str]) -> str:
@@ -62,11 +63,12 @@ class Notes:
         if symbol.targets:
             yield f"Use {_list(symbol.targets)}."
         elif symbol.successors:
-            yield "Nothing takes its place."
+            yield _NOTHING
         elif symbol.similar:
             close = _CLOSE * symbol.similar[0][1]
             yield f"Similar names: {_list(path for path, score in symbol.similar if score >= close)}."
-        if how := next((successor.how for successor in symbol.successors if successor.how), ""):
+        how = next((successor.how for successor in symbol.successors if successor.how), "")
+        if how and how != _NOTHING:
             yield how
 
     def _missing(self, recognition: Recognition) -> Iterator[str]:
@@ -74,6 +76,8 @@ class Notes:
         similar = [match.id for match in recognition.matches if match.why == SIMILAR]
         closest = f" Closest: {_list(similar)}." if similar else ""
         for missing in recognition.missing:
+            if recognition.removed and not missing.sure:
+                continue
             if missing.owner and missing.name not in removed_names:
                 yield f"`{missing.owner}` has no `{missing.name}`{self._never(missing)}.{closest}"
 
