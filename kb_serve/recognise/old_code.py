@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_serve.reader import TYPES
 from kb_serve.recognise.calls import arguments, texts_in
+from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.resolver import ROOTS
 from kb_serve.recognise.variables import usual_classes, variable_fit
 
@@ -26,6 +28,15 @@ _LIKELY_FIT = 0.6  # … it is believed if the class had the name once
 _MOST_NAMES = 6
 _MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
 _CLASS_NAME = re.compile(r"""(["'])([A-Z]\w*[a-z]\w*[A-Z]\w+|[A-Z]\w*_[A-Z]{2}_\w+)\1""")
+_OPERATOR_NAME = re.compile(r"""(["'])([a-z]\w*\.[a-z]\w+)\1""")
+# A property named in a string: ``layout.prop(ob, "name")``, ``getattr(ob, "name")``, ``ob.keyframe_insert("name")``.
+_PROPERTY_NAMES = (
+    re.compile(r"""\b(?:prop|prop_search|[gs]etattr|hasattr)\(\s*([A-Za-z_][\w.]*)\s*,\s*["'](\w+)["']"""),
+    re.compile(
+        r"""\b([A-Za-z_][\w.]*)\.(?:keyframe_(?:insert|delete)|driver_(?:add|remove)|property_unset)\("""
+        r"""\s*(?:(?:data_)?path\s*=\s*)?["'](\w+)["']"""
+    ),
+)
 _IMPORT = re.compile(r"\bimport\s+([a-z][\w.]*)")
 _FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
 _INTERFACE = re.compile(r"[A-Z0-9_]+_[A-Z]{2}_")
@@ -230,9 +241,13 @@ class OldCode:
                 yield removed
 
     def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
-        """Removed classes whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
-        for match in list(_CLASS_NAME.finditer(text))[:_MOST_QUOTED]:
-            if not self._reader.entry(TYPES + match[2]) and (
-                removed := self._removed.of_path(TYPES + match[2])
-            ):
-                yield removed
+        """Removed classes, operators and properties whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
+        for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, "bpy.ops.")):
+            for match in islice(pattern.finditer(text), _MOST_QUOTED):
+                if removed := self._removed.of_path(prefix + match[2]):
+                    yield removed
+        for pattern in _PROPERTY_NAMES:
+            for match in islice(pattern.finditer(text), _MOST_QUOTED):
+                (chain,) = find_chains(f"{match[1]}.{match[2]}")
+                if old := self.in_chain(chain, self._resolver.resolve(chain)):
+                    yield old.removed

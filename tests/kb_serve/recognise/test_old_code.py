@@ -49,6 +49,10 @@ CODE = [
         "",
     ),
     ("nodes.new('ShaderNodeTexMusgrave')", f"{T}ShaderNodeTexMusgrave", "4.1"),
+    ("layout.operator('wm.addon_enable')", "bpy.ops.wm.addon_enable", "2.80"),
+    ("row.prop(ob, 'draw_type')", f"{T}Object.draw_type", "2.80"),
+    ("ob.keyframe_insert(data_path='hide', frame=1)", f"{T}Object.hide", "2.80"),
+    ("getattr(mat, 'use_shadeless', False)", f"{T}Material.use_shadeless", "2.80"),
     ("ob.type == 'LAMP'", f"{T}Object.type:LAMP", "2.80"),
     ("ob.type in {'MESH', 'LAMP'}", f"{T}Object.type:LAMP", "2.80"),
     ("bpy.ops.object.add(type='LAMP')", "bpy.ops.object.add(type):LAMP", "2.80"),
@@ -89,6 +93,7 @@ def test_a_name_of_another_version_is_told(kb: KnowledgeBase, written: str, gone
         "ob.name.startswith('x')",
         "ob.type == 'MESH'", "scene.render.engine = 'CYCLES'", "bpy.ops.mesh.primitive_cube_add(size=2)",
         "context.mode == 'EDIT_MESH'", "nodes.new('ShaderNodeEmission')", "MyPanel.draw_type",
+        "ob.keyframe_insert('location')", "layout.operator('object.delete')", "open('notes.txt')",
     ],
 )  # fmt: skip
 def test_what_works_or_is_the_scripts_own_is_left_alone(kb: KnowledgeBase, written: str) -> None:
