@@ -183,7 +183,11 @@ class Expressions:
         if entry.kind == "context" or self._old.had(resolved.owner, resolved.missing):
             return False
         before = chain.steps[: len(chain.steps) - resolved.steps_left]
-        if resolved.missing.startswith(("bl_", "_")) or any(step.kind in {"key", "index"} for step in before):
+        if (
+            "[" in resolved.missing
+            or resolved.missing.startswith(("bl_", "_"))
+            or any(step.kind in {"key", "index"} for step in before)
+        ):
             return False
         return resolved.fit >= 1.0 or (resolved.fit >= USUAL and len(usual_classes(chain.root)) <= 1)
 

@@ -16,10 +16,11 @@ NO_INDEX = re.compile(r"\w+\[index\]: index (?P<index>-?\d+) out of range, size 
 BAD_ENUM = re.compile(r"enum \"(?P<name>[^\"]*)\" not found in \((?P<items>[^)]*)\)?")
 BAD_KEYWORD = re.compile(
     r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)"
-    r"|(?:(?P<function>[\w.]+)\(\) got an )?unexpected keyword argument ['\"](?P<unexpected>\w+)['\"]"
-    r"|['\"](?P<invalid>\w+)['\"] is an invalid keyword argument for (?:this function|(?P<of>[\w.]+)\(\))"
-    r"|(?P<method>\w+(?:\.\w+)+)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
+    r"|(?:(?<![\w.])(?P<function>[\w.]++)\(\) got an )?unexpected keyword argument ['\"](?P<unexpected>\w+)['\"]"
+    r"|['\"](?P<invalid>\w+)['\"] is an invalid keyword argument for (?:this function|(?P<of>[\w.]++)\(\))"
+    r"|(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
 )
+IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): error with argument")
 NO_MODULE = re.compile(r"No module named ['\"](?P<module>[\w.]+)['\"]")
 NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?P<module>[\w.]+)['\"]")
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")

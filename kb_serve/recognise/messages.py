@@ -227,7 +227,11 @@ class Messages:
         for match in _matches(forms.BAD_ENUM, query):
             items = re.findall(r"'([^']+)'", match["items"])
             removed = None
-            for rank, (owner, _) in enumerate(islice(self._enum_values.owners(items), _MANY)):
+            function = forms.IN_FUNCTION.search(query)
+            called = self._function(function["method"]) if function else ""
+            owners = list(islice(self._enum_values.owners(items), _MANY))
+            owners.sort(key=lambda row: not (called and row[0].startswith(called)))
+            for rank, (owner, _) in enumerate(owners):
                 path, _, parameter = owner.partition("(")
                 if rank < 2:
                     recognition.add(path, 0.95 - 0.02 * rank, "error message")

@@ -27,13 +27,14 @@ SURE_FIT = 0.85  # from this fit of a variable's name on, its class is believed
 _LIKELY_FIT = 0.6  # … it is believed if the class had the name once
 _MOST_NAMES = 6
 _MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
-_CLASS_NAME = re.compile(r"""(["'])([A-Z]\w*[a-z]\w*[A-Z]\w+|[A-Z]\w*_[A-Z]{2}_\w+)\1""")
+_CLASS_NAME = re.compile(r"""(["'])(?=[A-Z]+[a-z_]+[A-Z])([A-Z]\w+)\1""")  # not ``"Lamp"``, an object's name
 _OPERATOR_NAME = re.compile(r"""(["'])([a-z]\w*\.[a-z]\w+)\1""")
 # A property named in a string: ``layout.prop(ob, "name")``, ``getattr(ob, "name")``, ``ob.keyframe_insert("name")``.
 _PROPERTY_NAMES = (
     re.compile(r"""\b(?:prop|prop_search|[gs]etattr|hasattr)\(\s*([A-Za-z_][\w.]*)\s*,\s*["'](\w+)["']"""),
     re.compile(
-        r"""\b([A-Za-z_][\w.]*)\.(?:keyframe_(?:insert|delete)|driver_(?:add|remove)|property_unset)\("""
+        # Only from the start of a dotted name: trying each part of a long one takes seconds.
+        r"""(?<![\w.])([A-Za-z_][\w.]*)\.(?:keyframe_(?:insert|delete)|driver_(?:add|remove)|property_unset)\("""
         r"""\s*(?:(?:data_)?path\s*=\s*)?["'](\w+)["']"""
     ),
 )

@@ -113,10 +113,8 @@ class RemovedSymbolLookup:
         found = present or found  # of the class before what it was called before
         alike = len({(removed.gone, removed.successors) for removed in found.values()}) == 1
         if len(found) > 1 and (owner == _ANY or not alike):
-            usual = usual_classes(variable)
-            found = {path: removed for path, removed in found.items() if path.rpartition(".")[0] in usual}
-            if len(found) > 1:
-                return None
+            usual = [f"{cls}.{name}" for cls in usual_classes(variable)]
+            return next((found[path] for path in usual if path in found), None)
         return next(iter(found.values()), None)
 
     def paths_below(self, owner: str, name: str) -> list[str]:
@@ -161,7 +159,9 @@ class RemovedSymbolLookup:
             return f".{path}".endswith(f".{text}")  # ``lamp.type`` is a variable's, ``Lamp.type`` the class's
         if ":" in path:
             return text.isupper() and not self._reader.enum_owners(key(text))
-        return " " in text or "_" in text or path.endswith(f".{text}")
+        return (
+            path == text or " " in text or "_" in text or (text[:1].isupper() and path.endswith(f".{text}"))
+        )
 
     def _classes_now(self, cls: str) -> Iterable[str]:
         """A class, or what took the place of a removed one."""

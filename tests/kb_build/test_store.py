@@ -59,7 +59,7 @@ PAGE = Page(
 )  # fmt: skip
 SYMBOLS = (CLOTH, STEPS, ADD, SOCKET, PANEL)
 REMOVED_SYMBOLS = RemovedSymbols(
-    (("bpy.types.ClothSettings.old", "4.2", "4.5", "5.0"),),
+    (("bpy.types.ClothSettings.old", "4.2", "4.5", "5.0", "old"),),
     ((key("ClothSettings.old"), "bpy.types.ClothSettings.old"),),
     (
         ("bpy.types.ClothSettings.older", 1, CLOTH.path, "", "5.0", "notes"),

@@ -28,7 +28,7 @@ def test_no_extracted_symbol_is_called_removed(extract: Extract, removed_symbols
 
 
 def test_spans_end_with_the_last_version_that_had_the_symbol(removed_symbols: RemovedSymbols) -> None:
-    spans = {path: (first, last) for path, first, last, _ in removed_symbols.removed}
+    spans = {path: (first, last) for path, first, last, *_ in removed_symbols.removed}
     assert spans["bpy.types.Action.fcurves"][1] == "4.5"
     assert spans["bpy.types.Scene.node_tree"][1] == "4.5"
     assert spans["bpy.types.Mesh.use_auto_smooth"][1] == "4.0"

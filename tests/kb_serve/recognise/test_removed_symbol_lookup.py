@@ -42,11 +42,10 @@ def test_a_member_is_found_below_a_class_where_only_one_lost_it(removed: Removed
 
 def test_what_moved_to_a_base_class_is_not_gone(removed: RemovedSymbolLookup) -> None:
     assert removed.of_path(f"{T}PointLight.use_shadow") is None
-    assert removed.of_member(f"{T}SunLight", "use_shadow") is None
 
 
 def test_a_class_answers_for_what_it_was_called_before(removed: RemovedSymbolLookup) -> None:
-    assert path_of(removed.of_member(f"{T}Light", "use_only_shadow")).startswith(f"{T}Lamp")
+    assert path_of(removed.of_member(f"{T}Light", "use_own_layer")).startswith(f"{T}Lamp")
 
 
 def test_a_spelling_finds_names_but_no_variables(removed: RemovedSymbolLookup) -> None:
