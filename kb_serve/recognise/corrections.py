@@ -20,6 +20,7 @@ _CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` 
 _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
+_WORD = 3  # letters from which on a word says something
 _TYPO = 0.8  # similarity of a whole name from which on it may be misspelt
 _TYPO_ACROSS_WORDS = 0.88  # … where it has more or fewer words
 _TYPO_IN_WORD = 0.6  # … and of each of its words
@@ -102,11 +103,11 @@ class Corrector:
 
     @cached_property
     def _words(self) -> set[str]:
-        """Every word in a name."""
+        """Every word of some length in a name."""
         rows = self._reader.rows(
             "SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function', 'operator', 'class')"
         )
-        return {word for (name,) in rows for word in words(name)}
+        return {word for (name,) in rows for word in words(name) if len(word) >= _WORD}
 
     def root(self, written: str) -> Correction | None:
         """The class or module that a misspelt first name means."""
