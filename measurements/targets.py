@@ -75,7 +75,9 @@ _ROWS = (
     Target("names1", "exact, member, expression: hit@1", "share", 0.97, True),
     Target("members", "class members found first by full path", "share", None, True, "official 0 of 400"),
     Target("history_dated", "removed symbols of scripts: dated rightly in the base", "share", 0.95, True),
-    Target("history_first", "… right successor first in the base, none where there is none", "share", 0.85, True),
+    Target(
+        "history_first", "… right successor first in the base, none where there is none", "share", 0.85, True
+    ),
     Target("history_answered", "… answered with date and right successor first", "share", 0.85, True),
     Target("old_gone", "code of other versions: removed names said to be gone", "share", 0.98, True),
     Target("old_version", "… in the right version", "share", 0.95, True),
