@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _FEW = 3
 _LONG = 12  # letters from which on a name is corrected without knowing what it belongs to
+_BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 _CLEAR = 0.85  # fit of a variable's name that hardly means another class
 _LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
@@ -111,7 +112,7 @@ class Expressions:
                 return
             resolved = self._resolver.onward(plain_path(old.removed.targets[0]), old.rest)
             if resolved.complete:
-                recognition.add(resolved.symbols[-1], 0.88 - later, "behind the successor")
+                recognition.add(resolved.symbols[-1], _BEHIND - later, "behind the successor")
                 return
             further = self._old.behind(resolved, old.rest)
             if further is None:

@@ -114,9 +114,14 @@ def test_a_name_that_never_was_is_told_so(kb: KnowledgeBase, written: str) -> No
 
 
 def test_the_rest_of_an_expression_is_followed_from_the_successor(kb: KnowledgeBase) -> None:
-    ids = [hit.id for hit in kb.query("bpy.data.groups.new('x')").hits[:3]]
-    assert ids[0] == f"{T}BlendData.collections"
-    assert f"{T}BlendDataCollections.new" in ids
+    ids = [hit.id for hit in kb.query("bpy.data.groups.new('x')").hits[:2]]
+    assert ids == [f"{T}BlendData.collections", f"{T}BlendDataCollections.new"]
+    ids = [hit.id for hit in kb.query("bpy.data.groups['x'].objects").hits[:2]]
+    assert ids == [f"{T}BlendData.collections", f"{T}Collection.objects"]
+    assert (
+        kb.query("node_group.inputs.new('NodeSocketFloat', 'x')").hits[0].id
+        == f"{T}NodeTreeInterface.new_socket"
+    )
 
 
 def test_an_assignment_means_the_setter(kb: KnowledgeBase) -> None:
