@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
-_CAPITALS = re.compile(r"(?<![\w.])[A-Z][A-Z0-9_]{2,}(?![\w.(])")
+_CAPITALS = re.compile(r"(?<![\w.])(?=[0-9]*[A-Z])[A-Z0-9_]{3,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
 _FITTING = 0.5  # how well the words around a bare value must fit its property

@@ -229,9 +229,11 @@ class Messages:
             removed = None
             function = forms.IN_FUNCTION.search(query)
             called = self._function(function["method"]) if function else ""
-            owners = list(islice(self._enum_values.owners(items), _MANY))
-            owners.sort(key=lambda row: not (called and row[0].startswith(called)))
-            for rank, (owner, _) in enumerate(owners):
+            owners = sorted(
+                (owner for owner, _ in self._enum_values.owners(items)),
+                key=lambda owner: not (called and owner.startswith(called)),
+            )
+            for rank, owner in enumerate(owners[:_MANY]):
                 path, _, parameter = owner.partition("(")
                 if rank < 2:
                     recognition.add(path, 0.95 - 0.02 * rank, "error message")
