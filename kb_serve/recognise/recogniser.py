@@ -99,6 +99,8 @@ class Recogniser:
     def _removed_values(self, text: str, recognition: Recognition) -> None:
         """Adds enum items that a property in the query has only in other versions."""
         for value in self._enum_values.values(text):
+            if any(removed.path.endswith(f":{value}") for removed in recognition.removed):
+                continue
             for match in [match for match in recognition.matches if match.sure >= _SURE]:
                 symbol = self._reader.symbol(match.id)
                 if symbol and (removed := self._old.value(symbol, value)):
