@@ -167,11 +167,15 @@ class OldCode:
         return None
 
     def _likeliest(self, name: str, variable: str) -> RemovedSymbol | None:
-        """Of the classes that had a member of that name the likeliest one's: what is known to be replaced first."""
+        """Of the classes that had a member of that name the likeliest one's: what is known to be replaced first.
+
+        An unknown variable's member may be the script's own: only what a source tells of is believed to be Blender's.
+        """
         removed = filter(
             None, (self._removed.of_path(f"{owner}.{name}") for owner in self._owners(name, variable))
         )
-        return min(removed, key=lambda symbol: (not symbol.successors, len(symbol.path)), default=None)
+        known = [symbol for symbol in removed if symbol.successors or not variable]
+        return min(known, key=lambda symbol: (not symbol.successors, len(symbol.path)), default=None)
 
     def _owners(self, name: str, variable: str) -> list[str]:
         """The classes that had a member of that name, the likeliest first; none where that is anybody's guess."""
@@ -206,14 +210,16 @@ class OldCode:
         removed = self._removed.of_part(symbol.path, f":{value}")
         if removed is None or removed.successors:
             return removed
-        listed = removed.is_dated(self._reader.history_versions)  # else only one build's items are known
-        return removed if listed and not symbol.enum_computed else None
+        # Of a class that had another name all items are gone, and of an unlisted enumeration those of one build.
+        same = removed.path.startswith(symbol.path)
+        listed = removed.is_dated(self._reader.history_versions)
+        return removed if same and listed and not symbol.enum_computed else None
 
     def _arguments(self, text: str, symbol: Symbol) -> Iterator[RemovedSymbol]:
         parameters = {parameter.name: parameter for parameter in symbol.parameters}
         positions = list(parameters) if symbol.kind == "function" else []
         given = list(arguments(text))
-        too_many = sum(not keyword for keyword, _ in given) > len(positions)
+        too_many = sum(not keyword and value != "self" for keyword, value in given) > len(positions)
         for number, (keyword, value) in enumerate(given):
             # ``to_mesh(scene, …)``: called like the parameter that it is meant for.
             named = keyword or (value if too_many and value.isidentifier() else "")
@@ -230,7 +236,10 @@ class OldCode:
     def _lost(self, symbol: Symbol, keyword: str) -> RemovedSymbol | None:
         """A parameter that a function had before; not one that only newer versions have."""
         removed = self._removed.of_part(symbol.path, f"({keyword})")
-        return removed if removed and removed.gone else None
+        known = removed is not None and (
+            removed.successors or removed.is_dated(self._reader.history_versions)
+        )
+        return removed if known else None
 
     def in_imports(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed modules, and removed names of modules, that are imported."""

@@ -127,7 +127,8 @@ class RemovedSymbolLookup:
         """Whether a class, or what took its place, is below ``owner``; of other removed classes the name tells it."""
         if any(self._reader.descends(now, owner) for now in self._classes_now(cls)):
             return True
-        return not self._reader.entry(cls) and cls.endswith(owner.removeprefix(TYPES))
+        named = cls.endswith(owner.removeprefix(TYPES)) and not self._reader.entry(cls)
+        return named and bool(self._reader.subclasses(owner))
 
     def paths_named(self, name: str) -> list[str]:
         """Paths of the removed members that are called exactly ``name``; none for a name that too many have."""
