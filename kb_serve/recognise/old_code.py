@@ -68,7 +68,7 @@ class OldCode:
 
     def in_chain(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
         """The first removed name in a chain that this version cannot resolve; None where that is not sure."""
-        if readings and readings[0].complete and readings[0].fit >= SURE_FIT:
+        if readings and readings[0].complete and readings[0].fit >= _LIKELY_FIT:
             return self._member(chain, self._likelier(chain, readings))
         return (
             self._path(chain)
