@@ -113,15 +113,22 @@ def test_a_name_that_never_was_is_told_so(kb: KnowledgeBase, written: str) -> No
     assert "never had it from 2.79" in note
 
 
-def test_the_rest_of_an_expression_is_followed_from_the_successor(kb: KnowledgeBase) -> None:
-    ids = [hit.id for hit in kb.query("bpy.data.groups.new('x')").hits[:2]]
-    assert ids == [f"{T}BlendData.collections", f"{T}BlendDataCollections.new"]
-    ids = [hit.id for hit in kb.query("bpy.data.groups['x'].objects").hits[:2]]
-    assert ids == [f"{T}BlendData.collections", f"{T}Collection.objects"]
-    assert (
-        kb.query("node_group.inputs.new('NodeSocketFloat', 'x')").hits[0].id
-        == f"{T}NodeTreeInterface.new_socket"
-    )
+@pytest.mark.parametrize(
+    ("written", "first", "second"),
+    [
+        ("bpy.data.groups.new('x')", "BlendData.collections", "BlendDataCollections.new"),
+        ("bpy.data.groups['x'].objects", "BlendData.collections", "Collection.objects"),
+        (
+            "node_group.inputs.new('NodeSocketFloat', 'x')",
+            "NodeTree.interface",
+            "NodeTreeInterface.new_socket",
+        ),
+    ],
+)
+def test_the_rest_of_an_expression_is_followed_from_the_successor(
+    kb: KnowledgeBase, written: str, first: str, second: str
+) -> None:
+    assert [hit.id for hit in kb.query(written).hits[:2]] == [T + first, T + second]
 
 
 def test_an_assignment_means_the_setter(kb: KnowledgeBase) -> None:
