@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.index.analysis import STOP_WORDS, terms
-from kb_build.index.documents import Document, chapter_of, make_units, topic_documents
+from kb_build.index.documents import Document, chapter_of, kind_of, make_units, topic_documents
 from kb_build.index.postings import vocabulary
 from kb_build.records import EnumItem, Link, Page, Parameter, Section, Symbol
 
@@ -90,6 +91,28 @@ def test_a_topic_holds_the_texts_of_its_units() -> None:
     assert set(topics) == {OWNER.path, PAGE.slug}
     assert "Finer simulation" in " ".join(topics[OWNER.path].body)
     assert "How fine it is." in " ".join(topics[PAGE.slug].body)
+
+
+@pytest.mark.parametrize(
+    ("ref", "kind", "expected"),
+    [
+        ("bpy.types.Cloth", "class", "data"),
+        ("mathutils.Vector", "class", "code"),
+        ("bpy.types.Cloth.copy", "function", "code"),
+        ("info_gotchas", "guide", "code"),
+        ("bpy.types.ShaderNodeMix", "class", "node"),
+        ("modeling/geometry_nodes/mesh/cube", "manual", "node"),
+        ("modeling/modifiers/introduction", "manual", "data"),
+        ("freestyle.types.Stroke", "class", "rarely asked"),
+    ],
+)
+def test_what_a_document_is_to_the_search(ref: str, kind: str, expected: str) -> None:
+    assert kind_of(Document(ref, kind, "")) == expected
+
+
+def test_a_page_whose_sections_are_all_empty_is_an_index() -> None:
+    bare = replace(PAGE, slug="physics/index", sections=(Section("physics", "Physics", 1, "\n"),))
+    assert [kind_of(unit) for unit in units(pages=(bare, PAGE))] == ["index", "data", "data"]
 
 
 @pytest.mark.parametrize(
