@@ -66,10 +66,11 @@ def _roles(_context: click.Context, _parameter: click.Parameter, value: str | No
 @click.option("--no-pages", is_flag=True, help="Leave out manual and guides.")
 @click.option(
     "--summaries",
-    type=click.Choice(["extractive", "claude", "none"]),
-    default="extractive",
+    type=click.Choice(["shipped", "extractive", "claude", "none"]),
+    default="shipped",
     show_default=True,
-    help="How pages are summarised; claude needs ANTHROPIC_API_KEY and costs money.",
+    help="How pages are summarised: by what ships with SimWorlds; by sentences of their own; by Claude where nothing "
+    "ships, which needs ANTHROPIC_API_KEY and costs money.",
 )
 @click.option(
     "--max-cost", type=click.FloatRange(min=0), help="The most that claude may cost, in US dollars."

@@ -88,7 +88,11 @@ def reader_digest() -> str:
 def code_digest() -> str:
     """Digest of the code, packages and data that shape a base."""
     files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS]
-    data = [path.read_bytes() for name in ("history", "words") for path in sorted((_DATA / name).glob("*"))]
+    data = [
+        path.read_bytes()
+        for name in ("history", "words", "summaries")
+        for path in sorted((_DATA / name).glob("*"))
+    ]
     return _digest([_code(files), _versions((*_READERS, *_WRITERS)), *data])
 
 

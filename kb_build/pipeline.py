@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from simworlds.sandbox.runtime import Runtime
     from simworlds.terminal.progress import Progress
 
-SummaryMethod = Literal["extractive", "claude", "none"]
+SummaryMethod = Literal["shipped", "extractive", "claude", "none"]
 _LOADED_AHEAD = ("kb_build.blender.extract_reader", "kb_build.summaries.methods")
 
 
@@ -58,7 +58,7 @@ class BuildOptions:
     guides: Path | None = None
     corpora: Path | None = None
     pages: bool = True
-    summaries: SummaryMethod = "extractive"
+    summaries: SummaryMethod = "shipped"
     max_cost: float | None = None
     model: str | None = None
     require: frozenset[str] = frozenset()
@@ -268,8 +268,8 @@ def _summaries(work: _Build, pages: Sequence[Page]) -> SummaryRun | None:
     from kb_build.summaries.methods import summarise  # noqa: PLC0415 - loaded ahead
 
     work.progress("Summarising pages", 0, None)
-    if method == "extractive":
-        return summarise(pages)
+    if method != "claude":
+        return summarise(pages, method=method)
     from kb_build.summaries.store import SummaryStore  # noqa: PLC0415 - only here
     from kb_build.summaries.types import ClaudeOptions  # noqa: PLC0415 - only here
 
@@ -313,12 +313,11 @@ def _write(
 ) -> None:
     work.progress(f"Writing {work.path.name}", 0, None)
     by_slug = run.by_slug if run else {}
-    summaries = {slug: (summary.text, summary.method) for slug, summary in by_slug.items()}
     with beside(partial(_removed_symbols, extract)) as removed_symbols:
         # Loaded now: a process is not forked safely from one that has NumPy's threads.
         from kb_build.store import Contents, write_base  # noqa: PLC0415
 
-        contents: Contents = Contents(extract.symbols, pages, extract.links, meta, summaries, removed_symbols)
+        contents: Contents = Contents(extract.symbols, pages, extract.links, meta, by_slug, removed_symbols)
         write_base(work.path, contents)
 
 

@@ -24,7 +24,7 @@ from kb_build.index.postings import (
     phrase_postings,
     vocabulary,
 )
-from kb_build.index.query_expansions import load_query_expansions
+from kb_build.index.query_expansions import query_expansions
 from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
@@ -48,19 +48,21 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from kb_build.summaries.types import PageSummary
+
 
 @dataclass(frozen=True, slots=True)
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are slug → (text, method); ``removed_symbols`` is called last: it may still be computed meanwhile.
+    ``summaries`` are by slug; ``removed_symbols`` is called last: it may still be computed meanwhile.
     """
 
     symbols: Sequence[Symbol]
     pages: Sequence[Page]
     links: Sequence[Link]
     meta: Mapping[str, str]
-    summaries: Mapping[str, tuple[str, str]] = field(default_factory=dict[str, tuple[str, str]])
+    summaries: Mapping[str, PageSummary] = field(default_factory=dict[str, "PageSummary"])
     removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
 
 
@@ -146,11 +148,12 @@ def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: Remo
 
 
 def _write_pages(
-    connection: sqlite3.Connection, pages: Sequence[Page], summaries: Mapping[str, tuple[str, str]]
+    connection: sqlite3.Connection, pages: Sequence[Page], summaries: Mapping[str, PageSummary]
 ) -> None:
     places = _places(pages)
     for page in pages:
-        text, method = summaries.get(page.slug, ("", ""))
+        summary = summaries.get(page.slug)
+        text, method = (summary.text, summary.method) if summary else ("", "")
         record = pack(to_json(page))
         row = (
             page.slug, page.source, page.version, page.title, *places.get(page.slug, ("", 0)), page.url,
@@ -238,7 +241,7 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA application_id={APPLICATION_ID};"
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
-        expansions = load_query_expansions()
+        expansions = query_expansions(contents.summaries)
         units = make_units(contents.symbols, contents.pages, contents.links, contents.summaries, expansions)
         with connection:
             _write_symbols(connection, contents.symbols)

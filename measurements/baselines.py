@@ -18,9 +18,10 @@ from rank_bm25 import BM25Okapi
 
 from kb_build.index.analysis import terms
 from kb_build.index.documents import Document, make_units
-from kb_build.index.query_expansions import load_query_expansions
+from kb_build.index.query_expansions import query_expansions
 from kb_build.records import Link, symbol_from_json
 from kb_build.schema import unpack
+from kb_build.summaries.methods import summarise
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:
@@ -40,11 +41,11 @@ def read_units(base: Path) -> list[Document]:
             for (record,) in connection.execute("SELECT record FROM symbols ORDER BY id")
         ]
         links = [Link(*row) for row in connection.execute("SELECT source, target, kind FROM links")]
-        rows = connection.execute("SELECT slug, summary, summary_method FROM pages").fetchall()
+        slugs = connection.execute("SELECT slug FROM pages").fetchall()
     with KnowledgeBase(base) as knowledge:
-        pages = [page for slug, _, _ in rows if (page := knowledge.page(slug)) is not None]
-    summaries = {slug: (text, method) for slug, text, method in rows if text}
-    return make_units(symbols, pages, links, summaries, load_query_expansions())
+        pages = [page for (slug,) in slugs if (page := knowledge.page(slug)) is not None]
+    summaries = summarise(pages).by_slug
+    return make_units(symbols, pages, links, summaries, query_expansions(summaries))
 
 
 class Baselines:

@@ -172,7 +172,7 @@ def _base_without_expansions(base: Path, home: Path, folder: Path) -> Path:
     with closing(BaseReader(base)) as reader:
         version = reader.meta["blender"]
     options = BuildOptions(corpora=corpora(), offline=True, output=folder / base.name)
-    with mock.patch("kb_build.store.load_query_expansions", dict):
+    with mock.patch("kb_build.store.query_expansions", return_value={}):
         return build(version, options=options, home=home).path
 
 

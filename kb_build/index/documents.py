@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from kb_build.records import Link, Page, Symbol
+    from kb_build.summaries.types import PageSummary
 
 TYPES = "bpy.types."
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
@@ -154,7 +155,7 @@ def _expansions_of_pages(explained_on: Mapping[str, str], expansions: Mapping[st
 
 def page_documents(
     pages: Sequence[Page],
-    summaries: Mapping[str, tuple[str, str]],
+    summaries: Mapping[str, PageSummary],
     explains: Mapping[str, list[str]],
     expansions: Mapping[str, str],
 ) -> Iterator[Document]:
@@ -163,7 +164,7 @@ def page_documents(
         above = " ".join(page.breadcrumbs)
         for section in page.sections:
             first = section.level == 1
-            summary = summaries.get(page.slug, ("", ""))[0] if first else ""
+            summary = summaries[page.slug].text if first and page.slug in summaries else ""
             yield Document(
                 ref=page.slug,
                 kind=page.source,
@@ -198,10 +199,10 @@ def make_units(
     symbols: Sequence[Symbol],
     pages: Sequence[Page],
     links: Sequence[Link],
-    summaries: Mapping[str, tuple[str, str]],
+    summaries: Mapping[str, PageSummary],
     expansions: Mapping[str, str],
 ) -> list[Document]:
-    """Every unit, pages first. ``summaries``: slug → (text, method); ``expansions``: see load_query_expansions."""
+    """Every unit, pages first. ``summaries`` are by slug; ``expansions``: see query_expansions."""
     manual_texts, explains = _manual_texts(symbols, pages, links)
     explained_on = {link.source: link.target.partition("#")[0] for link in links if link.kind == "manual"}
     of_pages = _expansions_of_pages(explained_on, expansions)

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from kb_build.errors import SummaryError
 from kb_build.summaries.batches import BatchAPI, BatchGoneError, ItemResult
 from kb_build.summaries.models import FALLBACK_CHARS_PER_TOKEN, batch_cost, facts, price_of
-from kb_build.summaries.prompt import PROMPT_VERSION, NoSummaryError, request_for, summary_text
+from kb_build.summaries.prompt import PROMPT_VERSION, NoSummaryError, read_reply, request_for
 from kb_build.summaries.store import BadAnswer, SentBatch, SummaryStore
 from kb_build.summaries.types import (
     ClaudeOptions,
@@ -257,11 +257,11 @@ class _Run:
             result = results.get(custom_id)
             self._account(result, batch.model)
             try:
-                text = _text_of(result)
+                text, phrases = _reply_of(result)
             except NoSummaryError as error:
                 failures.append(BadAnswer(key, error.reason, str(error)))
             else:
-                summaries.append(PageSummary(key, text, "claude", batch.model, batch.prompt_version))
+                summaries.append(PageSummary(key, text, "claude", batch.model, batch.prompt_version, phrases))
         lasting = [bad for bad in failures if bad.reason in ("refusal", "malformed")]
         self.store.settle(batch.nonce, summaries, lasting)
         self.made.update((one.key, one) for one in summaries if one.key in self.pages)
@@ -291,12 +291,12 @@ class _Run:
         return batch_cost(self.price, tokens, self.facts.max_tokens)
 
 
-def _text_of(result: ItemResult | None) -> str:
-    """The summary in one request's result. Raises NoSummaryError."""
+def _reply_of(result: ItemResult | None) -> tuple[str, tuple[str, ...]]:
+    """The summary and phrases in one request's result. Raises NoSummaryError."""
     if result is None:
         raise NoSummaryError("missing", "the batch's results do not mention this page")
     if result.type == "succeeded" and result.message:
-        return summary_text(result.message)
+        return read_reply(result.message)
     if result.type == "errored":
         error = result.error.error if result.error else None
         raise NoSummaryError(

@@ -13,22 +13,23 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.errors import SummaryError
-from kb_build.summaries.types import FailureReason, PageSummary, Progress, silent
+from kb_build.summaries.types import FailureReason, Origin, PageSummary, Progress, silent
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping
     from pathlib import Path
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 MAX_TEXT = 600
 _BUSY_SECONDS = 30.0
 _LOCK_SLICE_SECONDS = 0.5
 _VARIABLES = 500
+_COLUMNS = "key, text, method, model, prompt_version, phrases"
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS summaries (
     key TEXT PRIMARY KEY, text TEXT NOT NULL, method TEXT NOT NULL, model TEXT NOT NULL,
-    prompt_version TEXT NOT NULL
+    prompt_version TEXT NOT NULL, phrases TEXT NOT NULL DEFAULT ''
 ) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS failures (
     id INTEGER PRIMARY KEY, key TEXT NOT NULL, reason TEXT NOT NULL, detail TEXT NOT NULL,
@@ -91,10 +92,8 @@ class SummaryStore:
             for start in range(0, len(wanted), _VARIABLES):
                 part = wanted[start : start + _VARIABLES]
                 marks = ",".join("?" * len(part))
-                query = (
-                    f"SELECT key, text, method, model, prompt_version FROM summaries WHERE key IN ({marks})"  # noqa: S608 - marks only
-                )
-                summaries.update((row[0], PageSummary(*row)) for row in db.execute(query, part))
+                query = f"SELECT {_COLUMNS} FROM summaries WHERE key IN ({marks})"  # noqa: S608 - marks only
+                summaries.update((row[0], _summary(row)) for row in db.execute(query, part))
         return summaries
 
     def add(self, summaries: Iterable[PageSummary]) -> int:
@@ -112,8 +111,10 @@ class SummaryStore:
             raise SummaryError(f"No summary store at {other}. Give the path of a colleague's summaries file.")
         theirs = SummaryStore(other)
         with theirs._connection(read_only=True) as db:
-            rows = db.execute("SELECT key, text, method, model, prompt_version FROM summaries").fetchall()
-        return self.add(PageSummary(*row) for row in rows if _acceptable(row))
+            version = int(db.execute("PRAGMA user_version").fetchone()[0])
+            columns = _COLUMNS if version >= SCHEMA_VERSION else _COLUMNS.replace("phrases", "''")
+            rows = db.execute(f"SELECT {columns} FROM summaries").fetchall()  # noqa: S608 - our own names
+        return self.add(_summary(row) for row in rows if _acceptable(row))
 
     def count(self) -> int:
         """How many summaries there are."""
@@ -202,7 +203,7 @@ class SummaryStore:
                     f"The summary store {self.path} was made by a newer SimWorlds (schema {version}; this "
                     f"one knows {SCHEMA_VERSION}). Update SimWorlds, or use another file."
                 )
-            if version == 0 and not read_only:
+            if version < SCHEMA_VERSION and not read_only:
                 self._create(db)
             yield db
 
@@ -213,6 +214,8 @@ class SummaryStore:
                 raise SummaryError(
                     f"{self.path} is a database, but not a summary store. Give another path for the summaries."
                 )
+            if ("summaries",) in foreign:  # of the first version
+                db.execute("ALTER TABLE summaries ADD COLUMN phrases TEXT NOT NULL DEFAULT ''")
             for statement in _SCHEMA.split(";"):
                 db.execute(statement)
             db.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
@@ -251,14 +254,29 @@ def _transaction(db: sqlite3.Connection) -> Generator[None]:
 
 def _insert(db: sqlite3.Connection, summaries: Iterable[PageSummary]) -> int:
     before = db.total_changes
-    rows = ((one.key, one.text, one.method, one.model, one.prompt_version) for one in summaries)
-    db.executemany("INSERT OR IGNORE INTO summaries VALUES (?, ?, ?, ?, ?)", rows)
+    rows = (
+        (
+            summary.key,
+            summary.text,
+            summary.method,
+            summary.model,
+            summary.prompt_version,
+            ";".join(summary.phrases),
+        )
+        for summary in summaries
+    )
+    db.executemany(f"INSERT OR IGNORE INTO summaries ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?)", rows)  # noqa: S608 - our own names
     return db.total_changes - before
+
+
+def _summary(row: tuple[str, str, Origin, str, str, str]) -> PageSummary:
+    key, text, method, model, prompt_version, phrases = row
+    return PageSummary(key, text, method, model, prompt_version, tuple(filter(None, phrases.split(";"))))
 
 
 def _acceptable(row: tuple[object, ...]) -> bool:
     """Whether a stranger's row is a summary: nothing else of it can be checked without the page."""
-    key, text, method, model, prompt_version = row
+    key, text, method, model, prompt_version, phrases = row
     return (
         isinstance(key, str)
         and len(key) == 64
@@ -268,4 +286,6 @@ def _acceptable(row: tuple[object, ...]) -> bool:
         and method == "claude"
         and isinstance(model, str)
         and isinstance(prompt_version, str)
+        and isinstance(phrases, str)
+        and phrases.isprintable()
     )

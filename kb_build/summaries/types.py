@@ -7,7 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-Method = Literal["extractive", "claude"]
+Method = Literal["shipped", "extractive", "claude"]
+"""``shipped``: what a language model wrote for this project, where a page is unchanged since; else extractive."""
+Origin = Literal["extractive", "claude"]
 Progress = Callable[[int, int, str], None]
 """Called with pages done, pages in all, and a line for people."""
 
@@ -18,14 +20,16 @@ FailureReason = Literal["refusal", "malformed", "errored", "expired", "canceled"
 class PageSummary:
     """One page's summary: plain text, at most 600 characters, without line breaks.
 
-    ``model`` is the model that wrote it, ``"extractive"`` where the page's own sentences were chosen.
+    ``model`` is the model that wrote it, ``"extractive"`` where the page's own sentences were chosen. ``phrases`` are
+    what people would search for who need the page; only a language model writes them.
     """
 
     key: str
     text: str
-    method: Method
+    method: Origin
     model: str
     prompt_version: str
+    phrases: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
