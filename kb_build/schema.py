@@ -9,13 +9,13 @@ from __future__ import annotations
 import json
 import sqlite3
 import zlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 from urllib.parse import quote
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -23,6 +23,9 @@ FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
 # The levels of the documents.
 UNITS, TOPICS = range(2)
+# What a document is to the search; index: of a page that only lists others.
+DocumentKind = Literal["data", "code", "node", "index", "rarely asked"]
+DOCUMENT_KINDS: tuple[DocumentKind, ...] = ("data", "code", "node", "index", "rarely asked")
 POSTING_BYTES = 6  # a number as uint32, a weight as float16
 
 DDL = """
@@ -93,13 +96,13 @@ CREATE TABLE docs (
 ) WITHOUT ROWID;
 
 -- For each level, by document number: the number of its topic or -1 and a number that documents of one chapter of
--- the manual share (int32), how much it counts (float32), and whether it is about code (bool).
+-- the manual share (int32), and the place of its kind in DOCUMENT_KINDS (uint8).
 CREATE TABLE levels (
     level INTEGER PRIMARY KEY, count INTEGER NOT NULL, topics BLOB NOT NULL, chapters BLOB NOT NULL,
-    weights BLOB NOT NULL, code BLOB NOT NULL
+    kinds BLOB NOT NULL
 );
 
--- For each phrase of the query expansions the document that it leads to (int32). One row.
+-- For each phrase of the query expansions, and each page's title, the document that it leads to (int32). One row.
 CREATE TABLE phrases (targets BLOB NOT NULL);
 
 -- The inverted index. Units, topics and phrases are numbered through: for each stem how many units have it, the numbers

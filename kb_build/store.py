@@ -13,7 +13,7 @@ import sqlite_utils
 
 from kb_build.errors import StoreError
 from kb_build.index.analysis import content_words, key, short_path, topic_key
-from kb_build.index.documents import Document, is_code, make_units, topic_documents, weight_of
+from kb_build.index.documents import Document, kind_of, make_units, topic_documents
 from kb_build.index.postings import (
     TOPIC_B,
     UNIT_B,
@@ -29,6 +29,7 @@ from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
     DDL,
+    DOCUMENT_KINDS,
     FORM_LABEL,
     FORM_NAME,
     FORM_PATH,
@@ -187,17 +188,30 @@ def _write_level(
     arrays = (
         np.array([topics.get(document.topic, -1) for document in documents], np.int32),
         np.array([chapters.setdefault(document.chapter, len(chapters)) for document in documents], np.int32),
-        np.array([weight_of(document) for document in documents], np.float32),
-        np.array([is_code(document) for document in documents], np.bool_),
+        np.array([DOCUMENT_KINDS.index(kind_of(document)) for document in documents], np.uint8),
     )
     row = (level, len(documents), *(array.tobytes() for array in arrays))
-    connection.execute("INSERT INTO levels VALUES (?,?,?,?,?,?)", row)
+    connection.execute("INSERT INTO levels VALUES (?,?,?,?,?)", row)
     return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, tokenize)
 
 
-def _write_index(
+def _phrases(
+    topics: Sequence[Document], targets: Mapping[str, int], expansions: Mapping[str, str]
+) -> Iterator[tuple[str, int]]:
+    """(phrase, number of the document that it leads to): the query expansions, and the titles of pages."""
+    for ref, row in expansions.items():
+        if ref in targets:
+            for phrase in row.split(";"):
+                yield phrase, targets[ref]
+    for topic in topics:
+        if topic.kind in PAGE_SOURCES:
+            yield topic.title, targets[topic.ref]
+
+
+def write_index(
     connection: sqlite3.Connection, units: Sequence[Document], expansions: Mapping[str, str]
 ) -> None:
+    """Writes what retrieval reads: the units, the topics around them, and the phrases that lead to either."""
     topics = [*topic_documents(units)]
     numbers = {topic.ref: number for number, topic in enumerate(topics)}
     tokenize = cache(content_words)
@@ -208,7 +222,8 @@ def _write_index(
         unit.ref: len(units) + numbers[unit.ref] if unit.kind in PAGE_SOURCES else number
         for number, unit in enumerate(units)
     }
-    leads_to, of_phrases = phrase_postings(expansions, targets, len(units), of_units, tokenize)
+    phrases = _phrases(topics, targets, expansions)
+    leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, tokenize)
     connection.execute("INSERT INTO phrases VALUES (?)", (np.array(leads_to, np.int32).tobytes(),))
     levels = (0, of_units), (len(units), of_topics), (len(units) + len(topics), of_phrases)
     _insert(connection, "postings", pack_postings(*levels), 3)
@@ -246,7 +261,7 @@ def _write(part: Path, contents: Contents) -> None:
         with connection:
             _write_symbols(connection, contents.symbols)
             _write_pages(connection, contents.pages, contents.summaries)
-            _write_index(connection, units, expansions)
+            write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(

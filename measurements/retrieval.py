@@ -18,6 +18,7 @@ from kb_build.pipeline import BuildOptions, build
 from kb_serve.answer.budget import tokens
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.rank import search
+from kb_serve.rank.weights import WEIGHTS
 from kb_serve.reader import BaseReader
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import corpora, percentile, say
@@ -184,16 +185,15 @@ def compared(base: Path, home: Path, *, quick: bool) -> Iterator[tuple[str, Call
         return
     with ExitStack() as stack:
         yield "… words only, no names or topics", _words_only(base, stack)
-    for name, constant in (
-        ("… without coverage", "COVERAGE"),
-        ("… without the topic around a unit", "TOPIC_WEIGHT"),
-        ("… without phrases as a whole", "ASKED_WEIGHT"),
-        ("… without the chapters' votes", "CHAPTER_WEIGHT"),
-        ("… without looking for code", "CODE_WEIGHT"),
-    ):
+    for name, constant in (("coverage", "COVERAGE"), ("the topic around a unit", "TOPIC_WEIGHT")):
         with ExitStack() as stack:
             stack.enter_context(mock.patch.object(search, constant, 0.0))
-            yield name, _ours(base, stack)
+            yield f"… without {name}", _ours(base, stack)
+    for signal in WEIGHTS:
+        if signal != "text":
+            with ExitStack() as stack:
+                stack.enter_context(mock.patch.dict(WEIGHTS, {signal: 0.0}))
+                yield f"… without the signal “{signal}”", _ours(base, stack)
     say("building a base without query expansions")
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="simworlds-bench-")))

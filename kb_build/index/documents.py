@@ -7,6 +7,7 @@ The query expansions (:mod:`kb_build.index.query_expansions`) are a field of bot
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -18,13 +19,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from kb_build.records import Link, Page, Symbol
+    from kb_build.schema import DocumentKind
     from kb_build.summaries.types import PageSummary
 
 TYPES = "bpy.types."
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
-# Rarely asked for: how to write the manual, single add-ons, features kept for old files.
-RARELY_ASKED = ("contribute/", "addons/", "freestyle.", "legacy")
-RARELY_ASKED_WEIGHT = 0.7
+# How to write the manual, single add-ons, features kept for old files.
+_RARELY_ASKED = re.compile(r"contribute/|addons/|freestyle\.|legacy")
+_OF_NODES = re.compile(
+    r".*/(?:geometry|shader)_nodes/|compositing/types/|bpy\.types\.\w*Node|bpy\.ops\.node\."
+)
 _LONGEST_TERM = 90  # letters; longer ones are sentences in bold
 
 
@@ -33,7 +37,7 @@ class Document:
     """One unit or topic: the id it counts for, its title, and the texts of its fields.
 
     ``topic`` is the ref of the topic around a unit; ``chapter`` the part of the manual it belongs to
-    (``physics/cloth``), for a symbol its manual page's.
+    (``physics/cloth``), for a symbol its manual page's. ``bare``: of a page that has titles, and no text.
     """
 
     ref: str
@@ -48,6 +52,7 @@ class Document:
     body: tuple[str, ...] = ()
     related: tuple[str, ...] = ()
     expansions: tuple[str, ...] = ()
+    bare: bool = False
 
 
 def _indexed(symbol: Symbol, owner: Symbol | None) -> bool:
@@ -162,6 +167,7 @@ def page_documents(
     """A unit for every section of every page."""
     for page in pages:
         above = " ".join(page.breadcrumbs)
+        bare = not any(section.text.strip() for section in page.sections)
         for section in page.sections:
             first = section.level == 1
             summary = summaries[page.slug].text if first and page.slug in summaries else ""
@@ -178,6 +184,7 @@ def page_documents(
                 body=(section.text,),
                 related=(summary, *explains.get(page.slug, ())) if first else (),
                 expansions=(expansions.get(page.slug, ""),) if first else (),
+                bare=bare,
             )
 
 
@@ -212,13 +219,14 @@ def make_units(
     ]
 
 
-def weight_of(document: Document) -> float:
-    """How much a document counts before any query."""
-    return RARELY_ASKED_WEIGHT if any(part in document.ref for part in RARELY_ASKED) else 1.0
-
-
-def is_code(document: Document) -> bool:
-    """Whether a document is about code rather than Blender's data: functions, modules, guides."""
+def kind_of(document: Document) -> DocumentKind:
+    """What a document is to the search. Code is functions, modules and guides, as against Blender's data."""
+    if document.bare:
+        return "index"
+    if _RARELY_ASKED.search(document.ref):
+        return "rarely asked"
+    if _OF_NODES.match(document.ref):
+        return "node"
     if document.kind == "class":
-        return not document.ref.startswith(TYPES)
-    return document.kind in {"function", "data", "module", "guide"}
+        return "data" if document.ref.startswith(TYPES) else "code"
+    return "code" if document.kind in {"function", "data", "module", "guide"} else "data"

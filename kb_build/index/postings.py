@@ -18,7 +18,7 @@ from kb_build.index.analysis import content_words, idf, stem
 from kb_build.index.documents import FIELDS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
     from kb_build.index.documents import Document
 
@@ -67,29 +67,28 @@ def document_postings(
 
 
 def phrase_postings(
-    expansions: Mapping[str, str],
-    targets: Mapping[str, int],
+    phrases: Iterable[tuple[str, int]],
     units: int,
     unit_postings: PostingLists,
     tokenize: Tokenize = content_words,
 ) -> tuple[list[int], PostingLists]:
-    """The phrases of the query expansions: the document that each leads to, and their posting lists.
+    """The documents that phrases lead to, one a phrase, and the phrases' posting lists.
 
-    ``targets``: the document of each symbol and page. A phrase's weight is such that the idf (among the ``units``) of
-    what a query shares with it, weighed, is a share of 1.
+    ``phrases`` are (text, number of its document); those that share no stem with any of the ``units`` are left out. A
+    phrase's weight is such that the idf of what a query shares with it, weighed, is a share of 1.
     """
     leads_to: list[int] = []
     postings = PostingLists()
-    for ref, row in expansions.items():
-        for phrase in row.split(";") if ref in targets else ():
-            stems = dict.fromkeys(stem(word) for word in tokenize(phrase))
-            whole = sum(idf(units, len(unit_postings.numbers.get(term, ()))) for term in stems)
-            if not whole:
-                continue
-            for term in stems:
-                postings.numbers[term].append(len(leads_to))
-                postings.weights[term].append(1 / whole)
-            leads_to.append(targets[ref])
+    idfs = {term: idf(units, len(numbers)) for term, numbers in unit_postings.numbers.items()}
+    for phrase, document in phrases:
+        stems = dict.fromkeys(stem(word) for word in tokenize(phrase))
+        whole = sum(idfs.get(term, 0.0) for term in stems)
+        if not whole:
+            continue
+        for term in stems:
+            postings.numbers[term].append(len(leads_to))
+            postings.weights[term].append(1 / whole)
+        leads_to.append(document)
     return leads_to, postings
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kb_build.index.analysis import idf
-from kb_build.schema import POSTING_BYTES, TOPICS, UNITS
+from kb_build.schema import DOCUMENT_KINDS, POSTING_BYTES, TOPICS, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -31,13 +31,12 @@ _KEPT = 600  # stems; a query has a dozen
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """The documents of one level, by number: their topics, chapters, weights, and which are about code."""
+    """The documents of one level, by number: topics, chapters, and kinds (places in DOCUMENT_KINDS)."""
 
     count: int
     topics: NDArray[np.int32]
     chapters: NDArray[np.int32]
-    weights: Scores
-    code: NDArray[np.bool_]
+    kinds: NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,21 +112,19 @@ class InvertedIndex:
         return self.postings(stem).idf
 
     def _read_level(self, level: int) -> Level:
-        sql = "SELECT count, topics, chapters, weights, code FROM levels WHERE level = ?"
+        sql = "SELECT count, topics, chapters, kinds FROM levels WHERE level = ?"
         try:
-            ((count, topics, chapters, weights, code),) = self._reader.rows(sql, level)
+            ((count, topics, chapters, kinds),) = self._reader.rows(sql, level)
             read = Level(
                 count,
                 np.frombuffer(topics, np.int32),
                 np.frombuffer(chapters, np.int32),
-                np.frombuffer(weights, np.float32),
-                np.frombuffer(code, np.bool_),
+                np.frombuffer(kinds, np.uint8),
             )
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
-        arrays = (read.topics, read.chapters, read.weights, read.code)
-        sound = all(len(array) == count for array in arrays) and np.isfinite(read.weights).all()
-        if not (sound and _within(read.chapters, 0, count)):
+        sound = all(len(array) == count for array in (read.topics, read.chapters, read.kinds))
+        if not (sound and _within(read.chapters, 0, count) and _within(read.kinds, 0, len(DOCUMENT_KINDS))):
             raise self._reader.damaged(f"level {level} of its index")
         return read
 

@@ -1,29 +1,25 @@
 """Searches the base for a query in plain words.
 
-BM25F over two levels (a unit and the topic around it), with five additions, each measured in ``make bench``:
-
-- *Coverage*: a document's score is scaled by how much of the query, by rarity, it speaks of at all.
-- *Phrases*: a document gains by how nearly the query is one of the phrases that it is asked for by.
-- *Chapters*: what the best documents mostly come from is probably what the query is about (pseudo-relevance
-  feedback); the rest of that chapter gains by it.
-- *Code*: a query that speaks of functions or scripts is rather about functions, modules and guides.
-- *Variety*: one class or page gives one hit before the others had theirs, and so do the members of one name, and a
-  class with the page that explains it.
+BM25F over two levels (a unit and the topic around it) finds units, and signals (:mod:`kb_serve.rank.signals`) rank
+them. Then comes variety: one class or page gives one hit before the others had theirs, and so do the members of one
+name, and a class with the page that explains it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
 from kb_build.index.analysis import STOP_WORDS, stem, words
+from kb_build.schema import DOCUMENT_KINDS
 from kb_serve.rank.inverted_index import InvertedIndex
-from kb_serve.rank.scoring import Concept, Scorer
+from kb_serve.rank.scoring import Concept, score_all
+from kb_serve.rank.signals import Evidence, scores_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -31,20 +27,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kb_serve.rank.inverted_index import Scores
+    from kb_serve.rank.scoring import Scored
     from kb_serve.reader import BaseReader
 
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
 TOPIC_WEIGHT = 0.7
 ALONE = 0.5  # what stands in for the topic of a unit that has none
-CHAPTER_WEIGHT = 0.2
-ASKED_WEIGHT = 0.6  # what a document gains that is asked for just so, in whatever order and number of words
-# Who says one of these asks what to call, not where to click.
-CODE_WORDS = frozenset(
-    """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
-    variable""".split()  # noqa: SIM905
-)
-CODE_WEIGHT = 0.6
-FAILED_WEIGHT = 0.3  # the same for an error's message, which a setting may be to blame for too
 UNKNOWN_IDF = 6.0
 _CORRECTED_WEIGHT = 0.95  # what a corrected word counts, next to one that was written so
 _TWO_TYPOS = 9  # letters from which on two may be wrong
@@ -53,8 +41,6 @@ _CANDIDATES = 400
 _READ_AHEAD = 16
 _MEMBERS = frozenset({"property", "function", "socket"})
 _DIFFERENT = 5
-_FEEDBACK = 100
-_FEEDBACK_POWER = 3  # the weaker half of the feedback documents hardly votes
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,10 +61,6 @@ class Searcher:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self.index = InvertedIndex(reader)
-
-    @cached_property
-    def _scorer(self) -> Scorer:
-        return Scorer(self.index)
 
     # The query
 
@@ -122,40 +104,49 @@ class Searcher:
 
     def search(self, text: str, limit: int = 50, *, failed: bool = False) -> list[SearchHit]:
         """The best documents for a text, best first, each id once. ``failed`` where it is an error's message."""
-        concepts = self.concepts(text)
-        if not self.index.levels[0].count or not any(concept.stem for concept in concepts):
+        if (found := self.find(text, failed=failed)) is None:
             return []
-        units, topics = self.index.levels
-        found = self._scorer.score(concepts)
-        told = np.asarray(found.scores * found.coverage**COVERAGE, np.float32)
-        ends = np.searchsorted(found.numbers, self.index.ends[:2]).tolist()
-        if not ends[0]:
-            return []
-        of_units, of_topics, of_phrases = slice(ends[0]), slice(*ends), slice(ends[1], None)
-        numbers, own, coverage = found.numbers[of_units], told[of_units], found.coverage[of_units]
-        topical = np.zeros(topics.count + 1, np.float32)  # the last: for the units that have no topic, -1
-        topical[found.numbers[of_topics] - units.count] = told[of_topics]
-        topic = units.topics[numbers]
-        around = np.where(topic >= 0, topical[topic], ALONE * own)
-        scores = np.asarray((own + TOPIC_WEIGHT * around) * units.weights[numbers], np.float32)
-        if not CODE_WORDS.isdisjoint(words(text)):
-            scores *= np.where(units.code[numbers], 1 + CODE_WEIGHT, 1)
-        elif failed:
-            scores *= np.where(units.code[numbers], 1 + FAILED_WEIGHT, 1)
-        phrased = np.sqrt(np.minimum(found.scores[of_phrases], 1) * found.coverage[of_phrases])
-        scores *= 1 + ASKED_WEIGHT * self._asked(numbers, topic, found.numbers[of_phrases], phrased)
-        scores *= 1 + CHAPTER_WEIGHT * _votes(units.chapters[numbers], scores)
-        best = _top(scores, _CANDIDATES)
-        best = _spread(best[scores[best] > 0], topic)
+        numbers, coverage, evidence = found
+        scores = scores_of(evidence)
+        best = _spread(_top(scores, len(scores)), self.index.levels[0].topics[numbers])
+        best = _with_text_first(best, evidence.kinds)
         return self._varied(numbers[best], scores[best], coverage[best], limit)
 
-    def _asked(
-        self, numbers: NDArray[np.intp], topic: NDArray[np.int32], phrases: NDArray[np.intp], alike: Scores
-    ) -> Scores:
-        """How nearly the query is, word by word, what units are asked for, 0…1."""
+    def find(self, text: str, *, failed: bool = False) -> tuple[NDArray[np.intp], Scores, Evidence] | None:
+        """The units that speak most of a text, unordered: their numbers, the shares of the query that each covers, and
+        what else is known of them. None if there are none.
+        """
+        concepts = self.concepts(text)
+        units, topics = self.index.levels
+        found = score_all(self.index, concepts)
+        numbers = np.flatnonzero(found.coverage[: units.count] > 0)
+        if not len(numbers):
+            return None
+        documents = self.index.ends[1]
+        told = _float32(found.scores[:documents] * found.coverage[:documents] ** COVERAGE)
+        around = np.zeros(topics.count + 1, np.float32)  # the last: for the units that have no topic, -1
+        around[:-1] = told[units.count :]
+        own, topic = told[numbers], units.topics[numbers]
+        texts = _float32(own + TOPIC_WEIGHT * np.where(topic >= 0, around[topic], ALONE * own))
+        best = _top(texts, _CANDIDATES)
+        numbers, texts, topic = numbers[best], texts[best], topic[best]
+        evidence = Evidence(
+            frozenset(words(text)),
+            failed,
+            texts,
+            self._asked(found, numbers, topic),
+            units.chapters[numbers],
+            units.kinds[numbers],
+        )
+        return numbers, found.coverage[numbers], evidence
+
+    def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
+        """How nearly the query is, word by word, what units or their topics are asked for, 0…1."""
         units, documents, _ = self.index.ends
+        phrases = np.flatnonzero(found.coverage[documents:] > 0)
+        shares, coverage = found.scores[documents:][phrases], found.coverage[documents:][phrases]
         best = np.zeros(documents, np.float32)
-        np.maximum.at(best, self.index.asked[phrases - documents], alike)
+        np.maximum.at(best, self.index.asked[phrases], np.sqrt(np.minimum(shares, 1) * coverage))
         return np.maximum(best[numbers], np.where(topic >= 0, best[units + topic], 0))
 
     def _varied(
@@ -201,6 +192,10 @@ class Searcher:
             yield from (units[number] for number in wanted)
 
 
+def _float32(values: NDArray[Any]) -> Scores:
+    return values.astype(np.float32, copy=False)
+
+
 def _spread(places: NDArray[np.intp], topics: NDArray[np.int32]) -> NDArray[np.intp]:
     """Every topic's first, and all that have no topic, before any topic's second."""
     named = topics[places]
@@ -209,12 +204,10 @@ def _spread(places: NDArray[np.intp], topics: NDArray[np.int32]) -> NDArray[np.i
     return np.concatenate((places[first], places[~first]))
 
 
-def _votes(chapters: NDArray[np.int32], scores: Scores) -> Scores:
-    """How much each document's chapter is favoured by the best documents, 0…1."""
-    best = _top(scores, _FEEDBACK)
-    strength = (scores[best] / max(float(scores[best[0]]), 1e-9)) ** _FEEDBACK_POWER
-    votes = np.bincount(chapters[best], strength, int(chapters.max()) + 1).astype(np.float32)
-    return (votes / max(float(votes.max()), 1e-9))[chapters]
+def _with_text_first(places: NDArray[np.intp], kinds: NDArray[np.uint8]) -> NDArray[np.intp]:
+    """The best unit that has a text, if any has, before those of pages without."""
+    first = int(np.argmax(kinds[places] != DOCUMENT_KINDS.index("index")))
+    return np.concatenate((places[first : first + 1], places[:first], places[first + 1 :]))
 
 
 def _top(scores: Scores, count: int) -> NDArray[np.intp]:

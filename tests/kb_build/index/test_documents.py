@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.index.analysis import STOP_WORDS, terms
-from kb_build.index.documents import Document, chapter_of, definitions, make_units, topic_documents
+from kb_build.index.documents import Document, chapter_of, definitions, kind_of, make_units, topic_documents
 from kb_build.index.postings import vocabulary
 from kb_build.records import EnumItem, Link, Page, Parameter, Section, Symbol
 
@@ -108,6 +109,28 @@ def test_definition_lists_are_read_by_their_indent(text: str, expected: dict[str
     assert {name: text.strip() for name, text in definitions(page)} == {
         k: v.strip() for k, v in expected.items()
     }
+
+
+@pytest.mark.parametrize(
+    ("ref", "kind", "expected"),
+    [
+        ("bpy.types.Cloth", "class", "data"),
+        ("mathutils.Vector", "class", "code"),
+        ("bpy.types.Cloth.copy", "function", "code"),
+        ("info_gotchas", "guide", "code"),
+        ("bpy.types.ShaderNodeMix", "class", "node"),
+        ("modeling/geometry_nodes/mesh/cube", "manual", "node"),
+        ("modeling/modifiers/introduction", "manual", "data"),
+        ("freestyle.types.Stroke", "class", "rarely asked"),
+    ],
+)
+def test_what_a_document_is_to_the_search(ref: str, kind: str, expected: str) -> None:
+    assert kind_of(Document(ref, kind, "")) == expected
+
+
+def test_a_page_whose_sections_are_all_empty_is_an_index() -> None:
+    bare = replace(PAGE, slug="physics/index", sections=(Section("physics", "Physics", 1, "\n"),))
+    assert [kind_of(unit) for unit in units(pages=(bare, PAGE))] == ["index", "data", "data"]
 
 
 @pytest.mark.parametrize(

@@ -54,10 +54,10 @@ def test_weighed_idf_of_shared_stems_is_the_share_of_a_phrase() -> None:
         for name, text in (("a", "flag wind"), ("b", "wind"))
     ]
     of_units = document_postings(docs, 0.5)
-    expansions = {"a": "flag in the wind; of the", "gone": "flag", "page": "the wind"}
-    leads_to, postings = phrase_postings(expansions, {"a": 0, "page": 2}, len(docs), of_units)
+    phrases = [("flag in the wind", 0), (" of the", 0), ("zeppelin", 1), ("the wind", 2)]
+    leads_to, postings = phrase_postings(phrases, len(docs), of_units)
     rarity = {term: idf(len(docs), len(of_units.numbers[term])) for term in ("flag", "wind")}
-    assert leads_to == [0, 2]  # no phrase of stop words alone, none without a target
+    assert leads_to == [0, 2]  # no phrase of stop words alone, none that no unit shares a word with
     assert postings.numbers == {"flag": [0], "wind": [0, 1]}
     shares = [rarity["flag"] * postings.weights["flag"][0], rarity["wind"] * postings.weights["wind"][0]]
     assert sum(shares) == pytest.approx(1)

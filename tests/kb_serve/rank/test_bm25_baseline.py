@@ -20,10 +20,10 @@ from kb_build.index.documents import Document
 from kb_build.index.postings import PostingLists, document_postings, pack_postings
 from kb_build.schema import UNITS
 from kb_serve.rank.inverted_index import K1, InvertedIndex
-from kb_serve.rank.scoring import Concept, Scorer
+from kb_serve.rank.scoring import Concept, score_all
 
 if TYPE_CHECKING:
-    from kb_serve.reader import Reader
+    from kb_serve.reader import BaseReader
 
 B = 0.35
 WORDS = (
@@ -44,8 +44,8 @@ class FlatIndexReader:
             return [(b"",)]
         count = self._count if values == (UNITS,) else 0
         nowhere, chapters = np.full(count, -1, np.int32), np.zeros(count, np.int32)
-        weights, code = np.ones(count, np.float32), np.zeros(count, np.bool_)
-        return [(count, *(array.tobytes() for array in (nowhere, chapters, weights, code)))]
+        kinds = np.zeros(count, np.uint8)
+        return [(count, *(array.tobytes() for array in (nowhere, chapters, kinds)))]
 
     def rows_of(self, sql: str, keys: list[str]) -> list[Any]:
         return [self._postings[key] for key in keys if key in self._postings]
@@ -87,11 +87,9 @@ def test_with_the_same_idf_scores_equal_bm25okapi(
 ) -> None:
     okapi.idf = {word: idf(len(texts), len(numbers)) for word, numbers in postings.numbers.items()}
     expected = np.asarray(okapi.get_scores(terms(query)))
-    index = InvertedIndex(cast("Reader", FlatIndexReader(len(texts), postings)))
-    scored = Scorer(index).score([Concept(word, word, 1.0, index.idf(word)) for word in terms(query)])
-    scores = np.zeros(len(texts))
-    scores[scored.numbers] = scored.scores
-    assert scores == pytest.approx(expected, rel=1e-3)  # a base keeps weights as float16
+    index = InvertedIndex(cast("BaseReader", FlatIndexReader(len(texts), postings)))
+    scored = score_all(index, [Concept(word, word, 1.0, index.idf(word)) for word in terms(query)])
+    assert scored.scores == pytest.approx(expected, rel=1e-3)  # a base keeps weights as float16
     unpacked = np.zeros(len(texts))
     for word in terms(query):
         weights = np.asarray(postings.weights[word])

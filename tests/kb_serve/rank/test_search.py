@@ -11,8 +11,8 @@ from asking import SEED, of_data
 
 from kb_build.index.analysis import STOP_WORDS, content_words, stem, terms
 from kb_build.index.query_expansions import load_query_expansions
-from kb_serve.rank import search
 from kb_serve.rank.search import Searcher
+from kb_serve.rank.weights import WEIGHTS
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -71,7 +71,7 @@ def test_a_query_that_is_a_phrase_gains_by_it(searcher: Searcher, monkeypatch: p
         return scores.pop(path) / max(scores.values())
 
     whole = lead()
-    monkeypatch.setattr(search, "ASKED_WEIGHT", 0.0)
+    monkeypatch.setitem(WEIGHTS, "asked", 0.0)
     assert whole > lead()
 
 

@@ -1,0 +1,126 @@
+"""The signals by which the search ranks units: what each says of every unit that speaks of a query.
+
+A signal is a function of the evidence that gives each unit a number. A unit's score is e to the power of the sum of its
+signals, each times its weight (:mod:`kb_serve.rank.weights`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kb_build.schema import DOCUMENT_KINDS
+from kb_serve.rank.weights import WEIGHTS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from kb_build.schema import DocumentKind
+    from kb_serve.rank.inverted_index import Scores
+
+    Signal = Callable[["Evidence"], Scores | None]
+
+# Who says one of these asks what to call, not where to click.
+CODE_WORDS = frozenset(
+    """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
+    variable""".split()  # noqa: SIM905
+)
+# There are so many nodes that one has something of everything; who wants one mostly says so.
+NODE_WORDS = frozenset(
+    "compositing compositor geometry node nodes nodetree shader shaders socket sockets".split()  # noqa: SIM905
+)
+_FEEDBACK = 100
+_FEEDBACK_POWER = 3  # the weaker half of the feedback units hardly votes
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What is known of the units that speak of a query, as arrays in one order.
+
+    ``texts``: BM25F of the unit and of the topic around it. ``asked``: how nearly the query is a phrase that the unit
+    or its topic is asked for by, 0…1. ``chapters`` and ``kinds`` are as in the index. ``words`` are the query's; it is
+    an error's message if ``failed``.
+    """
+
+    words: frozenset[str]
+    failed: bool
+    texts: Scores
+    asked: Scores
+    chapters: NDArray[np.int32]
+    kinds: NDArray[np.uint8]
+
+    def of_kind(self, kind: DocumentKind) -> Scores:
+        """1 for the units of a kind, 0 for the others."""
+        return (self.kinds == DOCUMENT_KINDS.index(kind)).astype(np.float32)
+
+
+def text(evidence: Evidence) -> Scores:
+    """How strongly the unit's own text and its topic's speak of the query."""
+    return np.log(evidence.texts)
+
+
+def asked(evidence: Evidence) -> Scores:
+    """How nearly the query is one of the phrases that the unit is asked for by."""
+    return evidence.asked
+
+
+def code(evidence: Evidence) -> Scores | None:
+    """Whether the unit is about code, where the query asks for code."""
+    return None if evidence.words.isdisjoint(CODE_WORDS) else evidence.of_kind("code")
+
+
+def code_of_an_error(evidence: Evidence) -> Scores | None:
+    """Whether the unit is about code, where the query is a message, which a setting may be to blame for too."""
+    is_only_message = evidence.failed and evidence.words.isdisjoint(CODE_WORDS)
+    return evidence.of_kind("code") if is_only_message else None
+
+
+def unasked_node(evidence: Evidence) -> Scores | None:
+    """Whether the unit is about a node, where the query does not speak of nodes."""
+    return evidence.of_kind("node") if evidence.words.isdisjoint(NODE_WORDS) else None
+
+
+def rarely_asked(evidence: Evidence) -> Scores:
+    """Whether the unit is of what is rarely asked for."""
+    return evidence.of_kind("rarely asked")
+
+
+def index(evidence: Evidence) -> Scores:
+    """Whether the unit is a page that only lists others."""
+    return evidence.of_kind("index")
+
+
+SIGNALS: dict[str, Signal] = {
+    "text": text,
+    "asked": asked,
+    "code": code,
+    "code of an error": code_of_an_error,
+    "unasked node": unasked_node,
+    "rarely asked": rarely_asked,
+    "index": index,
+}
+
+
+def chapter(evidence: Evidence, logits: Scores) -> Scores:
+    """How much the unit's chapter is favoured by the units that are best by the signals above, 0…1: what they mostly
+    come from is probably what the query is about (pseudo-relevance feedback).
+    """
+    count = min(_FEEDBACK, len(logits))
+    best = np.argpartition(-logits, count - 1)[:count]
+    strength = np.exp(_FEEDBACK_POWER * (logits[best] - logits.max()))
+    votes = np.bincount(evidence.chapters[best], strength, int(evidence.chapters.max()) + 1)
+    return (votes / votes.max()).astype(np.float32)[evidence.chapters]
+
+
+def scores_of(evidence: Evidence) -> Scores:
+    """The units' scores, all above 0."""
+    logits = np.zeros(len(evidence.texts), np.float32)
+    for name, signal in SIGNALS.items():
+        if WEIGHTS[name] and (values := signal(evidence)) is not None:
+            logits += np.float32(WEIGHTS[name]) * values
+    logits += np.float32(WEIGHTS["chapter"]) * chapter(evidence, logits)
+    return np.exp(logits)

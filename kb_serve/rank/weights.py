@@ -1,0 +1,15 @@
+"""How much each signal of the search counts; see :mod:`kb_serve.rank.signals`.
+
+Chosen by hand, near what ``python -m measurements.fit_weights`` finds; ``make bench`` shows what each of them brings.
+"""
+
+WEIGHTS: dict[str, float] = {
+    "text": 1.0,
+    "asked": 0.6,
+    "code": 0.5,
+    "code of an error": 0.25,
+    "unasked node": -0.5,
+    "rarely asked": -0.35,
+    "index": -1.0,
+    "chapter": 0.1,
+}
