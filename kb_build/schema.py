@@ -88,18 +88,13 @@ CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL) WITHOUT ROWID;
 -- Page → symbols whose manual link leads there: classes and operators only.
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;
 
--- What is retrieved (index.documents): units (level 0) and topics (level 1), numbered from 0 within their level.
--- ``ref`` is the id a document counts for.
-CREATE TABLE docs (
-    level INTEGER NOT NULL, number INTEGER NOT NULL, ref TEXT NOT NULL, kind TEXT NOT NULL,
-    title TEXT NOT NULL, anchor TEXT NOT NULL, PRIMARY KEY (level, number)
-) WITHOUT ROWID;
-
--- For each level, by document number: the number of its topic or -1 and a number that documents of one chapter of
--- the manual share (int32), and the place of its kind in DOCUMENT_KINDS (uint8).
+-- What is retrieved (index.documents): units (level 0) and topics (level 1), numbered from 0 within their level. By
+-- number: the ids that they count for and their anchors, a line each; the numbers of their topics or -1; numbers that
+-- those of one chapter of the manual share, and those that one page explains or -1 (int32); the places of their kinds
+-- in DOCUMENT_KINDS (uint8); and whether they are members of something (bool). Read at once, they need no look-ups.
 CREATE TABLE levels (
-    level INTEGER PRIMARY KEY, count INTEGER NOT NULL, topics BLOB NOT NULL, chapters BLOB NOT NULL,
-    kinds BLOB NOT NULL
+    level INTEGER PRIMARY KEY, count INTEGER NOT NULL, refs TEXT NOT NULL, anchors TEXT NOT NULL, topics BLOB NOT NULL,
+    chapters BLOB NOT NULL, explained BLOB NOT NULL, kinds BLOB NOT NULL, members BLOB NOT NULL
 );
 
 -- For each phrase of the query expansions, and each page's title, the document that it leads to (int32). One row.

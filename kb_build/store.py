@@ -52,6 +52,9 @@ if TYPE_CHECKING:
     from kb_build.summaries.types import PageSummary
 
 
+_MEMBERS = frozenset({"property", "function", "socket"})
+
+
 @dataclass(frozen=True, slots=True)
 class Contents:
     """Everything that goes into one base.
@@ -179,19 +182,21 @@ def _write_level(
     tokenize: Tokenize,
 ) -> PostingLists:
     """Writes the documents of one level; returns their posting lists. ``topics``: ref → number."""
-    rows = (
-        (level, number, document.ref, document.kind, document.title, document.anchor)
-        for number, document in enumerate(documents)
-    )
-    _insert(connection, "docs", rows, 6)
     chapters: dict[str, int] = {}
-    arrays = (
+    explained: dict[str, int] = {"": -1}
+    columns = (
         np.array([topics.get(document.topic, -1) for document in documents], np.int32),
         np.array([chapters.setdefault(document.chapter, len(chapters)) for document in documents], np.int32),
+        np.array(
+            [explained.setdefault(document.explained, len(explained)) for document in documents], np.int32
+        ),
         np.array([DOCUMENT_KINDS.index(kind_of(document)) for document in documents], np.uint8),
+        np.array([document.kind in _MEMBERS for document in documents], np.bool_),
     )
-    row = (level, len(documents), *(array.tobytes() for array in arrays))
-    connection.execute("INSERT INTO levels VALUES (?,?,?,?,?)", row)
+    refs = "\n".join(document.ref for document in documents)
+    anchors = "\n".join(document.anchor for document in documents)
+    row = (level, len(documents), refs, anchors, *(column.tobytes() for column in columns))
+    _insert(connection, "levels", (row,), len(row))
     return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, tokenize)
 
 

@@ -260,10 +260,13 @@ def _index(base: _Base) -> BaseCheck:
     """Every document is a symbol or page of the base, and the postings and phrases name documents."""
     faults: list[str] = []
     sizes: Counter[int] = Counter()
-    for level, ref in base.rows("SELECT level, ref FROM docs"):
-        sizes[level] += 1
-        if ref not in base.bases and ref not in base.slugs:
-            faults.append(f"the index names {ref}, which is not in the base")
+    for level, count, refs in base.rows("SELECT level, count, refs FROM levels"):
+        sizes[level] = count
+        named = refs.split("\n") if refs else []
+        if len(named) != count:
+            faults.append(f"level {level} of the index names {len(named)} documents, and says {count}")
+        unknown = (ref for ref in named if ref not in base.bases and ref not in base.slugs)
+        faults += [f"the index names {ref}, which is not in the base" for ref in unknown]
     documents = sum(sizes.values())
     targets = [
         target

@@ -213,15 +213,6 @@ class BaseReader:
         rows = self.rows("SELECT version FROM since WHERE path = ?", path)
         return rows[0][0] if rows else ""
 
-    def units(self, numbers: Collection[int]) -> dict[int, tuple[str, str, str, str, str]]:
-        """Number → (ref, kind, title, anchor, page) of retrieval units; ``page`` explains a class or operator, as a
-        link's target.
-        """
-        sql = """SELECT number, ref, kind, title, anchor, CASE WHEN kind IN ('class', 'operator')
-                THEN ifnull((SELECT target FROM links WHERE source = ref AND links.kind = 'manual'), '') ELSE '' END
-            FROM docs WHERE level = 0 AND number"""
-        return {row[0]: row[1:] for row in self.rows_of(sql, numbers)}
-
     def links_from(self, source: str, kind: str) -> list[str]:
         """Targets of a symbol's or page's links of one kind."""
         return [

@@ -37,7 +37,8 @@ class Document:
     """One unit or topic: the id it counts for, its title, and the texts of its fields.
 
     ``topic`` is the ref of the topic around a unit; ``chapter`` the part of the manual it belongs to
-    (``physics/cloth``), for a symbol its manual page's. ``bare``: of a page that has titles, and no text.
+    (``physics/cloth``), for a symbol its manual page's. ``explained``: the page itself, or
+    the page that explains a class or operator. ``bare``: of a page that has titles, and no text.
     """
 
     ref: str
@@ -52,6 +53,7 @@ class Document:
     body: tuple[str, ...] = ()
     related: tuple[str, ...] = ()
     expansions: tuple[str, ...] = ()
+    explained: str = ""
     bare: bool = False
 
 
@@ -139,6 +141,7 @@ def symbol_documents(
             body=(symbol.description, *items, *arguments, *results),
             related=(*sockets.get(symbol.path, ()), *manual_texts.get(symbol.path, ())),
             expansions=(_expansions_of(symbol, explained_on, expansions),),
+            explained=explained_on.get(symbol.path, "") if symbol.kind in {"class", "operator"} else "",
         )
 
 
@@ -184,6 +187,7 @@ def page_documents(
                 body=(section.text,),
                 related=(summary, *explains.get(page.slug, ())) if first else (),
                 expansions=(expansions.get(page.slug, ""),) if first else (),
+                explained=page.slug,
                 bare=bare,
             )
 

@@ -31,12 +31,18 @@ _KEPT = 600  # stems; a query has a dozen
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """The documents of one level, by number: topics, chapters, and kinds (places in DOCUMENT_KINDS)."""
+    """The documents of one level, by number; ``explained``: a number for the page that explains them, or -1, ``kinds``:
+    places in DOCUMENT_KINDS.
+    """
 
     count: int
+    refs: list[str]
+    anchors: list[str]
     topics: NDArray[np.int32]
     chapters: NDArray[np.int32]
+    explained: NDArray[np.int32]
     kinds: NDArray[np.uint8]
+    members: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,13 +53,13 @@ class StemPostings:
     ``units``: how many of them are units; ``idf``: how much the stem tells, 0 if no unit has it.
     """
 
-    numbers: NDArray[np.uint32]
+    numbers: NDArray[np.intp]
     saturated: Scores
     units: int
     idf: float
 
 
-_NOWHERE = StemPostings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0.0)
+_NOWHERE = StemPostings(np.zeros(0, np.intp), np.zeros(0, np.float32), 0, 0.0)
 
 
 class InvertedIndex:
@@ -112,18 +118,28 @@ class InvertedIndex:
         return self.postings(stem).idf
 
     def _read_level(self, level: int) -> Level:
-        sql = "SELECT count, topics, chapters, kinds FROM levels WHERE level = ?"
+        sql = """SELECT count, refs, anchors, topics, chapters, explained, kinds, members FROM levels
+            WHERE level = ?"""
         try:
-            ((count, topics, chapters, kinds),) = self._reader.rows(sql, level)
+            ((count, refs, anchors, topics, chapters, explained, kinds, members),) = self._reader.rows(
+                sql, level
+            )
             read = Level(
                 count,
+                refs.split("\n") if count else [],
+                anchors.split("\n") if count else [],
                 np.frombuffer(topics, np.int32),
                 np.frombuffer(chapters, np.int32),
+                np.frombuffer(explained, np.int32),
                 np.frombuffer(kinds, np.uint8),
+                np.frombuffer(members, np.bool_),
             )
-        except (ValueError, TypeError) as error:
+        except (ValueError, TypeError, AttributeError) as error:
             raise self._reader.damaged(error) from error
-        sound = all(len(array) == count for array in (read.topics, read.chapters, read.kinds))
+        columns = (
+            read.refs, read.anchors, read.topics, read.chapters, read.explained, read.kinds, read.members
+        )  # fmt: skip
+        sound = all(len(column) == count for column in columns)
         if not (sound and _within(read.chapters, 0, count) and _within(read.kinds, 0, len(DOCUMENT_KINDS))):
             raise self._reader.damaged(f"level {level} of its index")
         return read
@@ -151,8 +167,12 @@ class InvertedIndex:
         last = 0
         for (stem, having, _), array in zip(rows, numbers, strict=True):
             first, last = last, last + len(array)
-            # Copies, not to keep the lists of all for one, nor what was read for a part of it.
-            yield stem, StemPostings(array.copy(), saturated[first:last].copy(), having, idf(units, having))
+            # Copies, not to keep the lists of all for one, nor what was read for a part of it; of the type that numpy
+            # takes indices as.
+            yield (
+                stem,
+                StemPostings(array.astype(np.intp), saturated[first:last].copy(), having, idf(units, having)),
+            )
 
 
 def _within(numbers: NDArray[Any], low: int, high: int) -> bool:

@@ -22,7 +22,7 @@ from kb_serve.rank.scoring import Concept, score_all
 from kb_serve.rank.signals import Evidence, scores_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -38,21 +38,16 @@ _CORRECTED_WEIGHT = 0.95  # what a corrected word counts, next to one that was w
 _TWO_TYPOS = 9  # letters from which on two may be wrong
 _MAX_WORDS = 40
 _CANDIDATES = 400
-_READ_AHEAD = 16
-_MEMBERS = frozenset({"property", "function", "socket"})
 _DIFFERENT = 5
 
 
 @dataclass(frozen=True, slots=True)
 class SearchHit:
-    """One ranked document. ``coverage`` is the share of the query, by rarity, that it speaks of."""
+    """One ranked unit: a symbol path or a page's slug, and the anchor of the section that was found."""
 
     ref: str
-    kind: str
-    title: str
     anchor: str
     score: float
-    coverage: float
 
 
 class Searcher:
@@ -106,16 +101,14 @@ class Searcher:
         """The best documents for a text, best first, each id once. ``failed`` where it is an error's message."""
         if (found := self.find(text, failed=failed)) is None:
             return []
-        numbers, coverage, evidence = found
+        numbers, evidence = found
         scores = scores_of(evidence)
         best = _spread(_top(scores, len(scores)), self.index.levels[0].topics[numbers])
         best = _with_text_first(best, evidence.kinds)
-        return self._varied(numbers[best], scores[best], coverage[best], limit)
+        return self._varied(numbers[best].tolist(), scores[best].tolist(), limit)
 
-    def find(self, text: str, *, failed: bool = False) -> tuple[NDArray[np.intp], Scores, Evidence] | None:
-        """The units that speak most of a text, unordered: their numbers, the shares of the query that each covers, and
-        what else is known of them. None if there are none.
-        """
+    def find(self, text: str, *, failed: bool = False) -> tuple[NDArray[np.intp], Evidence] | None:
+        """The units that speak most of a text: their numbers, and what is known of them. None if there are none."""
         concepts = self.concepts(text)
         units, topics = self.index.levels
         found = score_all(self.index, concepts)
@@ -138,7 +131,7 @@ class Searcher:
             units.chapters[numbers],
             units.kinds[numbers],
         )
-        return numbers, found.coverage[numbers], evidence
+        return numbers, evidence
 
     def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
         """How nearly the query is, word by word, what units or their topics are asked for, 0…1."""
@@ -149,47 +142,39 @@ class Searcher:
         np.maximum.at(best, self.index.asked[phrases], np.sqrt(np.minimum(shares, 1) * coverage))
         return np.maximum(best[numbers], np.where(topic >= 0, best[units + topic], 0))
 
-    def _varied(
-        self, numbers: NDArray[np.intp], scores: Scores, coverage: Scores, limit: int
-    ) -> list[SearchHit]:
+    def _varied(self, numbers: Sequence[int], scores: Sequence[float], limit: int) -> list[SearchHit]:
         """Of the ranked units each ref once, and the first member of a name before other members of that name.
 
         A class or operator and the page that explains it say the same: the second of them waits until the first
         few different things have been named.
         """
+        units = self.index.levels[0]
         first: list[SearchHit] = []
         waiting: list[SearchHit] = []
         later: list[SearchHit] = []
-        seen: set[str] = set()
-        told = zip(scores.tolist(), coverage.tolist(), self._documents(numbers.tolist()), strict=True)
-        for score, share, (ref, kind, title, anchor, page) in told:
+        seen: set[str | int] = set()
+        for number, score in zip(numbers, scores, strict=True):
+            ref = units.refs[number]
             if ref in seen:
                 continue
-            found = SearchHit(ref, kind, title, anchor, score, share)
-            name = f".{ref.rpartition('.')[2]}" if kind in _MEMBERS else ref
-            explained = page.partition("#")[0] or ref
+            hit = SearchHit(ref, units.anchors[number], score)
+            name = f".{ref.rpartition('.')[2]}" if units.members[number] else ref
+            explained = int(units.explained[number])
             if name in seen:
-                later.append(found)
-            elif f"/{explained}" in seen and len(first) < _DIFFERENT:
-                waiting.append(found)
+                later.append(hit)
+            elif explained in seen and len(first) < _DIFFERENT:
+                waiting.append(hit)
             else:
-                first.append(found)
+                first.append(hit)
                 if len(first) == _DIFFERENT:
                     first += waiting
-            seen.update((ref, name, f"/{explained}"))
+            seen.update((ref, name))
+            if explained >= 0:
+                seen.add(explained)
             if len(first) >= limit:
                 return first[:limit]
         few = waiting if len(first) < _DIFFERENT else []
         return [*first, *few, *later][:limit]
-
-    def _documents(self, numbers: Sequence[int]) -> Iterator[tuple[str, str, str, str, str]]:
-        """(ref, kind, title, anchor, manual page) of units, in the order given, read as far as wanted."""
-        for start in range(0, len(numbers), _READ_AHEAD):
-            wanted = numbers[start : start + _READ_AHEAD]
-            units = self._reader.units(wanted)
-            if len(units) < len(wanted):
-                raise self._reader.damaged("documents of its index are missing")
-            yield from (units[number] for number in wanted)
 
 
 def _float32(values: NDArray[Any]) -> Scores:

@@ -214,7 +214,7 @@ def test_damaged_pages_are_reported(copy: Path) -> None:
 
 
 def test_a_missing_table_is_reported_as_damage(copy: Path) -> None:
-    for table in ("symbols", "names", "docs", "phrases", "postings", "pages"):
+    for table in ("symbols", "names", "levels", "phrases", "postings", "pages"):
         with closing(sqlite3.connect(copy)) as file:
             file.execute(f"ALTER TABLE {table} RENAME TO gone")
             file.commit()

@@ -44,8 +44,10 @@ class FlatIndexReader:
             return [(b"",)]
         count = self._count if values == (UNITS,) else 0
         nowhere, chapters = np.full(count, -1, np.int32), np.zeros(count, np.int32)
-        kinds = np.zeros(count, np.uint8)
-        return [(count, *(array.tobytes() for array in (nowhere, chapters, kinds)))]
+        kinds, members = np.zeros(count, np.uint8), np.zeros(count, np.bool_)
+        lines = "\n" * max(count - 1, 0)
+        columns = (nowhere, chapters, nowhere, kinds, members)
+        return [(count, lines, lines, *(column.tobytes() for column in columns))]
 
     def rows_of(self, sql: str, keys: list[str]) -> list[Any]:
         return [self._postings[key] for key in keys if key in self._postings]

@@ -90,7 +90,7 @@ def test_scores_fall_and_no_id_comes_twice(searcher: Searcher) -> None:
     for query in ("cloth", "bake the simulation", "render image size", "bone constraint target"):
         found = searcher.search(query, 100)
         assert len({row.ref for row in found}) == len(found)
-        assert all(row.score > 0 and 0 < row.coverage <= 1.001 for row in found)
+        assert all(row.score > 0 for row in found)
         assert len(found) <= 100
 
 
