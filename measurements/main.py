@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PARTS = ("retrieval", "latency", "server", "builds", "blender", "verifier", "audits")
-_SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl")
+_SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl", "paraphrases.jsonl")
 
 
 def _parts(text: str) -> list[str]:
@@ -39,7 +39,7 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument(
         "--queries", type=Path, action="append", metavar="FILE",
-        help="labelled queries (JSON Lines), repeatable; the first has targets (default: dev, check, blind)",
+        help="labelled queries (JSON Lines), repeatable; the first has targets (default: all sets)",
     )  # fmt: skip
     parser.add_argument(
         "--home", type=Path, help="folder of the bases (default: SIMWORLDS_HOME or the user's)"

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 LIMIT = 8
 NAMED = frozenset({"exact", "member", "expression"})
 TASK = "task"
+PARAPHRASES = "paraphrases"  # of the set that is judged
 KINDS = (
     "exact",
     "member",
@@ -223,7 +224,11 @@ def measure(setting: Setting) -> ReportPart:
     skipped = [f"labels that this base does not know: {', '.join(unknown)}"] if unknown else []
     return ReportPart(
         "retrieval",
-        (*_figures(ours[judged], judged), *_promises(setting.base, sets[judged])),
+        (
+            *_figures(ours[judged], judged),
+            *_paraphrased(ours, judged),
+            *_promises(setting.base, sets[judged]),
+        ),
         (_systems_table(results), _kinds_table(ours)),
         tuple(skipped),
         {"systems": _summaries(results), "queries": {title: _rows(found) for title, found in ours.items()}},
@@ -242,6 +247,15 @@ def _figures(outcomes: Sequence[Outcome], title: str) -> Iterator[TargetFigure]:
             yield TargetFigure(
                 key, share(group, first), f"{title}: {sum(o.hit(first) for o in group)} of {len(group)}"
             )
+
+
+def _paraphrased(ours: dict[str, list[Outcome]], judged: str) -> Iterator[TargetFigure]:
+    if PARAPHRASES not in ours:
+        return
+    first, again = (
+        share([o for o in ours[title] if o.query.kind != TASK], 5) for title in (judged, PARAPHRASES)
+    )
+    yield TargetFigure("paraphrased5", first - again, f"{judged} {first:.3f}, {PARAPHRASES} {again:.3f}")
 
 
 def _promises(base: Path, queries: Sequence[Query]) -> Iterator[TargetFigure]:

@@ -30,14 +30,14 @@ def test_a_target_is_reached_on_one_side_only(target: Target, value: float, reac
 
 
 def test_a_narrow_miss_is_not_rounded_to_reached() -> None:
-    assert format_value(0.7496, "share") != "0.75"
-    row = targets_table([TargetFigure("hit1", 0.7496)]).rows[0]
+    assert format_value(0.8496, "share") != "0.85"
+    row = targets_table([TargetFigure("hit1", 0.8496)]).rows[0]
     assert "NOT reached" in row
 
 
 def test_figures_are_in_the_order_of_targets_and_counted() -> None:
     found = targets_table(
-        [TargetFigure("size", 61.0), TargetFigure("members", 1.0), TargetFigure("hit1", 0.8)]
+        [TargetFigure("size", 61.0), TargetFigure("members", 1.0), TargetFigure("hit1", 0.9)]
     )
     assert [row[0] for row in found.rows] == [TARGETS[key].what for key in ("hit1", "members", "size")]
     assert found.note.startswith("1 of 2 targets reached")
