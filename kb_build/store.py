@@ -300,9 +300,9 @@ def _write(part: Path, contents: Contents) -> None:
             _write_removed_symbols(connection, contents.removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
-            calls = creation_calls(contents.symbols)
-            _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
             usage = contents.usage()
+            calls = creation_calls(contents.symbols, usage.reached)
+            _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
             _write_symbols(connection, contents.symbols, usage.reached)
             _write_usage(connection, usage.uses)
             counts = {path: uses.count for path, uses in usage.uses.items()}

@@ -282,7 +282,7 @@ class Members(Core):
         if not sockets:
             return None
         if isinstance(value, int):
-            symbol = next((s for _, _, s in sockets if s.signature == f"{side}[{value}]"), None)
+            symbol = next((s for _, _, s in sockets if f"{side}[{value}]" in s.subscripts), None)
         else:
             symbol = next((s for name, _, s in sockets if name == value), None) or next(
                 (s for _, label, s in sockets if label == value), None

@@ -36,9 +36,12 @@ class Creation(NamedTuple):
     choice: str = ""
 
 
-def creation_calls(symbols: Iterable[Symbol]) -> dict[str, Creation]:
-    """Path of a class → how an instance is made, for every class that has such a call."""
-    return dict(_Calls(symbols).found())
+def creation_calls(symbols: Iterable[Symbol], reached: Mapping[str, str]) -> dict[str, Creation]:
+    """Path of a class → how an instance is made, for every class that has such a call.
+
+    ``reached``: path of a class → an expression that gives an instance.
+    """
+    return dict(_Calls(symbols, reached).found())
 
 
 def held(reached: str) -> str:
@@ -50,8 +53,9 @@ def held(reached: str) -> str:
 
 
 class _Calls:
-    def __init__(self, symbols: Iterable[Symbol]) -> None:
+    def __init__(self, symbols: Iterable[Symbol], reached: Mapping[str, str]) -> None:
         self._symbols = {symbol.path: symbol for symbol in symbols}
+        self._reached = reached
         self._below: dict[str, list[Symbol]] = defaultdict(list)
         for symbol in self._symbols.values():
             if symbol.kind == "class" and symbol.base:
@@ -77,8 +81,7 @@ class _Calls:
 
     def _owner(self, holder: Symbol) -> str:
         name = holder.owner.removeprefix(TYPES)
-        owner = self._symbols.get(holder.owner)
-        return _HOLDERS.get(name) or held(owner.reached if owner and owner.reached else name.lower())
+        return _HOLDERS.get(name) or held(self._reached.get(holder.owner, name.lower()))
 
     def _by_collection(self, holder: Symbol) -> Iterator[tuple[str, Creation]]:
         for name in _MAKERS:

@@ -15,7 +15,9 @@ from simworlds.settings import base_path, home_folder
 if TYPE_CHECKING:
     from pathlib import Path
 
-SETS = sorted(QUERIES.glob("*.jsonl"))
+# Lines of old scripts are judged by what they say is gone (measurements/old_code.py, history.py), not by ids.
+_OF_OLD_CODE = {"old_code", "removed"}
+SETS = sorted(path for path in QUERIES.glob("*.jsonl") if path.stem not in _OF_OLD_CODE)
 
 
 @pytest.mark.parametrize("path", SETS, ids=lambda path: path.stem)

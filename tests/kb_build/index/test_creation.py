@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.blender.access_paths import reached_expressions
 from kb_build.index.creation import Creation, creation_calls
 from kb_build.index.weights import symbol_weights
 from kb_build.records import Symbol
@@ -16,7 +17,10 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def calls(extract: Extract) -> dict[str, Creation]:
-    return creation_calls(extract.symbols)
+    reached = reached_expressions(extract.symbols)
+    return creation_calls(
+        extract.symbols, {f"bpy.types.{name}": expression for name, expression in reached.items()}
+    )
 
 
 @pytest.mark.parametrize(

@@ -422,6 +422,8 @@ def test_removed_symbols_are_noted_with_their_versions(
 ) -> None:
     for path in former(reader, "path LIKE 'bpy.types.%' AND path NOT LIKE '%:%' AND path NOT LIKE '%(%'"):
         answer = kb.query(path if prefix else path.removeprefix(TYPES))
+        if any("still works here" in note for note in answer.notes):
+            continue
         first, _, gone = reader.removed(path) or ("", "", "")
         note = next(note for note in answer.notes if f"`{path}` does not exist" in note)
         assert (gone or f"new in {first}") in note, note
