@@ -25,7 +25,7 @@ from kb_build.summaries.methods import summarise
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
 NAME_WEIGHT = 3
@@ -33,8 +33,8 @@ CANDIDATES = 200
 _DEPTH = 50  # documents looked at for the first ids: sections of one page are one id
 
 
-def read_units(base: Path) -> list[Document]:
-    """The documents of a base, made anew from its records."""
+def read_units(base: Path, expansions: Mapping[str, str] | None = None) -> list[Document]:
+    """The documents of a base, made anew from its records; with other ``expansions`` than its own, if given."""
     with closing(sqlite3.connect(f"file:{quote(str(base.resolve()))}?mode=ro", uri=True)) as connection:
         symbols = [
             symbol_from_json(unpack(record))
@@ -45,7 +45,8 @@ def read_units(base: Path) -> list[Document]:
     with KnowledgeBase(base) as knowledge:
         pages = [page for (slug,) in slugs if (page := knowledge.page(slug)) is not None]
     summaries = summarise(pages).by_slug
-    return make_units(symbols, pages, links, summaries, query_expansions(summaries))
+    used = query_expansions(summaries) if expansions is None else expansions
+    return make_units(symbols, pages, links, summaries, used)
 
 
 class Baselines:

@@ -111,7 +111,7 @@ class SummaryStore:
             raise SummaryError(f"No summary store at {other}. Give the path of a colleague's summaries file.")
         theirs = SummaryStore(other)
         with theirs._connection(read_only=True) as db:
-            version = int(db.execute("PRAGMA user_version").fetchone()[0])
+            version = _version(db)
             columns = _COLUMNS if version >= SCHEMA_VERSION else _COLUMNS.replace("phrases", "''")
             rows = db.execute(f"SELECT {columns} FROM summaries").fetchall()  # noqa: S608 - our own names
         return self.add(_summary(row) for row in rows if _acceptable(row))
@@ -197,7 +197,7 @@ class SummaryStore:
     @contextlib.contextmanager
     def _connection(self, *, read_only: bool = False) -> Generator[sqlite3.Connection]:
         with self._errors(), contextlib.closing(self._open(self.path, read_only=read_only)) as db:
-            version = int(db.execute("PRAGMA user_version").fetchone()[0])
+            version = _version(db)
             if version > SCHEMA_VERSION:
                 raise SummaryError(
                     f"The summary store {self.path} was made by a newer SimWorlds (schema {version}; this "
@@ -209,6 +209,8 @@ class SummaryStore:
 
     def _create(self, db: sqlite3.Connection) -> None:
         with _transaction(db):
+            if _version(db) == SCHEMA_VERSION:  # another thread was first
+                return
             foreign = db.execute("SELECT name FROM sqlite_schema WHERE type = 'table'").fetchall()
             if foreign and ("summaries",) not in foreign:
                 raise SummaryError(
@@ -238,6 +240,10 @@ class SummaryStore:
                 "if the file is damaged, move it away and it is made anew (Claude's summaries are then paid "
                 "for again, unless a colleague's copy is merged)."
             ) from error
+
+
+def _version(db: sqlite3.Connection) -> int:
+    return int(db.execute("PRAGMA user_version").fetchone()[0])
 
 
 @contextlib.contextmanager

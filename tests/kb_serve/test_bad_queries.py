@@ -88,7 +88,7 @@ def test_characters_outside_names_do_not_hide_a_name(kb: KnowledgeBase, name: st
     "query", ["cloth*", '"cloth" AND quality', "NEAR(cloth quality)", "title:cloth", "-cloth ^self"]
 )
 def test_search_syntax_is_taken_as_words(kb: KnowledgeBase, query: str) -> None:
-    assert any("cloth" in hit.id.lower() for hit in kb.query(query).hits)
+    assert any("cloth" in hit.id.lower() for hit in kb.query(query, limit=20).hits)
 
 
 @pytest.mark.parametrize("seed", range(12))
