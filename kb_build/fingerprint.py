@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 _PACKAGE = Path(__file__).resolve().parent
 _DATA = _PACKAGE.parent / "corpora"
-_CHECK = _PACKAGE.parent / "kb_check"
 # Packages whose versions show in the text of pages or in the index.
 _READERS = ("sphinx", "docutils", "beautifulsoup4", "lxml")
 _WRITERS = ("sqlite-utils", "snowballstemmer", "pystemmer")
@@ -93,14 +92,14 @@ def reader_digest() -> str:
 @cache
 def usage_digest() -> str:
     """Digest of the code that finds the uses of symbols in scripts, and of what reads the symbols."""
-    files = [*_CHECK.glob("*.py"), *(_PACKAGE / "usage").glob("*.py"), *(_PACKAGE / "blender").glob("*.py")]
+    files = [path for part in ("flow", "usage", "blender") for path in (_PACKAGE / part).glob("*.py")]
     return _code([*files, _PACKAGE / "records.py"])
 
 
 @cache
 def code_digest() -> str:
     """Digest of the code, packages and data that shape a base."""
-    files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS] + [*_CHECK.glob("*.py")]
+    files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS]
     data = [
         path.read_bytes()
         for name in ("history", "words", "summaries")

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_build.base_file import read_meta
+from kb_build.flow.analysis import analyse
+from kb_build.flow.api import Api
+from kb_build.flow.symbols import BaseSymbols
+from kb_build.flow.types import UNKNOWN
 from kb_build.schema import open_read_only
 from kb_build.usage.scripts import blender_scripts, read_script
-from kb_check.analysis import analyse
-from kb_check.api import Api
-from kb_check.symbols import BaseSymbols
-from kb_check.types import UNKNOWN
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
 
 if TYPE_CHECKING:
-    from kb_check.analysis import Analysis
+    from kb_build.flow.analysis import Analysis
     from measurements.setting import Setting
 
 _MOST_USED = 1000

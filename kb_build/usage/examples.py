@@ -8,15 +8,15 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_check.analysis import analyse
-from kb_check.types import UNKNOWN, Instance, Operator
+from kb_build.flow.analysis import analyse
+from kb_build.flow.types import UNKNOWN, Instance, Operator
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from kb_check.analysis import Analysis
-    from kb_check.api import Api
-    from kb_check.types import Resolution
+    from kb_build.flow.analysis import Analysis
+    from kb_build.flow.api import Api
+    from kb_build.flow.types import Resolution
 
 MOST_EXAMPLES = 3  # of one symbol
 _MOST_LINES = 3

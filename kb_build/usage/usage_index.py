@@ -12,10 +12,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from kb_build.fingerprint import usage_digest
+from kb_build.flow.api import Api
+from kb_build.flow.symbols import SymbolList
 from kb_build.usage.examples import Example, Uses, uses_in
 from kb_build.usage.scripts import read_script
-from kb_check.api import Api
-from kb_check.symbols import SymbolList
 from simworlds.files import remove_unfinished_files, staged_file
 from simworlds.forked import beside
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.blender.access_paths import reached_expressions
+from kb_build.flow.symbols import BaseSymbols
 from kb_build.records import Symbol
-from kb_check.symbols import BaseSymbols
 
 if TYPE_CHECKING:
     from pathlib import Path

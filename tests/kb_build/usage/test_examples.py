@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.flow.api import Api
+from kb_build.flow.symbols import BaseSymbols
 from kb_build.usage.examples import MOST_EXAMPLES, Example, Uses, clearest, uses_in
-from kb_check.api import Api
-from kb_check.symbols import BaseSymbols
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
-from kb_check_reading import last_type, read, resolved, symbol, unknown
+from flow_reading import last_type, read, resolved, symbol, unknown
 
 if TYPE_CHECKING:
-    from kb_check.api import Api
+    from kb_build.flow.api import Api
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,11 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_check.annotations import annotated
-from kb_check.calls import Calls
-from kb_check.facts import PARAMETERS, T
-from kb_check.scopes import ClassDefinition, FunctionDefinition, Scope, State, chain_text, joined
-from kb_check.types import (
+from kb_build.flow.annotations import annotated
+from kb_build.flow.calls import Calls
+from kb_build.flow.facts import PARAMETERS, T
+from kb_build.flow.scopes import ClassDefinition, FunctionDefinition, Scope, State, chain_text, joined
+from kb_build.flow.types import (
     NONE,
     STR,
     UNKNOWN,

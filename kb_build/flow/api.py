@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kb_check.facts import (
+from kb_build.flow.facts import (
     CLASS_OF_VALUE,
     CONTEXT_MEMBERS,
     DISCRIMINANTS,
@@ -19,8 +19,8 @@ from kb_check.facts import (
     SAME_CLASS,
     T,
 )
-from kb_check.type_text import read_type
-from kb_check.types import (
+from kb_build.flow.type_text import read_type
+from kb_build.flow.types import (
     BOOL,
     FLOAT,
     INT,
@@ -44,8 +44,8 @@ from kb_check.types import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.flow.symbols import Symbols
     from kb_build.records import Parameter, Symbol
-    from kb_check.symbols import Symbols
 
 COLLECTION = "bpy.types.bpy_prop_collection"
 GROUPS = "bpy.types.bpy_prop_collection_idprop"
@@ -378,6 +378,14 @@ class Api:
         for symbol in found:
             if symbol.path.startswith(f"{symbol.owner}.{side}["):
                 yield symbol.name, symbol.label, symbol
+
+    def values_of(self, path: str) -> tuple[str, ...]:
+        """The values of an enumeration, given by its property or by ``function(parameter)``."""
+        owner, _, parameter = path.removesuffix(")").partition("(")
+        symbol = self.symbols.symbol(owner)
+        rows = [symbol] if symbol and not parameter else symbol.parameters if symbol else ()
+        found = next((row for row in rows if not parameter or row.name == parameter), None)
+        return tuple(item.identifier for item in found.enum_items) if found else ()
 
     def socket_type(self, symbol: Symbol) -> Type:
         """The type of a socket."""

@@ -6,13 +6,13 @@ import ast
 from textwrap import dedent
 from typing import TYPE_CHECKING
 
-from kb_check.analysis import analyse
-from kb_check.types import Instance, members
+from kb_build.flow.analysis import analyse
+from kb_build.flow.types import Instance, members
 
 if TYPE_CHECKING:
-    from kb_check.analysis import Analysis
-    from kb_check.api import Api
-    from kb_check.types import Resolution
+    from kb_build.flow.analysis import Analysis
+    from kb_build.flow.api import Api
+    from kb_build.flow.types import Resolution
 
 TYPES = "bpy.types."
 

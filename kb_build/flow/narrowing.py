@@ -5,10 +5,10 @@ from __future__ import annotations
 import ast
 from dataclasses import replace
 
-from kb_check.expressions import Expressions
-from kb_check.facts import DISCRIMINANTS, OBJECT_DATA, T
-from kb_check.scopes import chain_text
-from kb_check.types import (
+from kb_build.flow.expressions import Expressions
+from kb_build.flow.facts import DISCRIMINANTS, OBJECT_DATA, T
+from kb_build.flow.scopes import chain_text
+from kb_build.flow.types import (
     NONE,
     UNKNOWN,
     ClassObject,

@@ -6,10 +6,10 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_check.core import DEEPEST_RUN
-from kb_check.facts import BMESH_RESULTS, OPEN_CALLS, T
-from kb_check.narrowing import Narrowing
-from kb_check.types import (
+from kb_build.flow.core import DEEPEST_RUN
+from kb_build.flow.facts import BMESH_RESULTS, OPEN_CALLS, T
+from kb_build.flow.narrowing import Narrowing
+from kb_build.flow.types import (
     BOOL,
     FLOAT,
     INT,
@@ -42,8 +42,8 @@ from kb_check.types import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from kb_build.flow.scopes import FunctionDefinition
     from kb_build.records import Parameter, Symbol
-    from kb_check.scopes import FunctionDefinition
 
 _MOST_RUNS = 3
 # Arguments that name a property of another argument or of the receiver: function → (text, owner; -1 the receiver).

@@ -6,7 +6,7 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_check.types import (
+from kb_build.flow.types import (
     UNKNOWN,
     Builtin,
     Function,
@@ -19,7 +19,7 @@ from kb_check.types import (
     bounded,
     join,
 )
-from kb_check.types import Sequence as ListType
+from kb_build.flow.types import Sequence as ListType
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

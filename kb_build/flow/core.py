@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_check.scopes import ClassDefinition, FunctionDefinition, Scope
-from kb_check.types import (
+from kb_build.flow.scopes import ClassDefinition, FunctionDefinition, Scope
+from kb_build.flow.types import (
     UNKNOWN,
     ClassObject,
     Instance,
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import ast
     from collections.abc import Iterator, Sequence
 
-    from kb_check.api import Api
+    from kb_build.flow.api import Api
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other

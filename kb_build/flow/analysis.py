@@ -7,14 +7,14 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_check.core import StepsExhausted
-from kb_check.statements import Statements
+from kb_build.flow.core import StepsExhausted
+from kb_build.flow.statements import Statements
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kb_check.api import Api
-    from kb_check.types import Resolution, Type
+    from kb_build.flow.api import Api
+    from kb_build.flow.types import Resolution, Type
 
 MOST_CHARACTERS = 2_000_000
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
@@ -27,7 +27,9 @@ class Analysis:
     """What a script is. ``tree`` is None, and ``error`` says why, when it cannot be read.
 
     ``types`` has every expression that was reached, ``resolutions`` every part that stands for something of the
-    API. ``complete`` is False where the script was too large to be read to its end.
+    API. ``complete`` is False where the script was too large to be read to its end. ``own_operators`` are the
+    operators that the script defines (paths below bpy.ops, their modules too), ``registered`` the properties that it
+    gives to classes of the API: (class, name).
     """
 
     tree: ast.Module | None
@@ -35,6 +37,8 @@ class Analysis:
     resolutions: Mapping[ast.AST, Resolution]
     error: SyntaxError | None = None
     complete: bool = True
+    own_operators: frozenset[str] = frozenset()
+    registered: frozenset[tuple[str, str]] = frozenset()
 
 
 class Analyzer(Statements):
@@ -100,7 +104,14 @@ def analyse(code: str, api: Api, version: tuple[int, ...] = ()) -> Analysis:
     steps = min(MOST_STEPS, 20_000 + _STEPS_PER_CHARACTER * len(code))
     analyzer = Analyzer(api, version, steps)
     complete = analyzer.read(tree)
-    return Analysis(tree, analyzer.types, analyzer.resolutions, complete=complete)
+    return Analysis(
+        tree,
+        analyzer.types,
+        analyzer.resolutions,
+        complete=complete,
+        own_operators=frozenset(analyzer.own_operators),
+        registered=frozenset(analyzer.registered),
+    )
 
 
 def _failed(reason: str) -> Analysis:

@@ -6,7 +6,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_check.types import (
+from kb_build.flow.types import (
     BOOL,
     FLOAT,
     INT,

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_check.core import DEEPEST, StepsExhausted
-from kb_check.facts import T
-from kb_check.members import Members
-from kb_check.scopes import State, chain_text
-from kb_check.types import (
+from kb_build.flow.core import DEEPEST, StepsExhausted
+from kb_build.flow.facts import T
+from kb_build.flow.members import Members
+from kb_build.flow.scopes import State, chain_text
+from kb_build.flow.types import (
     BOOL,
     FLOAT,
     INT,

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_check.api import ARRAY, COLLECTION, GROUPS, STRUCT
-from kb_check.core import Core
-from kb_check.facts import (
+from kb_build.flow.api import ARRAY, COLLECTION, GROUPS, STRUCT
+from kb_build.flow.core import Core
+from kb_build.flow.facts import (
     DERIVED_BY_SCRIPTS,
     LAYER_ITEM,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
 )
-from kb_check.types import (
+from kb_build.flow.types import (
     FLOAT,
     MOST_MEMBERS,
     STR,

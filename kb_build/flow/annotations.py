@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.types import (
+from kb_build.flow.types import (
     BOOL,
     FLOAT,
     INT,

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.flow.analysis import analyse
 from kb_check import analysis as analysis_module
-from kb_check.analysis import analyse
 
 if TYPE_CHECKING:
-    from kb_check.api import Api
+    from kb_build.flow.api import Api
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,52 @@
+"""What a check finds: where, what is wrong, and the edit that mends it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Severity = Literal["error", "warning", "note"]
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A part of a text: lines count from 1, columns (in characters) from 0; the end is the first place behind it."""
+
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """Text to put in the place of a span."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """What mends a finding. ``sure``: the code then does what it was meant to, and nothing else changes."""
+
+    title: str
+    edits: tuple[Edit, ...]
+    sure: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something wrong in a script.
+
+    ``rule`` is the rule's id, ``symbol`` the path of what the finding is about (a removed symbol's own path, or the
+    owner's path and the name that it lacks), ``instead`` the paths that take its place.
+    """
+
+    rule: str
+    severity: Severity
+    span: Span
+    message: str
+    symbol: str = ""
+    instead: tuple[str, ...] = ()
+    fix: Fix | None = None

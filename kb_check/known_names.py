@@ -1,0 +1,131 @@
+"""What the base knows of a name that this Blender lacks: when it went, what took its place, what it resembles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import words
+from kb_serve.recognise.corrections import is_misspelling, nearest
+from kb_serve.recognise.notes import Notes
+from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, for_reading
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.removed_symbols import RemovedSymbol
+
+_MOST_NAMED = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Lacking:
+    """What there is to say of a name that does not exist.
+
+    ``replacement`` is the one path that takes its place with no other change (``sure``: by a source), or that it
+    is a misspelling of; empty otherwise. ``instead`` are all that may be meant.
+    """
+
+    symbol: str
+    message: str
+    instead: tuple[str, ...] = ()
+    replacement: str = ""
+    sure: bool = False
+    removed: bool = False
+
+
+class KnownNames:
+    """Looks up, in one base, what became of names."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self.reader = reader
+        self._lookup = RemovedSymbolLookup(reader)
+        self._notes = Notes(reader)
+
+    @property
+    def version(self) -> str:
+        """The Blender of the base: ``5.1``."""
+        return self.reader.meta.get("minor", "")
+
+    def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
+        """A member that a class or module lacks; ``reading`` unless it is assigned to."""
+        removed = self._lookup.of_member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
+        if removed:
+            return self._removed(for_reading(removed) if reading else removed)
+        return self._never(owner, name, self._member_names(owner))
+
+    def parameter(self, function: str, name: str, names: Iterable[str]) -> Lacking:
+        """A keyword that a function or operator does not take; ``names`` are those that it takes."""
+        if removed := self._lookup.of_part(function, f"({name})"):
+            return self._removed(removed)
+        return self._no_part(function, name, names, f"`{function}` takes no `{name}`", "It takes")
+
+    def value(self, owner: str, value: str, values: Iterable[str]) -> Lacking:
+        """A value that is none of an enumeration's; ``owner`` is the property, or ``function(parameter)``."""
+        removed = self._lookup.of_part(owner, f":{value}") if "(" not in owner else None
+        removed = removed or self._lookup.of_path(f"{owner}:{value}")
+        if removed:
+            return self._removed(removed)
+        return self._no_part(owner, value, values, f"{value!r} is no value of `{owner}`", "It takes")
+
+    def socket(self, node: str, name: str, names: Iterable[str]) -> Lacking:
+        """A socket that a node lacks; ``names`` are those that it has."""
+        for side in ("inputs", "outputs"):
+            if removed := self._lookup.of_path(f'{node}.{side}["{name}"]'):
+                return self._removed(removed)
+        return self._no_part(node, name, names, f"`{node}` has no socket {name!r}", "It has")
+
+    def _removed(self, removed: RemovedSymbol) -> Lacking:
+        targets = removed.targets or tuple(path for path, _ in removed.similar[:_MOST_NAMED])
+        first = removed.successors[0] if removed.successors else None
+        sure = bool(removed.targets) and len(removed.targets) == 1 and first is not None and not first.how
+        replacement = removed.targets[0] if sure else ""
+        return Lacking(
+            removed.path, self._notes.removed(removed), targets, replacement, sure=sure, removed=True
+        )
+
+    def _never(self, owner: str, name: str, names: Iterable[str]) -> Lacking:
+        similar = [found for found, _ in nearest(name, names, _MOST_NAMED)]
+        misspelt = [found for found in similar if is_misspelling(name, found, self._vocabulary)]
+        instead = tuple(f"{owner}.{found}" for found in similar)
+        message = f"`{owner}` has no `{name}` in Blender {self.version}{self._span()}."
+        return Lacking(
+            f"{owner}.{name}", message + _closest(similar), instead,
+            f"{owner}.{misspelt[0]}" if len(misspelt) == 1 else "",
+        )  # fmt: skip
+
+    def _no_part(self, owner: str, name: str, names: Iterable[str], message: str, they: str) -> Lacking:
+        names = list(names)
+        similar = [found for found, _ in nearest(name, names, _MOST_NAMED)]
+        misspelt = [found for found in similar if is_misspelling(name, found)]
+        told = _closest(similar) or (f" {they} {_listed(names)}." if names else "")
+        return Lacking(
+            f"{owner}:{name}", f"{message} in Blender {self.version}.{told}", tuple(similar),
+            misspelt[0] if len(misspelt) == 1 else "",
+        )  # fmt: skip
+
+    def _span(self) -> str:
+        versions = self.reader.history_versions
+        return f", and never had it from {versions[0]} to {versions[-1]}" if versions else ""
+
+    def _member_names(self, owner: str) -> list[str]:
+        names: dict[str, None] = {}
+        for entry in self.reader.lineage(owner):
+            names.update(dict.fromkeys(self.reader.members(entry.path)))
+        return list(names or self.reader.members(owner))
+
+    @cached_property
+    def _vocabulary(self) -> set[str]:
+        rows = self.reader.rows("SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function')")
+        return {word for (name,) in rows for word in words(name) if len(word) > 2}
+
+
+def _closest(names: list[str]) -> str:
+    return f" Closest: {_listed(names)}." if names else ""
+
+
+def _listed(names: list[str]) -> str:
+    more = f" … ({len(names)} in all)" if len(names) > 8 else ""
+    return ", ".join(f"`{name}`" for name in names[:8]) + more

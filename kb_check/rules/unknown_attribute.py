@@ -1,0 +1,40 @@
+"""An attribute that a class of Blender's does not have.
+
+Reported where the type of what stands before the dot is known, and no class that it can be has the name: neither
+Blender's own, nor what the files of the same folder register (``bpy.types.Scene.my_settings = …``). Names in
+``keyframe_insert("…")``, ``layout.prop(…, "…")`` and the like count too.
+
+```python
+bpy.context.object.draw_type = "WIRE"  # reported: display_type since 2.80
+bpy.context.object.display_type = "WIRE"
+```
+
+Not reported: what stands behind ``hasattr``, in a ``try`` that catches AttributeError, or in a branch for another
+version (``if bpy.app.version < (2, 80, 0)``).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_check.rule import Rule
+from kb_check.rules.lacking import lacking_finding
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.findings import Finding
+    from kb_check.script import Script
+
+_CONTEXT = "bpy.types.Context"
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for row in script.missing("attribute", "store", "text", "button"):
+        owner = row.missing[0]
+        if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != _CONTEXT:
+            lacking = script.names.member(owner, row.value, reading=row.kind != "store")
+            yield lacking_finding(script, RULE.id, row, lacking)
+
+
+RULE = Rule("unknown-attribute", "error", "An attribute that the class does not have", _check)

@@ -1,0 +1,35 @@
+"""An operator that does not exist.
+
+``bpy.ops`` finds an operator only when it is called, so a wrong name is an error late. Operators that the files of the
+same folder register are known; those of other add-ons cannot be, so a script that calls them says so in a comment
+(``# simworlds: ignore[unknown-operator]``).
+
+```python
+bpy.ops.object.select_pattern_by_name()  # reported
+bpy.ops.object.select_pattern(pattern="Cube*")
+```
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_check.rule import Rule
+from kb_check.rules.lacking import lacking_finding
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.findings import Finding
+    from kb_check.script import Script
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for row in script.missing("attribute", "button"):
+        owner = row.missing[0]
+        if owner.startswith("bpy.ops"):
+            name = row.value.removeprefix("bpy.ops.") if row.kind == "button" else row.value
+            yield lacking_finding(script, RULE.id, row, script.names.member(owner, name))
+
+
+RULE = Rule("unknown-operator", "error", "An operator that does not exist", _check)

@@ -1,0 +1,103 @@
+"""A script as the rules see it: its text, what the analysis found, and what the base knows."""
+
+from __future__ import annotations
+
+import ast
+import io
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_check.findings import Edit, Span
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.flow.analysis import Analysis
+    from kb_build.flow.api import Api
+    from kb_build.flow.types import Resolution, Type
+    from kb_check.known_names import KnownNames
+    from kb_check.package import Package
+
+
+@dataclass(frozen=True)
+class Script:
+    """One script, analysed for one Blender. ``package`` is what the files beside it register."""
+
+    code: str
+    tree: ast.Module
+    analysis: Analysis
+    api: Api
+    names: KnownNames
+    package: Package
+    version: tuple[int, ...] = field(default=())
+
+    @cached_property
+    def lines(self) -> list[str]:
+        """The lines as Python counts them, with their ends."""
+        return io.StringIO(self.code, newline="").readlines() or [""]
+
+    def resolutions(self, *kinds: str) -> Iterator[Resolution]:
+        """What parts of the script stand for, of some kinds (see :class:`flow.types.Resolution`), in order."""
+        found = (row for row in self.analysis.resolutions.values() if not kinds or row.kind in kinds)
+        yield from sorted(found, key=lambda row: (_start(row.node), row.kind))
+
+    def missing(self, *kinds: str) -> Iterator[Resolution]:
+        """The parts that surely stand for nothing that this Blender, or the package, has."""
+        for row in self.resolutions(*kinds):
+            lacking = row.missing and not row.symbols and not row.possible
+            if lacking and row.sure and not row.guarded and not self.package.has(row.missing, row.value):
+                yield row
+
+    def type_of(self, node: ast.expr) -> Type | None:
+        """The type of an expression; None if it was not reached."""
+        return self.analysis.types.get(node)
+
+    def span(self, node: ast.AST) -> Span:
+        """Where a node stands."""
+        line, column = _start(node)
+        end_line: int = getattr(node, "end_lineno", None) or line
+        end: int = getattr(node, "end_col_offset", None) or column
+        return Span(line, self._characters(line, column), end_line, self._characters(end_line, end))
+
+    def name_span(self, node: ast.AST) -> Span:
+        """Where the name stands that a node ends with (an attribute's), or begins with (a keyword's)."""
+        whole = self.span(node)
+        if isinstance(node, ast.Attribute):
+            return Span(whole.end_line, whole.end_column - len(node.attr), whole.end_line, whole.end_column)
+        if isinstance(node, ast.keyword) and node.arg:
+            return Span(whole.line, whole.column, whole.line, whole.column + len(node.arg))
+        if isinstance(node, ast.alias):
+            return Span(whole.line, whole.column, whole.line, whole.column + len(node.name))
+        return whole
+
+    def text(self, span: Span) -> str:
+        """The text of a span."""
+        if span.line == span.end_line:
+            return self.lines[span.line - 1][span.column : span.end_column]
+        first, *middle = self.lines[span.line - 1 : span.end_line]
+        return "".join([first[span.column :], *middle[:-1], middle[-1][: span.end_column]])
+
+    def renamed(self, node: ast.AST, name: str) -> Edit | None:
+        """The edit that writes another name in the place of a node's; a literal keeps its quotes.
+
+        None where the text is not as plain as it should be.
+        """
+        span = self.name_span(node)
+        text = self.text(span)
+        if isinstance(node, ast.Constant):
+            quote = text[:1]
+            plain = len(text) > 1 and quote in "\"'" and text == f"{quote}{node.value}{quote}"
+            return Edit(span, f"{quote}{name}{quote}") if plain and quote not in name else None
+        written = node.attr if isinstance(node, ast.Attribute) else getattr(node, "arg", None)
+        return Edit(span, name) if text == written else None
+
+    def _characters(self, line: int, column: int) -> int:
+        """A column as a number of characters; Python counts the bytes of UTF-8."""
+        if line > len(self.lines) or self.lines[line - 1].isascii():
+            return column
+        return len(self.lines[line - 1].encode()[:column].decode(errors="replace"))
+
+
+def _start(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "lineno", 1), getattr(node, "col_offset", 0)
