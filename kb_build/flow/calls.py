@@ -233,9 +233,11 @@ class Calls(Narrowing):
         text = literal_text(kind)
         if text and isinstance(node, ast.Constant):
             module, of_class, name = text.partition("_OT_")
-            path = f"bpy.ops.{module.lower()}.{name}" if of_class else f"bpy.ops.{text}"
+            if not of_class:
+                module, _, name = text.partition(".")
+            path = f"bpy.ops.{module.lower()}.{name}"  # Blender takes the module in capitals too
             known = self.api.symbols.symbol(path) is not None
-            if path in self.own_operators:
+            if path in self.own_operators or self.by_build(path):
                 return
             self.resolve(node, "button", path, (path,) if known else (), () if known else ("bpy.ops",))
 

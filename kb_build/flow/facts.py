@@ -56,6 +56,15 @@ NODES_WITH_SOCKETS_OF_THEIR_OWN = (
     "ClosureInput", "ClosureOutput", "FormatString", "CryptomatteV2", "RLayers", "Image", "Reroute", "Custom",
 )  # fmt: skip
 
+# Modules whose base classes and imported names the symbols do not tell (Iterator has what Interface0DIterator has).
+HALF_KNOWN = ("freestyle",)
+# Names that some builds of one version have and others lack: owner → how the names begin. An official build has the
+# 3D mouse, the bpy package has not; only Windows has a console to toggle.
+BY_BUILD = {"bpy.types.PreferencesInput": ("ndof_",), "bpy.ops.wm": ("console_toggle",)}
+
+# Values that work and are left out of a docstring: this function hands them on to gpu.types.GPUBatch, which has them.
+MORE_VALUES = {"gpu_extras.batch.batch_for_shader(type)": ("LINE_LOOP", "TRI_FAN")}
+
 # Functions that take keywords which their signatures do not list.
 OPEN_CALLS = frozenset({"bpy.types.Context.temp_override"})
 

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, ClassVar
 from kb_build.flow.api import ARRAY, COLLECTION, GROUPS, STRUCT
 from kb_build.flow.core import Core
 from kb_build.flow.facts import (
+    BY_BUILD,
     DERIVED_BY_SCRIPTS,
+    HALF_KNOWN,
     LAYER_ITEM,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
@@ -105,7 +107,7 @@ class Members(Core):
             ]
             found.types.append(union(kinds) if len(kinds) <= MOST_MEMBERS else UNKNOWN)
             return
-        if not _is_pythons(name) and not self._is_open(kind.cls):
+        if not _is_pythons(name) and not self._is_open(kind.cls) and not self.by_build(f"{kind.cls}.{name}"):
             found.missing.append(kind.cls)
             found.sure = found.sure and kind.cls not in DERIVED_BY_SCRIPTS
         found.types.append(UNKNOWN)
@@ -113,9 +115,15 @@ class Members(Core):
     def _is_open(self, cls: str) -> bool:
         """Whether instances of a class have members that its symbols do not tell."""
         symbol = self.api.symbols.symbol(cls)
-        if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"}:
+        if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"} or _half_known(cls):
             return True
         return any(self.api.descends(cls, base) for base in OPEN_CLASSES)
+
+    @staticmethod
+    def by_build(path: str) -> bool:
+        """Whether other builds of the same Blender have a name that this base lacks."""
+        owner, _, name = path.rpartition(".")
+        return any(name.startswith(beginning) for beginning in BY_BUILD.get(owner, ()))
 
     def _held(self, kind: Type, owner: Type, name: str) -> Type:
         """A member's type as it is read from its owner."""
@@ -152,11 +160,9 @@ class Members(Core):
         member = self.api.member(kind.path, name)
         if member is None:
             nested = self.api.symbols.symbol(f"{kind.path}.{name}")
-            if (
-                nested is None
-                and not name.startswith("_")
-                and f"{kind.path}.{name}" not in self.own_operators
-            ):
+            path = f"{kind.path}.{name}"
+            known = nested is not None or name.startswith("_") or path in self.own_operators
+            if not known and not _half_known(kind.path) and not self.by_build(path):
                 found.missing.append(kind.path)
             found.types.append(UNKNOWN)
             return
@@ -339,6 +345,11 @@ class Members(Core):
 def _has_sockets_of_its_own(cls: str) -> bool:
     """Whether the sockets of a node depend on more than its class."""
     return cls.rpartition("Node")[2] in NODES_WITH_SOCKETS_OF_THEIR_OWN
+
+
+def _half_known(path: str) -> bool:
+    """Whether a module or class may have more than its symbols tell."""
+    return path.partition(".")[0] in HALF_KNOWN
 
 
 def _is_pythons(name: str) -> bool:

@@ -298,7 +298,7 @@ class Statements(Calls):
     def _bind_pattern(self, pattern: ast.pattern, subject: Type, node: ast.expr) -> None:
         if isinstance(pattern, ast.MatchValue):
             self.evaluate(pattern.value)
-            self.check_value(subject, pattern.value)
+            self.check_value(subject, pattern.value, "compared")
             compared = ast.Compare(node, [ast.Eq()], [pattern.value])
             self.narrow(compared, holds=True)
             return

@@ -286,7 +286,8 @@ class Resolution:
     script is ready for the opposite (``hasattr``, ``try``). ``statement`` is the innermost one around it.
 
     Kinds: ``attribute`` and ``store`` (ast.Attribute), ``name`` (an imported or bare name), ``call`` (ast.Call),
-    ``keyword`` (ast.keyword), ``value`` (a literal of an enumeration), ``item`` (ast.Subscript, or the literal key
+    ``keyword`` (ast.keyword), ``value`` (a literal given to an enumeration), ``compared`` (a literal that
+    one is compared with), ``item`` (ast.Subscript, or the literal key
     of a call to ``get``), ``text`` (a literal that names a property: ``keyframe_insert("location")``), ``button`` (a
     literal that names the property or the operator that a layout shows).
     """
