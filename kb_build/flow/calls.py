@@ -6,7 +6,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.flow.core import DEEPEST_RUN
+from kb_build.flow.core import ANY, DEEPEST_RUN
 from kb_build.flow.facts import BMESH_RESULTS, OPEN_CALLS, T
 from kb_build.flow.narrowing import Narrowing
 from kb_build.flow.types import (
@@ -62,7 +62,7 @@ _ITERATORS = {
 }  # fmt: skip
 _PLAIN_RESULTS: dict[str, Type] = {
     "len": INT, "int": INT, "float": FLOAT, "str": STR, "bool": BOOL, "repr": STR, "isinstance": BOOL,
-    "hasattr": BOOL, "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE, "setattr": NONE,
+    "hasattr": BOOL, "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE,
 }  # fmt: skip
 _STRING_RESULTS: dict[str, Type] = {
     "split": Sequence("list", STR), "rsplit": Sequence("list", STR), "splitlines": Sequence("list", STR),
@@ -398,9 +398,17 @@ class Calls(Narrowing):
                 return first if isinstance(first, Plain) and name != "sum" else FLOAT
             case "super":
                 return self._super()
+            case "type" if len(arguments) == 3:
+                self.own_operators.add(ANY)
+                self.own_types[ANY] = UNKNOWN
+                return UNKNOWN
             case "type":
                 return self._class_of(first)
-            case "getattr" | "setattr" | "delattr":
+            case "setattr" if len(arguments) == 3:
+                declared = self.is_declared(node.args[2])
+                self.register(first, literal_text(arguments[1]) or ANY, arguments[2], declared=declared)
+                return NONE
+            case "getattr" | "delattr":
                 return self._named_attribute(node, arguments)
             case "dict":
                 return Mapping(UNKNOWN, UNKNOWN)

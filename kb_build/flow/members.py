@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.api import ARRAY, COLLECTION, GROUPS, STRUCT
-from kb_build.flow.core import Core
+from kb_build.flow.core import ANY, Core
 from kb_build.flow.facts import (
     BY_BUILD,
     DERIVED_BY_SCRIPTS,
@@ -28,6 +28,7 @@ from kb_build.flow.types import (
     LocalClass,
     LocalFunction,
     LocalInstance,
+    LocalModule,
     Mapping,
     Module,
     NoneValue,
@@ -139,6 +140,7 @@ class Members(Core):
             for ancestor in self.api.lineage(cls):
                 if (found := self.registered.get((ancestor, name))) is not None:
                     return found
+            return self.registered.get((ANY, name))
         return None
 
     def _of_collection(self, kind: Collection, name: str, found: Lookup) -> None:
@@ -161,6 +163,9 @@ class Members(Core):
         if member is None:
             nested = self.api.symbols.symbol(f"{kind.path}.{name}")
             path = f"{kind.path}.{name}"
+            if kind.path == "bpy.types" and (own := self.own_types.get(name)):
+                found.types.append(own)
+                return
             known = nested is not None or name.startswith("_") or path in self.own_operators
             if not known and not _half_known(kind.path) and not self.by_build(path):
                 found.missing.append(kind.path)
@@ -168,6 +173,19 @@ class Members(Core):
             return
         found.symbols.append(member.symbol.path)
         found.types.append(self._held(member.type, kind, name))
+
+    def local_module(self, name: str) -> Type:
+        """A module of the files that are analysed together, which is read first; UNKNOWN for no such module."""
+        if file := self.files.get(name):
+            self.read_file(file)
+        elif name not in self.folders:
+            return UNKNOWN
+        return LocalModule(name)
+
+    def _of_local_module(self, kind: LocalModule, name: str, found: Lookup) -> None:
+        file = self.files.get(kind.name)
+        held = file.module.ever.get(name) if file else None
+        found.types.append(held or self.local_module(f"{kind.name}.{name}"))
 
     def _of_class(self, kind: ClassObject, name: str, found: Lookup) -> None:
         member = self.api.member(kind.cls, name)
@@ -331,6 +349,7 @@ class Members(Core):
         Instance: _of_instance,
         Collection: _of_collection,
         Module: _of_module,
+        LocalModule: _of_local_module,
         ClassObject: _of_class,
         Operator: _of_operator,
         LocalClass: _of_local_class,

@@ -24,6 +24,8 @@ from kb_build.flow.types import Sequence as ListType
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kb_build.flow.source_files import SourceFile
+
 _DEEPEST_CHAIN = 8
 _NESTED = (ListType, Tuple, Mapping, Union, Instance, Function, Builtin, LocalFunction)
 
@@ -55,6 +57,14 @@ def joined(states: Sequence[State]) -> State:
             names[name] = join(names[name], kind) if name in names else kind
         chains = {text: kind for text, kind in chains.items() if other.chains.get(text) == kind}
     return State(names, dict(chains))
+
+
+@dataclass(slots=True)
+class Loop:
+    """A loop that is being read: the states at its ``break`` and ``continue``."""
+
+    left: list[State] = field(default_factory=list[State])
+    continued: list[State] = field(default_factory=list[State])
 
 
 @dataclass(slots=True)
@@ -121,7 +131,7 @@ class FunctionDefinition:
 
     ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
     something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
-    ``used`` are the attributes that it reads from each name, once they were asked for.
+    ``used`` are the attributes that it reads from each name, once they were asked for. ``file`` is where it stands.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -138,6 +148,7 @@ class FunctionDefinition:
     stale: bool = True
     seen: tuple[int, int] = (-1, -1)
     used: dict[str, set[str]] | None = None
+    file: SourceFile | None = None
 
 
 @dataclass(slots=True)

@@ -73,6 +73,13 @@ class Module:
 
 
 @dataclass(frozen=True, slots=True)
+class LocalModule:
+    """A module or package of the files that are analysed together, by its dotted name."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
 class Function:
     """A function or method of the API, read from ``receiver``."""
 
@@ -173,6 +180,7 @@ Type = (
     | Sequence
     | Tuple
     | Mapping
+    | LocalModule
     | LocalFunction
     | LocalClass
     | LocalInstance
@@ -232,7 +240,8 @@ def join(first: Type, second: Type) -> Type:
 def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:  # noqa: PLR0911 - one return a type
     """A type whose parts lie at most so deep within each other: a list that holds itself has no end."""
     if isinstance(
-        kind, (Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalClass, LocalInstance)
+        kind,
+        (Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalModule, LocalClass, LocalInstance),
     ):
         return kind
     if depth == 0:
