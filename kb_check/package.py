@@ -1,4 +1,4 @@
-"""What the files of one add-on register and each of them may use: operators, classes, properties of the API's classes."""
+"""What the files of one add-on register, for each of them to use: operators, classes, properties of other classes."""
 
 from __future__ import annotations
 

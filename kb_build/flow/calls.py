@@ -42,7 +42,7 @@ from kb_build.flow.types import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kb_build.flow.scopes import FunctionDefinition
+    from kb_build.flow.definitions import FunctionDefinition
     from kb_build.records import Parameter, Symbol
 
 _MOST_RUNS = 3

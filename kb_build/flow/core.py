@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from kb_build.flow.scopes import ClassDefinition, FunctionDefinition
+from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.types import (
     UNKNOWN,
     ClassObject,

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, ClassVar
 from kb_build.flow.annotations import annotated
 from kb_build.flow.calls import Calls
 from kb_build.flow.core import ANY
+from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.facts import PARAMETERS, T
-from kb_build.flow.scopes import ClassDefinition, FunctionDefinition, Loop, Scope, State, chain_text, joined
+from kb_build.flow.scopes import Loop, Scope, State, chain_text, joined
 from kb_build.flow.types import (
     NONE,
     STR,

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.flow.analysis import analyse
 from kb_build.flow import analysis as analysis_module
+from kb_build.flow.analysis import analyse
 
 if TYPE_CHECKING:
     from kb_build.flow.api import Api
