@@ -140,6 +140,9 @@ class Calls(Narrowing):
                 if isinstance(kind, LocalFunction):
                     self._pass(kind.number, [Instance(callee.receiver.cls), Instance(f"{T}Context")], {})
         self._names(callee, name, node, arguments)
+        if name == "context_pointer_set" and arguments:
+            held = arguments[1] if len(arguments) > 1 else UNKNOWN
+            self.registered[f"{T}Context", literal_text(arguments[0]) or ANY] = held
         if isinstance(callee.receiver, Collection) and name == "get":
             key = arguments[0] if arguments else UNKNOWN
             found = self.collection_item(callee.receiver, key, node.args[0] if node.args else node)
@@ -237,7 +240,7 @@ class Calls(Narrowing):
                 module, _, name = text.partition(".")
             path = f"bpy.ops.{module.lower()}.{name}"  # Blender takes the module in capitals too
             known = self.api.symbols.symbol(path) is not None
-            if path in self.own_operators or self.by_build(path):
+            if path in self.own_operators or self.is_there_at_times(path):
                 return
             self.resolve(node, "button", path, (path,) if known else (), () if known else ("bpy.ops",))
 

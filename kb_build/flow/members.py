@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.api import ARRAY, COLLECTION, GROUPS, STRUCT
 from kb_build.flow.core import ANY, Core
 from kb_build.flow.facts import (
-    BY_BUILD,
     DERIVED_BY_SCRIPTS,
     HALF_KNOWN,
     LAYER_ITEM,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
+    SOMETIMES,
 )
 from kb_build.flow.types import (
     FLOAT,
@@ -108,7 +109,7 @@ class Members(Core):
             ]
             found.types.append(union(kinds) if len(kinds) <= MOST_MEMBERS else UNKNOWN)
             return
-        if not _is_pythons(name) and not self._is_open(kind.cls) and not self.by_build(f"{kind.cls}.{name}"):
+        if not _is_pythons(name) and not self._is_open(kind.cls) and not self.is_there_at_times(f"{kind.cls}.{name}"):
             found.missing.append(kind.cls)
             found.sure = found.sure and kind.cls not in DERIVED_BY_SCRIPTS
         found.types.append(UNKNOWN)
@@ -121,10 +122,10 @@ class Members(Core):
         return any(self.api.descends(cls, base) for base in OPEN_CLASSES)
 
     @staticmethod
-    def by_build(path: str) -> bool:
-        """Whether other builds of the same Blender have a name that this base lacks."""
+    def is_there_at_times(path: str) -> bool:
+        """Whether a name that the base lacks is there in another build, or in another place."""
         owner, _, name = path.rpartition(".")
-        return any(name.startswith(beginning) for beginning in BY_BUILD.get(owner, ()))
+        return any(fnmatchcase(name, pattern) for pattern in SOMETIMES.get(owner, ()))
 
     def _held(self, kind: Type, owner: Type, name: str) -> Type:
         """A member's type as it is read from its owner."""
@@ -167,7 +168,7 @@ class Members(Core):
                 found.types.append(own)
                 return
             known = nested is not None or name.startswith("_") or path in self.own_operators
-            if not known and not _half_known(kind.path) and not self.by_build(path):
+            if not known and not _half_known(kind.path) and not self.is_there_at_times(path):
                 found.missing.append(kind.path)
             found.types.append(UNKNOWN)
             return
