@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import DEEPEST, StepsExhausted
-from kb_build.flow.facts import MORE_VALUES, T
+from kb_build.flow.facts import MORE_VALUES, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -98,7 +98,7 @@ class Expressions(Members):
         if known is not None:
             return known
         kind = found.type
-        if self.version and found.symbols == ["bpy.app.version"]:
+        if self.version and found.symbols == [VERSION]:
             return Tuple(tuple(Plain("int", part) for part in self.version))
         return kind
 
@@ -193,7 +193,8 @@ class Expressions(Members):
         operand = self.evaluate(node.operand)
         if isinstance(node.op, ast.Not):
             value = literal(operand) if isinstance(operand, Plain) and operand.kind == "bool" else None
-            return Plain("bool", not value) if isinstance(value, bool) else BOOL
+            source = operand.source if isinstance(operand, Plain) else ""
+            return Plain("bool", not value, source) if isinstance(value, bool) else BOOL
         if isinstance(operand, Plain) and isinstance(node.op, ast.USub):
             value = operand.value
             return Plain(operand.kind, -value) if isinstance(value, (int, float)) else Plain(operand.kind)
@@ -228,10 +229,8 @@ class Expressions(Members):
         self.scope.state = before
         before.names.update(assigned)
         if holds:
-            truths = [literal(kind) for kind in kinds]
-            if any(truth is False for truth in truths):
-                return Plain("bool", False)
-            return kinds[-1]
+            never = Plain("bool", False, VERSION)
+            return never if never in kinds else kinds[-1]
         return union([*(without_none(kind) for kind in kinds[:-1]), kinds[-1]])
 
     def _choice(self, node: ast.IfExp) -> Type:
@@ -244,7 +243,7 @@ class Expressions(Members):
         self.narrow(node.test, holds=False)
         second = self.evaluate(node.orelse)
         self.scope.state = before
-        if isinstance(test, Plain) and isinstance(test.value, bool):
+        if isinstance(test, Plain) and test.source == VERSION and isinstance(test.value, bool):
             return first if test.value else second
         return join(first, second)
 
@@ -411,13 +410,13 @@ def _compared(left: Tuple, right: Tuple, operator: ast.cmpop) -> Type:
     ours, theirs = [int(v) for v in first if v is not None], [int(v) for v in second if v is not None]
     match operator:
         case ast.Lt():
-            return Plain("bool", ours < theirs)
+            return Plain("bool", ours < theirs, VERSION)
         case ast.LtE():
-            return Plain("bool", ours <= theirs)
+            return Plain("bool", ours <= theirs, VERSION)
         case ast.Gt():
-            return Plain("bool", ours > theirs)
+            return Plain("bool", ours > theirs, VERSION)
         case ast.GtE():
-            return Plain("bool", ours >= theirs)
+            return Plain("bool", ours >= theirs, VERSION)
         case _:
             return BOOL
 

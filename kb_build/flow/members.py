@@ -15,6 +15,7 @@ from kb_build.flow.facts import (
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
     SOMETIMES,
+    T,
 )
 from kb_build.flow.types import (
     FLOAT,
@@ -109,7 +110,11 @@ class Members(Core):
             ]
             found.types.append(union(kinds) if len(kinds) <= MOST_MEMBERS else UNKNOWN)
             return
-        if not _is_pythons(name) and not self._is_open(kind.cls) and not self.is_there_at_times(f"{kind.cls}.{name}"):
+        if (
+            not _is_pythons(name)
+            and not self._is_open(kind.cls)
+            and not self.is_there_at_times(f"{kind.cls}.{name}")
+        ):
             found.missing.append(kind.cls)
             found.sure = found.sure and kind.cls not in DERIVED_BY_SCRIPTS
         found.types.append(UNKNOWN)
@@ -295,7 +300,7 @@ class Members(Core):
         if text and isinstance(element, Instance):
             cls = self.api.class_by_label(element.cls, text)
             if cls and self.api.descends(cls, element.cls):
-                return Instance(cls, sure=False)
+                return Instance(cls)
         return element
 
     def _socket(self, owner: Instance, side: str, key: Type, node: ast.AST) -> Type | None:
@@ -364,7 +369,7 @@ class Members(Core):
 
 def _has_sockets_of_its_own(cls: str) -> bool:
     """Whether the sockets of a node depend on more than its class."""
-    return cls.rpartition("Node")[2] in NODES_WITH_SOCKETS_OF_THEIR_OWN
+    return not {cls.rpartition("Node")[2], cls.removeprefix(T)}.isdisjoint(NODES_WITH_SOCKETS_OF_THEIR_OWN)
 
 
 def _half_known(path: str) -> bool:
