@@ -42,6 +42,7 @@ class Ignores:
 
     def __init__(self, code: str) -> None:
         self._comments = list(_comments(code)) if "simworlds:" in code else []
+        self._lines = split_lines(code) if self._comments else []
 
     def kept(self, findings: list[Finding]) -> list[Finding]:
         """The findings that no comment ignores."""
@@ -61,7 +62,16 @@ class Ignores:
             elif strange:
                 message = f"There is no rule {', '.join(strange)} to ignore."
             edit = Edit(comment.span, _without(comment, unused))
+            if not edit.text:
+                edit = Edit(self._with_blanks(comment.span), "")
             yield Finding(UNUSED, "note", comment.span, message, fix=Fix("Remove it", (edit,), sure=True))
+
+    def _with_blanks(self, span: Span) -> Span:
+        """The span of a comment and of the blanks before it, where the line ends with it."""
+        line = self._lines[span.line - 1]
+        if line[span.end_column :].strip():
+            return span
+        return Span(span.line, len(line[: span.column].rstrip()), span.line, span.end_column)
 
     def _ignored(self, finding: Finding) -> bool:
         found = [comment for comment in self._comments if comment.ignores(finding)]
