@@ -77,7 +77,9 @@ class Checker:
         )
         found = [finding for rule in all_rules().values() for finding in rule.check(script)]
         ignores = Ignores(read.code)
-        kept = [*ignores.kept(found), *(ignores.unused(all_rules()) if read.error is None else ())]
+        kept = ignores.kept(found)
+        if read.error is None and read.analysis.complete:
+            kept += ignores.kept(list(ignores.unused(all_rules())))
         chosen = [finding for finding in kept if not rules or finding.rule in rules]
         return sorted(chosen, key=lambda one: (one.span.line, one.span.column, one.rule))
 

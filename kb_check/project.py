@@ -73,11 +73,6 @@ class Project:
             progress(done, total)
         return [self._known[key] for key in keys]
 
-    @property
-    def used(self) -> list[bytes]:
-        """The keys of all results that were asked for."""
-        return list(self._known)
-
     def _key(self, group: Group) -> bytes:
         return result_key(self._fingerprint, ((file.name, file.data, file.wanted) for file in group))
 

@@ -47,12 +47,13 @@ def test_any_line_of_a_finding_may_have_the_comment() -> None:
 @pytest.mark.parametrize(
     ("code", "message", "mended"),
     [
-        ("x  # simworlds: ignore[b]\n", "b is not found here", "x\n"),
+        ("x  # simworlds: ignore[b]\n", "is not found here: b.", "x\n"),
         ("x  # simworlds: ignore[zz]\n", "There is no rule zz", "x\n"),
-        ("x  # simworlds: ignore[a, b]\n", "b is not found here", "x  # simworlds: ignore[a]\n"),
-        ("x  # simworlds: ignore[b]  # noqa\n", "b is not found here", "x    # noqa\n"),
+        ("x  # simworlds: ignore[]\n", "nothing to ignore.", "x\n"),
+        ("x  # simworlds: ignore[a, b]\n", "is not found here: b.", "x  # simworlds: ignore[a]\n"),
+        ("x  # simworlds: ignore[b]  # noqa\n", "is not found here: b.", "x    # noqa\n"),
         ("x\n\n# simworlds: ignore", "nothing to ignore.", "x\n\n"),
-        ("# simworlds: ignore-file[c]\nx\n", "c is not found here", "\nx\n"),
+        ("# simworlds: ignore-file[c]\nx\n", "is not found here: c.", "\nx\n"),
     ],
 )
 def test_a_comment_that_ignores_nothing_is_a_note_with_a_fix(code: str, message: str, mended: str) -> None:
@@ -68,3 +69,9 @@ def test_a_comment_that_was_needed_is_no_note() -> None:
     ignores = Ignores("x  # simworlds: ignore[a]\ny  # simworlds: ignore\n")
     assert not ignores.kept([on(1), on(2)])
     assert not list(ignores.unused(RULES))
+
+
+def test_that_note_can_be_ignored_by_name_alone() -> None:
+    for comment, count in (("ignore[b, unused-ignore]", 0), ("ignore", 1)):
+        ignores = Ignores(f"x  # simworlds: {comment}\n")
+        assert len(ignores.kept(list(ignores.unused(RULES)))) == count
