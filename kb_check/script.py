@@ -81,8 +81,10 @@ class Script:
     def renamed(self, node: ast.AST, name: str) -> Edit | None:
         """The edit that writes another name in the place of a node's; a literal keeps its quotes.
 
-        None where the text is not as plain as it should be.
+        Of an item its key is written. None where the text is not as plain as it should be.
         """
+        if isinstance(node, ast.Subscript):
+            node = node.slice
         span = self.name_span(node)
         text = self.text(span)
         if isinstance(node, ast.Constant):
