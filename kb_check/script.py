@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ast
-import io
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Edit, Span
+from kb_check.source import split_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Script:
-    """One script, analysed for one Blender. ``package`` is what the files beside it register."""
+    """One script, analysed for one Blender. ``package`` is what the files beside it register.
+
+    ``error`` says why Python cannot parse it; ``tree`` and ``analysis`` are then of the part that could be read.
+    """
 
     code: str
     tree: ast.Module
@@ -31,11 +34,12 @@ class Script:
     names: KnownNames
     package: Package
     version: tuple[int, ...] = field(default=())
+    error: SyntaxError | None = None
 
     @cached_property
     def lines(self) -> list[str]:
         """The lines as Python counts them, with their ends."""
-        return io.StringIO(self.code, newline="").readlines() or [""]
+        return split_lines(self.code) or [""]
 
     def resolutions(self, *kinds: str) -> Iterator[Resolution]:
         """What parts of the script stand for, of some kinds (see :class:`flow.types.Resolution`), in order."""

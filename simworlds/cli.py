@@ -18,6 +18,7 @@ class _Command(NamedTuple):
 
 _COMMANDS = {
     "bench": _Command("bench.commands.bench", "bench", "Score scenes of any system: 4DBuildBench."),
+    "check": _Command("kb_check.cli", "check", "Check Python code against Blender's API, unrun."),
     "demo": _Command("agents.commands.runs", "demo", "Play a transcript in a real Blender; no key needed."),
     "docs": _Command("kb_serve.cli", "docs", "Query the knowledge base."),
     "doctor": _Command("agents.commands.doctor", "doctor", "Check whether a live Blender can run here."),
