@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Edit, Span
-from kb_check.migrate.text import Text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kb_check.migrate.change import Change, Version
     from kb_check.migrate.place import Place
+    from kb_check.migrate.text import Text
 
 _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
 _OPENS = (
@@ -48,7 +48,9 @@ def innermost(place: Place, span: Span) -> ast.stmt | None:
 
 
 def _inner(node: ast.AST) -> list[ast.AST]:
-    return [child for name in _BLOCKS for child in getattr(node, name, None) or () if isinstance(child, ast.AST)]
+    return [
+        child for name in _BLOCKS for child in getattr(node, name, None) or () if isinstance(child, ast.AST)
+    ]
 
 
 def _covers(place: Place, node: ast.AST, span: Span) -> bool:
@@ -122,7 +124,9 @@ def _branches(place: Place, text: Text, group: Sequence[Guarded]) -> Edit:
     blocks: list[tuple[str, str]] = []
     for since in group[0].boundaries:
         made = [_written(place, text, one, since) for one in group]
-        blocks.append((f"{place.bpy}.app.version >= ({since[0]}, {since[1]}, 0)", _joined(made, margin, unit)))
+        blocks.append(
+            (f"{place.bpy}.app.version >= ({since[0]}, {since[1]}, 0)", _joined(made, margin, unit))
+        )
     old = _joined([_written(place, text, one, None) for one in group], margin, unit)
     if len(blocks) == 1 and blocks[0][1].strip() == "pass":
         lines = [f"if {blocks[0][0].replace('>=', '<')}:", old]

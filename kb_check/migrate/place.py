@@ -13,7 +13,7 @@ from kb_check.findings import Edit, Span
 from kb_check.migrate.change import Change, Version
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.flow.types import Resolution
     from kb_check.findings import Finding
@@ -38,14 +38,14 @@ class Place:
     @cached_property
     def parents(self) -> dict[ast.AST, ast.AST]:
         """Node → the node around it."""
-        return {
-            child: node for node in ast.walk(self.script.tree) for child in ast.iter_child_nodes(node)
-        }
+        return {child: node for node in ast.walk(self.script.tree) for child in ast.iter_child_nodes(node)}
 
     @cached_property
     def _gone(self) -> dict[str, list[Resolution]]:
         """Symbol that a finding is about → the parts of the script that name it."""
-        rows = {self.script.name_span(row.node): row for row in self.script.resolutions(*_KINDS) if row.missing}
+        rows = {
+            self.script.name_span(row.node): row for row in self.script.resolutions(*_KINDS) if row.missing
+        }
         found: dict[str, list[Resolution]] = defaultdict(list)
         for finding in self.findings:
             if finding.symbol and (row := rows.get(finding.span)):
@@ -161,9 +161,7 @@ class Place:
 
     def without_keyword(self, call: ast.Call, keyword: ast.keyword) -> Edit | None:
         """The edit that takes a keyword out of a call, with its comma."""
-        parts: list[ast.AST] = sorted(
-            [*call.args, *call.keywords], key=lambda part: (part.lineno, part.col_offset)
-        )
+        parts = in_order([*call.args, *call.keywords])
         at = parts.index(keyword)
         here = self.script.span(keyword)
         if at:
@@ -221,6 +219,11 @@ class Place:
         since = version_of(successors[0].version if successors else removed[1] if removed else "")
         uses = tuple(targets) or tuple(row.target for row in successors if row.target)[:1]
         return Change(rule, tuple(edits), told, source, since, uses, tuple(additions))
+
+
+def in_order(nodes: Iterable[ast.expr | ast.keyword]) -> list[ast.expr | ast.keyword]:
+    """Arguments as they are written, one after the other."""
+    return sorted(nodes, key=lambda node: (node.lineno, node.col_offset))
 
 
 def version_of(text: str) -> Version:

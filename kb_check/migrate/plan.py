@@ -7,7 +7,6 @@ import warnings
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from kb_check.checker import INCOMPLETE
 from kb_check.findings import Span
 from kb_check.migrate.change import Change, Decision, Done
 from kb_check.migrate.guards import can_be_guarded, guarded_edits, innermost, plain_edits
@@ -15,7 +14,6 @@ from kb_check.migrate.place import Place, version_of
 from kb_check.migrate.rewrite import all_rewrites
 from kb_check.migrate.text import Text, overlap
 from kb_check.migrate.version_tests import reaches
-from kb_check.script import Script
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -28,7 +26,6 @@ if TYPE_CHECKING:
 
 _ROUNDS = 40
 _TOLD = 160
-_BOM = "\ufeff"
 
 
 @dataclass
@@ -58,53 +55,47 @@ class Migrator:
         self._keep = keep
         self._written_for = written_for
 
-    def migrate(self, files: Mapping[str, str]) -> list[FileMigration]:
-        """Migrates the files of one add-on: name → text, as read without changing the ends of lines."""
+    def migrate(self, files: Mapping[str, str], beside: Sequence[str] = ()) -> list[FileMigration]:
+        """Migrates the files of one add-on: name → text. ``beside`` are texts of its other files."""
         states = {name: _State(FileMigration(name, code)) for name, code in files.items()}
         written_for = self._written_for
         for _ in range(_ROUNDS):
-            package = self._read(states.values())
+            package = self._read(states.values(), beside)
             for state in states.values():
                 state.findings = self._target.check(state.reading, package)
             if written_for is None:
                 written_for = self._oldest(states.values())
-            if not any([self._round(state, package, written_for) for state in states.values()]):
+            changed = [self._round(state, package, written_for) for state in states.values()]
+            if not any(changed):
                 break
         for state in states.values():
             self._finish(state)
         self._check_kept(states.values())
         return [state.file for state in states.values()]
 
-    def _read(self, states: Iterable[_State]) -> Package:
+    def _read(self, states: Iterable[_State], beside: Sequence[str]) -> Package:
         package = self._target.package()
         for state in states:
             if state.read is None:
                 state.read = self._target.read(state.text.code)
-            package.add(state.read.analysis)
+            package.add(state.read.analysis, state.read.may_register)
+        for code in beside:
+            package.add(self._target.read(code).analysis)
         return package
 
     def _oldest(self, states: Iterable[_State]) -> Version:
         """The oldest Blender that had something which the files use and the target lacks."""
         reader = self._target.names.reader
         spans = (reader.removed(one.symbol) for state in states for one in state.findings if one.symbol)
-        return min((version_of(span[1]) for span in spans if span), default=self._target_version)
-
-    @property
-    def _target_version(self) -> Version:
-        return self._target.version[0], self._target.version[1]
+        return min((version_of(span[1]) for span in spans if span), default=_version(self._target))
 
     # One round.
 
     def _round(self, state: _State, package: Package, written_for: Version) -> bool:
         """Makes all the changes that are known now; whether there were any."""
-        analysis = state.reading.analysis
-        if analysis.tree is None:
+        if state.reading.error is not None or not state.reading.analysis.complete:
             return False
-        script = Script(
-            state.text.code, analysis.tree, analysis, self._target.api, self._target.names, package,
-            self._target.version,
-        )  # fmt: skip
-        place = Place(script, state.findings, written_for)
+        place = Place(self._target.script(state.reading, package), state.findings, written_for)
         chosen = [change for change in _apart(self._proposals(place)) if change.since <= place.target]
         plain = [change for change in chosen if not self._needs_guard(place, change)]
         guarded = [change for change in chosen if change not in plain]
@@ -115,9 +106,7 @@ class Migrator:
                     return True
         return False
 
-    def _apply(
-        self, state: _State, place: Place, plain: Sequence[Change], guarded: Sequence[Change]
-    ) -> bool:
+    def _apply(self, state: _State, place: Place, plain: Sequence[Change], guarded: Sequence[Change]) -> bool:
         """Makes some changes if the text can still be read afterwards."""
         if not plain and not guarded:
             return False
@@ -161,11 +150,11 @@ class Migrator:
 
     def _finish(self, state: _State) -> None:
         file = state.file
-        file.new = state.text.code
+        file.new = state.result()
         file.changes.sort(key=lambda change: change.line)
         reader = self._target.names.reader
         for finding in state.findings:
-            if finding.severity == "note" and finding.rule != INCOMPLETE:
+            if finding.severity == "note":
                 continue
             successors = reader.successors(finding.symbol) if finding.symbol else []
             how = "; ".join(dict.fromkeys(row.how for row in successors if row.how))
@@ -205,7 +194,17 @@ class _State:
     findings: list[Finding] = field(default_factory=list["Finding"])
 
     def __post_init__(self) -> None:
-        self.text = Text.original(self.file.old)
+        self.text = Text.original(self.file.old.replace("\r\n", "\n") if self._windows else self.file.old)
+
+    @property
+    def _windows(self) -> bool:
+        """Whether all lines end as they do on Windows. Otherwise the ends are kept as they are."""
+        ends = self.file.old.count("\r\n")
+        return 0 < ends == self.file.old.count("\n")
+
+    def result(self) -> str:
+        """The text as it is to be written."""
+        return self.text.code.replace("\n", "\r\n") if self._windows else self.text.code
 
     @property
     def reading(self) -> Read:
@@ -214,11 +213,15 @@ class _State:
         return self.read
 
 
+def _version(checker: Checker) -> Version:
+    return checker.version[0], checker.version[1]
+
+
 def _errors(checker: Checker, codes: Sequence[str]) -> list[list[Finding]]:
     reads = [checker.read(code) for code in codes]
     package = checker.package()
     for read in reads:
-        package.add(read.analysis)
+        package.add(read.analysis, read.may_register)
     return [[one for one in checker.check(read, package) if one.severity == "error"] for read in reads]
 
 
@@ -245,7 +248,7 @@ def _parses(code: str) -> bool:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            ast.parse(code.removeprefix(_BOM))
+            ast.parse(code)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return False
     return True
@@ -254,8 +257,7 @@ def _parses(code: str) -> bool:
 def _told(text: Text, change: Change, *, guarded: bool) -> Done:
     first = min(edit.span.line for edit in change.edits)
     last = max(edit.span.end_line for edit in change.edits)
-    lines = text.code.split("\n")
-    before = "\n".join(lines[first - 1 : last])
+    before = text.lines(first, last)
     whole = Text.original(before).edited(_moved(change.edits, first))
     return Done(
         text.origin(first), change.rule, _short(before), _short(whole.code), change.reason, change.source, guarded
@@ -277,5 +279,3 @@ def _short(text: str) -> str:
     lines = [line.strip() for line in text.split("\n")]
     line = " ⏎ ".join(line for line in lines if line)
     return line if len(line) <= _TOLD else f"{line[:_TOLD]} …"
-
-

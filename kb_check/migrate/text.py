@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
+
+from kb_check.source import split_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -23,15 +24,19 @@ class Text:
     @classmethod
     def original(cls, code: str) -> Text:
         """A text that nobody has edited."""
-        return cls(code, tuple(range(1, code.count("\n") + 2)))
+        return cls(code, tuple(range(1, len(split_lines(code)) + 2)))
 
     @cached_property
     def _starts(self) -> list[int]:
         starts, at = [0], 0
-        for line in io.StringIO(self.code, newline="\n"):
+        for line in split_lines(self.code):
             at += len(line)
             starts.append(at)
         return starts
+
+    def lines(self, first: int, last: int) -> str:
+        """The text of some lines, by their numbers."""
+        return "".join(split_lines(self.code)[first - 1 : last])
 
     def origin(self, line: int) -> int:
         """The line of the original that a line came from."""

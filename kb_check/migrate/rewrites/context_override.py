@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import Mapping
 from kb_check.findings import Span
 from kb_check.migrate.change import Change
+from kb_check.migrate.place import in_order
 from kb_check.migrate.rewrite import Rewrite
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.migrate.change import Change
     from kb_check.migrate.place import Place
 
 _OPS = "bpy.ops."
@@ -66,11 +66,10 @@ def _members(place: Place, value: ast.expr) -> str | None:
 
 def _without_first(place: Place, call: ast.Call) -> str | None:
     """The call without its first argument."""
-    rest: list[ast.AST] = [*call.args[1:], *call.keywords]
+    rest = in_order([*call.args[1:], *call.keywords])
     function = place.text(call.func)
     if not rest:
         return f"{function}()"
-    rest.sort(key=lambda node: (node.lineno, node.col_offset))
     skipped, text = place.between(call.args[0], rest[0])
     if text.strip() != ",":
         return None

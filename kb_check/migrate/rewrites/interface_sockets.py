@@ -57,9 +57,9 @@ def _arguments(place: Place, call: ast.Call) -> tuple[str, str] | None:
 
 _TYPES = frozenset(
     f"NodeSocket{name}"
-    for name in (
-        "Float Int Bool Vector Color Rotation Matrix String Menu Shader Geometry Object Collection Image Material "
-        "Texture"
+    for name in (  # noqa: SIM905
+        "Float Int Bool Vector Color Rotation Matrix String Menu Shader Geometry Object Collection Image "
+        "Material Texture"
     ).split()
 )
 REWRITE = Rewrite("interface-socket", _propose)

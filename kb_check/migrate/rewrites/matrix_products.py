@@ -12,7 +12,6 @@ from kb_check.migrate.rewrite import Rewrite
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.migrate.change import Change
     from kb_check.migrate.place import Place
 
 _SINCE = (2, 80)
