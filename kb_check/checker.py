@@ -72,9 +72,7 @@ class Checker:
         if package is None:
             package = self.package()
             package.add(read.analysis, read.may_register)
-        script = Script(
-            read.code, read.tree, read.analysis, self.api, self.names, package, self.version, read.error
-        )
+        script = self.script(read, package)
         found = [finding for rule in all_rules().values() for finding in rule.check(script)]
         ignores = Ignores(read.code)
         kept = ignores.kept(found)
@@ -82,6 +80,12 @@ class Checker:
             kept += ignores.kept(list(ignores.unused(all_rules())))
         chosen = [finding for finding in kept if not rules or finding.rule in rules]
         return sorted(chosen, key=lambda one: (one.span.line, one.span.column, one.rule))
+
+    def script(self, read: Read, package: Package) -> Script:
+        """A script that was read, as the rules see it."""
+        return Script(
+            read.code, read.tree, read.analysis, self.api, self.names, package, self.version, read.error
+        )
 
     def package(self) -> Package:
         """An empty package, for this Blender's classes."""

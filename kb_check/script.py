@@ -46,11 +46,11 @@ class Script:
         found = (row for row in self.analysis.resolutions.values() if not kinds or row.kind in kinds)
         yield from sorted(found, key=lambda row: (_start(row.node), row.kind))
 
-    def missing(self, *kinds: str) -> Iterator[Resolution]:
-        """The parts that surely stand for nothing that this Blender, or the package, has."""
+    def missing(self, *kinds: str, unsure: bool = False) -> Iterator[Resolution]:
+        """The parts that surely stand for nothing that this Blender, or the package, has; ``unsure`` ones on demand."""
         for row in self.resolutions(*kinds):
-            lacking = row.missing and not row.symbols and not row.possible
-            if lacking and row.sure and not row.guarded and not self.package.has(row.missing, row.value):
+            lacking = row.missing and not row.symbols and not row.possible and (row.sure or unsure)
+            if lacking and not row.guarded and not self.package.has(row.missing, row.value):
                 yield row
 
     def type_of(self, node: ast.expr) -> Type | None:
@@ -85,8 +85,10 @@ class Script:
     def renamed(self, node: ast.AST, name: str) -> Edit | None:
         """The edit that writes another name in the place of a node's; a literal keeps its quotes.
 
-        None where the text is not as plain as it should be.
+        Of an item its key is written. None where the text is not as plain as it should be.
         """
+        if isinstance(node, ast.Subscript):
+            node = node.slice
         span = self.name_span(node)
         text = self.text(span)
         if isinstance(node, ast.Constant):

@@ -29,6 +29,9 @@ _COMMANDS = {
     "make": _Command("agents.commands.runs", "make", "Make a scene from a sentence."),
     "mcp": _Command("agents.commands.mcp", "mcp", "Serve a live Blender and blender_docs over MCP."),
     "replay": _Command("agents.commands.runs", "replay", "Replay a run's recorded answers as a new run."),
+    "migrate": _Command(
+        "kb_check.migrate_cli", "migrate", "Rewrite scripts and add-ons for another Blender."
+    ),
     "resume": _Command("agents.commands.runs", "resume", "Continue a run."),
     "runs": _Command("agents.commands.runs", "runs", "List the runs."),
     "serve": _Command("kb_serve.cli", "serve", "Serve blender_docs over MCP."),

@@ -27,8 +27,7 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     """Writes the right name in the place of a wrong one, where only the name differs."""
     if not lacking.replacement:
         return None
-    name = _last_name(lacking.replacement)
-    owner = lacking.replacement.removesuffix(name).rstrip('.(:["')
+    owner, name = _parts(lacking.replacement)
     same_owner = "." not in lacking.replacement or any(
         cls == owner for missing in row.missing for cls in (missing, *script.api.lineage(missing))
     )
@@ -37,9 +36,11 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     return Fix(f"Write {name}", (edit,), sure=lacking.sure)
 
 
-def _last_name(path: str) -> str:
-    """``b`` of ``a.b``, ``a(b)``, ``a:b`` and ``a.inputs["b"]``."""
+def _parts(path: str) -> tuple[str, str]:
+    """``a`` and ``b`` of ``a.b``, ``a(b)``, ``a:b`` and ``a.inputs["b"]``."""
     for opening, closing in (('["', '"]'), ("(", ")"), (":", "")):
-        if opening in path:
-            return path.partition(opening)[2].removesuffix(closing)
-    return path.rpartition(".")[2]
+        owner, found, name = path.partition(opening)
+        if found:
+            return owner.removesuffix(".inputs").removesuffix(".outputs"), name.removesuffix(closing)
+    owner, _, name = path.rpartition(".")
+    return owner, name
