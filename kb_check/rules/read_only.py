@@ -16,8 +16,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import UNKNOWN, Instance, members
 from kb_check.findings import Edit, Finding, Fix
+from kb_check.given import is_of_instance
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -73,9 +73,11 @@ def _check(script: Script) -> Iterator[Finding]:
         if not paths or not row.sure or row.guarded or (row.missing and not row.possible):
             continue
         symbols = [script.api.symbols.symbol(path) for path in paths]
+        if not is_of_instance(script, row.node):
+            continue
         if row.kind == "store" and script.package.has(_owners(symbols), row.value):
             continue
-        if all(symbol is not None and _is_refused(script, row, symbol) for symbol in symbols):
+        if all(symbol is not None and _is_refused(row, symbol) for symbol in symbols):
             first = symbols[0]
             assert first is not None
             yield _finding(script, row, first)
@@ -89,13 +91,10 @@ def _is_deleted(row: Resolution) -> bool:
     return isinstance(row.statement, ast.Delete) and row.node in row.statement.targets
 
 
-def _is_refused(script: Script, row: Resolution, symbol: Symbol) -> bool:
+def _is_refused(row: Resolution, symbol: Symbol) -> bool:
     """Whether an instance refuses another value for a member."""
     if symbol.owner.startswith("bpy.types."):
-        if symbol.kind == "function":  # an instance of a script's own class takes one
-            owner = script.type_of(row.node.value) if isinstance(row.node, ast.Attribute) else None
-            return all(isinstance(kind, Instance) for kind in members(owner or UNKNOWN))
-        return "readonly" in symbol.flags or row.kind == "attribute"
+        return symbol.kind == "function" or "readonly" in symbol.flags or row.kind == "attribute"
     refused = next((names for module, names in _REFUSED.items() if symbol.owner.startswith(module)), frozenset())
     repeated = _SWIZZLE.fullmatch(symbol.name) and len(set(symbol.name)) < len(symbol.name)
     return symbol.name in refused or bool(repeated) or symbol.owner.startswith(_LAYERS)
