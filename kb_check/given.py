@@ -40,6 +40,7 @@ class Taker:
     sizes: tuple[int, ...] = ()
     documented: str = ""
     subtype: str = ""
+    unit: str = ""
     takes_none: bool = True
     hard_min: float | None = None
     hard_max: float | None = None
@@ -114,8 +115,8 @@ def property_taker(symbol: Symbol) -> Taker:
     elif kind not in _SCALARS:
         return Taker(symbol.path, "", symbol)
     return Taker(
-        symbol.path, kind, symbol, target, symbol.array, "", symbol.subtype, "never-none" not in symbol.flags,
-        symbol.hard_min, symbol.hard_max,
+        symbol.path, kind, symbol, target, symbol.array, "", symbol.subtype, symbol.unit,
+        "never-none" not in symbol.flags, symbol.hard_min, symbol.hard_max,
     )  # fmt: skip
 
 
@@ -139,6 +140,6 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
         kind = "pointer" if known else ""
     none = kind == "string" and not is_operator  # which of them may be without, nothing tells
     return Taker(
-        path, kind, symbol, target, sizes, "", "", none or kind == "pointer", parameter.hard_min,
-        parameter.hard_max, is_parameter=True, is_operator=is_operator,
+        path, kind, symbol, target, sizes, "", "", parameter.unit, none or kind == "pointer",
+        parameter.hard_min, parameter.hard_max, is_parameter=True, is_operator=is_operator,
     )  # fmt: skip
