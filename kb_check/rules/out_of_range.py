@@ -105,7 +105,7 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
     yield Finding(
         RULE.id, "warning", span,
         f"`{taker.path}` holds {start} … {end}: {value:g} becomes {kept}.{_advice(taker, value)}", taker.path, (),
-        Fix(f"Write {kept}", (Edit(span, kept),)) if literal else None,
+        Fix(f"Write {kept}", (Edit(span, kept),)) if literal and not _advice(taker, value) else None,
     )  # fmt: skip
 
 
