@@ -91,7 +91,7 @@ class Checker:
 def _unreadable(code: str, error: SyntaxError | None) -> Finding:
     line, column = (error.lineno or 1, max((error.offset or 1) - 1, 0)) if error else (1, 0)
     message = error.msg if error and error.lineno else str(error)
-    if re.search(r"^\s*(print|exec)\s+[^(\s=]", code, re.MULTILINE):
+    if re.search(r"^[ \t]*(print|exec)[ \t]+[^(\s=]", code, re.MULTILINE):
         message += ". The script looks like Python 2, which Blender took until 2.49."
     return Finding(SYNTAX, "error", Span(line, column, line, column), f"Python cannot read this: {message}")
 

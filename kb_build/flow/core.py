@@ -11,6 +11,7 @@ from kb_build.flow.types import (
     Instance,
     LocalClass,
     LocalFunction,
+    Module,
     Resolution,
     Type,
 )
@@ -37,6 +38,8 @@ class Core:
         self.api = api
         self.version = version
         self.module = Scope()
+        # Blender's console, and what runs code for others, bring it: their scripts do not import it.
+        self.module.bind("bpy", Module("bpy"))
         self.scope = self.module
         self.functions: list[FunctionDefinition] = []
         self.classes: list[ClassDefinition] = []
