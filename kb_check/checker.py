@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.analysis import analyse
+from kb_build.flow.analysis import analyse, analyse_files
 from kb_build.flow.api import Api
 from kb_build.flow.symbols import BaseSymbols
 from kb_check.findings import Finding, Span
@@ -17,7 +17,7 @@ from kb_check.script import Script
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Collection, Iterator, Mapping
     from pathlib import Path
     from typing import Self
 
@@ -49,6 +49,22 @@ class Checker:
     def read(self, code: str) -> Read:
         """Reads a script. Nothing is imported or run; bad input of every kind ends in a finding."""
         return Read(code, analyse(code, self.api, self.version))
+
+    def read_files(self, files: Mapping[str, str]) -> dict[str, Read]:
+        """Reads the files of one package, so that types flow between them.
+
+        ``files`` is path → text; paths use slashes and begin with the package's folder (``addon/ui/panels.py``).
+        """
+        found = analyse_files(files, self.api, self.version)
+        return {path: Read(files[path], analysis) for path, analysis in found.items()}
+
+    def check_files(self, files: Mapping[str, str], rules: Collection[str] = ()) -> dict[str, list[Finding]]:
+        """The findings in the files of one package (see :meth:`read_files`), by path."""
+        reads = self.read_files(files)
+        package = self.package()
+        for read in reads.values():
+            package.add(read.analysis)
+        return {path: self.check(read, package, rules) for path, read in reads.items()}
 
     def check(
         self, code: str | Read, package: Package | None = None, rules: Collection[str] = ()

@@ -77,6 +77,10 @@ class KnownNames:
                 return self._removed(removed)
         return self._no_part(node, name, names, f"`{node}` has no socket {name!r}", "It has")
 
+    def still_works(self, path: str) -> bool:
+        """Whether this Blender still takes a former name."""
+        return bool(self.reader.still_works(path))
+
     def _removed(self, removed: RemovedSymbol) -> Lacking:
         targets = removed.targets or tuple(path for path, _ in removed.similar[:_MOST_NAMED])
         first = removed.successors[0] if removed.successors else None

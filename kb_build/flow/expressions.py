@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import DEEPEST, StepsExhausted
-from kb_build.flow.facts import T
+from kb_build.flow.facts import MORE_VALUES, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -206,9 +206,9 @@ class Expressions(Members):
         for operator, right_node in zip(node.ops, node.comparators, strict=True):
             right = self.evaluate(right_node)
             if isinstance(operator, (ast.Eq, ast.NotEq, ast.In, ast.NotIn)):
-                self.check_value(left, right_node)
+                self.check_value(left, right_node, "compared")
                 if isinstance(operator, (ast.Eq, ast.NotEq)):
-                    self.check_value(right, left_node)
+                    self.check_value(right, left_node, "compared")
             if isinstance(left, Tuple) and isinstance(right, Tuple) and len(node.ops) == 1:
                 result = _compared(left, right, operator)
             left, left_node = right, right_node
@@ -304,13 +304,13 @@ class Expressions(Members):
 
     # Values of enumerations.
 
-    def check_value(self, kind: Type, node: ast.expr) -> None:
-        """Records literals that are compared with, or assigned to, a value of an enumeration."""
+    def check_value(self, kind: Type, node: ast.expr, use: str = "value") -> None:
+        """Records literals that are assigned to a value of an enumeration, or ``compared`` with it."""
         source = self.source_of(kind)
         if not source:
             return
         for constant in _constants(node):
-            self.resolve_value(constant, source)
+            self.resolve_value(constant, source, use=use)
 
     @staticmethod
     def source_of(kind: Type) -> tuple[str, ...]:
@@ -324,7 +324,9 @@ class Expressions(Members):
                 return ()
         return tuple(found)
 
-    def resolve_value(self, node: ast.Constant, sources: tuple[str, ...], parameter: str = "") -> None:
+    def resolve_value(
+        self, node: ast.Constant, sources: tuple[str, ...], parameter: str = "", use: str = "value"
+    ) -> None:
         """Records a literal as one of the values of properties, or of a parameter of functions."""
         value = node.value
         if not isinstance(value, str):
@@ -343,12 +345,13 @@ class Expressions(Members):
             name = f"{path}({parameter})" if parameter else path
             # Where classes are the values, RNA lists none or a stand-in.
             is_listed = any(item.identifier == value for item in items) or self.api.is_class(f"{T}{value}")
+            is_listed = is_listed or value in MORE_VALUES.get(name, ())
             if len(items) < _FEWEST_VALUES or is_listed:
                 having.append(name)
             elif not computed:
                 lacking.append(name)
         if having or lacking:
-            self.resolve(node, "value", value, having, lacking)
+            self.resolve(node, use, value, having, lacking)
 
     def with_state(self, state: State, read: Callable[[], None]) -> State:
         """Reads something from a state on; returns the state after it."""
