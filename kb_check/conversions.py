@@ -74,7 +74,9 @@ def misfit(script: Script, taker: Taker, node: ast.expr) -> Misfit | None:
     if kind is None:
         return None
     if isinstance(written(script, node), ast.Constant) and kind == NONE:
-        may_be_none = not taker.kind or (taker.takes_none and taker.kind in {"string", "pointer", "enum or set"})
+        may_be_none = not taker.kind or (
+            taker.takes_none and taker.kind in {"string", "pointer", "enum or set"}
+        )
         return None if may_be_none else Misfit(_takes(taker), "None")
     found = [_scalar_misfit(script, taker, node, member) for member in members(kind)]
     return found[0] if all(found) else None

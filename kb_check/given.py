@@ -64,7 +64,9 @@ def given_values(script: Script) -> Iterator[Given]:
         if sure and paths and isinstance(row.node, ast.Attribute):
             value = _assigned(row.statement, row.node)
             symbols = [script.api.symbols.symbol(path) for path in paths]
-            takers = tuple(property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property")
+            takers = tuple(
+                property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property"
+            )
             if value is not None and len(takers) == len(paths):
                 yield Given(value, takers)
     for call in calls(script):

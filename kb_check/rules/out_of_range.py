@@ -112,8 +112,14 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
 def _advice(taker: Taker, value: float) -> str:
     low, high = taker.hard_min, taker.hard_max
     angle = math.radians(value)
-    in_degrees = (low is None or angle >= low - _slack(low)) and (high is None or angle <= high + _slack(high))
-    return f" It is an angle in radians: `math.radians({value:g})`?" if taker.unit == "ROTATION" and in_degrees else ""
+    in_degrees = (low is None or angle >= low - _slack(low)) and (
+        high is None or angle <= high + _slack(high)
+    )
+    return (
+        f" It is an angle in radians: `math.radians({value:g})`?"
+        if taker.unit == "ROTATION" and in_degrees
+        else ""
+    )
 
 
 def _slack(limit: float) -> float:

@@ -53,7 +53,11 @@ def _check(script: Script) -> Iterator[Finding]:
 def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
     """What may be meant where data are given in the place of an object, or a name in the place of what it names."""
     kind = script.type_of(node)
-    if taker.target == _OBJECT and isinstance(kind, Instance) and script.api.descends(kind.cls, "bpy.types.ID"):
+    if (
+        taker.target == _OBJECT
+        and isinstance(kind, Instance)
+        and script.api.descends(kind.cls, "bpy.types.ID")
+    ):
         data = script.api.member(_OBJECT, "data")
         if data is not None and kind.cls.rpartition(".")[2] in {"Mesh", "Camera", "Armature", "Light", "PointLight",
                                                                 "SunLight", "SpotLight", "AreaLight", "Curve"}:  # fmt: skip
@@ -92,7 +96,9 @@ def _fix(script: Script, taker: Taker, wrong: Misfit, node: ast.expr) -> Fix | N
 
 
 def _is_color(script: Script, parts: list[ast.expr]) -> bool:
-    return all(script.type_of(part) is not None and not isinstance(part, (ast.Tuple, ast.List)) for part in parts)
+    return all(
+        script.type_of(part) is not None and not isinstance(part, (ast.Tuple, ast.List)) for part in parts
+    )
 
 
 RULE = Rule("wrong-type", "error", "A value of a type that is not taken", _check)
