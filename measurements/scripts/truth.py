@@ -28,7 +28,7 @@ FILE = FOLDER / "truth.jsonl"
 SETS = ("seen", "unseen")
 _RUNNER = Path(__file__).with_name("run_one.py")
 _SECONDS = 90
-_JOBS = 2
+_JOBS = 1
 Kind = Literal["api", "run", "consequence"]
 
 # Errors by what is, or is not, in the file or the session at the time: the code would run elsewhere.
@@ -98,7 +98,7 @@ def run(code: str, name: str) -> Truth:
             out = error.stdout or b""
     rows = [
         json.loads(line.partition("\x1e")[2])
-        for line in out.decode(errors="replace").splitlines()
+        for line in out.decode(errors="replace").split("\n")
         if "\x1e" in line
     ]
     statements = {node.lineno: node for node in ast.walk(ast.parse(code)) if isinstance(node, ast.stmt)}
