@@ -52,6 +52,7 @@ class KnownNames:
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""
         removed = self._lookup.of_member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
+        removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
         return self._never(owner, name, self._member_names(owner))
@@ -76,6 +77,10 @@ class KnownNames:
             if removed := self._lookup.of_path(f'{node}.{side}["{name}"]'):
                 return self._removed(removed)
         return self._no_part(node, name, names, f"`{node}` has no socket {name!r}", "It has")
+
+    def still_works(self, path: str) -> bool:
+        """Whether this Blender still takes a former name."""
+        return bool(self.reader.still_works(path))
 
     def _removed(self, removed: RemovedSymbol) -> Lacking:
         targets = removed.targets or tuple(path for path, _ in removed.similar[:_MOST_NAMED])

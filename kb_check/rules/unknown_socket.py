@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("item"):
         node = row.missing[0]
+        if any(script.names.still_works(f'{node}.{side}["{row.value}"]') for side in ("inputs", "outputs")):
+            continue
         names = [s.name for side in ("inputs", "outputs") for _, _, s in script.api.sockets(node, side)]
         yield lacking_finding(
             script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
