@@ -25,7 +25,8 @@ class Lacking:
     """What there is to say of a name that does not exist.
 
     ``replacement`` is the one path that takes its place with no other change (``sure``: by a source), or that it
-    is a misspelling of; empty otherwise. ``instead`` are all that may be meant.
+    is a misspelling of; empty otherwise. ``instead`` are all that may be meant. ``stated``: a source says what became
+    of it, so nothing else can be meant.
     """
 
     symbol: str
@@ -33,7 +34,7 @@ class Lacking:
     instead: tuple[str, ...] = ()
     replacement: str = ""
     sure: bool = False
-    removed: bool = False
+    stated: bool = False
 
 
 class KnownNames:
@@ -51,7 +52,11 @@ class KnownNames:
 
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""
-        removed = self._lookup.of_member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
+        removed = (
+            self._lookup.of_member(owner, name)
+            or self._lookup.of_path(f"{owner}.{name}")
+            or self._lookup.below(owner, name)
+        )
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
         return self._never(owner, name, self._member_names(owner))
@@ -83,7 +88,7 @@ class KnownNames:
         sure = bool(removed.targets) and len(removed.targets) == 1 and first is not None and not first.how
         replacement = removed.targets[0] if sure else ""
         return Lacking(
-            removed.path, self._notes.removed(removed), targets, replacement, sure=sure, removed=True
+            removed.path, self._notes.removed(removed), targets, replacement, sure=sure, stated=bool(removed.successors)
         )
 
     def _never(self, owner: str, name: str, names: Iterable[str]) -> Lacking:

@@ -29,7 +29,9 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
         return None
     owner, name = _parts(lacking.replacement)
     same_owner = "." not in lacking.replacement or any(
-        cls == owner for missing in row.missing for cls in (missing, *script.api.lineage(missing))
+        cls == owner or script.api.descends(owner, missing)
+        for missing in row.missing
+        for cls in (missing, *script.api.lineage(missing))
     )
     if not same_owner or not name or (edit := script.renamed(row.node, name)) is None:
         return None

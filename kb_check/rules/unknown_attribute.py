@@ -30,11 +30,12 @@ _CONTEXT = "bpy.types.Context"
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for row in script.missing("attribute", "store", "text", "button"):
+    for row in script.missing("attribute", "store", "text", "button", unsure=True):
         owner = _class_of(script, row.missing[0])
         if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != _CONTEXT:
             lacking = script.names.member(owner, row.value, reading=row.kind != "store")
-            yield lacking_finding(script, RULE.id, row, lacking)
+            if row.sure or lacking.stated:  # what a class lost is no other class's by chance
+                yield lacking_finding(script, RULE.id, row, lacking)
 
 
 def _class_of(script: Script, owner: str) -> str:

@@ -1,7 +1,7 @@
 """A member of ``bpy.context`` that no editor gives.
 
 The context has what every editor has, and what some editors add to it (``selected_nodes`` in the node editor). A name
-that none of them gives is reported; so is one that older Blenders had, whatever editor it may be.
+that none of them gives is reported; so is one that was renamed (``user_preferences``).
 
 ```python
 bpy.context.selected_meshes  # reported
@@ -29,7 +29,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store", unsure=True):
         if row.missing[0] == _CONTEXT:
             lacking = script.names.member(_CONTEXT, row.value)
-            if row.sure or lacking.removed:
+            if row.sure or lacking.stated:
                 yield lacking_finding(script, RULE.id, row, lacking)
 
 

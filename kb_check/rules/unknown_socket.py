@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for row in script.missing("item"):
+    for row in script.missing("item", unsure=True):
         node = row.missing[0]
         names = [s.name for side in ("inputs", "outputs") for _, _, s in script.api.sockets(node, side)]
-        yield lacking_finding(
-            script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
-        )
+        lacking = script.names.socket(node, row.value, dict.fromkeys(names))
+        if row.sure or lacking.stated:  # a node's usual name, and a socket that it had: no chance
+            yield lacking_finding(script, RULE.id, row, lacking)
 
 
 RULE = Rule("unknown-socket", "error", "A socket that the node does not have", _check)
