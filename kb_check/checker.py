@@ -6,7 +6,7 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.analysis import MOST_CHARACTERS, Analysis, analyse
+from kb_build.flow.analysis import MOST_CHARACTERS, Analysis, analyse, analyse_files
 from kb_build.flow.api import Api
 from kb_build.flow.symbols import BaseSymbols
 from kb_check.ignores import Ignores
@@ -18,7 +18,7 @@ from kb_check.script import Script
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
     from pathlib import Path
     from typing import Self
 
@@ -63,6 +63,25 @@ class Checker:
             return Read(code, analysis)
         part = salvage(code)
         return Read(code, analyse(part.code, self.api, self.version), analysis.error, part.registered_names)
+
+    def read_files(self, files: Mapping[str, str]) -> dict[str, Read]:
+        """Reads the files of one package, so that types flow between them.
+
+        ``files`` is path → text; paths use slashes and begin with the package's folder (``addon/ui/panels.py``).
+        """
+        found = analyse_files(files, self.api, self.version)
+        return {
+            path: self.read(files[path]) if analysis.tree is None else Read(files[path], analysis)
+            for path, analysis in found.items()
+        }
+
+    def check_files(self, files: Mapping[str, str], rules: Collection[str] = ()) -> dict[str, list[Finding]]:
+        """The findings in the files of one package (see :meth:`read_files`), by path."""
+        reads = self.read_files(files)
+        package = self.package()
+        for read in reads.values():
+            package.add(read.analysis, read.may_register)
+        return {path: self.check(read, package, rules) for path, read in reads.items()}
 
     def check(
         self, code: str | Read, package: Package | None = None, rules: Collection[str] = ()

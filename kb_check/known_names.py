@@ -25,8 +25,7 @@ class Lacking:
     """What there is to say of a name that does not exist.
 
     ``replacement`` is the one path that takes its place with no other change (``sure``: by a source), or that it
-    is a misspelling of; empty otherwise. ``instead`` are all that may be meant. ``stated``: a source says what became
-    of it, so nothing else can be meant.
+    is a misspelling of; empty otherwise. ``instead`` are all that may be meant.
     """
 
     symbol: str
@@ -34,7 +33,7 @@ class Lacking:
     instead: tuple[str, ...] = ()
     replacement: str = ""
     sure: bool = False
-    stated: bool = False
+    removed: bool = False
 
 
 class KnownNames:
@@ -52,11 +51,8 @@ class KnownNames:
 
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""
-        removed = (
-            self._lookup.of_member(owner, name)
-            or self._lookup.of_path(f"{owner}.{name}")
-            or self._lookup.below(owner, name)
-        )
+        removed = self._lookup.of_member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
+        removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
         return self._never(owner, name, self._member_names(owner))
@@ -82,13 +78,17 @@ class KnownNames:
                 return self._removed(removed)
         return self._no_part(node, name, names, f"`{node}` has no socket {name!r}", "It has")
 
+    def still_works(self, path: str) -> bool:
+        """Whether this Blender still takes a former name."""
+        return bool(self.reader.still_works(path))
+
     def _removed(self, removed: RemovedSymbol) -> Lacking:
         targets = removed.targets or tuple(path for path, _ in removed.similar[:_MOST_NAMED])
         first = removed.successors[0] if removed.successors else None
         sure = bool(removed.targets) and len(removed.targets) == 1 and first is not None and not first.how
         replacement = removed.targets[0] if sure else ""
         return Lacking(
-            removed.path, self._notes.removed(removed), targets, replacement, sure=sure, stated=bool(removed.successors)
+            removed.path, self._notes.removed(removed), targets, replacement, sure=sure, removed=True
         )
 
     def _never(self, owner: str, name: str, names: Iterable[str]) -> Lacking:

@@ -1,8 +1,10 @@
-"""What the files of one add-on register, which each of them may use: operators, and properties of Blender's classes."""
+"""What the files of one add-on register, for each of them to use: operators, classes, properties of other classes."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+
+from kb_build.flow.core import ANY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,22 +20,29 @@ class Package:
         self._api = api
         self._operators: set[str] = set()  # paths below bpy.ops, and their modules
         self._possible: set[str] = set()
+        self._types: set[str] = set()  # names below bpy.types
         self._classes: dict[str, set[str]] = {}  # property → the classes that have it
 
     def add(self, analysis: Analysis, possible: Iterable[str] = ()) -> None:
         """Adds what a file registers. ``possible`` are names that a part which cannot be read may register."""
         self._operators |= analysis.own_operators
         self._possible.update(possible)
+        self._types |= analysis.own_types
         for cls, name in analysis.registered:
             self._classes.setdefault(name, set()).add(cls)
 
     def has(self, owners: Iterable[str], name: str) -> bool:
         """Whether a file registers that name for one of the owners, for their bases, or for what derives from them."""
-        if name in self._operators or name in self._possible:
+        if name in self._possible:
             return True
-        holders = self._classes.get(name, ())
+        holders = self._classes.get(name, set()) | self._classes.get(ANY, set())
+        return name in self._operators or any(self._gives(owner, name, holders) for owner in owners)
+
+    def _gives(self, owner: str, name: str, holders: Iterable[str]) -> bool:
+        if owner.startswith("bpy.ops"):
+            return ANY in self._operators or f"{owner}.{name}" in self._operators
+        if owner == "bpy.types":
+            return not self._types.isdisjoint((name, ANY))
         return any(
-            f"{owner}.{name}" in self._operators
-            or any(self._api.descends(owner, cls) or self._api.descends(cls, owner) for cls in holders)
-            for owner in owners
+            cls == ANY or self._api.descends(owner, cls) or self._api.descends(cls, owner) for cls in holders
         )

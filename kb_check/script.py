@@ -46,11 +46,11 @@ class Script:
         found = (row for row in self.analysis.resolutions.values() if not kinds or row.kind in kinds)
         yield from sorted(found, key=lambda row: (_start(row.node), row.kind))
 
-    def missing(self, *kinds: str, unsure: bool = False) -> Iterator[Resolution]:
-        """The parts that surely stand for nothing that this Blender, or the package, has; ``unsure`` ones on demand."""
+    def missing(self, *kinds: str) -> Iterator[Resolution]:
+        """The parts that surely stand for nothing that this Blender, or the package, has."""
         for row in self.resolutions(*kinds):
-            lacking = row.missing and not row.symbols and not row.possible and (row.sure or unsure)
-            if lacking and not row.guarded and not self.package.has(row.missing, row.value):
+            lacking = row.missing and not row.symbols and not row.possible
+            if lacking and row.sure and not row.guarded and not self.package.has(row.missing, row.value):
                 yield row
 
     def type_of(self, node: ast.expr) -> Type | None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import StepsExhausted
+from kb_build.flow.source_files import SourceFile, module_name
 from kb_build.flow.statements import Statements
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ MOST_CHARACTERS = 2_000_000
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
 _STEPS_PER_CHARACTER = 4
 _ROUNDS = 3
+_DEEPEST_IMPORT = 20  # files that import each other are read within each other
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,9 +29,11 @@ class Analysis:
     """What a script is. ``tree`` is None, and ``error`` says why, when it cannot be read.
 
     ``types`` has every expression that was reached, ``resolutions`` every part that stands for something of the
-    API. ``complete`` is False where the script was too large to be read to its end. ``own_operators`` are the
-    operators that the script defines (paths below bpy.ops, their modules too), ``registered`` the properties that it
-    gives to classes of the API: (class, name).
+    API. ``complete`` is False where the script was too large to be read to its end.
+
+    What the script, or one that is analysed with it, adds to the API: ``own_operators`` are operators (paths below
+    bpy.ops, their modules too), ``registered`` the properties of classes (class, name), ``own_types`` the names of
+    classes below bpy.types. A ``*`` stands for any class or name, where the script computes it.
     """
 
     tree: ast.Module | None
@@ -39,48 +43,75 @@ class Analysis:
     complete: bool = True
     own_operators: frozenset[str] = frozenset()
     registered: frozenset[tuple[str, str]] = frozenset()
+    own_types: frozenset[str] = frozenset()
 
 
 class Analyzer(Statements):
-    """One analysis of one script."""
+    """One analysis of the files that are read together."""
 
-    def read(self, tree: ast.Module) -> bool:
-        """Reads the module, then every function with what it is known to receive; whether all could be read."""
-        self.loops = []
+    importing = 0
+
+    def read(self) -> None:
+        """Reads every module, then every function with what it is known to receive."""
+        for file in self.sources:
+            self.read_file(file)
+        for _ in range(_ROUNDS):
+            if not self._read_functions():
+                break
+
+    def read_file(self, file: SourceFile) -> None:
+        """See :class:`core.Core`."""
+        if file.started or file.tree is None or self.importing > _DEEPEST_IMPORT:
+            return
+        file.started = True
+        self.importing += 1
+        steps_left, depth, self.steps_left = self.steps_left, self.depth, file.steps_left
         try:
-            self._guarded_read(tree)
-            for _ in range(_ROUNDS):
-                if not self._read_functions():
-                    break
+            with self.inside(file, file.module, None):
+                self._guarded_read(file)
         except StepsExhausted:
-            return False
-        return True
+            file.complete = False
+        finally:
+            file.steps_left, self.steps_left, self.depth = self.steps_left, steps_left, depth
+            self.importing -= 1
 
-    def _guarded_read(self, tree: ast.Module) -> None:
-        for statement in tree.body:
+    def _guarded_read(self, file: SourceFile) -> None:
+        assert file.tree is not None
+        for statement in file.tree.body:
             depth = self.depth
             try:
                 if not self.read_body([statement]):
                     break
             except RecursionError:
-                self.depth, self.scope, self.function = depth, self.module, None
+                self.depth, self.scope, self.function = depth, file.module, None
 
     def _read_functions(self) -> bool:
         """Reads the functions that were not read yet, or that know more now; whether there were any."""
         found = False
-        # Those that the API calls pass on what they get: they come first.
-        pending = sorted(range(len(self.functions)), key=lambda number: self.functions[number].cls is None)
-        for number in pending:
+        for number in sorted(range(len(self.functions)), key=self._turn):
             function = self.functions[number]
-            if function.runs >= _ROUNDS or (not function.stale and function.seen == self.stamp(function)):
+            file = function.file
+            if file is None or not file.complete or function.runs >= _ROUNDS:
+                continue
+            if not function.stale and function.seen == self.stamp(function):
                 continue
             found = True
-            depth = self.depth
+            self.depth, self.steps_left = 0, file.steps_left
             try:
                 self.run(number)
             except RecursionError:
-                self.depth, self.scope, self.function = depth, self.module, None
+                pass
+            except StepsExhausted:
+                file.complete = False
+            file.steps_left = self.steps_left
         return found or any(function.stale for function in self.functions)
+
+    def _turn(self, number: int) -> int:
+        """Functions that register come first, then those that the API calls: they pass on what they get."""
+        function = self.functions[number]
+        if getattr(function.node, "name", "").startswith("register"):
+            return 0
+        return 1 if function.cls is not None else 2
 
 
 def analyse(code: str, api: Api, version: tuple[int, ...] = ()) -> Analysis:
@@ -88,31 +119,43 @@ def analyse(code: str, api: Api, version: tuple[int, ...] = ()) -> Analysis:
 
     Bad input of every kind ends in an Analysis that says so, in bounded time.
     """
+    return analyse_files({"": code}, api, version)[""]
+
+
+def analyse_files(files: Mapping[str, str], api: Api, version: tuple[int, ...] = ()) -> dict[str, Analysis]:
+    """Reads files that belong together (path → text), as :func:`analyse` reads one; types flow between them.
+
+    Paths use slashes and begin with the folder that is the package's name: ``addon/utils.py`` is found by
+    ``from . import utils`` in ``addon/__init__.py``, and as ``addon.utils``.
+    """
+    sources = {path: _parsed(path, code) for path, code in files.items()}
+    if not sources:
+        return {}
+    analyzer = Analyzer(api, version, list(sources.values()))
+    analyzer.read()
+    own = frozenset(analyzer.own_operators), frozenset(analyzer.registered), frozenset(analyzer.own_types)
+    return {
+        path: Analysis(source.tree, source.types, source.resolutions, source.error, source.complete, *own)
+        for path, source in sources.items()
+    }
+
+
+def _parsed(path: str, code: str) -> SourceFile:
+    name, is_package = module_name(path)
+    tree: ast.Module | None = None
+    error: SyntaxError | None = None
     if len(code) > MOST_CHARACTERS:
-        return _failed(
+        error = SyntaxError(
             f"the script is too large ({len(code):,} characters; up to {MOST_CHARACTERS:,} are read)"
         )
-    code = code.removeprefix("\ufeff")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(code)
-    except SyntaxError as error:
-        return Analysis(None, {}, {}, error)
-    except (ValueError, RecursionError, MemoryError) as error:
-        return _failed(f"the script cannot be parsed: {error or type(error).__name__}")
+    else:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                tree = ast.parse(code.removeprefix("\ufeff"))
+        except SyntaxError as found:
+            error = found
+        except (ValueError, RecursionError, MemoryError) as found:
+            error = SyntaxError(f"the script cannot be parsed: {found or type(found).__name__}")
     steps = min(MOST_STEPS, 20_000 + _STEPS_PER_CHARACTER * len(code))
-    analyzer = Analyzer(api, version, steps)
-    complete = analyzer.read(tree)
-    return Analysis(
-        tree,
-        analyzer.types,
-        analyzer.resolutions,
-        complete=complete,
-        own_operators=frozenset(analyzer.own_operators),
-        registered=frozenset(analyzer.registered),
-    )
-
-
-def _failed(reason: str) -> Analysis:
-    return Analysis(None, {}, {}, SyntaxError(reason))
+    return SourceFile(name, is_package, tree, steps, error)

@@ -6,7 +6,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.flow.core import DEEPEST_RUN
+from kb_build.flow.core import ANY, DEEPEST_RUN
 from kb_build.flow.facts import BMESH_RESULTS, OPEN_CALLS, T
 from kb_build.flow.narrowing import Narrowing
 from kb_build.flow.types import (
@@ -42,7 +42,7 @@ from kb_build.flow.types import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kb_build.flow.scopes import FunctionDefinition
+    from kb_build.flow.definitions import FunctionDefinition
     from kb_build.records import Parameter, Symbol
 
 _MOST_RUNS = 3
@@ -62,7 +62,7 @@ _ITERATORS = {
 }  # fmt: skip
 _PLAIN_RESULTS: dict[str, Type] = {
     "len": INT, "int": INT, "float": FLOAT, "str": STR, "bool": BOOL, "repr": STR, "isinstance": BOOL,
-    "hasattr": BOOL, "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE, "setattr": NONE,
+    "hasattr": BOOL, "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE,
 }  # fmt: skip
 _STRING_RESULTS: dict[str, Type] = {
     "split": Sequence("list", STR), "rsplit": Sequence("list", STR), "splitlines": Sequence("list", STR),
@@ -85,7 +85,7 @@ class Calls(Narrowing):
         arguments = [self.evaluate(argument) for argument in node.args]
         keywords = [(keyword, self.evaluate(keyword.value)) for keyword in node.keywords]
         if callee is UNKNOWN:
-            return UNKNOWN
+            return self._made_by_class_name(node, arguments, keywords)
         if isinstance(callee, Union):
             return union(
                 self._one_call(member, node, arguments, keywords)
@@ -93,6 +93,20 @@ class Calls(Narrowing):
                 if member is not NONE
             )
         return self._one_call(callee, node, arguments, keywords)
+
+    def _made_by_class_name(
+        self, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]
+    ) -> Type:
+        """``tree.nodes.new("ShaderNodeMath")``: the text is the class, whatever the tree is."""
+        match node.func:
+            case ast.Attribute(value=ast.Attribute(attr="nodes") | ast.Name(id="nodes"), attr="new"):
+                given = [*arguments, *(kind for _, kind in keywords)]
+                text = literal_text(given[0]) if given else None
+                if text and self.api.descends(f"{T}{text}", f"{T}Node"):
+                    return Instance(f"{T}{text}")
+            case _:
+                pass
+        return UNKNOWN
 
     def _one_call(
         self, callee: Type, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]
@@ -140,6 +154,9 @@ class Calls(Narrowing):
                 if isinstance(kind, LocalFunction):
                     self._pass(kind.number, [Instance(callee.receiver.cls), Instance(f"{T}Context")], {})
         self._names(callee, name, node, arguments)
+        if name == "context_pointer_set" and arguments:
+            held = arguments[1] if len(arguments) > 1 else UNKNOWN
+            self.registered[f"{T}Context", literal_text(arguments[0]) or ANY] = held
         if isinstance(callee.receiver, Collection) and name == "get":
             key = arguments[0] if arguments else UNKNOWN
             found = self.collection_item(callee.receiver, key, node.args[0] if node.args else node)
@@ -233,9 +250,11 @@ class Calls(Narrowing):
         text = literal_text(kind)
         if text and isinstance(node, ast.Constant):
             module, of_class, name = text.partition("_OT_")
-            path = f"bpy.ops.{module.lower()}.{name}" if of_class else f"bpy.ops.{text}"
+            if not of_class:
+                module, _, name = text.partition(".")
+            path = f"bpy.ops.{module.lower()}.{name}"  # Blender takes the module in capitals too
             known = self.api.symbols.symbol(path) is not None
-            if path in self.own_operators:
+            if path in self.own_operators or self.is_there_at_times(path):
                 return
             self.resolve(node, "button", path, (path,) if known else (), () if known else ("bpy.ops",))
 
@@ -396,9 +415,17 @@ class Calls(Narrowing):
                 return first if isinstance(first, Plain) and name != "sum" else FLOAT
             case "super":
                 return self._super()
+            case "type" if len(arguments) == 3:
+                self.own_operators.add(ANY)
+                self.own_types[ANY] = UNKNOWN
+                return UNKNOWN
             case "type":
                 return self._class_of(first)
-            case "getattr" | "setattr" | "delattr":
+            case "setattr" if len(arguments) == 3:
+                declared = self.is_declared(node.args[2])
+                self.register(first, literal_text(arguments[1]) or ANY, arguments[2], declared=declared)
+                return NONE
+            case "getattr" | "delattr":
                 return self._named_attribute(node, arguments)
             case "dict":
                 return Mapping(UNKNOWN, UNKNOWN)

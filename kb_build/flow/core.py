@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from kb_build.flow.scopes import ClassDefinition, FunctionDefinition, Scope
+from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.types import (
     UNKNOWN,
     ClassObject,
     Instance,
     LocalClass,
     LocalFunction,
+    LocalInstance,
     Resolution,
     Type,
+    members,
 )
 
 if TYPE_CHECKING:
     import ast
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Generator, Iterator, Sequence
 
     from kb_build.flow.api import Api
+    from kb_build.flow.scopes import Loop, Scope
+    from kb_build.flow.source_files import SourceFile
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
 _MOST_BASES = 40
+ANY = "*"  # any class, any name: what a script computes
 
 
 class StepsExhausted(Exception):  # noqa: N818 - reads as the state it names
@@ -33,23 +39,33 @@ class StepsExhausted(Exception):  # noqa: N818 - reads as the state it names
 class Core:
     """One analysis. The parts are mixed into one class (analysis.Analyzer), since types flow between all of them."""
 
-    def __init__(self, api: Api, version: tuple[int, ...], most_steps: int) -> None:
+    def __init__(self, api: Api, version: tuple[int, ...], files: Sequence[SourceFile]) -> None:
         self.api = api
         self.version = version
-        self.module = Scope()
-        self.scope = self.module
+        self.sources = files
+        self.files = {file.name: file for file in reversed(files)}
+        self.folders = {
+            ".".join(parts[:length])
+            for name in self.files
+            for parts in [name.split(".")]
+            for length in range(1, len(parts))
+        }
+        self.file = files[0]
+        self.scope = self.file.module
         self.functions: list[FunctionDefinition] = []
         self.classes: list[ClassDefinition] = []
         self.derived: dict[int, list[int]] = {}
         self.numbers: dict[ast.AST, int] = {}
         self.own_operators: set[str] = set()
+        self.own_types: dict[str, Type] = {}
         self.registered: dict[tuple[str, str], Type] = {}
-        self.resolutions: dict[ast.AST, Resolution] = {}
-        self.types: dict[ast.expr, Type] = {}
+        self.resolutions = self.file.resolutions
+        self.types = self.file.types
+        self.loops: list[Loop] = []
         self.tolerant = 0
         self.guessing = False
         self.depth = 0
-        self.steps_left = most_steps
+        self.steps_left = self.file.steps_left
         self.function: FunctionDefinition | None = None
         self.statement: ast.stmt | None = None
         self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
@@ -67,6 +83,27 @@ class Core:
     def run(self, number: int) -> None:
         """Reads a function of the script with what it is known to receive."""
         raise NotImplementedError
+
+    def read_file(self, file: SourceFile) -> None:
+        """Reads a file's module, unless that was begun before."""
+        raise NotImplementedError
+
+    @contextmanager
+    def inside(self, file: SourceFile, scope: Scope, function: FunctionDefinition | None) -> Generator[None]:
+        """Reads at another place, and comes back."""
+        outer = self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing
+        outer_file = self.file
+        self._enter(file)
+        self.scope, self.function, self.loops = scope, function, []
+        self.tolerant, self.statement, self.guessing = 0, None, False
+        try:
+            yield
+        finally:
+            self._enter(outer_file)
+            self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing = outer
+
+    def _enter(self, file: SourceFile) -> None:
+        self.file, self.types, self.resolutions = file, file.types, file.resolutions
 
     def bind_target(self, target: ast.expr, kind: Type, value: ast.expr | None = None) -> None:
         """Assigns to a name, an attribute, an item, or several of them."""
@@ -95,6 +132,22 @@ class Core:
             sure and not self.guessing, self.tolerant > 0, self.statement,
         )  # fmt: skip
 
+    # What a script adds to the API.
+
+    def register(self, owners: Type, name: str, kind: Type, *, declared: bool) -> None:
+        """Remembers what is given to classes; ``declared`` where it is one of bpy.props, whatever they are."""
+        for owner in members(owners):
+            if isinstance(owner, ClassObject):
+                if self.api.member(owner.cls, name) is None:
+                    self.registered[owner.cls, name] = kind
+            elif declared and not isinstance(owner, (LocalClass, LocalInstance)):
+                self.registered[ANY, name] = kind
+
+    def is_declared(self, node: ast.expr | None) -> bool:
+        """Whether an expression, which was read, calls one of bpy.props."""
+        found = self.resolutions.get(node) if node is not None else None
+        return found is not None and any(path.startswith("bpy.props.") for path in found.symbols)
+
     # Definitions.
 
     def define_function(
@@ -104,7 +157,7 @@ class Core:
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.functions)
-            self.functions.append(FunctionDefinition(node, self.scope, cls))
+            self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file))
         return number
 
     def ancestors(self, number: int) -> Iterator[Type]:

@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import DEEPEST, StepsExhausted
-from kb_build.flow.facts import T
+from kb_build.flow.facts import MORE_VALUES, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -98,7 +98,7 @@ class Expressions(Members):
         if known is not None:
             return known
         kind = found.type
-        if self.version and found.symbols == ["bpy.app.version"]:
+        if self.version and found.symbols == [VERSION]:
             return Tuple(tuple(Plain("int", part) for part in self.version))
         return kind
 
@@ -193,7 +193,8 @@ class Expressions(Members):
         operand = self.evaluate(node.operand)
         if isinstance(node.op, ast.Not):
             value = literal(operand) if isinstance(operand, Plain) and operand.kind == "bool" else None
-            return Plain("bool", not value) if isinstance(value, bool) else BOOL
+            source = operand.source if isinstance(operand, Plain) else ""
+            return Plain("bool", not value, source) if isinstance(value, bool) else BOOL
         if isinstance(operand, Plain) and isinstance(node.op, ast.USub):
             value = operand.value
             return Plain(operand.kind, -value) if isinstance(value, (int, float)) else Plain(operand.kind)
@@ -206,9 +207,9 @@ class Expressions(Members):
         for operator, right_node in zip(node.ops, node.comparators, strict=True):
             right = self.evaluate(right_node)
             if isinstance(operator, (ast.Eq, ast.NotEq, ast.In, ast.NotIn)):
-                self.check_value(left, right_node)
+                self.check_value(left, right_node, "compared")
                 if isinstance(operator, (ast.Eq, ast.NotEq)):
-                    self.check_value(right, left_node)
+                    self.check_value(right, left_node, "compared")
             if isinstance(left, Tuple) and isinstance(right, Tuple) and len(node.ops) == 1:
                 result = _compared(left, right, operator)
             left, left_node = right, right_node
@@ -228,16 +229,14 @@ class Expressions(Members):
         self.scope.state = before
         before.names.update(assigned)
         if holds:
-            truths = [literal(kind) for kind in kinds]
-            if any(truth is False for truth in truths):
-                return Plain("bool", False)
-            return kinds[-1]
+            never = Plain("bool", False, VERSION)
+            return never if never in kinds else kinds[-1]
         return union([*(without_none(kind) for kind in kinds[:-1]), kinds[-1]])
 
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
-        if isinstance(test, Plain) and isinstance(test.value, bool):
-            return self.evaluate(node.body if test.value else node.orelse)  # the other is for other versions
+        if isinstance(test, Plain) and test.source == VERSION and isinstance(test.value, bool):
+            return self.evaluate(node.body if test.value else node.orelse)
         before = self.scope.state
         self.scope.state = before.copy()
         self.narrow(node.test, holds=True)
@@ -304,14 +303,14 @@ class Expressions(Members):
 
     # Values of enumerations.
 
-    def check_value(self, kind: Type, node: ast.expr) -> None:
-        """Records literals that are compared with, or assigned to, a value of an enumeration."""
+    def check_value(self, kind: Type, node: ast.expr, use: str = "value") -> None:
+        """Records literals that are assigned to a value of an enumeration, or ``compared`` with it."""
         source = self.source_of(kind)
         if not source:
             return
         # Those that were not reached are of a branch for other versions.
         for constant in filter(self.types.__contains__, _constants(node)):
-            self.resolve_value(constant, source)
+            self.resolve_value(constant, source, use=use)
 
     @staticmethod
     def source_of(kind: Type) -> tuple[str, ...]:
@@ -325,7 +324,9 @@ class Expressions(Members):
                 return ()
         return tuple(found)
 
-    def resolve_value(self, node: ast.Constant, sources: tuple[str, ...], parameter: str = "") -> None:
+    def resolve_value(
+        self, node: ast.Constant, sources: tuple[str, ...], parameter: str = "", use: str = "value"
+    ) -> None:
         """Records a literal as one of the values of properties, or of a parameter of functions."""
         value = node.value
         if not isinstance(value, str):
@@ -344,12 +345,13 @@ class Expressions(Members):
             name = f"{path}({parameter})" if parameter else path
             # Where classes are the values, RNA lists none or a stand-in.
             is_listed = any(item.identifier == value for item in items) or self.api.is_class(f"{T}{value}")
+            is_listed = is_listed or value in MORE_VALUES.get(name, ())
             if len(items) < _FEWEST_VALUES or is_listed:
                 having.append(name)
             elif not computed:
                 lacking.append(name)
         if having or lacking:
-            self.resolve(node, "value", value, having, lacking)
+            self.resolve(node, use, value, having, lacking)
 
     def with_state(self, state: State, read: Callable[[], None]) -> State:
         """Reads something from a state on; returns the state after it."""
@@ -409,13 +411,13 @@ def _compared(left: Tuple, right: Tuple, operator: ast.cmpop) -> Type:
     ours, theirs = [int(v) for v in first if v is not None], [int(v) for v in second if v is not None]
     match operator:
         case ast.Lt():
-            return Plain("bool", ours < theirs)
+            return Plain("bool", ours < theirs, VERSION)
         case ast.LtE():
-            return Plain("bool", ours <= theirs)
+            return Plain("bool", ours <= theirs, VERSION)
         case ast.Gt():
-            return Plain("bool", ours > theirs)
+            return Plain("bool", ours > theirs, VERSION)
         case ast.GtE():
-            return Plain("bool", ours >= theirs)
+            return Plain("bool", ours >= theirs, VERSION)
         case _:
             return BOOL
 

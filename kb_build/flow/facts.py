@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 T = "bpy.types."
+VERSION = "bpy.app.version"
 
 # ``Object.type`` → the class of ``Object.data``.
 OBJECT_DATA = {
@@ -39,22 +40,40 @@ OPEN_CLASSES = (
     "bpy.types.GizmoGroupProperties", "bpy.types.KeyConfigPreferences", "bpy.types.IDPropertyWrapPtr",
     "bpy.types.AnyType", "bpy.types.UnknownType", "bpy.types.Gizmo", "bpy.utils.previews.ImagePreviewCollection",
 )  # fmt: skip
-# Classes that scripts derive their own from, which a value declared so may be; and the context, to which layouts add.
+# Classes that scripts derive their own from, which a value declared so may be.
 DERIVED_BY_SCRIPTS = frozenset(
     {
         "bpy.types.Operator", "bpy.types.Macro", "bpy.types.Panel", "bpy.types.Menu", "bpy.types.Header",
         "bpy.types.UIList", "bpy.types.RenderEngine", "bpy.types.KeyingSetInfo", "bpy.types.GizmoGroup",
         "bpy.types.Node", "bpy.types.NodeSocket", "bpy.types.NodeTree", "bpy.types.NodeCustomGroup",
-        "bpy.types.NodeTreeInterfaceSocket", "bpy.types.Context",
+        "bpy.types.NodeTreeInterfaceSocket",
     }
 )  # fmt: skip
 # Nodes that have the sockets which their group, their zone or their items give them.
 NODES_WITH_SOCKETS_OF_THEIR_OWN = (
     "Group", "GroupInput", "GroupOutput", "SimulationInput", "SimulationOutput", "RepeatInput", "RepeatOutput",
     "ForeachGeometryElementInput", "ForeachGeometryElementOutput", "Bake", "CaptureAttribute", "MenuSwitch",
-    "IndexSwitch", "Viewer", "OutputFile", "Script", "CombineBundle", "SeparateBundle", "EvaluateClosure",
+    "IndexSwitch", "GeometryNodeViewer", "OutputFile", "Script", "CombineBundle", "SeparateBundle", "EvaluateClosure",
     "ClosureInput", "ClosureOutput", "FormatString", "CryptomatteV2", "RLayers", "Image", "Reroute", "Custom",
 )  # fmt: skip
+
+# Modules whose base classes and imported names the symbols do not tell (Iterator has what Interface0DIterator has).
+HALF_KNOWN = ("freestyle",)
+# Names that are there at times, which no base can tell: owner → patterns. An official build has the 3D mouse, the bpy
+# package has not; only Windows has a console to toggle; a layout gives its buttons pointers by context_pointer_set, in
+# Blender's own scripts and in C.
+SOMETIMES = {
+    "bpy.types.PreferencesInput": ("ndof_*",),
+    "bpy.ops.wm": ("console_toggle",),
+    "bpy.types.Context": (
+        "animated_id", "asset_shelf", "button_operator", "button_pointer", "button_prop", "collection", "constraint",
+        "exporter", "extension_repo", "freestyle_module", "gpencil_modifier", "id", "keyconfig", "keymap",
+        "material_slot", "modifier", "nla_strip", "point_cache", "shaderfx", "socket", "state", "tool", "viewer_path",
+    ),
+}  # fmt: skip
+
+# Values that work and are left out of a docstring: this function hands them on to gpu.types.GPUBatch, which has them.
+MORE_VALUES = {"gpu_extras.batch.batch_for_shader(type)": ("LINE_LOOP", "TRI_FAN")}
 
 # Functions that take keywords which their signatures do not list.
 OPEN_CALLS = frozenset({"bpy.types.Context.temp_override"})

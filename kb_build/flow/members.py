@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.api import ARRAY, COLLECTION, GROUPS, STRUCT
-from kb_build.flow.core import Core
+from kb_build.flow.core import ANY, Core
 from kb_build.flow.facts import (
     DERIVED_BY_SCRIPTS,
+    HALF_KNOWN,
     LAYER_ITEM,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
+    SOMETIMES,
+    T,
 )
 from kb_build.flow.types import (
     FLOAT,
@@ -26,6 +30,7 @@ from kb_build.flow.types import (
     LocalClass,
     LocalFunction,
     LocalInstance,
+    LocalModule,
     Mapping,
     Module,
     NoneValue,
@@ -105,7 +110,11 @@ class Members(Core):
             ]
             found.types.append(union(kinds) if len(kinds) <= MOST_MEMBERS else UNKNOWN)
             return
-        if not _is_pythons(name) and not self._is_open(kind.cls):
+        if (
+            not _is_pythons(name)
+            and not self._is_open(kind.cls)
+            and not self.is_there_at_times(f"{kind.cls}.{name}")
+        ):
             found.missing.append(kind.cls)
             found.sure = found.sure and kind.cls not in DERIVED_BY_SCRIPTS
         found.types.append(UNKNOWN)
@@ -113,9 +122,15 @@ class Members(Core):
     def _is_open(self, cls: str) -> bool:
         """Whether instances of a class have members that its symbols do not tell."""
         symbol = self.api.symbols.symbol(cls)
-        if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"}:
+        if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"} or _half_known(cls):
             return True
         return any(self.api.descends(cls, base) for base in OPEN_CLASSES)
+
+    @staticmethod
+    def is_there_at_times(path: str) -> bool:
+        """Whether a name that the base lacks is there in another build, or in another place."""
+        owner, _, name = path.rpartition(".")
+        return any(fnmatchcase(name, pattern) for pattern in SOMETIMES.get(owner, ()))
 
     def _held(self, kind: Type, owner: Type, name: str) -> Type:
         """A member's type as it is read from its owner."""
@@ -131,6 +146,7 @@ class Members(Core):
             for ancestor in self.api.lineage(cls):
                 if (found := self.registered.get((ancestor, name))) is not None:
                     return found
+            return self.registered.get((ANY, name))
         return None
 
     def _of_collection(self, kind: Collection, name: str, found: Lookup) -> None:
@@ -152,16 +168,30 @@ class Members(Core):
         member = self.api.member(kind.path, name)
         if member is None:
             nested = self.api.symbols.symbol(f"{kind.path}.{name}")
-            if (
-                nested is None
-                and not name.startswith("_")
-                and f"{kind.path}.{name}" not in self.own_operators
-            ):
+            path = f"{kind.path}.{name}"
+            if kind.path == "bpy.types" and (own := self.own_types.get(name)):
+                found.types.append(own)
+                return
+            known = nested is not None or name.startswith("_") or path in self.own_operators
+            if not known and not _half_known(kind.path) and not self.is_there_at_times(path):
                 found.missing.append(kind.path)
             found.types.append(UNKNOWN)
             return
         found.symbols.append(member.symbol.path)
         found.types.append(self._held(member.type, kind, name))
+
+    def local_module(self, name: str) -> Type:
+        """A module of the files that are analysed together, which is read first; UNKNOWN for no such module."""
+        if file := self.files.get(name):
+            self.read_file(file)
+        elif name not in self.folders:
+            return UNKNOWN
+        return LocalModule(name)
+
+    def _of_local_module(self, kind: LocalModule, name: str, found: Lookup) -> None:
+        file = self.files.get(kind.name)
+        held = file.module.ever.get(name) if file else None
+        found.types.append(held or self.local_module(f"{kind.name}.{name}"))
 
     def _of_class(self, kind: ClassObject, name: str, found: Lookup) -> None:
         member = self.api.member(kind.cls, name)
@@ -270,7 +300,7 @@ class Members(Core):
         if text and isinstance(element, Instance):
             cls = self.api.class_by_label(element.cls, text)
             if cls and self.api.descends(cls, element.cls):
-                return Instance(cls, sure=False)
+                return Instance(cls)
         return element
 
     def _socket(self, owner: Instance, side: str, key: Type, node: ast.AST) -> Type | None:
@@ -325,6 +355,7 @@ class Members(Core):
         Instance: _of_instance,
         Collection: _of_collection,
         Module: _of_module,
+        LocalModule: _of_local_module,
         ClassObject: _of_class,
         Operator: _of_operator,
         LocalClass: _of_local_class,
@@ -338,7 +369,12 @@ class Members(Core):
 
 def _has_sockets_of_its_own(cls: str) -> bool:
     """Whether the sockets of a node depend on more than its class."""
-    return cls.rpartition("Node")[2] in NODES_WITH_SOCKETS_OF_THEIR_OWN
+    return not {cls.rpartition("Node")[2], cls.removeprefix(T)}.isdisjoint(NODES_WITH_SOCKETS_OF_THEIR_OWN)
+
+
+def _half_known(path: str) -> bool:
+    """Whether a module or class may have more than its symbols tell."""
+    return path.partition(".")[0] in HALF_KNOWN
 
 
 def _is_pythons(name: str) -> bool:

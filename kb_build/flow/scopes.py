@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import (
-    UNKNOWN,
     Builtin,
     Function,
     Instance,
@@ -28,7 +27,7 @@ _DEEPEST_CHAIN = 8
 _NESTED = (ListType, Tuple, Mapping, Union, Instance, Function, Builtin, LocalFunction)
 
 
-def _kept(kind: Type) -> Type:
+def kept(kind: Type) -> Type:
     """A type as a name holds it; the same object where it is simple."""
     return bounded(kind) if isinstance(kind, _NESTED) else kind
 
@@ -55,6 +54,14 @@ def joined(states: Sequence[State]) -> State:
             names[name] = join(names[name], kind) if name in names else kind
         chains = {text: kind for text, kind in chains.items() if other.chains.get(text) == kind}
     return State(names, dict(chains))
+
+
+@dataclass(slots=True)
+class Loop:
+    """A loop that is being read: the states at its ``break`` and ``continue``."""
+
+    left: list[State] = field(default_factory=list[State])
+    continued: list[State] = field(default_factory=list[State])
 
 
 @dataclass(slots=True)
@@ -86,7 +93,7 @@ class Scope:
 
     def bind(self, name: str, kind: Type) -> None:
         """Binds a name, and forgets what was known of chains that begin with it."""
-        kind = _kept(kind)
+        kind = kept(kind)
         if name in self.elsewhere:
             scope = self.parent
             while scope is not None and scope.parent is not None and name not in scope.ever:
@@ -113,50 +120,6 @@ class Scope:
         chains = self.state.chains
         for chain in [chain for chain in chains if chain == text or chain.startswith(begins)]:
             del chains[chain]
-
-
-@dataclass(slots=True)
-class FunctionDefinition:
-    """A function of the script.
-
-    ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
-    something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
-    ``used`` are the attributes that it reads from each name, once they were asked for.
-    """
-
-    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
-    scope: Scope
-    cls: int | None = None
-    is_static: bool = False
-    is_class_method: bool = False
-    is_property: bool = False
-    received: dict[str, Type] = field(default_factory=dict[str, Type])
-    unknown: set[str] = field(default_factory=set[str])
-    returned: Type | None = None
-    running: bool = False
-    runs: int = 0
-    stale: bool = True
-    seen: tuple[int, int] = (-1, -1)
-    used: dict[str, set[str]] | None = None
-
-
-@dataclass(slots=True)
-class ClassDefinition:
-    """A class of the script; ``attributes`` joins what its body, its annotations and its methods bind."""
-
-    node: ast.ClassDef
-    bases: tuple[Type, ...]
-    attributes: dict[str, Type] = field(default_factory=dict[str, Type])
-    changes: int = 0
-
-    def bind(self, name: str, kind: Type) -> None:
-        """Adds to what an attribute holds."""
-        kind = _kept(kind)
-        before = self.attributes.get(name)
-        after = kind if before is None or before is UNKNOWN else join(before, kind)
-        if after != before:
-            self.attributes[name] = after
-            self.changes += 1
 
 
 def chain_text(node: ast.expr) -> str:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass, field
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.annotations import annotated
 from kb_build.flow.calls import Calls
-from kb_build.flow.facts import PARAMETERS, T
-from kb_build.flow.scopes import ClassDefinition, FunctionDefinition, Scope, State, chain_text, joined
+from kb_build.flow.core import ANY
+from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
+from kb_build.flow.facts import PARAMETERS, VERSION, T
+from kb_build.flow.scopes import Loop, Scope, State, chain_text, joined
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -20,19 +22,24 @@ from kb_build.flow.types import (
     LocalClass,
     LocalFunction,
     LocalInstance,
+    LocalModule,
     Mapping,
     Module,
+    NoneValue,
     Plain,
     Sequence,
     Tuple,
     Type,
+    Union,
     bounded,
     join,
     literal,
+    members,
+    union,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from collections.abc import Sequence as Rows
 
 _MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
@@ -43,18 +50,8 @@ _API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy
                           "bl_math", "idprop", "imbuf"})  # fmt: skip
 
 
-@dataclass(slots=True)
-class _Loop:
-    """A loop that is being read: the states at its ``break`` and ``continue``."""
-
-    left: list[State] = field(default_factory=list[State])
-    continued: list[State] = field(default_factory=list[State])
-
-
 class Statements(Calls):
     """Reads statements. Each reader returns whether the next statement can be reached."""
-
-    loops: list[_Loop]
 
     def read_body(self, body: Rows[ast.stmt]) -> bool:
         """Reads statements one after the other; whether what follows them can be reached."""
@@ -119,9 +116,11 @@ class Statements(Calls):
             self._store_on_instance(owner, target.attr, kind)
         elif isinstance(owner, LocalClass):
             self.classes[owner.number].bind(target.attr, kind)
-        elif isinstance(owner, ClassObject) and self.api.member(owner.cls, target.attr) is None:
-            self.registered[owner.cls, target.attr] = kind
-            return
+        else:
+            self.register(owner, target.attr, kind, declared=self.is_declared(value))
+            if all(isinstance(member, ClassObject) for member in members(owner)):
+                self.resolutions.pop(target, None)
+                return
         is_expected = text in self.scope.state.chains
         if text and self.scope.state.chains:
             self.scope.forget(text)
@@ -191,7 +190,8 @@ class Statements(Calls):
 
     def _if(self, node: ast.If) -> bool:
         test = self.evaluate(node.test)
-        truth = literal(test) if isinstance(test, Plain) and test.kind == "bool" else None
+        # Only another version's code is left out: a switch may be set by whoever reads the script.
+        truth = literal(test) if isinstance(test, Plain) and test.source == VERSION else None
         before = self.scope.state
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
@@ -205,7 +205,7 @@ class Statements(Calls):
     def _loop(self, body: Rows[ast.stmt], orelse: Rows[ast.stmt], enter: Callable[[], None]) -> bool:
         """Reads a loop's body twice, so that what one turn binds is known in the next."""
         before = self.scope.state
-        loop = _Loop()
+        loop = Loop()
         self.loops.append(loop)
         start = before
         bound = len(before.names), before
@@ -298,7 +298,7 @@ class Statements(Calls):
     def _bind_pattern(self, pattern: ast.pattern, subject: Type, node: ast.expr) -> None:
         if isinstance(pattern, ast.MatchValue):
             self.evaluate(pattern.value)
-            self.check_value(subject, pattern.value)
+            self.check_value(subject, pattern.value, "compared")
             compared = ast.Compare(node, [ast.Eq()], [pattern.value])
             self.narrow(compared, holds=True)
             return
@@ -340,7 +340,7 @@ class Statements(Calls):
         return True
 
     def _global(self, node: ast.Global | ast.Nonlocal) -> bool:
-        if self.scope is not self.module:
+        if self.scope is not self.file.module:
             self.scope.elsewhere.update(node.names)
         return True
 
@@ -355,10 +355,12 @@ class Statements(Calls):
                 self.resolve(alias, "name", alias.name, missing=(alias.name,))
             elif known:
                 self.resolve(alias, "name", alias.name, (alias.name,))
+            if not known:
+                whole = self.local_module(alias.name)
             if alias.asname:
                 self.scope.bind(alias.asname, whole)
             else:
-                self.scope.bind(top, self._module(top) if known else UNKNOWN)
+                self.scope.bind(top, self._module(top) if known else self.local_module(top))
         return True
 
     def _module(self, path: str) -> Type:
@@ -372,7 +374,7 @@ class Statements(Calls):
     def _import_from(self, node: ast.ImportFrom) -> bool:
         module = node.module or ""
         known = not node.level and module.partition(".")[0] in _API_MODULES
-        owner = self._module(module) if known else UNKNOWN
+        owner = self._module(module) if known else self.local_module(self.file.imported(node.level, module))
         for alias in node.names:
             name = alias.asname or alias.name
             if alias.name == "*":
@@ -388,10 +390,14 @@ class Statements(Calls):
         return True
 
     def _import_all(self, owner: Type) -> None:
+        names: Iterable[str] = ()
         if isinstance(owner, Module):
-            for name in self.api.own(owner.path):
-                if not name.startswith("_"):
-                    self.scope.bind(name, self.attribute(owner, name).type)
+            names = self.api.own(owner.path)
+        elif isinstance(owner, LocalModule) and (file := self.files.get(owner.name)):
+            names = list(file.module.ever)
+        for name in names:
+            if not name.startswith("_"):
+                self.scope.bind(name, self.attribute(owner, name).type)
 
     def _define_function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
         cls = self.scope.cls if self.scope.is_class else None
@@ -441,13 +447,30 @@ class Statements(Calls):
         finally:
             self.scope = outer
         definition = self.classes[number]
-        if isinstance(name := literal(scope.state.names.get("bl_idname", UNKNOWN)), str):
-            module, _, operator = f"bpy.ops.{name}".rpartition(".")
-            self.own_operators |= {module, f"{module}.{operator}"}
+        self._add_to_api(node.name, number, scope.state.names.get("bl_idname"))
         for name, kind in scope.ever.items():
             definition.bind(name, _general(kind) if isinstance(kind, Plain) else kind)
         self.scope.bind(node.name, LocalClass(number))
         return True
+
+    def _add_to_api(self, name: str, number: int, identifier: Type | None) -> None:
+        """Notes that a class, once it is registered, is found below bpy.types, and an operator below bpy.ops."""
+        bases, known = self._direct_bases(number)
+        if known and not any(base.startswith(T) for base in bases):
+            return
+        text = literal(identifier) if identifier is not None else name
+        if not isinstance(text, str):
+            self.own_types[name] = LocalClass(number)
+            if not known or any(self.api.descends(base, f"{T}Operator") for base in bases):
+                self.own_operators.add(ANY)
+            return
+        module, is_class_name, operator = text.partition("_OT_")
+        if not is_class_name:
+            module, _, operator = text.partition(".")
+        if module and operator:
+            self.own_operators |= {f"bpy.ops.{module.lower()}", f"bpy.ops.{module.lower()}.{operator}"}
+            text = f"{module.upper()}_OT_{operator}"
+        self.own_types[name] = self.own_types[text] = LocalClass(number)
 
     def _base(self, node: ast.expr) -> Type:
         kind = self.evaluate(node)
@@ -460,32 +483,30 @@ class Statements(Calls):
     def run(self, number: int) -> None:
         """See :class:`core.Core`."""
         function = self.functions[number]
-        outer = self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing
-        self.scope = Scope(function.scope)
-        self.function, self.loops, self.tolerant = function, [], 0
         function.running, function.stale, function.runs = True, False, function.runs + 1
         function.seen = self.stamp(function)
-        self.statement = None
-        # Some calls pass what is not known: the others tell no more than what may be passed.
-        self.guessing = any(function.received.get(name, UNKNOWN) is not UNKNOWN for name in function.unknown)
         try:
-            self._bind_parameters(function)
-            if isinstance(function.node, ast.Lambda):
-                function.returned = self.evaluate(function.node.body)
-            elif self.read_body(function.node.body) and function.returned is not None:
-                function.returned = join(function.returned, NONE)
-            if not isinstance(function.node, ast.Lambda) and function.node.returns is not None:
-                self.statement = None
-                declared = annotated(function.node.returns, self.evaluate)
-                if declared is not UNKNOWN and function.returned in {UNKNOWN, None}:
-                    function.returned = declared
+            with self.inside(function.file or self.file, Scope(function.scope), function):
+                self._read_function(function)
         finally:
             function.running = False
-            self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing = outer
+
+    def _read_function(self, function: FunctionDefinition) -> None:
+        self._bind_parameters(function)
+        if isinstance(function.node, ast.Lambda):
+            function.returned = self.evaluate(function.node.body)
+        elif self.read_body(function.node.body) and function.returned is not None:
+            function.returned = join(function.returned, NONE)
+        if not isinstance(function.node, ast.Lambda) and function.node.returns is not None:
+            self.statement = None
+            declared = annotated(function.node.returns, self.evaluate)
+            if declared is not UNKNOWN and function.returned in {UNKNOWN, None}:
+                function.returned = declared
 
     def stamp(self, function: FunctionDefinition) -> tuple[int, int]:
         """What changes when a function should be read again: its module's names, its class's attributes."""
-        return self.module.changes, self.classes[function.cls].changes if function.cls is not None else 0
+        module = function.file.module if function.file else self.file.module
+        return module.changes, self.classes[function.cls].changes if function.cls is not None else 0
 
     def _bind_parameters(self, function: FunctionDefinition) -> None:
         arguments = function.node.args
@@ -514,16 +535,32 @@ class Statements(Calls):
         if argument.annotation is not None:
             kind = annotated(argument.annotation, self.evaluate)
             if kind is not UNKNOWN:
-                return kind
+                received = function.received.get(argument.arg, UNKNOWN)
+                return join(kind, received) if self._contradicts(received, kind) else kind
         if declared is not UNKNOWN:
             return declared
         received = function.received.get(argument.arg, UNKNOWN)
+        if argument.arg in function.unknown and received is not UNKNOWN:
+            # Some calls pass what is not known: the others tell no more than what may be passed.
+            self.guessing = self.guessing or not _can_be_unsure(received)
+            received = _unsure(received)
         fallback = self.types.get(default, UNKNOWN) if default is not None else UNKNOWN
         if received is not UNKNOWN and received is not NONE:
             return received if fallback is UNKNOWN else join(received, _general(fallback))
         if fallback is not UNKNOWN and fallback is not NONE:
             return _general(fallback)
         return self._by_convention(function, argument.arg)
+
+    def _contradicts(self, received: Type, declared: Type) -> bool:
+        """Whether calls pass an instance of another class than the annotation says, which nobody checks."""
+        classes = [member.cls for member in members(declared) if isinstance(member, Instance)]
+        return bool(classes) and any(
+            isinstance(member, Instance)
+            and not any(
+                self.api.descends(member.cls, cls) or self.api.descends(cls, member.cls) for cls in classes
+            )
+            for member in members(received)
+        )
 
     def _by_convention(self, function: FunctionDefinition, name: str) -> Type:
         """The type that everyone's parameters of this name have, if the function uses it so."""
@@ -594,6 +631,20 @@ def _general(kind: Type) -> Type:
     if isinstance(kind, Plain) and kind.value is not None:
         return Plain(kind.kind, None, kind.source)
     return kind
+
+
+def _can_be_unsure(kind: Type) -> bool:
+    """Whether a type itself can say that it is not sure."""
+    return all(isinstance(member, (Plain, Instance, NoneValue)) for member in members(kind))
+
+
+def _unsure(kind: Type) -> Type:
+    """A type that is only one of those that a value may have."""
+    if isinstance(kind, Union):
+        return union(_unsure(member) for member in kind.members)
+    if isinstance(kind, Instance):
+        return replace(kind, sure=False)
+    return Plain(kind.kind) if isinstance(kind, Plain) else kind
 
 
 def _used_names(function: ast.AST) -> dict[str, set[str]]:

@@ -73,6 +73,13 @@ class Module:
 
 
 @dataclass(frozen=True, slots=True)
+class LocalModule:
+    """A module or package of the files that are analysed together, by its dotted name."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
 class Function:
     """A function or method of the API, read from ``receiver``."""
 
@@ -173,6 +180,7 @@ Type = (
     | Sequence
     | Tuple
     | Mapping
+    | LocalModule
     | LocalFunction
     | LocalClass
     | LocalInstance
@@ -232,7 +240,8 @@ def join(first: Type, second: Type) -> Type:
 def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:  # noqa: PLR0911 - one return a type
     """A type whose parts lie at most so deep within each other: a list that holds itself has no end."""
     if isinstance(
-        kind, (Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalClass, LocalInstance)
+        kind,
+        (Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalModule, LocalClass, LocalInstance),
     ):
         return kind
     if depth == 0:
@@ -286,7 +295,8 @@ class Resolution:
     script is ready for the opposite (``hasattr``, ``try``). ``statement`` is the innermost one around it.
 
     Kinds: ``attribute`` and ``store`` (ast.Attribute), ``name`` (an imported or bare name), ``call`` (ast.Call),
-    ``keyword`` (ast.keyword), ``value`` (a literal of an enumeration), ``item`` (ast.Subscript, or the literal key
+    ``keyword`` (ast.keyword), ``value`` (a literal given to an enumeration), ``compared`` (a literal that
+    one is compared with), ``item`` (ast.Subscript, or the literal key
     of a call to ``get``), ``text`` (a literal that names a property: ``keyframe_insert("location")``), ``button`` (a
     literal that names the property or the operator that a layout shows).
     """

@@ -120,7 +120,7 @@ def _used(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
     called = {node.func for node in analysis.resolutions if isinstance(node, ast.Call)}
     for node, resolution in analysis.resolutions.items():
         kind = resolution.kind
-        if kind in {"keyword", "value"} or (kind == "attribute" and node in called):
+        if kind in {"keyword", "value", "compared"} or (kind == "attribute" and node in called):
             continue
         for path in resolution.symbols:
             yield path, kind, len(resolution.symbols), resolution

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Finding, Fix
@@ -27,22 +28,21 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     """Writes the right name in the place of a wrong one, where only the name differs."""
     if not lacking.replacement:
         return None
-    owner, name = _parts(lacking.replacement)
+    owner, name = _split(lacking.replacement)
     same_owner = "." not in lacking.replacement or any(
-        cls == owner or script.api.descends(owner, missing)
-        for missing in row.missing
-        for cls in (missing, *script.api.lineage(missing))
+        cls == owner for missing in row.missing for cls in (missing, *script.api.lineage(missing))
     )
-    if not same_owner or not name or (edit := script.renamed(row.node, name)) is None:
+    node = row.node.slice if isinstance(row.node, ast.Subscript) else row.node
+    if not same_owner or not name or (edit := script.renamed(node, name)) is None:
         return None
     return Fix(f"Write {name}", (edit,), sure=lacking.sure)
 
 
-def _parts(path: str) -> tuple[str, str]:
+def _split(path: str) -> tuple[str, str]:
     """``a`` and ``b`` of ``a.b``, ``a(b)``, ``a:b`` and ``a.inputs["b"]``."""
-    for opening, closing in (('["', '"]'), ("(", ")"), (":", "")):
+    for opening, closing in (('.inputs["', '"]'), ('.outputs["', '"]'), ("(", ")"), (":", "")):
         owner, found, name = path.partition(opening)
         if found:
-            return owner.removesuffix(".inputs").removesuffix(".outputs"), name.removesuffix(closing)
+            return owner, name.removesuffix(closing)
     owner, _, name = path.rpartition(".")
     return owner, name

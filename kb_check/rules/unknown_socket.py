@@ -24,12 +24,14 @@ if TYPE_CHECKING:
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for row in script.missing("item", unsure=True):
+    for row in script.missing("item"):
         node = row.missing[0]
+        if any(script.names.still_works(f'{node}.{side}["{row.value}"]') for side in ("inputs", "outputs")):
+            continue
         names = [s.name for side in ("inputs", "outputs") for _, _, s in script.api.sockets(node, side)]
-        lacking = script.names.socket(node, row.value, dict.fromkeys(names))
-        if row.sure or lacking.stated:  # a node's usual name, and a socket that it had: no chance
-            yield lacking_finding(script, RULE.id, row, lacking)
+        yield lacking_finding(
+            script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
+        )
 
 
 RULE = Rule("unknown-socket", "error", "A socket that the node does not have", _check)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.flow import analysis as analysis_module
 from kb_build.flow.analysis import analyse
-from kb_check import analysis as analysis_module
 
 if TYPE_CHECKING:
     from kb_build.flow.api import Api

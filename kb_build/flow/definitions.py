@@ -1,0 +1,60 @@
+"""The functions and classes of a script."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kb_build.flow.scopes import kept
+from kb_build.flow.types import UNKNOWN, Type, join
+
+if TYPE_CHECKING:
+    import ast
+
+    from kb_build.flow.scopes import Scope
+    from kb_build.flow.source_files import SourceFile
+
+
+@dataclass(slots=True)
+class FunctionDefinition:
+    """A function of the script.
+
+    ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
+    something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
+    ``used`` are the attributes that it reads from each name, once they were asked for. ``file`` is where it stands.
+    """
+
+    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+    scope: Scope
+    cls: int | None = None
+    is_static: bool = False
+    is_class_method: bool = False
+    is_property: bool = False
+    received: dict[str, Type] = field(default_factory=dict[str, Type])
+    unknown: set[str] = field(default_factory=set[str])
+    returned: Type | None = None
+    running: bool = False
+    runs: int = 0
+    stale: bool = True
+    seen: tuple[int, int] = (-1, -1)
+    used: dict[str, set[str]] | None = None
+    file: SourceFile | None = None
+
+
+@dataclass(slots=True)
+class ClassDefinition:
+    """A class of the script; ``attributes`` joins what its body, its annotations and its methods bind."""
+
+    node: ast.ClassDef
+    bases: tuple[Type, ...]
+    attributes: dict[str, Type] = field(default_factory=dict[str, Type])
+    changes: int = 0
+
+    def bind(self, name: str, kind: Type) -> None:
+        """Adds to what an attribute holds."""
+        kind = kept(kind)
+        before = self.attributes.get(name)
+        after = kind if before is None or before is UNKNOWN else join(before, kind)
+        if after != before:
+            self.attributes[name] = after
+            self.changes += 1

@@ -1,0 +1,48 @@
+"""The files that are analysed together, and the names by which they import each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from kb_build.flow.scopes import Scope
+
+if TYPE_CHECKING:
+    import ast
+
+    from kb_build.flow.types import Resolution, Type
+
+
+@dataclass(slots=True)
+class SourceFile:
+    """One file: its module's dotted name, its text as a tree (None with an ``error``), and what was found in it.
+
+    ``steps_left`` is what may still be spent on reading it, ``complete`` whether that was enough.
+    """
+
+    name: str
+    is_package: bool
+    tree: ast.Module | None
+    steps_left: int
+    error: SyntaxError | None = None
+    module: Scope = field(default_factory=Scope)
+    types: dict[ast.expr, Type] = field(default_factory=dict["ast.expr", "Type"])
+    resolutions: dict[ast.AST, Resolution] = field(default_factory=dict["ast.AST", "Resolution"])
+    started: bool = False
+    complete: bool = True
+
+    def imported(self, level: int, module: str) -> str:
+        """The dotted name of what ``from ..module import`` means here, with ``level`` dots; empty for nothing."""
+        if not level:
+            return module
+        parts = self.name.split(".")
+        parts = parts[: len(parts) - level + self.is_package]
+        return ".".join([*parts, module] if module else parts) if parts else ""
+
+
+def module_name(path: str) -> tuple[str, bool]:
+    """``addon/ui/__init__.py`` → (``addon.ui``, True): a file's dotted name, and whether it is a package's."""
+    parts = PurePosixPath(path.removesuffix(".py")).parts
+    is_package = bool(parts) and parts[-1] == "__init__"
+    return ".".join(parts[:-1] if is_package else parts), is_package
