@@ -80,7 +80,7 @@ class Migrator:
     def _read(self, states: Iterable[_State], beside: Mapping[str, str]) -> Package:
         """Reads all files anew: what one says about types holds in the others, too."""
         states = list(states)
-        texts = {state.file.name: state.text.code for state in states} | beside
+        texts = {**beside, **{state.file.name: state.text.code for state in states}}
         paths = _paths_in_package(texts)
         if len(texts) == 1:
             reads = {path: self._target.read(texts[name]) for name, path in paths.items()}
@@ -225,9 +225,9 @@ class _State:
 
 def _paths_in_package(names: Iterable[str]) -> dict[str, str]:
     """Name of a file → its path from the folder of its package on, with slashes."""
-    names = list(names)
-    top = PurePath(os.path.commonpath([PurePath(name).parent for name in names])).parent
-    return {name: PurePath(name).relative_to(top).as_posix() for name in names}
+    whole = {name: PurePath(os.path.abspath(name)) for name in names}
+    top = PurePath(os.path.commonpath([path.parent for path in whole.values()])).parent
+    return {name: path.relative_to(top).as_posix() for name, path in whole.items()}
 
 
 def _version(checker: Checker) -> Version:
