@@ -33,6 +33,7 @@ class ResultCache:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._connection: sqlite3.Connection | None = None
+        self._used: set[bytes] = set()
         with suppress(OSError, sqlite3.Error):
             path.parent.mkdir(parents=True, exist_ok=True)
             self._open()
@@ -41,9 +42,11 @@ class ResultCache:
         """What was put for a key: the findings of each file."""
         rows = self._execute("SELECT value FROM results WHERE key = ?", (key,))
         try:
-            return [[_from_json(row) for row in file] for file in json.loads(zlib.decompress(rows[0][0]))]
+            files = [[_from_json(row) for row in file] for file in json.loads(zlib.decompress(rows[0][0]))]
         except (LookupError, TypeError, ValueError, zlib.error):
             return None
+        self._used.add(key)
+        return files
 
     def put(self, key: bytes, files: Iterable[Sequence[Finding]]) -> None:
         """Keeps the findings of each file of a group."""
@@ -51,10 +54,10 @@ class ResultCache:
         value = zlib.compress(json.dumps(plain, separators=(",", ":")).encode(), 1)
         self._execute("INSERT OR REPLACE INTO results VALUES (?, ?, ?)", (key, time.time(), value))
 
-    def close(self, used: Iterable[bytes] = ()) -> None:
-        """Notes which keys were used, drops the oldest results beyond the bound, and closes the file."""
+    def close(self) -> None:
+        """Notes what was used, drops the oldest results beyond the bound, and closes the file."""
         now = time.time()
-        self._execute_many("UPDATE results SET used = ? WHERE key = ?", [(now, key) for key in used])
+        self._execute_many("UPDATE results SET used = ? WHERE key = ?", [(now, key) for key in self._used])
         self._execute(
             "DELETE FROM results WHERE key IN (SELECT key FROM (SELECT key, SUM(LENGTH(value) + 100) OVER "
             "(ORDER BY used DESC, key) AS size FROM results) WHERE size > ?)",

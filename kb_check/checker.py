@@ -75,14 +75,6 @@ class Checker:
             for path, analysis in found.items()
         }
 
-    def check_files(self, files: Mapping[str, str], rules: Collection[str] = ()) -> dict[str, list[Finding]]:
-        """The findings in the files of one package (see :meth:`read_files`), by path."""
-        reads = self.read_files(files)
-        package = self.package()
-        for read in reads.values():
-            package.add(read.analysis, read.may_register)
-        return {path: self.check(read, package, rules) for path, read in reads.items()}
-
     def check(
         self, code: str | Read, package: Package | None = None, rules: Collection[str] = ()
     ) -> list[Finding]:
@@ -94,7 +86,9 @@ class Checker:
         script = self.script(read, package)
         found = [finding for rule in all_rules().values() for finding in rule.check(script)]
         ignores = Ignores(read.code)
-        kept = [*ignores.kept(found), *(ignores.unused(all_rules()) if read.error is None else ())]
+        kept = ignores.kept(found)
+        if read.error is None and read.analysis.complete:
+            kept += ignores.kept(list(ignores.unused(all_rules())))
         chosen = [finding for finding in kept if not rules or finding.rule in rules]
         return sorted(chosen, key=lambda one: (one.span.line, one.span.column, one.rule))
 

@@ -155,7 +155,7 @@ def _project(base: Path, choices: dict[str, Any]) -> Generator[tuple[Any, str]]:
         yield project, meta["minor"]
     finally:
         if cache is not None:
-            cache.close(project.used)
+            cache.close()
 
 
 @contextmanager

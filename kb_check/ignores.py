@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import tokenize
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -32,8 +33,9 @@ class _Comment:
     used: set[str]
 
     def ignores(self, finding: Finding) -> bool:
-        if not self.whole_file and not finding.span.line <= self.span.line <= finding.span.end_line:
-            return False
+        """Whether it names the finding's rule, or all."""
+        if finding.rule == UNUSED:  # a comment that ignores everything does not hide itself
+            return self.rules is not None and UNUSED in self.rules
         return self.rules is None or finding.rule in self.rules
 
 
@@ -42,6 +44,8 @@ class Ignores:
 
     def __init__(self, code: str) -> None:
         self._comments = list(_comments(code)) if "simworlds:" in code else []
+        self._whole_file = [comment for comment in self._comments if comment.whole_file]
+        self._lines = split_lines(code) if self._comments else []
 
     def kept(self, findings: list[Finding]) -> list[Finding]:
         """The findings that no comment ignores."""
@@ -51,23 +55,37 @@ class Ignores:
         """A finding for each comment that ignored nothing; to be asked last. ``known`` are the ids of all rules."""
         for comment in self._comments:
             unused = sorted((comment.rules or set()) - comment.used - {UNUSED})
-            if comment.used and (comment.rules is None or not unused):
+            if (comment.rules and not unused) or (comment.rules is None and comment.used):
                 continue
-            strange = [name for name in unused if name not in known]
-            what = ", ".join(unused) or "nothing here"
-            message = f"This comment has nothing to ignore: {what} is not found here."
-            if comment.rules is None:
-                message = "This comment has nothing to ignore."
-            elif strange:
+            message = "This comment has nothing to ignore."
+            if strange := [name for name in unused if name not in known]:
                 message = f"There is no rule {', '.join(strange)} to ignore."
+            elif unused:
+                message = f"This comment ignores what is not found here: {', '.join(unused)}."
             edit = Edit(comment.span, _without(comment, unused))
+            if not edit.text:
+                edit = Edit(self._with_blanks(comment.span), "")
             yield Finding(UNUSED, "note", comment.span, message, fix=Fix("Remove it", (edit,), sure=True))
 
+    def _with_blanks(self, span: Span) -> Span:
+        """The span of a comment and of the blanks before it, where the line ends with it."""
+        line = self._lines[span.line - 1]
+        if line[span.end_column :].strip():
+            return span
+        return Span(span.line, len(line[: span.column].rstrip()), span.line, span.end_column)
+
     def _ignored(self, finding: Finding) -> bool:
-        found = [comment for comment in self._comments if comment.ignores(finding)]
+        first = bisect_left(self._comments, finding.span.line, key=_line)
+        last = bisect_right(self._comments, finding.span.end_line, key=_line)
+        near = [*self._whole_file, *self._comments[first:last]]
+        found = [comment for comment in near if comment.ignores(finding)]
         for comment in found:
             comment.used.add(finding.rule)
         return bool(found)
+
+
+def _line(comment: _Comment) -> int:
+    return comment.span.line
 
 
 def _without(comment: _Comment, unused: list[str]) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from multiprocessing.connection import wait
+from pathlib import PurePath
 from typing import TYPE_CHECKING, cast
 
 from kb_check.cache import result_key
@@ -72,11 +74,6 @@ class Project:
             done += sizes[number]
             progress(done, total)
         return [self._known[key] for key in keys]
-
-    @property
-    def used(self) -> list[bytes]:
-        """The keys of all results that were asked for."""
-        return list(self._known)
 
     def _key(self, group: Group) -> bytes:
         return result_key(self._fingerprint, ((file.name, file.data, file.wanted) for file in group))
@@ -157,7 +154,9 @@ def _check_all(base: Path, groups: Sequence[Group], numbers: Iterable[int]) -> I
 def check_group(checker: Checker, group: Group) -> list[list[Finding]]:
     """The findings of each file; none for those that are not wanted."""
     sources = [read_source(file.data, file.name) for file in group]
-    reads = [checker.read(source.text) for source in sources]
+    paths = _module_paths(group)
+    found = checker.read_files({path: source.text for path, source in zip(paths, sources, strict=True)})
+    reads = [found[path] for path in paths]
     package = checker.package()
     for read in reads:
         package.add(read.analysis, read.may_register)
@@ -165,6 +164,13 @@ def check_group(checker: Checker, group: Group) -> list[list[Finding]]:
         [*_fault(source), *checker.check(read, package)] if file.wanted else []
         for file, source, read in zip(group, sources, reads, strict=True)
     ]
+
+
+def _module_paths(group: Group) -> list[str]:
+    """The files' paths from the folder that holds their package, as its modules import each other."""
+    places = [PurePath(os.path.realpath(file.name)) for file in group]
+    top = PurePath(os.path.commonpath([place.parent for place in places])).parent
+    return [place.relative_to(top).as_posix() for place in places]
 
 
 def _fault(source: Source) -> Iterator[Finding]:

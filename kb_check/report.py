@@ -23,6 +23,12 @@ class FileReport:
     source: Source
     findings: list[Finding]
 
+    @property
+    def can_change(self) -> bool:
+        """Whether fixes can be applied: not in notebooks, and not to what Python cannot parse."""
+        readable = all(finding.rule != "syntax-error" for finding in self.findings)
+        return readable and not self.source.cells and not self.source.fault
+
     @cached_property
     def lines(self) -> list[str]:
         """The lines as Python counts them, with their ends."""
@@ -47,9 +53,9 @@ class Report:
         return ((file, finding) for file in self.files for finding in file.findings)
 
     def fixable(self, *, unsafe: bool) -> int:
-        """How many findings could be mended by fixes that are (un)sure. Notebooks are not changed."""
+        """How many findings could be mended by fixes that are sure, or by those that are not (``unsafe``)."""
         return sum(
             finding.fix is not None and finding.fix.sure is not unsafe and is_fixable(finding, unsafe=unsafe)
             for file, finding in self.findings
-            if not file.source.cells
+            if file.can_change
         )

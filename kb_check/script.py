@@ -41,6 +41,11 @@ class Script:
         """The lines as Python counts them, with their ends."""
         return split_lines(self.code) or [""]
 
+    @cached_property
+    def nodes(self) -> list[ast.AST]:
+        """Every node of the tree."""
+        return list(ast.walk(self.tree))
+
     def resolutions(self, *kinds: str) -> Iterator[Resolution]:
         """What parts of the script stand for, of some kinds (see :class:`flow.types.Resolution`), in order."""
         found = (row for row in self.analysis.resolutions.values() if not kinds or row.kind in kinds)

@@ -411,8 +411,14 @@ class Calls(Narrowing):
             case "min" | "max":
                 self._key(keywords, first)
                 return self.iterated(first) if len(arguments) == 1 else union(arguments)
-            case "abs" | "round" | "sum":
-                return first if isinstance(first, Plain) and name != "sum" else FLOAT
+            case "abs":
+                return Plain(first.kind) if isinstance(first, Plain) else UNKNOWN
+            case "round":
+                whole = len(arguments) == 1 and not keywords and isinstance(first, Plain)
+                return INT if whole else first
+            case "sum":
+                element = self.iterated(first)
+                return Plain(element.kind) if isinstance(element, Plain) and len(arguments) == 1 else UNKNOWN
             case "super":
                 return self._super()
             case "type" if len(arguments) == 3:

@@ -58,7 +58,7 @@ def _finding(file: FileReport, finding: Finding) -> Iterator[Line]:
         ]
     if finding.fix is not None:
         option = "--fix" if finding.fix.sure else "--unsafe-fixes"
-        how = "" if file.source.cells else f" ({option})"
+        how = f" ({option})" if file.can_change else ""
         yield [("  help: ", "bold green"), (f"{finding.fix.title}{how}", "")]
 
 
@@ -89,6 +89,8 @@ def _width(text: str) -> int:
 
 
 def _summary(report: Report) -> Iterator[Line]:
+    if not report.files:
+        return
     checked = f"{_many(len(report.files), 'file')} checked for Blender {report.blender}"
     if report.fixed:
         yield [(f"Mended: {_many(report.fixed, 'finding')}.", "")]

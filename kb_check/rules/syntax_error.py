@@ -31,7 +31,7 @@ def _check(script: Script) -> Iterator[Finding]:
         return
     line, column = min(error.lineno or 1, len(script.lines)), max((error.offset or 1) - 1, 0)
     end = (error.end_offset or 1) - 1 if error.end_lineno == line else column
-    message = f"Python cannot read this: {error.msg}."
+    message = f"Python cannot read this: {error.msg.rstrip('.?')}."
     if looks_like_python_2(script.code):
         message += " The script looks like Python 2, which Blender took until 2.49."
     yield Finding(RULE.id, "error", Span(line, column, line, max(end, column)), message)

@@ -34,7 +34,7 @@ def _run(script):
             with open(script, "rb") as file:
                 code = compile(file.read(), script, "exec")
             sys.argv = [script]
-            exec(code, {"__name__": "__main__", "__file__": script})  # noqa: S102 - that is what it is for
+            exec(code, {"__name__": "__main__", "__file__": script})  # noqa: S102 - the script is the user's, and asked for
     except SystemExit as end:
         return _described(end, script) if end.code else None
     except BaseException as error:
