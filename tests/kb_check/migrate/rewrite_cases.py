@@ -136,13 +136,55 @@ CASES = (
     case("action-channels", "3.4",
          """
          ob.keyframe_insert("location", frame=1)
-         for curve in ob.animation_data.action.fcurves:
+         moved = ob.animation_data
+         for curve in moved.action.fcurves:
              curve.extrapolation = "LINEAR"
          """,
          """
          ob.keyframe_insert("location", frame=1)
-         for curve in anim_utils.action_ensure_channelbag_for_slot(ob.animation_data.action, ob.animation_data.action_slot).fcurves:
+         moved = ob.animation_data
+         for curve in anim_utils.action_ensure_channelbag_for_slot(moved.action, moved.action_slot).fcurves:
              curve.extrapolation = "LINEAR"
+         """),
+    case("action-channels", "3.4",
+         """
+         ob.keyframe_insert("location", frame=1)
+         action = ob.animation_data.action
+         count = len(action.fcurves)
+         """,
+         """
+         ob.keyframe_insert("location", frame=1)
+         action = ob.animation_data.action
+         count = len(anim_utils.action_ensure_channelbag_for_slot(action, action.slots[0]).fcurves)
+         """),
+    case("renamed-value", "4.2", "scene.render.engine = 'BLENDER_EEVEE_NEXT'\n",
+         "scene.render.engine = 'BLENDER_EEVEE'\n"),
+    case("layout-argument", "2.79",
+         """
+         class Side(bpy.types.Panel):
+             bl_label = "Side"
+             bl_space_type = "VIEW_3D"
+             bl_region_type = "UI"
+             def draw(self, context):
+                 self.layout.label("Text", icon='NONE')
+                 self.layout.prop(context.object, "name", "Title")
+                 self.layout.split(percentage=0.3)
+         bpy.utils.register_class(Side)
+         parameters = bpy.types.UILayout.bl_rna.functions["label"].parameters
+         assert not parameters["text"].is_required
+         """,
+         """
+         class Side(bpy.types.Panel):
+             bl_label = "Side"
+             bl_space_type = "VIEW_3D"
+             bl_region_type = "UI"
+             def draw(self, context):
+                 self.layout.label(text="Text", icon='NONE')
+                 self.layout.prop(context.object, "name", text="Title")
+                 self.layout.split(factor=0.3)
+         bpy.utils.register_class(Side)
+         parameters = bpy.types.UILayout.bl_rna.functions["label"].parameters
+         assert not parameters["text"].is_required
          """),
     case("moved-operator", "3.4",
          "import os\nbpy.ops.export_scene.obj(filepath=os.devnull, use_selection=True)\n",
