@@ -52,6 +52,7 @@ class KnownNames:
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""
         removed = self._lookup.of_member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
+        removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
         return self._never(owner, name, self._member_names(owner))

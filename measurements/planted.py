@@ -74,7 +74,7 @@ class _Change:
 def plant(base: Path, folder: Path, count: int, seed: int = _SEED) -> Iterator[Planted]:
     """Plants mistakes in the scripts below a folder, the same number of each kind as far as there are places."""
     with closing(BaseSymbols(base)) as symbols:
-        planter = _Planter(Places(symbols), random.Random(seed))  # noqa: S311 - nothing secret
+        planter = _Planter(Places(symbols), random.Random(seed))
         scripts: dict[str, str] = {}
         places: defaultdict[str, list[tuple[str, Place]]] = defaultdict(list)
         for script in blender_scripts(folder):
@@ -186,7 +186,9 @@ class _Planter:
         names = {parameter.name for parameter in place.symbol.parameters}
         if any(name.startswith("*") for name in names):
             return None
-        name = self._wrong(node.arg, names.__contains__, {"size", "radius", "location", "name", "type", "value"})
+        name = self._wrong(
+            node.arg, names.__contains__, {"size", "radius", "location", "name", "type", "value"}
+        )
         end = node.lineno, node.col_offset + len(node.arg)
         return _Change((node.lineno, node.col_offset), end, name, node.lineno) if name else None
 
@@ -197,7 +199,9 @@ class _Planter:
         if len(values) < 2 or computed:
             return None
         assert isinstance(place.node, ast.Constant)
-        text = self._wrong(str(place.node.value), values.__contains__, {"NONE", "DEFAULT", "AUTO", "OBJECT", "CUSTOM"})
+        text = self._wrong(
+            str(place.node.value), values.__contains__, {"NONE", "DEFAULT", "AUTO", "OBJECT", "CUSTOM"}
+        )
         return self._text(place.node, text)
 
     def _socket(self, place: Place) -> _Change | None:
@@ -261,7 +265,11 @@ class _Planter:
             return None
         required = [p for p in parameters if p.required]
         first = call.args[0] if call.args else None
-        if first is not None and len(call.args) + len(call.keywords) == len(required) and self.chance.random() < 0.5:
+        if (
+            first is not None
+            and len(call.args) + len(call.keywords) == len(required)
+            and self.chance.random() < 0.5
+        ):
             # All that are given are required: the first one goes.
             if len(call.args) + len(call.keywords) > 1 or first.end_lineno != call.end_lineno:
                 return None
@@ -288,7 +296,9 @@ class _Planter:
             return None
         if value.value is None or value.end_col_offset is None:
             return None
-        return _Change((value.lineno, value.col_offset), (value.lineno, value.end_col_offset), wrong, value.lineno)
+        return _Change(
+            (value.lineno, value.col_offset), (value.lineno, value.end_col_offset), wrong, value.lineno
+        )
 
 
 def _changed(code: str, change: _Change) -> str:

@@ -110,7 +110,10 @@ class Places:
             yield from self._of_body(tree.body, _Names())
         for node in ast.walk(tree):
             if isinstance(node, ast.ClassDef):
-                bases = {base.attr if isinstance(base, ast.Attribute) else getattr(base, "id", "") for base in node.bases}
+                bases = {
+                    base.attr if isinstance(base, ast.Attribute) else getattr(base, "id", "")
+                    for base in node.bases
+                }
                 for function in node.body:
                     if isinstance(function, ast.FunctionDef):
                         yield from self._of_function(function, bases)
@@ -233,7 +236,9 @@ class Places:
                     yield Place("keyword", keyword, symbol.path, symbol, statement, parameter)
                     if parameter.enum_items and _is_text(keyword.value):
                         yield Place("value", keyword.value, symbol.path, symbol, statement, parameter)
-            case ast.Subscript(value=ast.Attribute(value=value, attr="inputs" | "outputs" as side), slice=key):
+            case ast.Subscript(
+                value=ast.Attribute(value=value, attr="inputs" | "outputs" as side), slice=key
+            ):
                 owner = self._known(value, names)
                 if owner and isinstance(key, ast.Constant) and isinstance(key.value, str):
                     found = [
@@ -254,7 +259,9 @@ def _is_text(node: ast.expr | None) -> bool:
 
 def _is_ready(body: list[ast.stmt]) -> bool:
     """Whether a function asks what there is before it uses it."""
-    return any(_READY.search(ast.unparse(statement)) for statement in body if not isinstance(statement, ast.ClassDef))
+    return any(
+        _READY.search(ast.unparse(statement)) for statement in body if not isinstance(statement, ast.ClassDef)
+    )
 
 
 def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
@@ -286,7 +293,11 @@ def _bindings(body: list[ast.stmt]) -> dict[str, int]:
     found: dict[str, int] = {}
     for statement in body:
         for node in ast.walk(statement):
-            name = node.id if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load) else getattr(node, "name", None)
+            name = (
+                node.id
+                if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)
+                else getattr(node, "name", None)
+            )
             if isinstance(name, str):
                 found[name] = found.get(name, 0) + 1
     return found

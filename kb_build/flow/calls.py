@@ -85,7 +85,7 @@ class Calls(Narrowing):
         arguments = [self.evaluate(argument) for argument in node.args]
         keywords = [(keyword, self.evaluate(keyword.value)) for keyword in node.keywords]
         if callee is UNKNOWN:
-            return UNKNOWN
+            return self._made_by_class_name(node, arguments, keywords)
         if isinstance(callee, Union):
             return union(
                 self._one_call(member, node, arguments, keywords)
@@ -93,6 +93,20 @@ class Calls(Narrowing):
                 if member is not NONE
             )
         return self._one_call(callee, node, arguments, keywords)
+
+    def _made_by_class_name(
+        self, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]
+    ) -> Type:
+        """``tree.nodes.new("ShaderNodeMath")``: the text is the class, whatever the tree is."""
+        match node.func:
+            case ast.Attribute(value=ast.Attribute(attr="nodes") | ast.Name(id="nodes"), attr="new"):
+                given = [*arguments, *(kind for _, kind in keywords)]
+                text = literal_text(given[0]) if given else None
+                if text and self.api.descends(f"{T}{text}", f"{T}Node"):
+                    return Instance(f"{T}{text}")
+            case _:
+                pass
+        return UNKNOWN
 
     def _one_call(
         self, callee: Type, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]
@@ -399,8 +413,14 @@ class Calls(Narrowing):
             case "min" | "max":
                 self._key(keywords, first)
                 return self.iterated(first) if len(arguments) == 1 else union(arguments)
-            case "abs" | "round" | "sum":
-                return first if isinstance(first, Plain) and name != "sum" else FLOAT
+            case "abs":
+                return Plain(first.kind) if isinstance(first, Plain) else UNKNOWN
+            case "round":
+                whole = len(arguments) == 1 and not keywords and isinstance(first, Plain)
+                return INT if whole else first
+            case "sum":
+                element = self.iterated(first)
+                return Plain(element.kind) if isinstance(element, Plain) and len(arguments) == 1 else UNKNOWN
             case "super":
                 return self._super()
             case "type" if len(arguments) == 3:

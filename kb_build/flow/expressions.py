@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import DEEPEST, StepsExhausted
-from kb_build.flow.facts import MORE_VALUES, T
+from kb_build.flow.facts import MORE_VALUES, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -48,6 +48,7 @@ _MATH = frozenset(
     {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
 )
 _VECTOR = "mathutils.Vector"
+_NUMBERS = frozenset({"bool", "int", "float"})
 _LONGEST_LITERAL = 64
 _FEWEST_VALUES = 2  # of an enumeration that can be judged
 
@@ -98,7 +99,7 @@ class Expressions(Members):
         if known is not None:
             return known
         kind = found.type
-        if self.version and found.symbols == ["bpy.app.version"]:
+        if self.version and found.symbols == [VERSION]:
             return Tuple(tuple(Plain("int", part) for part in self.version))
         return kind
 
@@ -193,7 +194,8 @@ class Expressions(Members):
         operand = self.evaluate(node.operand)
         if isinstance(node.op, ast.Not):
             value = literal(operand) if isinstance(operand, Plain) and operand.kind == "bool" else None
-            return Plain("bool", not value) if isinstance(value, bool) else BOOL
+            source = operand.source if isinstance(operand, Plain) else ""
+            return Plain("bool", not value, source) if isinstance(value, bool) else BOOL
         if isinstance(operand, Plain) and isinstance(node.op, ast.USub):
             value = operand.value
             return Plain(operand.kind, -value) if isinstance(value, (int, float)) else Plain(operand.kind)
@@ -228,14 +230,14 @@ class Expressions(Members):
         self.scope.state = before
         before.names.update(assigned)
         if holds:
-            truths = [literal(kind) for kind in kinds]
-            if any(truth is False for truth in truths):
-                return Plain("bool", False)
-            return kinds[-1]
+            never = Plain("bool", False, VERSION)
+            return never if never in kinds else kinds[-1]
         return union([*(without_none(kind) for kind in kinds[:-1]), kinds[-1]])
 
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
+        if isinstance(test, Plain) and test.source == VERSION and isinstance(test.value, bool):
+            return self.evaluate(node.body if test.value else node.orelse)  # the other is for other versions
         before = self.scope.state
         self.scope.state = before.copy()
         self.narrow(node.test, holds=True)
@@ -244,8 +246,6 @@ class Expressions(Members):
         self.narrow(node.test, holds=False)
         second = self.evaluate(node.orelse)
         self.scope.state = before
-        if isinstance(test, Plain) and isinstance(test.value, bool):
-            return first if test.value else second
         return join(first, second)
 
     def _walrus(self, node: ast.NamedExpr) -> Type:
@@ -309,7 +309,8 @@ class Expressions(Members):
         source = self.source_of(kind)
         if not source:
             return
-        for constant in _constants(node):
+        # Those that were not reached are of a branch for other versions.
+        for constant in filter(self.types.__contains__, _constants(node)):
             self.resolve_value(constant, source, use=use)
 
     @staticmethod
@@ -411,13 +412,13 @@ def _compared(left: Tuple, right: Tuple, operator: ast.cmpop) -> Type:
     ours, theirs = [int(v) for v in first if v is not None], [int(v) for v in second if v is not None]
     match operator:
         case ast.Lt():
-            return Plain("bool", ours < theirs)
+            return Plain("bool", ours < theirs, VERSION)
         case ast.LtE():
-            return Plain("bool", ours <= theirs)
+            return Plain("bool", ours <= theirs, VERSION)
         case ast.Gt():
-            return Plain("bool", ours > theirs)
+            return Plain("bool", ours > theirs, VERSION)
         case ast.GtE():
-            return Plain("bool", ours >= theirs)
+            return Plain("bool", ours >= theirs, VERSION)
         case _:
             return BOOL
 
@@ -440,8 +441,15 @@ def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa
     if isinstance(right, Instance) and right.cls in _MATH and isinstance(left, Plain):
         return right
     if isinstance(left, Plain) and isinstance(right, Plain):
+        if not {left.kind, right.kind} <= _NUMBERS:
+            return STR if right.kind == "str" and isinstance(operator, ast.Mult) else UNKNOWN
         if isinstance(operator, ast.Div):
             return FLOAT
+        if isinstance(operator, ast.Pow) and FLOAT.kind not in {left.kind, right.kind}:
+            exponent = literal(right)
+            return INT if isinstance(exponent, int) and exponent >= 0 else UNKNOWN
+        if isinstance(operator, (ast.BitAnd, ast.BitOr, ast.BitXor)) and left.kind == right.kind:
+            return Plain(left.kind)
         return FLOAT if "float" in {left.kind, right.kind} else INT
     if isinstance(operator, ast.Add):
         if isinstance(left, Tuple) and isinstance(right, Tuple):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 T = "bpy.types."
+VERSION = "bpy.app.version"
 
 # ``Object.type`` → the class of ``Object.data``.
 OBJECT_DATA = {
@@ -52,7 +53,7 @@ DERIVED_BY_SCRIPTS = frozenset(
 NODES_WITH_SOCKETS_OF_THEIR_OWN = (
     "Group", "GroupInput", "GroupOutput", "SimulationInput", "SimulationOutput", "RepeatInput", "RepeatOutput",
     "ForeachGeometryElementInput", "ForeachGeometryElementOutput", "Bake", "CaptureAttribute", "MenuSwitch",
-    "IndexSwitch", "Viewer", "OutputFile", "Script", "CombineBundle", "SeparateBundle", "EvaluateClosure",
+    "IndexSwitch", "GeometryNodeViewer", "OutputFile", "Script", "CombineBundle", "SeparateBundle", "EvaluateClosure",
     "ClosureInput", "ClosureOutput", "FormatString", "CryptomatteV2", "RLayers", "Image", "Reroute", "Custom",
 )  # fmt: skip
 

@@ -15,6 +15,7 @@ from kb_build.flow.facts import (
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
     SOMETIMES,
+    T,
 )
 from kb_build.flow.types import (
     FLOAT,
@@ -317,7 +318,7 @@ class Members(Core):
         if text and isinstance(element, Instance):
             cls = self.api.class_by_label(element.cls, text)
             if cls and self.api.descends(cls, element.cls):
-                return Instance(cls, sure=False)
+                return Instance(cls)
         return element
 
     def _socket(self, owner: Instance, side: str, key: Type, node: ast.AST) -> Type | None:
@@ -386,7 +387,7 @@ class Members(Core):
 
 def _has_sockets_of_its_own(cls: str) -> bool:
     """Whether the sockets of a node depend on more than its class."""
-    return cls.rpartition("Node")[2] in NODES_WITH_SOCKETS_OF_THEIR_OWN
+    return not {cls.rpartition("Node")[2], cls.removeprefix(T)}.isdisjoint(NODES_WITH_SOCKETS_OF_THEIR_OWN)
 
 
 def _half_known(path: str) -> bool:

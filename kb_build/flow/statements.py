@@ -10,7 +10,7 @@ from kb_build.flow.annotations import annotated
 from kb_build.flow.calls import Calls
 from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.facts import PARAMETERS, T
+from kb_build.flow.facts import PARAMETERS, VERSION, T
 from kb_build.flow.scopes import Loop, Scope, State, chain_text, joined
 from kb_build.flow.types import (
     NONE,
@@ -190,7 +190,8 @@ class Statements(Calls):
 
     def _if(self, node: ast.If) -> bool:
         test = self.evaluate(node.test)
-        truth = literal(test) if isinstance(test, Plain) and test.kind == "bool" else None
+        # Only another version's code is left out: a switch may be set by whoever reads the script.
+        truth = literal(test) if isinstance(test, Plain) and test.source == VERSION else None
         before = self.scope.state
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Finding, Fix
@@ -27,12 +28,12 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     """Writes the right name in the place of a wrong one, where only the name differs."""
     if not lacking.replacement:
         return None
-    name = _last_name(lacking.replacement)
-    owner = lacking.replacement.removesuffix(name).rstrip('.(:["')
+    owner, name = _split(lacking.replacement)
     same_owner = "." not in lacking.replacement or any(
         cls == owner for missing in row.missing for cls in (missing, *script.api.lineage(missing))
     )
-    if not same_owner or not name or (edit := script.renamed(row.node, name)) is None:
+    node = row.node.slice if isinstance(row.node, ast.Subscript) else row.node
+    if not same_owner or not name or (edit := script.renamed(node, name)) is None:
         return None
     return Fix(f"Write {name}", (edit,), sure=lacking.sure)
 
@@ -45,9 +46,11 @@ def absent_paths(row: Resolution) -> tuple[str, ...]:
     return tuple(form.format(owner, row.value) for owner in row.missing) if form else ()
 
 
-def _last_name(path: str) -> str:
-    """``b`` of ``a.b``, ``a(b)``, ``a:b`` and ``a.inputs["b"]``."""
-    for opening, closing in (('["', '"]'), ("(", ")"), (":", "")):
-        if opening in path:
-            return path.partition(opening)[2].removesuffix(closing)
-    return path.rpartition(".")[2]
+def _split(path: str) -> tuple[str, str]:
+    """``a`` and ``b`` of ``a.b``, ``a(b)``, ``a:b`` and ``a.inputs["b"]``."""
+    for opening, closing in (('.inputs["', '"]'), ('.outputs["', '"]'), ("(", ")"), (":", "")):
+        owner, found, name = path.partition(opening)
+        if found:
+            return owner, name.removesuffix(closing)
+    owner, _, name = path.rpartition(".")
+    return owner, name

@@ -31,10 +31,18 @@ _CONTEXT = "bpy.types.Context"
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store", "text", "button"):
-        owner = row.missing[0]
+        owner = _class_of(script, row.missing[0])
         if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != _CONTEXT:
             lacking = script.names.member(owner, row.value, reading=row.kind != "store")
             yield lacking_finding(script, RULE.id, row, lacking)
+
+
+def _class_of(script: Script, owner: str) -> str:
+    """The class of a collection that is given by its property; any other owner as it is."""
+    symbol = script.api.symbols.symbol(owner)
+    if symbol is None or symbol.kind != "property" or symbol.type != "collection":
+        return owner
+    return f"bpy.types.{symbol.collection or 'bpy_prop_collection'}"
 
 
 RULE = Rule("unknown-attribute", "error", "An attribute that the class does not have", _check)

@@ -1,7 +1,7 @@
 """A member of ``bpy.context`` that no editor gives.
 
 The context has what every editor has, and what some editors add to it (``selected_nodes`` in the node editor). A name
-that none of them gives is reported.
+that none of them gives is reported; so is one that older Blenders had, whatever editor it may be.
 
 ```python
 bpy.context.selected_meshes  # reported
@@ -26,9 +26,11 @@ _CONTEXT = "bpy.types.Context"
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for row in script.missing("attribute", "store"):
+    for row in script.missing("attribute", "store", unsure=True):
         if row.missing[0] == _CONTEXT:
-            yield lacking_finding(script, RULE.id, row, script.names.member(_CONTEXT, row.value))
+            lacking = script.names.member(_CONTEXT, row.value)
+            if row.sure or lacking.removed:
+                yield lacking_finding(script, RULE.id, row, lacking)
 
 
 RULE = Rule("unknown-context-member", "error", "A member that the context does not have", _check)
