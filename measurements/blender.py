@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import tempfile
+import textwrap
 import time
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -58,6 +59,8 @@ for number in range(COUNT):
         thing.keyframe_insert("location", frame=40)
 len(bpy.data.objects)
 """
+# A hundred lines to check that are not run: a function that nobody calls.
+_CHECKED = "def build():\n" + textwrap.indent(_SCENE.replace("COUNT", "100") * 6, "    ") + "\n"
 
 
 def measure(setting: Setting) -> ReportPart:
@@ -143,6 +146,11 @@ async def _over_mcp(setting: Setting) -> ReportPart:
         TargetFigure("mcp_start", percentile(starts, 0.5), f"echo here {percentile(echo_starts, 0.5):.2f} s"),
         TargetFigure("execute_p50", percentile(calls, 0.5), f"echo here {percentile(echoes, 0.5):.1f} ms"),
     )
+    checked, unchecked = await _preflight(setting)
+    cost = percentile(checked, 0.5) - percentile(unchecked, 0.5)
+    figures += (
+        TargetFigure("preflight", cost, f"{percentile(unchecked, 0.5):.1f} ms without, of the same lines"),
+    )
     rows = tuple(
         (
             name,
@@ -157,7 +165,10 @@ async def _over_mcp(setting: Setting) -> ReportPart:
     header = ("tool", "first answer s", "call p50 ms", "p95", "slowest")
     note = "From before the server's start to the first answer. Every call of blender_execute leaves a checkpoint."
     table = Table("Blender over MCP, on stdio", header, rows, note)
-    data = {"starts": starts, "calls": calls, "echo_starts": echo_starts, "echo_calls": echoes}
+    data = {
+        "starts": starts, "calls": calls, "echo_starts": echo_starts, "echo_calls": echoes,
+        "checked": checked, "unchecked": unchecked,
+    }  # fmt: skip
     return ReportPart("over MCP", figures, (table,), data=data)
 
 
@@ -178,6 +189,19 @@ async def _timed(
                     starts.append(time.perf_counter() - began)
                     calls += [await _call(client, tool, **arguments) * 1e3 for _ in range(200)]
     return starts, calls
+
+
+async def _preflight(setting: Setting) -> tuple[list[float], list[float]]:
+    """Times calls with a hundred lines that are not run, in ms: checked before, and not."""
+    say("blender: the check of code before it runs")
+    times: dict[str, list[float]] = {"on": [], "off": []}
+    with tempfile.TemporaryDirectory() as run:
+        async with _client(setting, [*simworlds_command(), "mcp", "--run", run]) as client:
+            await _call(client, EXECUTE, code=_CHECKED)
+            for _ in range(20 if setting.quick else 100):
+                for preflight, calls in times.items():
+                    calls.append(await _call(client, EXECUTE, code=_CHECKED, preflight=preflight) * 1e3)
+    return times["on"], times["off"]
 
 
 async def _scenes(setting: Setting) -> ReportPart:

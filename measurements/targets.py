@@ -126,6 +126,7 @@ _ROWS = (
     Target("planted", "mistakes planted in Blender's own scripts: found", "share", 0.92, True),
     Target("worker_start", "Blender's start to its first reply", "s", 2),
     Target("mcp_start", "simworlds mcp: start to first blender_execute", "s", 2),
+    Target("preflight", "pre-flight of 100 lines, beside execution: p50", "ms", 30),
     Target("execute_p50", 'blender_execute("1+1") over MCP: p50', "ms", 8, False, "echo tool 1.0 ms"),
     Target("state", "scene state of 500 objects", "ms", 300),
     Target("preview", "preview of 50 objects, 4 × 384²", "s", 3),

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
 
 RUNNER, VERIFIER = "runner", "verifier"
 VERIFY = "blender_verify"
+CHECK = "blender_check"
 START = "start"
 _LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
 
@@ -247,7 +248,8 @@ class RoleTools:
         self._stage: Stage = stage
         self._names: Sequence[str] = ()
         if role == coder.NAME:
-            without = () if run.options.verifier else (VERIFY,)
+            # blender_execute checks the coder's code by itself.
+            without = (CHECK,) if run.options.verifier else (CHECK, VERIFY)
             self._names = [name for name in run.tools.names if name not in without]
         elif role == reviewer.NAME:
             self._names = [

@@ -10,19 +10,32 @@ from agents.blender.team import PROMPTS
 from agents.blender.tool_catalogue import TOOLS
 from agents.plan.scene import ScenePlan
 from docs.generate.markdown import GENERATED, page, schema_table, table
+from kb_serve.served_tools import listing
 from kb_serve.server import BASE_LIST, INSTRUCTIONS, TEMPLATES
-from kb_serve.tool import tool
 from simworlds.schemas.notation import shape_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from mcp_types import PromptArgument
+    from mcp_types import PromptArgument, Tool
 
 
 def docs_tool_page() -> str:
-    """The tool of the knowledge base, its arguments and result, and the resources, as Markdown."""
-    entry = tool()
+    """The tools of the knowledge base, their arguments and results, and the resources, as Markdown."""
+    return page(
+        "# MCP tools and resources",
+        GENERATED,
+        f"The server's instructions to clients: {INSTRUCTIONS}",
+        *(part for entry in listing() for part in _tool(entry)),
+        "## Errors",
+        "Errors (a call that cannot be answered, a version that was not built, a damaged base) are results marked as "
+        "errors; their text says what to do.",
+        "## Resources",
+        _resources(),
+    )
+
+
+def _tool(entry: Tool) -> Iterator[str]:
     assert entry.description
     assert entry.annotations
     assert entry.output_schema
@@ -32,26 +45,17 @@ def docs_tool_page() -> str:
         "destructive": entry.annotations.destructive_hint,
         "open world": entry.annotations.open_world_hint,
     }
-    return page(
-        "# MCP tools and resources",
-        GENERATED,
-        f"The server's instructions to clients: {INSTRUCTIONS}",
-        f"## `{entry.name}`",
-        entry.description,
-        "Hints: " + ", ".join(f"{name} {'yes' if value else 'no'}" for name, value in hints.items()) + ".",
-        "### Arguments",
-        schema_table(entry.input_schema),
-        "### Result",
-        "The Markdown is the result's text; the structured content is:",
-        schema_table(entry.output_schema),
-        "Errors (a query that cannot be answered, a version that was not built, a damaged base) are results "
-        "marked as errors; their text says what to do.",
-        "### Schemas",
-        _schema("Arguments", entry.input_schema),
-        _schema("Result", entry.output_schema),
-        "## Resources",
-        _resources(),
-    )
+    yield f"## `{entry.name}`"
+    yield entry.description
+    yield "Hints: " + ", ".join(f"{name} {'yes' if value else 'no'}" for name, value in hints.items()) + "."
+    yield "### Arguments"
+    yield schema_table(entry.input_schema)
+    yield "### Result"
+    yield "The Markdown is the result's text; the structured content is:"
+    yield schema_table(entry.output_schema)
+    yield "### Schemas"
+    yield _schema("Arguments", entry.input_schema)
+    yield _schema("Result", entry.output_schema)
 
 
 def _schema(title: str, schema: Mapping[str, Any]) -> str:
@@ -72,7 +76,7 @@ def blender_tools_page() -> str:
     parts = [
         "# The Blender tools",
         GENERATED,
-        "`simworlds mcp` serves these, and `blender_docs` ([tools.md](tools.md)) beside them.",
+        "`simworlds mcp` serves these, and `blender_docs` and `blender_check` ([tools.md](tools.md)) beside them.",
     ]
     for entry in TOOLS:
         kind = "reads only" if entry.read_only else "changes the scene or writes files"

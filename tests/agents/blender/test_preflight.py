@@ -96,7 +96,8 @@ REGISTERS = [
     ),
     (
         "class Op(bpy.types.Operator):\n    bl_idname = 'my.op'\n    bl_label = 'Op'\n"
-        "    size: bpy.props.IntProperty()\n    def execute(self, context):\n        return {'FINISHED'}\nbpy.utils.register_class(Op)",
+        "    size: bpy.props.IntProperty()\n    def execute(self, context):\n        return {'FINISHED'}\n"
+        "bpy.utils.register_class(Op)",
         "bpy.ops.my.op(size=3)",
     ),
     (

@@ -81,6 +81,7 @@ async def test_every_tool_of_the_suite_is_listed_beside_the_documentation(client
         *(tool.name for tool in TOOLS),
         "blender_plan_check",
         "blender_docs",
+        "blender_check",
     ]
     assert all(tool.title and tool.description for tool in listed)
 
@@ -90,7 +91,7 @@ async def test_every_argument_is_described_to_the_model(client: Client) -> None:
         assert tool.input_schema["type"] == "object"
         for name, field in tool.input_schema["properties"].items():
             assert "description" in field, f"{tool.name}: {name}"
-            assert "title" not in field or tool.name == "blender_docs"
+            assert "title" not in field or tool.name in {"blender_docs", "blender_check"}
         assert "$ref" not in json.dumps(tool.input_schema)
 
 
@@ -147,7 +148,7 @@ async def test_a_preview_comes_as_a_picture_beside_its_text(client: Client) -> N
 
 
 async def test_failed_code_is_an_error_with_what_the_documentation_says(client: Client) -> None:
-    answer = await run(client, "import mathutils\nmathutils.Vector((1, 2, 3)).lenght")
+    answer = await run(client, "import mathutils\nmathutils.Vector((1, 2, 3)).lenght", preflight="off")
     assert answer.is_error
     assert "Vector.length" in said(answer)
     assert answer.structured_content is not None
