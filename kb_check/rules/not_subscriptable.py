@@ -78,7 +78,7 @@ def _is_guarded(script: Script, node: ast.Subscript) -> bool:
     return False
 
 
-def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
+def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:  # noqa: PLR0911 - one return a type
     """What is wrong with asking a value of one type for these items; empty if nothing surely is."""
     key = None if isinstance(node.slice, ast.Slice) else script.type_of(node.slice)
     step = node.slice.step if isinstance(node.slice, ast.Slice) else None
