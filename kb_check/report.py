@@ -23,7 +23,7 @@ class FileReport:
     source: Source
     findings: list[Finding]
 
-    @property
+    @cached_property
     def can_change(self) -> bool:
         """Whether fixes can be applied: not in notebooks, and not to what Python cannot parse."""
         readable = all(finding.rule != "syntax-error" for finding in self.findings)

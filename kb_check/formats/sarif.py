@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kb_check.rule import Rule
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+_CONTEXT = 120  # letters on each side of a place that tell it from others
 
 
 def as_sarif(report: Report) -> str:
@@ -60,7 +61,7 @@ def _result(file: FileReport, place: int, finding: Finding, rules: list[str]) ->
     physical: dict[str, Any] = {"artifactLocation": artifact}
     if not cell:  # the lines of a notebook's file are not those of its cells
         physical["region"] = _region(finding.span)
-    same = f"{finding.rule}\0{finding.symbol or finding.message}\0{_line(file, finding.span.line)}"
+    same = f"{finding.rule}\0{finding.symbol or finding.message}\0{_context(file, finding.span)}"
     result: dict[str, Any] = {
         "ruleId": finding.rule,
         "ruleIndex": rules.index(finding.rule),
@@ -95,8 +96,11 @@ def _region(span: Span) -> dict[str, int]:
     }
 
 
-def _line(file: FileReport, line: int) -> str:
-    return file.lines[line - 1].strip() if line <= len(file.lines) else ""
+def _context(file: FileReport, span: Span) -> str:
+    """The text around the beginning of a span, on its line."""
+    if span.line > len(file.lines):
+        return ""
+    return file.lines[span.line - 1][max(span.column - _CONTEXT, 0) : span.column + _CONTEXT].strip()
 
 
 def _uri(name: str) -> str:

@@ -70,9 +70,11 @@ def _cut(text: str, start: int, end: int) -> tuple[str, str, str]:
     if start - first > _WIDEST - _MARGIN:
         first, lead = start - _MARGIN, "…"
     last = first + _WIDEST
-    text = STEERING.sub("\N{REPLACEMENT CHARACTER}", text)
     tail = "…" if len(text) > last else ""
-    return f"{lead}{text[first:last]}{tail}", lead + text[first:start], text[start : min(end, last)]
+    # Cut first: a line may be as long as the file, and have a finding every few letters.
+    shown = STEERING.sub("\N{REPLACEMENT CHARACTER}", text[first:last])
+    start, end = start - first, min(end, last) - first
+    return f"{lead}{shown}{tail}", lead + shown[:start], shown[start:end]
 
 
 def _blank(text: str) -> str:
